@@ -25,10 +25,12 @@ try:
     found = None
     while found is None:
         found = re.search("http://[^ ]+", server.stdout.readline())
-    page = urllib.request.urlopen(found[0].strip()).read().decode()
+    browser = urllib.request.build_opener(urllib.request.HTTPCookieProcessor())  # the token of the address becomes a cookie
+    page = browser.open(found[0].strip()).read().decode()
     assert "bokeh" in page, page[:500]
 finally:
     server.terminate()
+    server.wait()
 """
 """Start the server, and get its page."""
 IN_NOTEBOOK = """

@@ -96,7 +96,7 @@ class Explorer:
         )
 
     def once_answered(self, call: Callable[[], None]) -> None:
-        """Have `call` called once, after the next answer is shown."""
+        """Have `call` called once, after the next answer is shown; not at all if there is a fault in its place."""
         self._once.append(call)
 
     def beside(self, work: Callable[[Callable[[str], None]], Any], done: Callable[[Any], None]) -> None:
@@ -152,7 +152,7 @@ class Explorer:
             call()
 
     def _fail(self, error: Exception) -> None:
-        self.progress = ""
+        self.progress, self._once = "", []
         self.tell("progress")
         if not isinstance(error, InputError):
             raise error

@@ -58,9 +58,9 @@ def begin(explorer: Explorer, parameters: Mapping[str, str]) -> None:
         explorer.show_step(tour, None, None, 0.0)
     if strip is not None:
         explorer.show_strip(strip)
-    _ask(explorer, pinned, setting, cursor)
     if faults:
         explorer.once_answered(lambda: explorer.refuse(faults[0]))
+    _ask(explorer, pinned, setting, cursor)
 
 
 def _ask(explorer: Explorer, pinned: Setting | None, setting: Setting, cursor: float | None) -> None:
@@ -72,8 +72,8 @@ def _ask(explorer: Explorer, pinned: Setting | None, setting: Setting, cursor: f
         explorer.pin()
         explorer.change(setting, cursor)
 
-    explorer.change(pinned)
     explorer.once_answered(then)
+    explorer.change(pinned)
 
 
 def _number(text: str) -> float | None:

@@ -28,6 +28,8 @@ from stickslip.foundation.errors import InputError
 
 FIRST_PORT = 5018
 """The port that is tried first; the next free one is taken."""
+TITLE = "stickslip explorer"
+"""Title of the page in the browser."""
 PORTS = 50
 """Number of ports that are tried."""
 LARGEST_MESSAGE = 4_000_000
@@ -140,6 +142,7 @@ class ExplorerServer:
         first = FIRST_PORT if self.place.port is None else self.place.port
         for port in range(first, first + (PORTS if self.place.port is None else 1)):
             try:
+                check_free(self.place.address, port)
                 return self._listening(port)
             except OSError as error:
                 if error.errno != errno.EADDRINUSE:
@@ -154,7 +157,7 @@ class ExplorerServer:
             {"/": self._page},
             port=port,
             address=self.place.address,
-            title="stickslip explorer",
+            title=TITLE,
             location=False,
             sign_sessions=True,
             secret_key=self.access.token.encode(),
@@ -169,9 +172,10 @@ class ExplorerServer:
             signal.signal(signal.SIGINT, handler)  # Panel sets its own
         return server
 
-    def _page(self) -> Any:
-        """Return the page of a new tab, whose work ends with it."""
-        deliver = partial(deliver_to, ref(pn.state.curdoc))
+    def _page(self) -> None:
+        """Fill the document of a new tab with its page, whose work ends with it."""
+        document = pn.state.curdoc
+        deliver = partial(deliver_to, ref(document))
         desk, files = ThreadDesk(deliver), ThreadDesk(deliver)
         explorer = self._make(desk, files)
         desk.report = explorer.told
@@ -187,8 +191,17 @@ class ExplorerServer:
         pn.state.on_session_destroyed(gone)
         pn.config.exception_handler = lambda error: explorer.refuse(str(unforeseen(error)))
         page = self._build(explorer)
+        with (
+            document.models.freeze()
+        ):  # otherwise Bokeh looks through all models again for each one that is added: 1 s in place of 0.2
+            page.server_doc(document, title=TITLE, location=False)
         begin(explorer, arguments_of(pn.state.session_args))
-        return page
+
+
+def check_free(address: str, port: int) -> None:
+    """Raise OSError if nothing can listen there. Tornado would find out too, but leave sockets open."""
+    family = socket.AF_INET6 if ":" in address else socket.AF_INET
+    socket.create_server((address, port), family=family).close()
 
 
 def arguments_of(given: Mapping[str, list[bytes]]) -> dict[str, str]:

@@ -1,0 +1,326 @@
+"""The server of the explorer: who gets in, how many, and what is left of a page that was closed."""
+
+from __future__ import annotations
+
+import asyncio
+import gc
+import re
+import socket
+import weakref
+from collections.abc import Awaitable, Callable
+from typing import Any
+from urllib.parse import urlsplit
+
+import panel as pn
+import pytest
+from tornado.httpclient import AsyncHTTPClient, HTTPRequest, HTTPResponse
+from tornado.websocket import WebSocketClientConnection, websocket_connect
+
+from stickslip.explorer.model.setting import Setting
+from stickslip.explorer.page.explorer import Explorer
+from stickslip.explorer.server import serve as serving
+from stickslip.explorer.server import sessions
+from stickslip.explorer.server.desk import ThreadDesk
+from stickslip.explorer.server.serve import ExplorerServer, Place, open_browser
+from stickslip.explorer.server.warm import Warming
+from stickslip.foundation.errors import InputError
+
+TOKEN = re.compile(r'"token":"([^"]+)"')
+"""Where a page holds the token of its websocket."""
+
+
+class Served:
+    """A server with pages of one line, and a browser without a window that keeps cookies."""
+
+    def __init__(self, place: Place) -> None:
+        self.explorers: list[weakref.ref[Explorer]] = []
+        self.lines: list[WebSocketClientConnection] = []
+        self.server = ExplorerServer(place, self._make, lambda explorer: pn.pane.HTML("a page"))
+        self.server.warming.begin = lambda: None  # type: ignore[method-assign] # nothing is calculated here
+        self.server.start()
+        self.base = f"http://127.0.0.1:{self.server.port}/"
+        self.cookie = ""
+
+    def _make(self, desk: ThreadDesk, files: ThreadDesk) -> Explorer:
+        made = Explorer(Setting.bundled("fig6-slab"), desk, lambda scenario, told: None, files)  # type: ignore[arg-type,return-value]
+        self.explorers.append(weakref.ref(made))
+        return made
+
+    async def get(self, path: str = "", **headers: str) -> HTTPResponse:
+        """Ask for a path below the address; the cookie is sent along."""
+        sent = {"Cookie": self.cookie, **headers} if self.cookie else headers
+        request = HTTPRequest(self.base + path, headers=sent, follow_redirects=False)
+        return await AsyncHTTPClient(force_instance=True).fetch(request, raise_error=False)
+
+    async def enter(self) -> HTTPResponse:
+        """Open the address with the token, and keep the cookie."""
+        answer = await self.get(self.server.url.partition("/?")[2].join(("?", "")))
+        self.cookie = answer.headers["Set-Cookie"].partition(";")[0]
+        return answer
+
+    async def connect(self, page: HTTPResponse, origin: str | None = None) -> WebSocketClientConnection:
+        """Connect a page to its session, as its scripts do."""
+        found = TOKEN.search(page.body.decode())
+        assert found is not None
+        headers = {"Cookie": self.cookie} if self.cookie else {}
+        if origin is not None:
+            headers["Origin"] = origin
+        request = HTTPRequest(f"{self.base.replace('http', 'ws')}ws", headers=headers)
+        line = await websocket_connect(request, subprotocols=["bokeh", found[1]])
+        self.lines.append(line)
+        return line
+
+    async def hang_up(self) -> None:
+        """Close the first connection that is still open, as a browser does with a tab."""
+        line = self.lines.pop(0)
+        line.close()
+        while await line.read_message() is not None:
+            pass
+
+    @property
+    def open_pages(self) -> int:
+        """The number of sessions."""
+        return len(self.server._bokeh.get_sessions("/"))
+
+
+def with_server(test: Callable[[Served], Awaitable[None]], **place: Any) -> None:
+    """Run a test beside a server, in one event loop."""
+
+    async def run() -> None:
+        served = Served(Place(**({"port": 0} | place)))
+        try:
+            await test(served)
+            while served.lines:
+                await served.hang_up()
+        finally:
+            served.server.stop()
+
+    asyncio.run(run())
+
+
+async def until(reached: Callable[[], bool]) -> None:
+    """Wait until something is reached."""
+    for _ in range(400):
+        if reached():
+            return
+        await asyncio.sleep(0.02)
+    raise AssertionError("it was never reached")
+
+
+def said(answer: HTTPResponse) -> str:
+    """Return the one sentence of a plain page."""
+    found = re.fullmatch(r"<!DOCTYPE html>\n<title>stickslip</title>\n<p>(.*)</p>\n", answer.body.decode())
+    assert found is not None, answer.body[:300]
+    return found[1]
+
+
+def test_nothing_is_shown_without_the_token() -> None:
+    async def test(served: Served) -> None:
+        refused = [await served.get(path) for path in ("", "?token=", "?token=%ff", "?token=wrong", "static/js/bokeh.min.js", "ws")]
+        assert [one.code for one in refused] == [403] * 6
+        assert {said(one) for one in refused} == {
+            "This page needs its token: open the whole address that `stickslip explore` printed in the terminal."
+        }
+        served.cookie = f"stickslip-{served.server.port}=wrong"
+        assert (await served.get()).code == 403
+        assert served.open_pages == 0
+
+    with_server(test)
+
+
+def test_the_token_becomes_a_cookie_and_leaves_the_address() -> None:
+    async def test(served: Served) -> None:
+        token = served.server.access.token
+        answer = await served.get(f"?token={token}&scenario=fig6-slab&friction.alpha=0.7%20s%2Fm")
+        assert (answer.code, answer.headers["Location"]) == (302, "/?scenario=fig6-slab&friction.alpha=0.7+s%2Fm")
+        cookie = answer.headers["Set-Cookie"]
+        assert cookie.startswith(f"stickslip-{served.server.port}={token};")
+        assert {"HttpOnly", "SameSite=Lax"} <= set(cookie.split("; "))
+        await served.enter()
+        page = await served.get()
+        assert page.code == 200
+        assert token not in page.body.decode()
+
+    with_server(test)
+
+
+def test_only_the_page_and_the_bundled_files_are_answered() -> None:
+    async def test(served: Served) -> None:
+        await served.enter()
+        codes = {
+            path: (await served.get(path)).code
+            for path in (
+                "static/js/bokeh.min.js",
+                "favicon.ico",
+                "static/",
+                "static/js/",
+                "static/%2e%2e/%2e%2e/bokeh/settings.py",
+                "autoload.js?bokeh-autoload-element=a",
+                "metadata",
+                "components/os/path/_css/a",
+                "../",
+                "x",
+            )
+        }
+        assert codes.pop("static/js/bokeh.min.js") == codes.pop("favicon.ico") == 200
+        assert set(codes.values()) <= {403, 404}
+
+    with_server(test)
+
+
+def test_every_answer_forbids_what_comes_from_elsewhere() -> None:
+    async def test(served: Served) -> None:
+        await served.enter()
+        for path in ("", "?token=wrong", "static/js/bokeh.min.js", "x"):
+            policy = (await served.get(path)).headers["Content-Security-Policy"]
+            assert policy.startswith("default-src 'self'; ")
+            assert "frame-ancestors 'self'" in policy
+            assert "http" not in policy
+
+    with_server(test)
+
+
+@pytest.mark.parametrize(
+    ("origin", "allowed"),
+    [
+        (None, True),
+        ("http://127.0.0.1:{port}", True),
+        ("https://proxy.example", True),
+        ("http://127.0.0.1:1", False),
+        ("http://localhost:{port}", False),  # the page was asked for as 127.0.0.1
+        ("https://evil.example", False),
+        ("null", False),
+    ],
+)
+def test_only_pages_of_this_server_may_connect(origin: str | None, allowed: bool) -> None:
+    async def test(served: Served) -> None:
+        await served.enter()
+        page = await served.get()
+        named = None if origin is None else origin.format(port=served.server.port)
+        if allowed:
+            await served.connect(page, named)
+            return
+        with pytest.raises(Exception, match="403"):
+            await served.connect(page, named)
+
+    with_server(test, origins=("Proxy.example",))
+
+
+def test_a_websocket_needs_the_cookie_too() -> None:
+    async def test(served: Served) -> None:
+        await served.enter()
+        page = await served.get()
+        served.cookie = ""
+        with pytest.raises(Exception, match="403"):
+            await served.connect(page)
+
+    with_server(test)
+
+
+def test_a_server_on_the_loopback_address_has_no_other_name() -> None:
+    async def test(served: Served) -> None:
+        await served.enter()
+        port = served.server.port
+        assert (await served.get(Host=f"localhost:{port}")).code == 200
+        for host in ("evil.example", f"evil.example:{port}", "127.0.0.1.evil.example", ""):
+            assert (await served.get(Host=host)).code in (400, 403)
+
+    with_server(test)
+
+
+def test_a_body_that_is_too_large_is_refused() -> None:
+    async def test(served: Served) -> None:
+        await served.enter()
+        request = HTTPRequest(served.base, method="POST", body=b"0" * 20_000, headers={"Cookie": served.cookie})
+        answer = await AsyncHTTPClient(force_instance=True).fetch(request, raise_error=False)
+        assert answer.code == 400
+
+    with_server(test)
+
+
+def test_one_page_too_many_is_refused_in_a_sentence_until_another_is_closed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(serving, "LOOK_EVERY_MS", 20)
+    monkeypatch.setattr(sessions, "LINGER_MS", 40.0)
+
+    async def test(served: Served) -> None:
+        await served.enter()
+        pages = [await served.get() for _ in range(2)]
+        for page in pages:
+            await served.connect(page)
+        refused = await served.get()
+        assert (refused.code, said(refused).partition(":")[0]) == (
+            503,
+            "2 pages are open here, which is the limit (--sessions of `stickslip explore`)",
+        )
+        await until(lambda: len(served.server.sessions._seen) == 2)
+        await served.hang_up()
+        await until(lambda: served.open_pages == 1)
+        assert (await served.get()).code == 200
+
+    with_server(test, sessions=2)
+
+
+def test_nothing_of_a_closed_page_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(serving, "LOOK_EVERY_MS", 20)
+    monkeypatch.setattr(sessions, "LINGER_MS", 40.0)
+
+    async def test(served: Served) -> None:
+        await served.enter()
+        await served.connect(await served.get())
+        await until(lambda: bool(served.server.sessions._seen))
+        (explorer,) = served.explorers
+        assert explorer() is not None
+        assert len(served.server._desks) == 2
+        await served.hang_up()
+        await until(lambda: served.open_pages == 0)
+        assert served.server._desks == set()
+        await until(lambda: gc.collect() >= 0 and explorer() is None)  # callbacks that were under way end first
+
+    with_server(test)
+
+
+def test_a_taken_port_is_one_line_and_by_default_the_next_one_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        monkeypatch.setattr(serving, "FIRST_PORT", port)
+
+        async def test(served: Served) -> None:
+            assert port < served.server.port < port + serving.PORTS
+
+        with_server(test, port=None)
+        with pytest.raises(InputError, match=f"^explore: port {port} is taken: choose another one with --port, or 0"):
+            with_server(test, port=port)
+
+
+def test_an_address_that_is_not_of_this_computer_is_one_line() -> None:
+    with pytest.raises(InputError, match=r"^explore: cannot listen on 203\.0\.113\.1 port 0: "):
+        with_server(lambda served: asyncio.sleep(0), address="203.0.113.1")
+
+
+def test_the_address_of_a_server_for_all_networks_names_the_computer() -> None:
+    async def test(served: Served) -> None:
+        assert urlsplit(served.server.url).hostname == socket.gethostname().lower()
+        assert (await served.get(Host=f"any.example:{served.server.port}")).code == 403
+        await served.enter()
+        assert (await served.get(Host=f"any.example:{served.server.port}")).code == 200
+
+    with_server(test, address="0.0.0.0")
+
+
+def test_no_browser_is_opened_where_there_are_no_windows(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr(serving.sys, "platform", "linux")
+    assert not open_browser("http://127.0.0.1:1/")
+
+
+def test_pages_are_told_that_the_compiler_is_being_warmed_and_when_it_is_warm(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("stickslip.explorer.server.warm.FIRST_RUNS", ())
+    warming, lines, others = Warming(), [], []
+    warming.tell(lines.append)
+    warming.tell(others.append)()
+    warming._warm()
+    assert lines == ["The compiler is being warmed: the first picture takes a moment longer.", ""]
+    assert others == lines[:1]
