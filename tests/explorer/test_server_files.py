@@ -165,7 +165,7 @@ def test_an_opened_table_becomes_the_friction_law(heading: str, key: str) -> Non
         ("../../a.csv", b"slip,mu\n0,0.8\n", "a.csv"),
         ("a.csv", b"slip,mu\n0,zero\n1,2\n", "a.csv"),
         ("a.csv", b"one,two\n0,1\n1,2\n", "a.csv, line 1: no column 'friction'"),
-        ("a.csv", b"slip,mu\n" + b"".join(b"%d,0.5\n" % k for k in range(20_001)), "a.csv: has 20001 points, at most 20000"),
+        ("a.csv", b"slip (m),mu\n" + b"".join(b"%d,0.5\n" % k for k in range(20_001)), "a.csv: has 20001 points, at most 20000"),
         ("a.exe", b"MZ\x00\x00", "a.exe: not a text file"),
     ],
 )

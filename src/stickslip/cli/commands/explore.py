@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Annotated
 
@@ -9,6 +10,7 @@ import typer
 
 from stickslip.cli.names import complete_scenario
 from stickslip.cli.options import SCENARIO, argument, option
+from stickslip.foundation.errors import InputError
 
 SERVER = "Server"
 """Heading of the options of the server in the help."""
@@ -18,6 +20,7 @@ ADDRESS = "Network address to listen on. Not given: 127.0.0.1, which can be reac
 ALLOW_ORIGIN = "Host (NAME or NAME:PORT) under which the page may be reached as well, as behind a proxy; may be repeated."
 PORT = "Port to listen on; 0 for any that is free. Not given: the first free one from 5018 on."
 STATIC = "Write the guided tour into this new folder, as files that need neither Python nor a network, and end."
+_HOST = re.compile(r"[\w.-]+(:\d{1,5})?|\[[\da-f:]+\](:\d{1,5})?", re.IGNORECASE)
 NO_BROWSER = "Do not open a browser; the address is printed."
 
 
@@ -27,7 +30,9 @@ def explore(
     port: Annotated[int | None, option(PORT, min=0, max=65535, metavar="<int>", panel=SERVER)] = None,
     address: Annotated[str, option(ADDRESS, panel=SERVER)] = "127.0.0.1",
     allow_origin: Annotated[list[str] | None, option(ALLOW_ORIGIN, panel=SERVER)] = None,
-    sessions: Annotated[int, typer.Option(help="Largest number of pages open at once.", min=1, rich_help_panel=SERVER)] = 8,
+    sessions: Annotated[
+        int, typer.Option(help="Largest number of pages open at once.", min=1, metavar="<int>", rich_help_panel=SERVER)
+    ] = 8,
     no_browser: Annotated[bool, typer.Option("--no-browser", help=NO_BROWSER, rich_help_panel=SERVER)] = False,
     static: Annotated[Path | None, option(STATIC, metavar="<folder>")] = None,
 ) -> None:
@@ -59,6 +64,9 @@ def explore(
     from stickslip.explorer.server.serve import Place
     from stickslip.explorer.server.start import start
 
+    for name in allow_origin or ():
+        if not _HOST.fullmatch(name):
+            raise InputError(f"explore: --allow-origin must be NAME or NAME:PORT, got {name[:60]!a}")
     place = Place(address=address, port=port, origins=tuple(allow_origin or ()), sessions=sessions)
     start(Setting.of(loaded), place, browser=not no_browser, say=typer.echo)
 

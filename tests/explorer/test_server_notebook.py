@@ -1,0 +1,77 @@
+"""The explorer in a notebook, and what the command says before it serves."""
+
+from __future__ import annotations
+
+import asyncio
+import importlib.util
+from typing import Any
+
+import pytest
+
+import stickslip as ss
+from stickslip.cli.main import main
+from stickslip.foundation.errors import InputError
+
+
+async def answered(page: Any, regime: str) -> str:
+    """Wait, as a kernel does between two cells, until the answer of a regime is shown; return its sentence."""
+    for _ in range(1000):
+        if page.explorer.answer is not None and page.explorer.answer.regime == regime:
+            return str(page.explorer.answer.sentence)
+        await asyncio.sleep(0.01)
+    raise AssertionError(page.explorer.fault or "it was never answered")
+
+
+def test_a_problem_is_shown_in_a_notebook_and_answers() -> None:
+    async def cells() -> None:
+        page = ss.explore(ss.scenarios["fig6-slab"].problem, "12 s")
+        sentence = await answered(page, "irregular")
+        assert "23.44 m" in sentence
+        page.explorer.change(page.explorer.setting.with_value("friction.alpha", 0.1))
+        assert "without a slip event" in await answered(page, "regular")
+        assert page.explorer.setting.value("run.duration") == 12.0
+        assert callable(page._repr_mimebundle_)  # what a notebook calls; it needs IPython
+
+    asyncio.run(cells())
+
+
+def test_without_a_notebook_explore_says_what_to_do_instead() -> None:
+    with pytest.raises(InputError, match=r"^explore: there is no notebook here; `stickslip explore` opens"):
+        ss.explore("fig6-slab")
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [("fig6-slap", "did you mean 'fig6-slab'"), (3, "^explore"), ("fig6-slab", "there is no notebook here")],
+)
+def test_a_wrong_problem_is_one_line(wrong: Any, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        ss.explore(wrong)
+
+
+def test_without_its_libraries_the_explorer_says_how_to_install_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = importlib.util.find_spec
+    monkeypatch.setattr("stickslip.explorer.extra.find_spec", lambda name: None if name == "panel" else found(name))
+    message = 'explore: the explorer needs panel: install them with pip install "stickslip[explorer]"'
+    with pytest.raises(InputError) as caught:
+        ss.explore("fig6-slab")
+    assert str(caught.value) == message
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("fig6-slap",), "fig6-slap: no such file, and no bundled scenario of that name; did you mean 'fig6-slab'?"),
+        (("--port", "70000"), "explore: --port must be a whole number"),
+        (("--sessions", "0"), "explore: --sessions must be a whole number, at least 1, got '0'"),
+        (("--allow-origin", "https://a.example/x"), "explore: --allow-origin must be NAME or NAME:PORT, got 'https://a.example/x'"),
+        (("--allow-origin", "*"), "explore: --allow-origin must be NAME or NAME:PORT, got '*'"),
+        (("--address", "nowhere.invalid", "--no-browser"), "explore: cannot listen on nowhere.invalid port"),
+    ],
+)
+def test_a_wrong_option_is_one_line(arguments: tuple[str, ...], message: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["explore", *arguments])
+    said = capsys.readouterr().err
+    assert (ended.value.code, said.count("\n")) == (2, 1)
+    assert said.startswith(f"stickslip: {message}")
