@@ -35,7 +35,7 @@ def test_columns_of_a_source_have_one_length(shown: tuple[Answer, View]) -> None
 def test_axes_hold_their_data(shown: tuple[Answer, View]) -> None:
     view = shown[1]
     for axis, source, column in (
-        *((name, body, name) for name in ("slip", "rate", "traction") for body in ("motion", "companion")),
+        *((name, "motion", name) for name in ("slip", "rate", "traction")),
         ("time", "motion", "time"),
         ("law_y", "law", "y"),
         ("law_x", "motion", "law_x"),
@@ -126,3 +126,15 @@ def test_an_event_of_a_long_run_has_a_time_of_its_own() -> None:
     assert view.columns["energy"]["time"][-1] * near["size"] + near["begin"] == pytest.approx(found.energy.time[-1])
     assert near["from"] - time["dw"][0] <= time["x"][0] <= time["x"][0] + time["dw"][0] <= near["to"] + time["dw"][0]
     assert view_of(answer("fig6-slab")).limits["near"] == view_of(answer("fig6-slab")).limits["time"]
+
+
+def test_a_companion_that_moves_much_further_does_not_flatten_the_body() -> None:
+    found = answer("fig5-slab-reconstructed")
+    slab, block = found.motions
+    assert np.ptp(block.slip) > 4.0 * np.ptp(slab.slip)
+    view = view_of(found)
+    low, high = view.limits["slip"]
+    assert high - low < 2.0 * np.ptp(view.columns["motion"]["slip"])
+    assert view.keys["slip"][1].text.startswith("equivalent block, to ")
+    assert view.keys["rate"][1].text == "equivalent block"
+    assert view.limits["rate"][1] >= np.max(view.columns["companion"]["rate"])

@@ -2,31 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from stickslip.explorer.model.answer import Answer, Motion
 from stickslip.explorer.page.look import paint
-from stickslip.explorer.page.panels.units import share_loads
+from stickslip.explorer.page.panels.units import Curve, held, share_loads
 from stickslip.explorer.page.stage import NARROW, Stage
 from stickslip.explorer.page.view import Columns, Key, Units, View, axis_label, limits
-from stickslip.figures.style import CURVES, FORCES
+from stickslip.figures.style import CURVES, FORCES, unit_of
 
 TEXTS = {"slip": "Slip against time", "rate": "Slip rate against time", "traction": "Traction and load against time"}
 MANY = 30
 """More marks than this are not drawn as lines in the panels."""
+CURVE_OF: dict[str, Curve] = {"slip": "slip", "rate": "slip_rate", "traction": "traction"}
+"""The curve of a motion by the name of its panel."""
+LOADS = ("traction", "load")
 SYMBOLS = {"slip": "u", "rate": "v", "traction": "τ"}
 
 
 def data_of(answer: Answer, units: Units) -> View:
     """Return the curves of both bodies, and the times of the marks."""
-    main = answer.motions[0]
-    others = answer.motions[1:2]
-    drawn = [columns_of(motion, units) for motion in (main, *others)]
-    columns = {"motion": drawn[0], "companion": drawn[1] if others else {name: [] for name in drawn[0]}}
-    if others and not share_loads(main, others[0]):
-        columns["companion"] |= {name: np.full(others[0].time.size, np.nan) for name in ("traction", "load")}
+    main, other = answer.motions[0], answer.motions[1:2]
+    columns = {"motion": columns_of(main, units), "companion": _beside(main, other, units)}
     columns["marks"] = {"time": [mark.time / units.time[1] for mark in answer.marks] if len(answer.marks) <= MANY else []}
     if main.body == "block":
         # The end of the spring that is pulled, from the law of the spring.
@@ -35,22 +35,16 @@ def data_of(answer: Answer, units: Units) -> View:
     force = main.load_unit == "N"
     name = FORCES["traction"] if force else CURVES["traction"][0]
     name = f"change of {name}" if units.offset else name
-    bodies = [motion.name for motion in (main, *others)]
-    styles = ("line", "dash")
-    keys: dict[str, tuple[Key, ...]] = {
-        role: tuple(Key(body, role, style) for body, style in zip(bodies, styles, strict=False))  # type: ignore[arg-type]
-        for role in TEXTS
-    }
-    beside = bool(others) and share_loads(main, others[0])
-    keys["traction"] = (*keys["traction"][: 1 + beside], Key("spring force" if force else "load", "load", "dot"))
-    time = [body["time"] for body in drawn]
+    keys = {name: (Key(main.name, name), *_key(answer, name)) for name in CURVE_OF}
+    keys["traction"] = (*keys["traction"], Key("spring force" if force else "load", "load", "dot"))
+    time = columns["motion"]["time"]
     return View(
         columns=columns,
         limits={
-            "time": (float(time[0][0]), float(time[0][-1])),
-            "slip": limits(*(body["slip"] for body in drawn)),
-            "rate": limits(*(body["rate"] for body in drawn)),
-            "traction": limits(*(body[name] for body in drawn for name in ("traction", "load"))),
+            "time": (float(time[0]), float(time[-1])),
+            "slip": limits(*(columns_of(body, units)["slip"] for body in held(answer, "slip"))),
+            "rate": limits(*(columns_of(body, units)["rate"] for body in held(answer, "slip_rate"))),
+            "traction": limits(*(columns_of(body, units)[name] for body in held(answer, "traction") for name in LOADS)),
         },
         labels={
             "axis:time@traction": axis_label("time", "t", units.time[0]),
@@ -62,7 +56,7 @@ def data_of(answer: Answer, units: Units) -> View:
         },
         keys=keys,
         facts={
-            "time": {"unit": units.time[0], "size": units.time[1], "from": float(time[0][0]), "to": float(time[0][-1])},
+            "time": {"unit": units.time[0], "size": units.time[1], "from": float(time[0]), "to": float(time[-1])},
             "read": [
                 {"column": column, "symbol": SYMBOLS[column], "unit": unit, "offset": bool(units.offset and column == "traction")}
                 for column, unit in (("slip", units.slip[0]), ("rate", units.rate[0]), ("traction", units.stress[0]))
@@ -70,6 +64,26 @@ def data_of(answer: Answer, units: Units) -> View:
             "marks": [{"time": mark.time / units.time[1], "kind": mark.kind, "text": mark.text} for mark in answer.marks],
         },
     )
+
+
+def _beside(main: Motion, other: Sequence[Motion], units: Units) -> Columns:
+    """Return the curves of the companion, if there is one; without loads that cannot share an axis with those of the body."""
+    if not other:
+        return {name: [] for name in ("time", *CURVE_OF, "load")}
+    found = columns_of(other[0], units)
+    return found if share_loads(main, other[0]) else found | {name: np.full(other[0].time.size, np.nan) for name in LOADS}
+
+
+def _key(answer: Answer, name: str) -> tuple[Key, ...]:
+    """Return how the legend of a panel names the companion; one that leaves the axis is named with the end of its curve."""
+    main, curve = answer.motions[0], CURVE_OF[name]
+    others = [one for one in answer.motions[1:2] if name != "traction" or share_loads(main, one)]
+    if not others or others[0] in held(answer, curve):
+        return tuple(Key(one.name, name, "dash") for one in others)
+    reach = getattr(others[0], curve)
+    reach = reach[np.argmax(np.abs(reach))]
+    unit, size = unit_of({"slip": "m", "rate": "m/s"}.get(name, main.load_unit), reach)
+    return (Key(f"{others[0].name}, to {reach / size:.3g} {unit}", name, "dash"),)
 
 
 def columns_of(motion: Motion, units: Units) -> Columns:
@@ -98,7 +112,7 @@ def _plot(stage: Stage, name: str, *, bare: bool) -> Any:
     paint(marks.glyph, line_color="faint")
     if name == "traction":
         paint(drawn.line("time", "load", source=main, line_width=1.2, line_dash="dotted").glyph, line_color="load")
-    paint(drawn.line("time", name, source=other, line_width=1.5, line_dash="dashed", line_alpha=0.8).glyph, line_color=name)
+    paint(drawn.line("time", name, source=other, line_width=1.3, line_dash="dashed", line_alpha=0.65).glyph, line_color=name)
     paint(drawn.line("time", name, source=main, line_width=2).glyph, line_color=name)
     stage.cursor(name)
     dot = drawn.scatter("time", name, source=stage.source("now", "time", "slip", "rate", "traction"), size=8, level="overlay")

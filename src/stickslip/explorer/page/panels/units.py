@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 
 from stickslip.explorer.model.answer import Answer, Motion
 from stickslip.explorer.page.view import Units
 from stickslip.figures.style import nearly_flat, unit_of
 
+Curve = Literal["slip", "slip_rate", "traction"]
+REACH = 4.0
+"""A companion whose curve is more than so many times as large does not widen the axis; the legend says how far it reaches."""
 WHOLE = 0.2
 """The panels of slab and energy share the axis of time of the others if they show at least this share of the run."""
 
@@ -15,12 +20,12 @@ WHOLE = 0.2
 def units_of(answer: Answer, kept: Answer | None = None) -> Units:
     """Return the units of an answer, and of the run that is kept beside it: panels that show the same quantity share the unit."""
     contact, slab, main = answer.contact, answer.slab, answer.motions[0]
-    motions = (*answer.motions, *(kept.motions[:1] if kept else ()))
-    same = [motion for motion in motions if share_loads(main, motion)]
+    further = kept.motions[:1] if kept else ()
+    same = (*held(answer, "traction"), *(motion for motion in further if share_loads(main, motion)))
     stresses = [curve for motion in same for curve in (motion.traction, motion.load)]
     offset = float(main.traction[0]) if nearly_flat(*stresses) else 0.0
-    slips = [motion.slip for motion in motions]
-    rates = [motion.slip_rate for motion in motions]
+    slips = [motion.slip for motion in (*held(answer, "slip"), *further)]
+    rates = [motion.slip_rate for motion in (*held(answer, "slip_rate"), *further)]
     span, window = np.ptp(main.time), np.ptp(answer.energy.time)
     whole = window >= WHOLE * span
     return Units(
@@ -41,3 +46,15 @@ def units_of(answer: Answer, kept: Answer | None = None) -> Units:
 def share_loads(main: Motion, other: Motion) -> bool:
     """Return True if loads of two bodies can share an axis: the block equivalent to a slab is that of 1 m², so its N are Pa."""
     return main.load_unit == other.load_unit or main.body == "slab"
+
+
+def held(answer: Answer, curve: Curve) -> tuple[Motion, ...]:
+    """Return the bodies that an axis is made to hold: the body itself, and its companion unless that would make it look flat."""
+    main, other = answer.motions[0], answer.motions[1:2]
+    fits = all(extent(one, curve) <= REACH * extent(main, curve) for one in other)
+    return (main, *other) if fits and (curve != "traction" or all(share_loads(main, one) for one in other)) else (main,)
+
+
+def extent(motion: Motion, curve: Curve) -> float:
+    """Return the range of a curve (SI)."""
+    return float(np.ptp(getattr(motion, curve)))
