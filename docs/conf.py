@@ -41,7 +41,9 @@ myst_heading_anchors = 4
 autodoc_typehints = "none"  # the docstrings say what an argument is, with its unit
 autodoc_member_order = "bysource"
 autodoc_class_signature = "mixed"
+toc_object_entries_show_parents = "hide"
 napoleon_google_docstring = False
+napoleon_attr_annotations = False
 napoleon_use_ivar = True
 napoleon_use_rtype = False
 napoleon_preprocess_types = False
@@ -87,13 +89,21 @@ html_css_files = ["site.css"]
 project_copyright = "the authors of stickslip, MIT licence"
 
 
-def mend_docstring(*event: Any) -> None:
-    """Let a docstring of plain text be one of reStructuredText, before napoleon reads it.
+COLON = "\ue000"
+"""Stands for a colon where napoleon would take what is before it for a type: in the first line of an attribute's docstring."""
 
-    |v| is a magnitude, not a substitution; and what stands before a colon in the first line of an attribute is not its type.
-    """
+
+def before_napoleon(*event: Any) -> None:
+    """Let |v| in a docstring be a magnitude and not a substitution, and hide the colons of attributes."""
     what, lines = event[1], event[-1]
-    lines[:] = [""] * (what in ("attribute", "property")) + [line.replace("|", r"\|") for line in lines]
+    lines[:] = [line.replace("|", r"\|") for line in lines]
+    if lines and what in ("attribute", "property"):
+        lines[0] = lines[0].replace(": ", f"{COLON} ")
+
+
+def after_napoleon(*event: Any) -> None:
+    """Show the colons again."""
+    event[-1][:] = [line.replace(COLON, ":") for line in event[-1]]
 
 
 def link_to_gallery(*event: Any) -> None:
@@ -104,6 +114,7 @@ def link_to_gallery(*event: Any) -> None:
 
 def setup(app: Any) -> None:
     """Register what the extensions lack."""
-    app.connect("autodoc-process-docstring", mend_docstring, priority=400)
+    app.connect("autodoc-process-docstring", before_napoleon, priority=400)
+    app.connect("autodoc-process-docstring", after_napoleon, priority=600)
     app.connect("source-read", link_to_gallery)
     app.add_lexer("mermaid", TextLexer)  # a diagram that forges draw; here its text, because drawing takes a script

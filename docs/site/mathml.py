@@ -19,9 +19,12 @@ def mathml(tex: str, *, as_block: bool) -> str:
         If the formula has a command that is not known.
     """
     try:
-        return str(tex2mathml(tex, as_block=as_block))
+        written = str(tex2mathml(tex, as_block=as_block))
     except Exception as error:  # each kind of fault has an exception of its own
         raise ExtensionError(f"formula {tex!r}: {error}") from error
+    for brace in "{}":  # those of \\{ and \\} keep their size, as in LaTeX
+        written = written.replace(f"<mo>{brace}</mo>", f'<mo stretchy="false">{brace}</mo>')
+    return written
 
 
 def visit_inline(writer: Any, node: math) -> None:

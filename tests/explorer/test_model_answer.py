@@ -76,7 +76,9 @@ def test_path_lies_on_the_contact_equation(name: str) -> None:
     rate, load = contact.path_rate[known], contact.path_load[known]
     moving = rate != 0.0
     assert load[moving] == pytest.approx(unique.g(rate[moving]), rel=1e-9, abs=1e-9 * contact.strength)
-    assert np.all(np.abs(load[~moving]) <= contact.strength * (1.0 + 1e-9))
+    # Late in a run the limit before a jump may be that after the echo which caused it: times are rounded.
+    settled = (~np.isnan(np.append(contact.path_rate[1:], 0.0)))[known]
+    assert np.all(np.abs(load[~moving & settled]) <= contact.strength * (1.0 + 1e-9))
     assert len(contact.path_time) == len(contact.path_rate) == len(contact.path_load)
     assert np.abs(rate).max() <= np.nanmax(contact.rate)
     curve = ~np.isnan(contact.rate)

@@ -1,4 +1,4 @@
-"""Settings of the explorer: their controls, links, files, code, uploads, and the difference of two of them."""
+"""Settings of the explorer: their controls, links, files, code, files, and the difference of two of them."""
 
 import base64
 import json
@@ -16,11 +16,12 @@ from stickslip.explorer.model.code import python_of, toml_of
 from stickslip.explorer.model.controls import Control, controls_of
 from stickslip.explorer.model.difference import difference
 from stickslip.explorer.model.exchange import with_kind
+from stickslip.explorer.model.formula import with_expression
 from stickslip.explorer.model.link import LONGEST, parameters_of, setting_of
 from stickslip.explorer.model.scenario_list import FIRST, OTHERS, offered
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.solve import solve
-from stickslip.explorer.model.upload import uploaded, with_expression
+from stickslip.explorer.page.uploads import opened
 from stickslip.foundation.errors import InputError
 from stickslip.scenarios import library
 from stickslip.scenarios.scenario import read_scenario
@@ -273,7 +274,7 @@ def test_setting_that_is_too_large_for_a_link_says_so() -> None:
     rng = np.random.default_rng(1)
     rates = np.cumsum(rng.uniform(0.001, 0.01, 3000))
     rows = "\n".join(f"{rate},{0.6 - 1e-4 * k}" for k, rate in enumerate(rates))
-    setting = uploaded(Setting.bundled("fig6-slab"), "many.csv", f"slip_rate,friction\n{rows}".encode())
+    setting = opened("many.csv", f"slip_rate,friction\n{rows}".encode(), Setting.bundled("fig6-slab"))
     with pytest.raises(InputError, match="too large for a link"):
         parameters_of(setting)
 
@@ -325,25 +326,25 @@ def test_texts_of_strangers_stay_texts_in_code(title: str) -> None:
     assert made["problem"] == setting.scenario().problem
 
 
-# ---- uploads ----------------------------------------------------------------------------------------------------------------
+# ---- files that are opened, formulas ---------------------------------------------------------------------------------------
 
 
-def test_uploaded_scenario_takes_the_place_of_the_setting() -> None:
-    text = library.text("kolsky-slab")
-    made = uploaded(Setting.bundled("fig6-slab"), "C:\\data\\mine.toml", text.encode())
+def test_opened_scenario_takes_the_place_of_the_setting() -> None:
+    made = opened("C:\\data\\mine.toml", library.text("kolsky-slab").encode(), Setting.bundled("fig6-slab"))
     assert made.name == "mine"
     assert made.scenario() == ss.scenarios["kolsky-slab"]
 
 
-def test_uploaded_scenario_with_a_bundled_name_is_not_taken_for_the_bundled_one() -> None:
-    made = uploaded(Setting.bundled("fig6-slab"), "fig6-slab.toml", library.text("kolsky-slab").encode())
-    assert made.name == "fig6-slab (uploaded)"
+def test_opened_scenario_with_a_bundled_name_is_not_taken_for_the_bundled_one() -> None:
+    made = opened("fig6-slab.toml", library.text("kolsky-slab").encode(), Setting.bundled("fig6-slab"))
+    assert made.name == "fig6-slab (opened)"
     assert not made.is_changed
     assert setting_of(parameters_of(made)) == made
 
 
-def test_uploaded_points_become_the_law() -> None:
-    made = uploaded(Setting.bundled("fig6-slab"), "points.csv", b"# mine\nslip_rate (mm/s),friction\n0,0.6\n10,0.5\n1000,0.4\n")
+def test_opened_points_become_the_law() -> None:
+    content = b"# mine\nslip_rate (mm/s),friction\n0,0.6\n10,0.5\n1000,0.4\n"
+    made = opened("points.csv", content, Setting.bundled("fig6-slab"))
     law = made.scenario().problem.friction
     assert (tuple(law.rate), tuple(law.friction)) == ((0.0, 0.01, 1.0), (0.6, 0.5, 0.4))
     assert made.value("initial.excess") == 0.0
@@ -353,31 +354,30 @@ def test_uploaded_points_become_the_law() -> None:
 @pytest.mark.parametrize(
     ("file", "content", "part"),
     [
-        ("a.csv", b"", "no column 'friction'"),
-        ("a.csv", b"\xff\xfe\x00", "not a text file in UTF-8"),
-        ("a.csv", b"slip,friction\n0,0.5\n", "at least two rows"),
+        ("a.csv", b"", "is empty"),
+        ("a.csv", b"\xff\xfe\x00", "not a text file"),
+        ("a.csv", b"slip,friction\n0,0.5\n", "at least two points"),
         ("a.csv", b"slip,friction\n0,0.5\n1,-1\n", "must not be negative"),
-        ("a.csv", b"slip,friction\n1,0.5\n0,0.4\n", "a.csv"),
-        ("a.csv", b"1\n" * 20_001, "20001 lines are too many"),
-        ("a.csv", b"0" * 1_000_001, "1.0 MB is too large"),
-        ("a\n\x1b[31m.csv", b"", "a__[31m.csv"),
+        ("a.csv", b"slip,friction\n1,0.5\n0,0.4\n", "slip must ascend"),
+        ("a.csv", b"0" * 1_000_001, "larger than 1000000 bytes"),
+        ("a\n\x1b[31m.csv", b"", "a[31m.csv"),
         ("a.toml", b"x = 1", "x is unknown"),
-        ("a.toml", b"[[[", "a.toml"),
+        ("a.toml", b"[[[", "not TOML"),
         ("a.toml", b"a." * 50 + b"b = 1", "not a scenario"),
         ("../../secret.toml", b"[body]", "secret.toml: "),
     ],
 )
-def test_bad_upload_is_refused_in_one_line(file: str, content: bytes, part: str) -> None:
+def test_bad_file_is_refused_in_one_line(file: str, content: bytes, part: str) -> None:
     with pytest.raises(InputError) as error:
-        uploaded(Setting.bundled("fig6-slab"), file, content)
+        opened(file, content, Setting.bundled("fig6-slab"))
     assert part in one_line(error)
 
 
-def test_uploaded_scenario_cannot_name_a_file() -> None:
+def test_opened_scenario_cannot_name_a_file() -> None:
     text = library.text("fig6-slab").partition("[friction]")[0] + '[friction]\nkind = "table"\nfile = "/etc/passwd"\n'
     text += "[initial]\nexcess = 0.0\n[run]\nduration = 1.0\n"
     with pytest.raises(InputError, match="write the points as lists"):
-        uploaded(Setting.bundled("fig6-slab"), "mine.toml", text.encode())
+        opened("mine.toml", text.encode(), Setting.bundled("fig6-slab"))
 
 
 def test_formula_brings_its_parameters() -> None:

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+import panel as pn
 import pytest
 
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.solve import solve
 from stickslip.explorer.page.explorer import Explorer
+from stickslip.explorer.page.notebook_page import build_for_notebook
 from stickslip.explorer.page.page import Panels, build
 from stickslip.explorer.page.words import Words
 
@@ -89,3 +91,14 @@ def test_a_move_of_the_browser_is_not_sent_back(explorer: Explorer) -> None:
         explorer.tell("cursor")
         assert panels.player.cursor["seconds"] == seconds
         assert panels.player.cursor != before
+
+
+def test_a_cell_of_a_notebook_hides_what_has_nothing_to_show(explorer: Explorer) -> None:
+    cell = build_for_notebook(explorer)
+    cell.explorer = explorer
+    cards = {card[1].object.name: card for card in cell.select(pn.Column) if len(card) == 2 and isinstance(card[1], pn.pane.Bokeh)}
+    assert len(cards) == 12  # eight panels, and four of the strip
+    assert cards["plot:field"].visible
+    explorer.change(Setting.bundled("fig6-block-reconstructed"))
+    assert not cards["plot:field"].visible
+    assert cards["plot:slip"].visible

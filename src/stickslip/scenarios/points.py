@@ -43,10 +43,10 @@ def read_points(
         text = _text(name, folder)
     except InputError as error:
         raise InputError(f"{where} {show(name)}: {error}") from None
-    return points_in(text, columns, f"{where}: {show(name)}")
+    return _points_in(text, columns, f"{where}: {show(name)}")
 
 
-def points_in(text: str, columns: Mapping[str, str], file: str) -> dict[str, list[float]]:
+def _points_in(text: str, columns: Mapping[str, str], file: str) -> dict[str, list[float]]:
     """Return the numbers (SI) in CSV text by the field to which they belong, as `read_points` does.
 
     `file` is the name of the text in messages.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING, Literal
@@ -170,21 +171,32 @@ class Readings:
         """
         if name not in self.curves:
             raise InputError(f"curve: unknown quantity '{name}'; {nearest(name, self.curves)}")
+        time, (values,) = self.curves_together((name,), start, end, points)
+        return time, values
+
+    def curves_together(
+        self, names: Sequence[Curve], start: float | None = None, end: float | None = None, points: int = 2000
+    ) -> tuple[Floats, list[Floats]]:
+        """Return the times of `curve`, and the values of several quantities there: their times are looked for once."""
         start, end = self.shown[0] if start is None else start, self.shown[1] if end is None else end
         breaks = self.breaks[(self.breaks >= start) & (self.breaks <= end)]
         breaks = np.union1d(breaks, self.history.echo_edges(start, end, points - len(breaks)))
         if len(breaks) > points:  # too many pieces to draw each: keep the shocks, and the fastest time of every interval
             shocks = np.asarray(self.shocks.time[self.shocks.time.between(start, end)])
             breaks = np.union1d(shocks, self._fastest(breaks, points)) if len(shocks) <= points else self._fastest(breaks, points)
-        inside = [np.linspace(a, b, 8) for a, b in pairwise(breaks)]
-        right = np.unique(np.concatenate([np.linspace(start, end, points), breaks, *inside]))
+        inside = np.linspace(breaks[:-1], breaks[1:], 8).ravel() if len(breaks) else breaks
+        right = np.unique(np.concatenate([np.linspace(start, end, points), breaks, inside]))
         time = np.concatenate([breaks, right])
         order = np.argsort(time, kind="stable")  # stable: puts the left limits first
-        if name in ("slip", "event_slip", "state"):  # continuous: both limits are the same
-            return time[order], getattr(self, name)(time)[order]
+        return time[order], [self._drawn(name, breaks, right)[order] for name in names]
+
+    def _drawn(self, name: Curve, breaks: Floats, right: Floats) -> Floats:
+        """Return the left limits of a quantity at breaks (s), and its right limits at times (s)."""
         evaluate = getattr(self, name)
-        values = np.concatenate([evaluate(breaks, side="left"), evaluate(right)])
-        return time[order], values[order]
+        if name in ("slip", "event_slip", "state"):  # continuous: both limits are the same
+            found: Floats = evaluate(np.concatenate([breaks, right]))
+            return found
+        return np.concatenate([evaluate(breaks, side="left"), evaluate(right)])
 
     def _fastest(self, times: Floats, groups: int) -> Floats:
         """Return, for each of the given number of groups of consecutive times, the time at which the slip rate is largest."""

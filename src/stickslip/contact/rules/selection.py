@@ -7,6 +7,7 @@ reads this table. Source: Campillo et al. 1996, section 3 (perfect delay: paths 
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 from stickslip.contact.branches import Branch, branches_of
 from stickslip.contact.equation import Resistance, resistance
@@ -37,6 +38,7 @@ def maximal(g: Resistance, stable: Branches, /) -> SelectionTable:
     return SelectionTable(min([0.0, *(b.excess_from for b in stable)]), tuple(b.excess_from for b in stable), keep_to)
 
 
+@lru_cache(maxsize=16)  # it takes some hundredths of a second, and a run and its tables ask for it in turn
 def maxwell(g: Resistance, stable: Branches, /) -> SelectionTable:
     """Take the stable slip rate with the smallest integral of (g - load) ds: branches change at loads of equal areas."""
     kept = best_branches(g, stable)

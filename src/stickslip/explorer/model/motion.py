@@ -12,9 +12,7 @@ POINTS = 400
 def motion(solution: Solution, name: str = "") -> Motion:
     """Return the motion of one body; `name` is what the legend calls it, by default "slab" or "block"."""
     has_waves = solution.problem.body.has_waves
-    (time, slip), (_, rate), (_, traction), (_, load) = (
-        solution.curve(curve, points=POINTS) for curve in ("slip", "slip_rate", "traction", "load")
-    )
+    time, (slip, rate, traction, load) = solution.curves_together(("slip", "slip_rate", "traction", "load"), points=POINTS)
     return Motion(
         body="slab" if has_waves else "block",
         name=name or ("slab" if has_waves else "block"),

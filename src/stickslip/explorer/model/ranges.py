@@ -87,7 +87,7 @@ def _special(path: str, anchor: float, problem: Problem) -> Range | None:
         reach = max(2.0 * abs(anchor), slip_scale(problem))
         return Range(-reach if anchor < 0.0 else 0.0, reach)
     if path == "body.driver_impedance":
-        return Range(0.0, 5.0 * body.impedance)
+        return Range(0.0, max(5.0 * body.impedance, 1.5 * anchor if math.isfinite(anchor) else 0.0))
     if path == "body.contact_mass":
         return Range(0.0, max(0.1 * body.impedance * body.round_trip_time, REACH * anchor))
     if path == "body.damping":

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -11,6 +12,26 @@ from stickslip.explorer.model.events import Found
 from stickslip.explorer.model.words import several, short
 from stickslip.observables.rule_influence import RuleInfluence
 from stickslip.problem.problem import Problem
+
+NEAR = 5e-4
+"""Distance of a ratio from 1 below which the distance is given instead of the ratio."""
+FEW = 2
+"""Largest number of jumps that are all named."""
+RULES = {
+    "perfect-delay": "the rule of perfect delay",
+    "maxwell": "Maxwell's rule",
+    "minimal": "the minimal rule",
+    "maximal": "the maximal rule",
+}
+"""How the built-in selection rules are called."""
+CAUSES = {
+    "start": "at the start",
+    "fold": "at a fold",
+    "echo": "by an echo",
+    "loading": "by the loading",
+    "healing": "by healing",
+}
+"""How a jump came about, by the cause that the table of shocks gives."""
 
 
 def sentence(found: Found, contact: Uniqueness, influence: RuleInfluence) -> str:
@@ -21,7 +42,7 @@ def sentence(found: Found, contact: Uniqueness, influence: RuleInfluence) -> str
 
 def _regime(problem: Problem, contact: Uniqueness, influence: RuleInfluence) -> str:
     if problem.body.has_inertia:
-        return "regular: the contact has a mass, so its slip rate cannot jump"
+        return f"regular: {'the contact' if problem.body.has_waves else 'the block'} has a mass, so its slip rate cannot jump"
     if problem.friction.state is not None:
         return "regular: friction has a state, and one slip rate at every load"
     meanings = {
@@ -39,10 +60,13 @@ def _against_critical(problem: Problem, contact: Uniqueness) -> str:
         return ""
     one = problem.parameters[name]
     ratio = one.value / critical if critical else math.inf
-    times = f"{ratio:.4g} times" if abs(ratio - 1.0) > 5e-4 else f"{abs(ratio - 1.0):.2g} {'above' if ratio > 1.0 else 'below'}"
+    own, limit = short(one.value, one.unit), f"its critical value of {short(critical, one.unit)}"
+    word = one.name.rpartition(".")[2].replace("_", " ")
     if ratio == 1.0:
-        times = "exactly at"
-    return f"; {one.name} = {short(one.value, one.unit)} is {times} the critical value {short(critical, one.unit)}"
+        return f"; {word} = {own} is {limit}"
+    if abs(ratio - 1.0) > NEAR:
+        return f"; {word} = {own} is {ratio:.4g} times {limit}"
+    return f"; {word} is {'above' if ratio > 1.0 else 'below'} {limit} by {abs(ratio - 1.0):.2g} of it"
 
 
 def _motion(found: Found) -> str:
@@ -50,37 +74,44 @@ def _motion(found: Found) -> str:
     event, span = found.largest, found.solution.history.span
     if event is None:
         moved = found.total_slip
-        if moved == 0.0:
-            return "nothing slips"
-        return f"it slips {short(moved, 'm')} in {short(span[1] - span[0], 's')}, without a slip event"
+        lasts = short(span[1] - span[0], "s")
+        return f"it slips {short(moved, 'm')} in {lasts}, too slowly for a slip event" if moved else f"nothing slips in {lasts}"
     number = len(found.events)
-    first = f"{several(number, 'slip event')}" + (", the largest of" if number > 1 else " of")
-    text = f"{first} {short(event.slip, 'm')} in {several(int(event.pulses), 'pulse')}, up to {short(event.peak_rate, 'm/s')}"
+    head = f"{several(number, 'slip event')}{', the largest' if number > 1 else ''} of"
+    text = f"{head} {short(event.slip, 'm')} in {several(int(event.pulses), 'pulse')}, at up to {short(event.peak_rate, 'm/s')}"
     if np.isnan(event.end):
-        return f"{text}, still slipping at the end of the run"
-    lasts = short(event.duration, "s")
-    return f"{text}, arrest {'at ' + short(event.end, 's') if number == 1 else 'after ' + lasts}"
+        return f"{text}, which goes on at the end of the run"
+    return f"{text}, {'arrested at ' + short(event.end, 's') if number == 1 else 'lasting ' + short(event.duration, 's')}"
 
 
 def _jumped(found: Found) -> str:
-    """Return what the largest jumps of the slip rate are."""
+    """Return how the slip rate jumps: every jump of a few, the largest of many."""
     shocks = found.shocks
+    if found.solution.problem.body.has_inertia:  # which has been said
+        return ""
     if shocks.empty:
         return "the slip rate never jumps"
-    largest = shocks.iloc[int(np.argmax(np.abs(shocks.rate_after - shocks.rate_before)))]
-    step = f"{short(largest.rate_before, 'm/s')} to {short(largest.rate_after, 'm/s')}"
-    which = "" if len(shocks) == 1 else ", at most"
-    return f"the slip rate jumps {several(len(shocks), 'time')}{which} from {step} at {short(largest.time, 's')} ({largest.cause})"
+    if len(shocks) <= FEW:
+        return f"the slip rate jumps {' and '.join(_jump(shock) for shock in shocks.itertuples())}"
+    largest = int(np.argmax(np.abs(shocks.rate_after - shocks.rate_before)))
+    return f"the slip rate jumps {len(shocks)} times, most {_jump(list(shocks.itertuples())[largest])}"
+
+
+def _jump(shock: Any) -> str:
+    before, after = (short(rate, "m/s") if rate else "rest" for rate in (shock.rate_before, shock.rate_after))
+    when = "" if shock.cause == "start" else f" at {short(shock.time, 's')}"
+    return f"from {before} to {after} {CAUSES[shock.cause]}{when}"
 
 
 def _rule(influence: RuleInfluence) -> str:
     """Return what rests on the selection rule."""
+    rule = RULES.get(influence.rule, f"the rule {influence.rule}")
     if influence.regime == "regular":
         return ""
     if influence.folds_move:
-        return f"the folds move as it slips, and the run rests on the rule {influence.rule}"
+        return f"the folds move as it slips, and the run rests on {rule}"
     decided, shocks = int(influence.shocks.sum()), len(influence.shocks)
     if influence.since is None and not decided:
-        return f"nothing rests on the rule {influence.rule}: the load was never between the folds"
-    since = "" if influence.since is None else f", the first choice at {short(influence.since, 's')}"
-    return f"the rule {influence.rule} decided {decided} of {several(shocks, 'jump')}{since}"
+        return f"nothing rests on {rule}: the load was never between the folds"
+    since = "" if influence.since is None else f"; it had its first choice at {short(influence.since, 's')}"
+    return f"{rule} decided {decided or 'none'} of {several(shocks, 'jump')}{since}"

@@ -10,9 +10,9 @@ DIGITS = 4
 
 def short(value: float, unit: str) -> str:
     """Return a quantity (SI) briefly, such as "2.721 m"."""
-    return brief(float(value), unit, DIGITS)
+    return brief(float(value), unit, DIGITS).replace(" um", " µm")
 
 
 def several(count: int, thing: str) -> str:
-    """Return a number of things: "no pulse", "1 pulse", "3 pulses"."""
-    return f"{count or 'no'} {thing}{'' if count in (0, 1) else 's'}"
+    """Return a number of things: "no pulse", "one pulse", "3 pulses"."""
+    return f"{ {0: 'no', 1: 'one'}.get(count, count) } {thing}{'' if count in (0, 1) else 's'}"

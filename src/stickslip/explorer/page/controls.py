@@ -8,6 +8,7 @@ from typing import Any
 
 from stickslip.explorer.model.controls import Control, Group, controls_of
 from stickslip.explorer.model.exchange import with_kind
+from stickslip.explorer.model.formula import with_expression
 from stickslip.explorer.model.scenario_list import offered
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.page.components import ControlRows
@@ -71,6 +72,8 @@ def changed(setting: Setting, entered: dict[str, Any]) -> Setting:
         raise InputError(f"{path} is not an entry of this scenario")
     if isinstance(value, int | float) and math.isfinite(value):
         return setting.with_value(path, control.entry(value * control.size))
+    if path == "friction.expression":
+        return with_expression(setting, control.read(str(value)))
     return setting.with_value(path, control.read(str(value)))
 
 

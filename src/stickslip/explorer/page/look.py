@@ -60,12 +60,12 @@ def paint(model: Any, *, sizes: dict[str, float] | None = None, **roles: str) ->
     return model
 
 
-def style_sheet() -> str:
-    """Return the colours as variables of CSS, for both grounds."""
+def style_sheet(root: str = ":root") -> str:
+    """Return the colours as variables of CSS, for both grounds; `root` selects the element that has them."""
 
     def block(selector: str, colours: dict[str, str]) -> str:
         return selector + " {" + "".join(f"--{role}: {colour};" for role, colour in colours.items()) + "}\n"
 
     scales = {ground: f"linear-gradient(90deg, {', '.join(found['signed'][::16])})" for ground, found in palettes().items()}
     light, dark = LIGHT | {"signed": scales["light"]}, DARK | {"signed": scales["dark"]}
-    return block(":root", light) + block(':root[data-ground="dark"]', dark)
+    return block(root, light) + block(f'{root}[data-ground="dark"]', dark)

@@ -1,4 +1,4 @@
-"""The same parts as those of the page, in a layout for a cell of a notebook: no template, no address, one light ground."""
+"""The explorer in a notebook's cell: the same parts as on the page, placed by Panel, because a cell takes no page of its own."""
 
 from __future__ import annotations
 
@@ -6,43 +6,55 @@ from typing import Any
 
 import panel as pn
 
+from stickslip.explorer.page.components import asset
 from stickslip.explorer.page.controls import Controls
 from stickslip.explorer.page.explorer import Explorer
 from stickslip.explorer.page.look import style_sheet
 from stickslip.explorer.page.page import Panels
 from stickslip.explorer.page.pin import PinnedRun
+from stickslip.explorer.page.strip import StripView
 from stickslip.explorer.page.tools import Tools
+from stickslip.explorer.page.tour import Tour
 from stickslip.explorer.page.words import Words
 
-ROWS = ((("law", "contact", "shape"), 260), (("slip", "rate", "traction"), 190), (("field", "energy"), 240))
-"""The panels of each row, and its height (px)."""
-LOOK = """
-:host { color: var(--ink); background: var(--card); --edge: #dfe3e8; --focus: #0072b2; --field: #ffffff; --paper: #f3f5f7; }
-"""
-"""What the style of a page says beside the colours, which the parts inherit."""
-CONTROLS = 290
-"""Width (px) of the controls."""
+HEIGHTS = {"slip": 110, "rate": 110, "traction": 150, "field": 180, "energy": 190, "law": 240, "contact": 240, "shape": 240}
+"""Heights (px) of the panels, with their headings."""
+ROWS = (("law", "contact", "shape"), (("slip", "rate", "traction"), ("field", "energy")))
+"""The rows of panels: names side by side, and within the second row names below each other."""
 
 
 def build_for_notebook(explorer: Explorer) -> Any:
-    """Return the parts of an explorer as a layout for a notebook."""
-    panels, words, controls = Panels(explorer), Words(explorer), Controls(explorer)
-    rows = [pn.Row(*(_panel(panels, name) for name in names), height=height, **_WIDE) for names, height in ROWS]
-    beside = pn.Column(controls.view, width=CONTROLS, height=sum(height for _, height in ROWS), scroll=True)
-    colours = style_sheet().partition("\n")[0].replace(":root", ":host")
+    """Return the explorer as an object that a notebook shows below a cell."""
+    panels = Panels(explorer)
+    cards = {name: _card(panels, name) for name in panels.plots}
+
+    def show() -> None:
+        hidden = panels.player.facts.get("hidden", ())
+        for name, card in cards.items():
+            card.visible = name not in hidden
+
+    for news in ("answer", "pin"):
+        explorer.listen(news, show)
+    show()
+    first = pn.Row(*(cards[name] for name in ROWS[0]), sizing_mode="stretch_width")
+    stacks = [pn.Column(*(cards[name] for name in stack), sizing_mode="stretch_width") for stack in ROWS[1]]
+    tour, wide = Tour(explorer), {"sizing_mode": "stretch_width"}
+    side = pn.Column(Controls(explorer).view, width=300, height=660, scroll="y-auto", margin=(0, 10, 0, 0))
+    body = pn.Column(first, pn.Row(*stacks, **wide), **wide)
     return pn.Column(
-        Tools(explorer, linked=False).view,
-        words.view,
+        pn.Row(pn.layout.HSpacer(), tour.button, Tools(explorer, linked=False).view, **wide),
+        Words(explorer).view,
+        tour.card,
         PinnedRun(explorer).view,
-        pn.Row(beside, pn.Column(*rows, **_WIDE), **_WIDE),
+        pn.Row(side, body, **wide),
         panels.player,
-        stylesheets=[colours, LOOK],
-        **_WIDE,
+        StripView(explorer).view,
+        stylesheets=[style_sheet(":host") + asset("notebook_page.css")],
+        min_width=900,
+        **wide,
     )
 
 
-_WIDE: dict[str, Any] = {"sizing_mode": "stretch_width"}
-
-
-def _panel(panels: Panels, name: str) -> Any:
-    return pn.Column(panels.headings[name], panels.plots[name], sizing_mode="stretch_both")
+def _card(panels: Panels, name: str) -> Any:
+    """Return a panel with its heading."""
+    return pn.Column(panels.headings[name], panels.plots[name], height=HEIGHTS[name], sizing_mode="stretch_width", margin=2)

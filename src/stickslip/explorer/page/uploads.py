@@ -10,6 +10,7 @@ from stickslip.explorer.model.exchange import with_kind
 from stickslip.explorer.model.setting import Setting
 from stickslip.foundation.errors import InputError
 from stickslip.friction.custom.measured import table_in_text
+from stickslip.scenarios import library
 from stickslip.scenarios.scenario import read_scenario
 from stickslip.scenarios.text_of_files import LARGEST, text_of
 
@@ -51,8 +52,9 @@ def opened(name: str, content: bytes, present: Setting) -> Setting:
     name = plain_name(name)
     if PurePosixPath(name).suffix.lower() in TABLES:
         return _with_table(name, content, present)
-    scenario = read_scenario(text_of(content, name), name, PurePosixPath(name).stem)
-    return Setting.of(scenario)
+    stem = PurePosixPath(name).stem
+    own = f"{stem} (opened)" if stem in library.names() else stem  # or it would be taken for a change of the bundled one
+    return Setting.of(read_scenario(text_of(content, name), name, own))
 
 
 def plain_name(name: str) -> str:
