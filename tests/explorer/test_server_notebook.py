@@ -28,7 +28,7 @@ def test_a_problem_is_shown_in_a_notebook_and_answers() -> None:
         sentence = await answered(page, "irregular")
         assert "23.44 m" in sentence
         page.explorer.change(page.explorer.setting.with_value("friction.alpha", 0.1))
-        assert "without a slip event" in await answered(page, "regular")
+        assert "alpha = 0.1 s/m" in await answered(page, "regular")
         assert page.explorer.setting.value("run.duration") == 12.0
         assert callable(page._repr_mimebundle_)  # what a notebook calls; it needs IPython
 

@@ -175,7 +175,7 @@ class ExplorerServer:
     def _page(self) -> None:
         """Fill the document of a new tab with its page, whose work ends with it."""
         document = pn.state.curdoc
-        deliver = partial(deliver_to, ref(document))
+        deliver = partial(self._bokeh.io_loop.add_callback, deliver_to, ref(document))
         desk, files = ThreadDesk(deliver), ThreadDesk(deliver)
         explorer = self._make(desk, files)
         desk.report = explorer.told
@@ -210,7 +210,11 @@ def arguments_of(given: Mapping[str, list[bytes]]) -> dict[str, str]:
 
 
 def deliver_to(document: Callable[[], Any], call: Call) -> None:
-    """Have a function called on the thread of a document, if that is still there; any thread may ask for it."""
+    """Have a function called with the lock of a document, if that is still there.
+
+    This runs in the event loop itself: Bokeh loses callbacks that another thread adds while a session is being made, or while the
+    changes of its document are held back.
+    """
     found = document()
     if found is not None:
         found.add_next_tick_callback(call)
