@@ -77,7 +77,10 @@ class Served:
     def end(self) -> int:
         """End the server as Ctrl-C does, and return its exit code."""
         self.process.send_signal(signal.SIGINT)
-        return self.process.wait(30)
+        code = self.process.wait(30)
+        if self.process.stdout is not None:
+            self.process.stdout.close()
+        return code
 
 
 def serve(*arguments: str, folder: Path) -> Served:
