@@ -150,7 +150,7 @@ def test_a_pinned_run_is_compared_with_the_next_by_name(shown: Shown) -> None:
     shown.enter("friction-alpha", "0.5")
     shown.said("= 0.5 s/m")
     compared = shown.page.locator(".pinned")
-    compared.filter(has_text="alpha").wait_for()
+    compared.filter(has_text="Moved").wait_for()
     told = compared.inner_text()
     assert re.search(r"alpha.*1.*0\.5", told)
     assert "slip" in told.partition("Moved")[2]
