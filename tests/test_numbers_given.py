@@ -222,7 +222,7 @@ def test_series_take_units_one_by_one_or_together(given: Any) -> None:
         (3 * UREG.m, "field must be a list of numbers in m, got Quantity"),
         ([[1.0], [2.0]] * UREG.m, "field must be a list of numbers in m, got Quantity"),
         ("1 m, 2 m", "field must be a list of numbers in m, got str"),
-        (["3 km", "2000 m"], r"field must ascend, but \[1\] = 2000 follows 3000"),
+        (["3 km", "2000 m"], r"field must ascend, but \[1\] = 2000 follows 3000; sort the points"),
     ],
 )
 def test_mistakes_in_series_name_the_index(given: Any, message: str) -> None:

@@ -40,12 +40,12 @@ TAKE_A_SCENARIO: dict[str, Callable[[Any], Any]] = {
     "simulate": lambda problem: ss.simulate(problem, 1.0),
     "catalogue": lambda problem: ss.catalogue(problem, 1.0),
     "uniqueness": lambda problem: ss.uniqueness(problem),
-}
-TAKE_A_PROBLEM: dict[str, Callable[[Any], Any]] = {
-    "critical_value": lambda problem: ss.studies.critical_value(problem, "alpha"),
     "ensemble": lambda problem: ss.studies.ensemble(problem, 1.0),
     "regularise": lambda problem: ss.studies.regularise(problem, 1.0),
     "analogy": lambda problem: ss.studies.analogy(problem, 1.0, None, None),  # type: ignore[arg-type] # refused before
+}
+TAKE_A_PROBLEM: dict[str, Callable[[Any], Any]] = {
+    "critical_value": lambda problem: ss.studies.critical_value(problem, "alpha"),
 }
 
 

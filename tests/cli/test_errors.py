@@ -13,7 +13,7 @@ BAD = template("slab").replace("thickness =", "thicknes =")
 FOUR_KEYS = [word for name in ("alpha", "static", "dynamic", "thickness") for word in ("-v", f"{name}=0.1,0.2")]
 CASES = [
     (["rn"], "there is no command 'rn'; did you mean 'run'?"),
-    (["frobnicate"], "there is no command 'frobnicate'; allowed: analogy, check, compare, ensemble, export,"),
+    (["frobnicate"], "there is no command 'frobnicate'; allowed: analogy, check, compare, doctor, ensemble, explore, export,"),
     (["fig6-slab"], "'fig6-slab' is a scenario, not a command: did you mean `stickslip run fig6-slab` or `stickslip check fig6-"),
     (["run"], "run: what is to be run is missing: a SCENARIO, or --resume FILE"),
     (["run", "fig6-slab", "--figur", "a.png"], "run: there is no option --figur; did you mean '--figure'? `stickslip run --help`"),

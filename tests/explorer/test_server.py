@@ -8,8 +8,10 @@ import re
 import socket
 import weakref
 from collections.abc import Awaitable, Callable
+from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
+from urllib.request import url2pathname
 
 import panel as pn
 import pytest
@@ -18,10 +20,11 @@ from tornado.websocket import WebSocketClientConnection, websocket_connect
 
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.page.explorer import Explorer
+from stickslip.explorer.server import browser, sessions
 from stickslip.explorer.server import serve as serving
-from stickslip.explorer.server import sessions
 from stickslip.explorer.server.desk import ThreadDesk
-from stickslip.explorer.server.serve import ExplorerServer, Place, open_browser
+from stickslip.explorer.server.serve import ExplorerServer, Place
+from stickslip.explorer.server.start import start
 from stickslip.explorer.server.warm import Warming
 from stickslip.foundation.errors import InputError
 
@@ -309,11 +312,36 @@ def test_the_address_of_a_server_for_all_networks_names_the_computer() -> None:
     with_server(test, address="0.0.0.0")
 
 
-def test_no_browser_is_opened_where_there_are_no_windows(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_browser_is_opened_where_there_are_no_windows(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     for name in ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER"):
         monkeypatch.delenv(name, raising=False)
-    monkeypatch.setattr(serving.sys, "platform", "linux")
-    assert not open_browser("http://127.0.0.1:1/")
+    monkeypatch.setattr(browser.sys, "platform", "linux")
+    assert not browser.open_browser(tmp_path / "page.html")
+
+
+def test_the_browser_is_opened_without_the_token_on_its_command_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The command line shows in the list of processes; the file that leads to the address is this user's alone."""
+    opened: list[tuple[str, str, int, int]] = []
+
+    def note(url: str) -> bool:
+        page = Path(url2pathname(urlsplit(url).path))
+        opened.append((url, page.read_text(), page.stat().st_mode & 0o777, page.parent.stat().st_mode & 0o777))
+        return True
+
+    lines: list[str] = []
+    monkeypatch.setenv("DISPLAY", ":0")
+    monkeypatch.setattr(browser.webbrowser, "open", note)
+    monkeypatch.setattr(ExplorerServer, "run", ExplorerServer.stop)
+    start(Setting.bundled("fig6-slab"), Place(port=0), browser=True, say=lines.append)
+    ((url, text, mode, folder),) = opened
+    address = lines[0].removeprefix("explorer: ")
+    token = address.partition("token=")[2]
+    assert url.startswith("file:///")
+    assert len(token) > 30
+    assert token not in url
+    assert f'content="0; url={address}"' in text
+    assert (mode, folder) == (0o600, 0o700)
+    assert not Path(url2pathname(urlsplit(url).path)).parent.exists()
 
 
 def test_pages_are_told_that_the_compiler_is_being_warmed_and_when_it_is_warm(monkeypatch: pytest.MonkeyPatch) -> None:

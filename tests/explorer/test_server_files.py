@@ -16,6 +16,7 @@ from matplotlib import pyplot
 
 import stickslip as ss
 from stickslip.explorer.model.answer import Answer
+from stickslip.explorer.model.exchange import with_kind
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.solve import solve
 from stickslip.explorer.model.strip import StripRange
@@ -25,6 +26,7 @@ from stickslip.explorer.page.link_in_url import begin, query_of
 from stickslip.explorer.page.pin import PinnedRun
 from stickslip.explorer.page.tools import Tools
 from stickslip.explorer.page.uploads import content_of, opened, plain_name
+from stickslip.explorer.page.words import words_of
 from stickslip.foundation.errors import InputError
 
 SETTING = Setting.bundled("fig6-slab").with_value("friction.alpha", 0.7)
@@ -152,6 +154,28 @@ def test_an_opened_table_becomes_the_friction_law(heading: str, key: str) -> Non
     assert setting.document["friction"]["kind"] == "table"
     assert setting.document["friction"][key] == ([0.0, 0.1, 0.3] if key == "slip" else [0.0, 100.0, 300.0])
     assert setting.scenario().problem.body == SETTING.scenario().problem.body
+
+
+def test_doubts_about_an_opened_table_are_notes_of_the_answer_until_another_law_is_chosen() -> None:
+    """A column without a unit, and friction in percent; that they are warnings of the package would fail here."""
+    here = Explorer(SETTING, AtOnce(), solve)
+    here.change(opened("points.csv", b"slip,mu\n0,80\n1000,50\n", SETTING))
+    doubts = ("points.csv, line 1: column 1, slip, has no unit and is read in m", "friction reaches 80")
+    assert here.answer is not None
+    assert [sum(doubt in note for note in here.answer.notes) for doubt in doubts] == [1, 1]
+    assert set(here.answer.notes) == set(words_of(here.answer)["notes"])
+    here.change(here.setting.with_value("run.duration", 1.0))
+    assert [sum(doubt in note for note in here.answer.notes) for doubt in doubts] == [1, 1]
+    here.change(with_kind(here.setting, "friction", "hyperbolic-rate"))
+    assert [sum(doubt in note for note in here.answer.notes) for doubt in doubts] == [0, 0]
+
+
+def test_noisy_points_are_noted_once() -> None:
+    rows = "".join(f"{k},{0.8 - 0.01 * k + 0.05 * (-1) ** k}\n" for k in range(30))
+    here = Explorer(SETTING, AtOnce(), solve)
+    here.change(opened("points.csv", f"slip (m),mu\n{rows}".encode(), SETTING))
+    assert here.answer is not None
+    assert sum("noisy" in note for note in here.answer.notes) == 1
 
 
 @pytest.mark.parametrize(

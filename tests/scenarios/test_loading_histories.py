@@ -75,7 +75,7 @@ def test_every_kind_can_be_a_far_stress(kind: str) -> None:
         (document(PULL.replace("[1, 2]", "[1, 2, 3]")), "[loading.pull_rate] 2 times but 3 values"),
         (
             document(PULL.replace("[0, 1]", "[1, 0]")),
-            "times must ascend, but [1] = 0 follows 1; sort the points",
+            "[loading.pull_rate] times must ascend, but [1] = 0 follows 1; sort the points",
         ),
         (
             document(PULL.replace("[0, 1]", "[1, 2]")),

@@ -91,7 +91,7 @@ def test_a_starter_with_any_law_explains_every_key_of_it(name: str, law: type[Fr
         assert isinstance(declared, Part) or describe(declared) in text
     with pytest.raises(InputError, match=r"^new: \[friction\] kind 'hyperbolic' is unknown; did you mean 'hyperbolic-rate'\?$"):
         templates.template(name, "hyperbolic")
-    with pytest.raises(InputError, match=r"^new: a friction law is chosen for slab or block; fig6-slab has its own$"):
+    with pytest.raises(InputError, match=r"^new: a friction law is chosen for slab, lab-slab or block; fig6-slab has its own$"):
         templates.template("fig6-slab", "coulomb")
 
 

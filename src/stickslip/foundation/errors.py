@@ -5,7 +5,9 @@ from __future__ import annotations
 import difflib
 import inspect
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 
 
 class InputError(ValueError):
@@ -16,8 +18,27 @@ class InputWarning(UserWarning):
     """Issued for input that can be used but hardly means what it says; the message is one line with the cure."""
 
 
+_GATHERED: ContextVar[list[str] | None] = ContextVar("gathered", default=None)
+"""Where `warn` puts its messages within `gathered`; each thread has its own."""
+
+
+@contextmanager
+def gathered() -> Iterator[list[str]]:
+    """Gather the messages of `warn` in a list in place of issuing them; those of other threads are issued as ever."""
+    messages: list[str] = []
+    before = _GATHERED.set(messages)
+    try:
+        yield messages
+    finally:
+        _GATHERED.reset(before)
+
+
 def warn(message: str) -> None:
-    """Issue an `InputWarning` that points at the first line outside this package which led here."""
+    """Issue an `InputWarning` that points at the first line outside this package which led here, or have it gathered."""
+    messages = _GATHERED.get()
+    if messages is not None:
+        messages.append(message)
+        return
     package, level, frame = __name__.partition(".")[0], 1, inspect.currentframe()
     while frame is not None and frame.f_globals.get("__name__", "").partition(".")[0] == package:
         frame, level = frame.f_back, level + 1

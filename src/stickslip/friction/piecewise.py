@@ -39,8 +39,8 @@ _FORMULAS: dict[tuple[tuple[str, ...], str], Formula] = {
 """Formula of a piece by its parameters and its variable."""
 
 
-LARGEST_COEFFICIENT = 10.0
-"""Friction coefficient above which numbers look like percentages."""
+LARGEST_COEFFICIENT, LARGEST_PERCENTAGE = 2.0, 200.0
+"""Coefficients that are all above the first number, and none above the second, look like percentages."""
 
 
 @dataclass(frozen=True)
@@ -127,7 +127,9 @@ class PiecewiseLinearLaw(PiecewiseLaw):
 
 
 def note_percent(friction: Sequence[float] | NDArray[np.float64], where: str) -> None:
-    """Issue an `InputWarning`, beginning with `where`, for friction coefficients that look like percentages."""
-    most = float(np.max(friction, initial=0.0))
-    if most > LARGEST_COEFFICIENT:
+    """Issue an `InputWarning`, beginning with `where`, for friction coefficients that look like percentages, all of them."""
+    if not len(friction):
+        return
+    least, most = float(np.min(friction)), float(np.max(friction))
+    if least > LARGEST_COEFFICIENT and most <= LARGEST_PERCENTAGE:
         warn(f"{where}: friction reaches {most:g}: it is shear over normal stress, hardly ever above 2; divide a percentage by 100")

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import Any, Self
 
-from stickslip.foundation.errors import InputError
+from stickslip.foundation.errors import InputError, gathered
 from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source
 from stickslip.scenarios.scenario import Scenario, scenario_of
@@ -26,10 +26,13 @@ class Setting:
         The bundled scenario it began with, or the name of a file or an upload.
     document : dict
         The tables of the scenario, as `tomllib` reads them; never changed in place.
+    notes : tuple of str
+        Doubts about the file from which the friction law was read, one line each; they go with that law.
     """
 
     name: str
     document: Mapping[str, Any] = field(repr=False)
+    notes: tuple[str, ...] = field(default=(), compare=False, repr=False)
 
     @classmethod
     def bundled(cls, name: str) -> Self:
@@ -67,7 +70,7 @@ class Setting:
             place.pop(key, None)
         else:
             place[key] = value
-        return replace(self, document=document)
+        return replace(self, document=document, notes=() if path.partition(".")[0] == "friction" else self.notes)
 
     @property
     def is_changed(self) -> bool:
@@ -82,7 +85,13 @@ class Setting:
 
     def scenario(self) -> Scenario:
         """Return the scenario. Raises InputError, with one line that names the entry that is wrong."""
-        return replace(scenario_of(self.document, Source(self.name, None)), name=self.name, title=self.title)
+        return self.read()[0]
+
+    def read(self) -> tuple[Scenario, tuple[str, ...]]:
+        """Return the scenario, and doubts about its entries, one line each. Raises InputError as `scenario` does."""
+        with gathered() as doubts:
+            scenario = replace(scenario_of(self.document, Source(self.name, None)), name=self.name, title=self.title)
+        return scenario, tuple(dict.fromkeys((*self.notes, *doubts)))
 
 
 @cache

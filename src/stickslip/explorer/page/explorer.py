@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from dataclasses import replace
 from typing import Any, Literal, Protocol
 
 from stickslip.explorer.model.answer import Answer
 from stickslip.explorer.model.setting import Setting
+from stickslip.explorer.model.stop import Told
 from stickslip.explorer.model.strip import StripRange
-from stickslip.foundation.errors import InputError
+from stickslip.foundation.errors import InputError, gathered
+from stickslip.scenarios.scenario import Scenario
 
 News = Literal["setting", "answer", "fault", "progress", "pin", "cursor", "tour", "strip"]
 """What the parts of a page can listen to."""
+NOISY = "the points look noisy"
+"""What a warning of noisy points says; an answer's own notes say it too, with the number of folds that the noise makes."""
 
 
 class Desk(Protocol):
@@ -83,7 +88,7 @@ class Explorer:
         With the answer the cursor moves to the time `cursor` (s), if one is given.
         """
         try:
-            scenario = setting.scenario()
+            scenario, doubts = setting.read()
         except InputError as error:
             self.refuse(str(error))
             return
@@ -92,8 +97,16 @@ class Explorer:
         self._asked += 1
         number = self._asked
         self._desk.ask(
-            lambda told: self._calculate(scenario, told), lambda answer: self._show((setting, answer), number, cursor), self._fail
+            lambda told: self._answered(scenario, doubts, told),
+            lambda answer: self._show((setting, answer), number, cursor),
+            self._fail,
         )
+
+    def _answered(self, scenario: Scenario, doubts: tuple[str, ...], told: Told) -> Answer:
+        """Return the answer, with doubts about the setting and those that came up meanwhile among its notes."""
+        with gathered() as more:
+            answer = self._calculate(scenario, told)
+        return with_notes(answer, (*doubts, *more))
 
     def once_answered(self, call: Callable[[], None]) -> None:
         """Have `call` called once, after the next answer is shown; not at all if there is a fault in its place."""
@@ -157,3 +170,9 @@ class Explorer:
         if not isinstance(error, InputError):
             raise error
         self.refuse(str(error))
+
+
+def with_notes(answer: Answer, notes: Iterable[str]) -> Answer:
+    """Return an answer with further notes, without those that it holds already in other words or that come twice."""
+    further = tuple(note for note in dict.fromkeys(notes) if NOISY not in note and note not in answer.notes)
+    return replace(answer, notes=(*answer.notes, *further)) if further else answer

@@ -52,7 +52,7 @@ class Stage:
         of the horizontal axis, which a plot below shows too.
         """
         drawn = figure(
-            x_range=self.range(x), y_range=self.range(y), sizing_mode="stretch_both", min_height=60, min_width=120,
+            x_range=self.range(x), y_range=self.range(y), sizing_mode="stretch_both", min_height=30, min_width=120,
             tools="", toolbar_location=None, output_backend="canvas", name=f"plot:{name}", lod_threshold=None,
         )  # fmt: skip
         drawn.min_border_top = 6

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import base64
 import binascii
+from dataclasses import replace
 from pathlib import PurePosixPath, PureWindowsPath
 
 from stickslip.explorer.model.exchange import with_kind
 from stickslip.explorer.model.setting import Setting
-from stickslip.foundation.errors import InputError
+from stickslip.foundation.errors import InputError, gathered
 from stickslip.friction.custom.measured import table_in_text
 from stickslip.scenarios import library
 from stickslip.scenarios.scenario import read_scenario
@@ -54,7 +55,8 @@ def opened(name: str, content: bytes, present: Setting) -> Setting:
         return _with_table(name, content, present)
     stem = PurePosixPath(name).stem
     own = f"{stem} (opened)" if stem in library.names() else stem  # or it would be taken for a change of the bundled one
-    return Setting.of(read_scenario(text_of(content, name), name, own))
+    with gathered():  # these doubts, too
+        return Setting.of(read_scenario(text_of(content, name), name, own))
 
 
 def plain_name(name: str) -> str:
@@ -65,11 +67,13 @@ def plain_name(name: str) -> str:
 
 def _with_table(name: str, content: bytes, present: Setting) -> Setting:
     """Return the present setting with the points of a file as its friction law."""
-    along, places, friction = table_in_text(text_of(content, name), name)
+    with gathered() as notes:
+        along, places, friction = table_in_text(text_of(content, name), name)
     if len(friction) > MOST_ROWS:
         raise InputError(f"{name}: has {len(friction)} points, at most {MOST_ROWS} are taken")
     key = "slip" if along == "slip" else "rate"
     table = {"kind": "table", key: places.tolist(), "friction": friction.tolist()}
-    changed = with_kind(present, "friction", "table").with_value("friction", table)
+    with gathered():  # doubts about the law itself are found whenever the setting is read
+        changed = with_kind(present, "friction", "table").with_value("friction", table)
     changed.scenario()
-    return changed
+    return replace(changed, notes=tuple(notes))

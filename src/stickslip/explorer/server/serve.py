@@ -5,12 +5,9 @@ from __future__ import annotations
 import errno
 import signal
 import socket
-import sys
-import webbrowser
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
-from os import environ
 from typing import Any
 from urllib.parse import quote
 from weakref import ref
@@ -218,9 +215,3 @@ def deliver_to(document: Callable[[], Any], call: Call) -> None:
     found = document()
     if found is not None:
         found.add_next_tick_callback(call)
-
-
-def open_browser(url: str) -> bool:
-    """Open an address in the user's browser. Returns False if there is none that has a window."""
-    windows = sys.platform in ("win32", "darwin") or any(name in environ for name in ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER"))
-    return windows and webbrowser.open(url)

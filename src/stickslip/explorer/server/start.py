@@ -7,8 +7,9 @@ from functools import partial
 
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.page.explorer import Explorer
+from stickslip.explorer.server.browser import open_browser, private_page
 from stickslip.explorer.server.desk import ThreadDesk
-from stickslip.explorer.server.serve import ExplorerServer, Place, open_browser
+from stickslip.explorer.server.serve import ExplorerServer, Place
 
 WARNING = (
     "warning: listening on {address}: whoever reaches this computer over a network, and has the address with the token, can use "
@@ -41,10 +42,11 @@ def start(setting: Setting, place: Place, *, browser: bool, say: Callable[[str],
     if not place.is_loopback:
         say(WARNING.format(address=place.address))
     say(f"explorer: {server.url}")
-    if not browser or not open_browser(server.url):
-        say("open this address in a browser; it holds the token without which nothing is shown")
-    say("Ctrl-C ends the explorer, and closes its pages")
-    server.run()
+    with private_page(server.url) as page:
+        if not browser or not open_browser(page):
+            say("open this address in a browser; it holds the token without which nothing is shown")
+        say("Ctrl-C ends the explorer, and closes its pages")
+        server.run()
 
 
 def explorer_of(setting: Setting, desk: ThreadDesk, files: ThreadDesk) -> Explorer:
