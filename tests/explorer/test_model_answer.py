@@ -290,3 +290,9 @@ def test_backward_slip_has_the_mirror_image_of_the_contact_equation() -> None:
     known = ~np.isnan(contact.rate)
     assert contact.rate[known] == pytest.approx(-contact.rate[known][::-1])
     assert contact.load[known] == pytest.approx(-contact.load[known][::-1])
+
+
+def test_run_of_thousands_of_events_is_answered_without_a_look_at_each_pulse() -> None:
+    found = solve(Setting.bundled("fig7-slab-critical").with_value("run.duration", 1.0e5).scenario())
+    assert len(found.solution.events) > 1000
+    assert "pulse" not in {mark.kind for mark in found.marks}

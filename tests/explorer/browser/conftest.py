@@ -25,7 +25,7 @@ def chromium() -> Iterator[Any]:
 @pytest.fixture(scope="module")
 def server(tmp_path_factory: pytest.TempPathFactory, chromium: Any) -> Iterator[Served]:
     """A server of the explorer, which the end of the module stops with Ctrl-C."""
-    served = serve(folder=tmp_path_factory.mktemp("served"))
+    served = serve("--sessions", "20", folder=tmp_path_factory.mktemp("served"))
     yield served
     assert served.end() == 0
 
@@ -39,7 +39,7 @@ def visit(chromium: Any) -> Iterator[Callable[..., Watched]]:
         window = chromium.new_context(viewport={"width": size[0], "height": size[1]}, accept_downloads=True, **context)
         watched = Watched(window.new_page(), origin)
         opened.append(watched)
-        watched.page.set_default_timeout(20_000)
+        watched.page.set_default_timeout(10_000)
         watched.page.goto(url)
         return watched
 

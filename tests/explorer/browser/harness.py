@@ -19,8 +19,6 @@ NO_BROWSER = (
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 """Commands under which a browser may be installed, as in install_browser.sh."""
 URL = re.compile(r"https?://\S+")
-START = 120.0
-"""How long (s) a server may take to say where it is: on an empty cache it compiles first."""
 
 
 def installed() -> str | None:
@@ -55,7 +53,10 @@ class Watched:
 
     def _request(self, request: Any) -> None:
         found = urlsplit(request.url)
-        local = found.scheme in ("data", "blob") or f"{found.scheme}://{found.netloc}" == self.origin
+        local = (
+            found.scheme in ("data", "blob", self.origin.partition(":")[0] if self.origin == "file://" else "")
+            or f"{found.scheme}://{found.netloc}" == self.origin
+        )
         if not local and f"ws://{found.netloc}" != self.origin.replace("http", "ws"):
             self.faults.append(f"request to {request.url[:200]}")
 
@@ -76,7 +77,10 @@ class Served:
     def end(self) -> int:
         """End the server as Ctrl-C does, and return its exit code."""
         self.process.send_signal(signal.SIGINT)
-        return self.process.wait(30)
+        code = self.process.wait(30)
+        if self.process.stdout is not None:
+            self.process.stdout.close()
+        return code
 
 
 def serve(*arguments: str, folder: Path) -> Served:

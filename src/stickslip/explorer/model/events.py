@@ -7,13 +7,17 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
+from stickslip.observables.energy.pulses import PULSE_COLUMNS
 from stickslip.solution.interval import last_large_event
 from stickslip.solution.solution import Solution
+
+MOST_EVENTS = 500
+"""Number of slip events up to which pulses are looked for: each takes a millisecond, and single ones of more would not be seen."""
 
 
 @dataclass(frozen=True)
 class Found:
-    """What was found in a run: tables of slip events and of shocks as the solution gives them, and the events' pulses."""
+    """What was found in a run, as the solution gives it: slip events, shocks and, if there are few events, their pulses."""
 
     solution: Solution
     events: pd.DataFrame
@@ -23,7 +27,9 @@ class Found:
     @classmethod
     def of(cls, solution: Solution) -> Found:
         """Look for events, shocks and pulses."""
-        return cls(solution, solution.events, solution.shocks, solution.pulses())
+        few = len(solution.events) <= MOST_EVENTS
+        pulses = solution.pulses() if few else pd.DataFrame(columns=list(PULSE_COLUMNS), dtype=float)
+        return cls(solution, solution.events, solution.shocks, pulses)
 
     @property
     def largest(self) -> pd.Series | None:

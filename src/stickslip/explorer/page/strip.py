@@ -31,6 +31,7 @@ from stickslip.explorer.page.view import Key, View, axis_label, limits
 from stickslip.figures.style import SPELLED, unit_of
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity
+from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.values import read_typed
 
 NAMES = {"pulses": "Pulses", "slip": "Slip", "first_end": "First arrest", "peak_rate": "Peak slip rate"}
@@ -125,7 +126,9 @@ class StripView:
             pn.Column(self._headings[name], pn.pane.Bokeh(plot, sizing_mode="stretch_both", margin=0), margin=0, height=HEIGHT)
             for name, plot in found.items()
         ]
-        self.plots = pn.GridBox(*panes, ncols=len(panes), sizing_mode="stretch_width", margin=0, visible=False)
+        self.plots = pn.GridBox(
+            *panes, ncols=len(panes), sizing_mode="stretch_width", margin=0, visible=False, stylesheets=[asset("strip_plots.css")]
+        )
         self.view = pn.Column(self.bar, self.plots, sizing_mode="stretch_width", margin=0, css_classes=["strip"])
         explorer.listen("answer", self._ask)
         explorer.listen("strip", self._ask)
@@ -209,5 +212,13 @@ class StripView:
         chosen = None
         if where is not None:
             ends = {"low": f"{where.low:.6g}", "high": f"{where.high:.6g}"}
-            chosen = {"parameter": where.parameter, **ends, "log": where.log, "unit": numeric(scenario, where.parameter).unit}
+            chosen = {"parameter": where.parameter, **ends, "log": where.log, "unit": unit_in(scenario, where.parameter)}
         self.bar.state = {"choices": choices(scenario), "chosen": chosen, "said": said}
+
+
+def unit_in(scenario: Scenario, name: str) -> str:
+    """Return the SI unit of a parameter; "" if the scenario has no such parameter, as before the first answer of a link."""
+    try:
+        return numeric(scenario, name).unit
+    except InputError:
+        return ""

@@ -6,10 +6,13 @@ import threading
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from stickslip.explorer.model.strip import StripRange
 from stickslip.explorer.server.desk import unforeseen
 
 FIRST_RUNS = (("fig6-slab", 20.0), ("fig6-block-reconstructed", 20.0), ("rate-and-state-block", 1.0), ("fig4-loop", 1.0))
 """Scenarios, each with a duration (s), that between them use the parts of the engine that most runs need."""
+FIRST_STRIP, FEW = StripRange("friction.alpha", 0.05, 2.0), 16
+"""A strip, and a number of its runs, by which batches are warmed."""
 LINE = "The compiler is being warmed: the first picture takes a moment longer."
 
 
@@ -42,6 +45,7 @@ class Warming:
     def _warm(self) -> None:
         try:
             from stickslip.engine.codegen.cache import announce_by, tell
+            from stickslip.explorer.model.strip import strip_of
             from stickslip.run.simulate import simulate
             from stickslip.scenarios.scenario import load_scenario
 
@@ -49,6 +53,7 @@ class Warming:
             try:
                 for name, duration in FIRST_RUNS:
                     simulate(load_scenario(name), duration)
+                strip_of(load_scenario(FIRST_RUNS[0][0]), FIRST_STRIP, members=FEW)
             finally:
                 announce_by(tell)
         except Exception as error:  # pages say what is wrong when they run into it themselves

@@ -1,0 +1,320 @@
+"""The explorer in a real browser. Most tests share one page, which is brought back to the paper's slab before each."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import pytest
+
+import stickslip as ss
+from stickslip.explorer.model.tour import TOUR
+from stickslip.scenarios.library import text
+from tests.docs.pages import Command, run_command
+from tests.explorer.browser.harness import Served, Watched
+
+SIZES = {"laptop": (1280, 800), "projector": (1920, 1080), "phone": (390, 844)}
+MODEL = "(name) => Bokeh.documents[0].get_model_by_name(name)"
+
+
+class Shown:
+    """What a user of the page sees and does."""
+
+    def __init__(self, watched: Watched) -> None:
+        self.watched, self.page = watched, watched.page
+
+    def said(self, part: str) -> Any:
+        """Wait until the sentence holds some words; return the whole sentence."""
+        found = self.page.locator(".sentence").filter(has_text=part)
+        found.wait_for()
+        return found.inner_text()
+
+    def enter(self, control: str, value: str) -> None:
+        """Type a value into a field."""
+        field = self.page.locator(f"#control-{control}")
+        field.fill(value)
+        field.press("Enter")
+
+    def open(self, name: str, content: str) -> None:
+        """Open a file on the page."""
+        file = {"name": name, "mimeType": "text/plain", "buffer": content.encode()}
+        self.page.locator(".tools input[type=file]").set_input_files(file)
+
+    def save(self, kind: str) -> bytes:
+        """Save a file of the page, and return its content."""
+        self.page.locator("summary", has_text="Save").click()
+        with self.page.expect_download() as found:
+            self.page.locator(f"[data-kind={kind}]").click()
+        return Path(found.value.path()).read_bytes()
+
+    def model(self, name: str, part: str) -> Any:
+        """An attribute of a model of Bokeh."""
+        return self.page.evaluate(f"(name) => ({MODEL})(name).{part}", name)
+
+    def cursor(self) -> float:
+        """Where the cursor is, which must be the same in each panel with an axis of time."""
+        (found,) = {self.model(f"cursor:{name}", "location") for name in ("slip", "rate", "traction", "field", "energy")}
+        return float(found)
+
+    def begin(self) -> None:
+        """Bring the page back to the slab of Fig. 6, without tour, strip, pin or fault."""
+        for name in ("Close the tour", "Unpin"):
+            button = self.page.get_by_role("button", name=name)
+            if button.is_visible():
+                button.click()
+        self.page.locator("select.parameter").select_option("")
+        for scenario, words in (("fig7-slab-critical", "140.8 µm/s"), ("fig6-slab", "is 5.102 times")):
+            self.page.locator("#control-scenario").select_option(scenario)
+            self.said(words)
+
+
+def begun(watched: Watched) -> Shown:
+    """A page whose first answer is there."""
+    shown = Shown(watched)
+    watched.page.locator(".sentence").filter(has_text="slip event").wait_for(timeout=180_000)
+    return shown
+
+
+@pytest.fixture(scope="module")
+def opened(chromium: Any, server: Served) -> Iterator[Shown]:
+    """The page that most tests share."""
+    window = chromium.new_context(viewport={"width": 1280, "height": 800}, accept_downloads=True, color_scheme="light")
+    watched = Watched(window.new_page(), server.origin)
+    watched.page.set_default_timeout(10_000)
+    watched.page.goto(server.url)
+    yield begun(watched)
+    window.close()
+
+
+@pytest.fixture
+def shown(opened: Shown) -> Iterator[Shown]:
+    """The shared page at its beginning; what it did wrong fails the test."""
+    opened.watched.faults.clear()
+    opened.begin()
+    yield opened
+    assert opened.watched.faults == []
+
+
+def test_a_page_opens_with_the_papers_slab_and_all_its_panels(shown: Shown) -> None:
+    assert shown.said("Irregular").startswith("Irregular: several slip rates at some loads; alpha = 1 s/m is 5.102 times")
+    panels = shown.page.locator("[data-panel]:visible").evaluate_all("(all) => all.map((one) => one.dataset.panel)")
+    assert set(panels) == {"law", "contact", "shape", "slip", "rate", "traction", "field", "energy"}
+    assert shown.model("source:motion", "get_column('rate')[1]") == pytest.approx(4.102, abs=1e-3)
+
+
+def test_the_word_for_the_regime_changes_where_alpha_passes_its_critical_value(shown: Shown) -> None:
+    for alpha, word in (("0.19", "Regular"), ("0.2", "Irregular"), ("0.1959", "Regular")):
+        shown.enter("friction-alpha", alpha)
+        assert shown.said(f"alpha = {alpha} s/m").startswith(word)
+    slider = shown.page.locator("#control-friction-alpha-slider")
+    slider.focus()
+    for _ in range(5):
+        slider.press("PageUp")
+    assert shown.said("Irregular").startswith("Irregular")
+
+
+def test_one_cursor_moves_through_all_panels_by_slider_key_click_and_mark(shown: Shown) -> None:
+    page = shown.page
+    page.locator("[data-plots]").focus()
+    page.keyboard.press("Home")
+    page.keyboard.press("Shift+ArrowRight")
+    page.wait_for_function(f"() => ({MODEL})('cursor:slip').location > 0")
+    assert shown.cursor() == pytest.approx(0.05 * 12)
+    page.locator("input.time").evaluate("(one) => { one.value = 250; one.dispatchEvent(new Event('input')); }")
+    page.wait_for_function(f"() => ({MODEL})('cursor:slip').location === 3")
+    assert shown.cursor() == 3.0
+    assert shown.model("source:now", "get_column('slip')[0]") == pytest.approx(3.0 * 4.10204, rel=1e-4)
+    page.locator(".marks button.arrest").click()
+    page.wait_for_function(f"() => Math.abs(({MODEL})('cursor:energy').location - 5.7142857) < 1e-5")
+    assert "5.71" in page.locator(".clock").inner_text()
+
+
+def test_playing_moves_the_cursor_until_it_is_paused(shown: Shown) -> None:
+    page = shown.page
+    page.locator(".bar > .start").click()
+    page.locator("select[aria-label='Speed of playing']").select_option("4")
+    page.get_by_role("button", name="Play", exact=True).click()
+    page.wait_for_function(f"() => ({MODEL})('cursor:slip').location > 0.2")
+    page.get_by_role("button", name="Pause").click()
+    before = shown.cursor()
+    page.wait_for_timeout(100)
+    assert shown.cursor() == before
+
+
+def test_a_pinned_run_is_compared_with_the_next_by_name(shown: Shown) -> None:
+    shown.page.get_by_role("button", name="Pin", exact=True).click()
+    shown.enter("friction-alpha", "0.5")
+    shown.said("= 0.5 s/m")
+    compared = shown.page.locator(".pinned")
+    compared.filter(has_text="alpha").wait_for()
+    told = compared.inner_text()
+    assert re.search(r"alpha.*1.*0\.5", told)
+    assert "slip" in told.partition("Moved")[2]
+
+
+def test_a_strip_is_drawn_and_a_click_goes_to_its_run(shown: Shown) -> None:
+    page = shown.page
+    page.locator("select.parameter").select_option("friction.alpha")
+    page.wait_for_function(f"() => ({MODEL})('source:strip')?.get_column('slip')?.length === 200")
+    page.locator("input.low").fill("0.1")
+    page.locator("input.low").press("Enter")
+    page.wait_for_function(f"() => Math.abs(({MODEL})('range:strip_x').start + 1) < 1e-9")
+    place = page.evaluate(
+        f"""() => {{
+          const plot = ({MODEL})("plot:strip_slip");
+          const found = [...Bokeh.index.roots].flatMap((root) => [root, ...root.children()]).find((view) => view.model === plot);
+          const view = found ?? Bokeh.index.find_one(plot);
+          view.el.scrollIntoView();
+          const box = view.el.getBoundingClientRect(), frame = view.frame;
+          return [box.left + frame.x_scale.compute(Math.log10(0.5)), box.top + frame.bbox.vcenter];
+        }}"""
+    )
+    page.mouse.click(*place)
+    sentence = shown.said("s/m is 2.5")
+    value = float(re.findall(r"alpha = ([\d.]+)", sentence)[0])
+    assert value == pytest.approx(0.5, rel=0.03)
+
+
+def test_the_tour_walks_through_the_paper(shown: Shown) -> None:
+    page = shown.page
+    page.get_by_role("button", name="Tour", exact=True).click()
+    for k, step in enumerate(TOUR, 1):
+        page.locator("h2", has_text=f"{k} of 8: {step.title}").wait_for()
+        assert page.locator(".told").inner_text() == step.text
+        assert page.locator("[data-look]").evaluate_all("(all) => all.map((one) => one.dataset.panel)") == [step.panel]
+        seconds = f"() => Math.abs(({MODEL})('cursor:slip').location - {step.cursor}) < 1e-6"
+        page.wait_for_function(seconds)
+        page.wait_for_function(f"() => ({MODEL})('axis:strip_x@strip_slip').axis_label?.startsWith('{step.strip.parameter}')")
+        page.get_by_role("button", name="Next step").click() if k < len(TOUR) else None
+    assert page.get_by_role("button", name="Next step").is_disabled()
+    page.get_by_role("button", name="Close the tour").click()
+    page.locator("section.step").wait_for(state="hidden")
+    assert page.locator("[data-look]").count() == 0
+
+
+def test_what_is_saved_runs_on_the_command_line_with_the_same_numbers(
+    shown: Shown, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shown.enter("friction-alpha", "0.7")
+    shown.said("= 0.7 s/m")
+    monkeypatch.chdir(tmp_path)
+    Path("saved.toml").write_bytes(shown.save("toml"))
+    saved = shown.save("events").decode()
+    code, said = run_command(Command(["run", "saved.toml", "--out", "run.nc"], None, []))
+    assert code == 0, said
+    ours = pd.read_csv(StringIO(saved), comment="#")
+    pd.testing.assert_frame_equal(ours, ss.open_solution("run.nc").events, check_exact=True, check_dtype=False)
+    assert shown.save("png")[:8] == b"\x89PNG\r\n\x1a\n"
+
+
+def test_a_bad_entry_is_told_at_its_field_and_the_last_picture_stays(shown: Shown) -> None:
+    before = shown.said("= 1 s/m")
+    shown.enter("friction-alpha", "-3")
+    shown.page.locator(".fault", has_text="at least 0").first.wait_for()
+    assert shown.page.locator("#control-friction-alpha").get_attribute("aria-invalid") == "true"
+    assert shown.said("Irregular") == before
+    assert shown.model("source:motion", "get_column('rate')[1]") == pytest.approx(4.102, abs=1e-3)
+    shown.enter("friction-alpha", "0.1")
+    assert shown.said("= 0.1 s/m").startswith("Regular")
+    assert shown.page.locator("#control-friction-alpha").get_attribute("aria-invalid") != "true"
+
+
+def test_measured_points_are_dropped_in_and_a_broken_file_is_refused_in_one_line(shown: Shown) -> None:
+    shown.open("mine.csv", "rate,friction\n0,0.8\n0.5,0.6\n2,0.5\n")
+    shown.page.wait_for_function(f"() => ({MODEL})('axis:law_y@law') && ({MODEL})('source:law').get_column('y').at(-1) < 0.51")
+    sentence = shown.said("normal stress")
+    for name, content, message in (
+        ("mine.csv", "rate,friction\n0,0.8\nfast,0.6\n", "mine.csv"),
+        ("mine.toml", "[body\n", "mine"),
+        ("mine.toml", '[friction]\nkind = "__import__"\n', "mine"),
+        ("large.csv", "0,1\n" * 300_000, "larger than 1000000 bytes"),
+    ):
+        shown.open(name, content)
+        shown.page.locator(".words .fault", has_text=message).wait_for()
+    assert shown.said("slip event") == sentence
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_nothing_runs_out_of_the_page_at_any_size(shown: Shown, size: str) -> None:
+    width, height = SIZES[size]
+    shown.page.get_by_role("button", name="Tour", exact=True).click()  # and its strip with it
+    shown.page.wait_for_function(f"() => ({MODEL})('axis:strip_x@strip_slip').axis_label?.startsWith('body.stiffness')")
+    shown.page.set_viewport_size({"width": width, "height": height})
+    shown.page.wait_for_timeout(200)
+    try:
+        assert shown.page.evaluate("document.documentElement.scrollWidth") <= width
+        for name in ("[data-panel=slip] .plot", "[data-panel=law] .plot", "[data-panel=energy] .plot", "section.step"):
+            box = shown.page.locator(name).bounding_box()
+            assert box["width"] > 200
+            assert box["height"] > 40
+            assert box["x"] >= 0
+            assert box["x"] + box["width"] <= width
+        assert shown.page.get_by_role("button", name="Play", exact=True).is_visible()
+    finally:
+        shown.page.set_viewport_size({"width": 1280, "height": 800})
+
+
+def test_the_ground_turns_dark_and_the_plots_with_it(shown: Shown) -> None:
+    switch = shown.page.get_by_role("button", name="Dark ground")
+    switch.click()
+    assert shown.page.locator("html").get_attribute("data-ground") == "dark"
+    assert shown.model("plot:slip", "background_fill_color") != "#FFFFFF"
+    switch.click()
+    assert shown.model("plot:slip", "background_fill_color") == "#FFFFFF"
+
+
+def test_the_whole_page_can_be_reached_with_the_tab_key(shown: Shown) -> None:
+    page = shown.page
+    page.evaluate("document.activeElement?.blur()")
+    reached = set()
+    for _ in range(70):
+        page.keyboard.press("Tab")
+        reached.add(
+            page.evaluate(
+                """() => { let one = document.activeElement;
+                   while (one?.shadowRoot?.activeElement) one = one.shadowRoot.activeElement;
+                   return one?.id || one?.className || one?.textContent.trim(); }"""
+            )
+        )
+    assert {"control-friction-alpha", "control-scenario", "play", "time", "panels", "parameter"} <= reached
+
+
+def test_a_link_reproduces_the_view_in_another_browser(shown: Shown, visit: Callable[..., Watched], server: Served) -> None:
+    shown.enter("friction-alpha", "0.7")
+    shown.said("= 0.7 s/m")
+    shown.page.locator("select.parameter").select_option("friction.alpha")
+    shown.page.locator(".marks button.arrest").click()
+    shown.page.wait_for_function("() => location.search.includes('strip=') && location.search.includes('t=5.71')")
+    link, sentence = shown.page.url, shown.said("= 0.7 s/m")
+    assert "friction.alpha=0.7" in link
+    token = server.url.partition("?")[2]
+    other = begun(visit(link if "token=" in link else f"{link}&{token}", server.origin))
+    assert other.said("= 0.7 s/m") == sentence
+    other.page.wait_for_function(f"() => Math.abs(({MODEL})('cursor:slip').location - 5.7142857) < 1e-4")
+    other.page.wait_for_function(f"() => ({MODEL})('source:strip')?.get_column('slip')?.length === 200")
+
+
+def test_two_pages_are_independent_and_a_long_run_in_one_does_not_hold_up_the_other(
+    shown: Shown, visit: Callable[..., Watched], server: Served
+) -> None:
+    other = begun(visit(server.url, server.origin))
+    other.open("long.toml", re.sub(r"duration = .*", 'duration = "3e4 year"', text("rate-and-state-block")))
+    other.page.locator(".stop").wait_for()
+    shown.enter("friction-alpha", "0.4")
+    assert shown.said("= 0.4 s/m").startswith("Irregular")
+    assert other.page.locator(".stop").is_visible()
+    other.page.locator(".stop").click()
+    other.page.locator(".stop").wait_for(state="hidden")
+    assert "0.4 s/m" not in other.said("slip event")
+
+
+def test_without_the_token_nothing_is_shown(chromium: Any, server: Served) -> None:
+    page = chromium.new_page()
+    answer = page.goto(f"{server.origin}/")
+    assert answer.status == 403
+    assert page.locator("[data-panel]").count() == 0
+    page.close()
