@@ -12,8 +12,10 @@ from stickslip.batch import QUANTITIES, long_member, run, run_members
 from stickslip.batch.workspace import Workspace, new_workspace
 from stickslip.engine.state.layout import Stop
 from stickslip.foundation.errors import InputError
+from stickslip.run.session import Session
 from stickslip.run.simulate import simulate
-from stickslip.trajectory.status import BAD_PARAMETERS, INTERRUPTED, STATUSES
+from stickslip.scenarios.scenario import load_scenario
+from stickslip.trajectory.status import BAD_PARAMETERS, FULL_HISTORY, INTERRUPTED, STATUSES
 
 from .cases import CASES, SLAB, Case, by_solution, one
 
@@ -207,3 +209,20 @@ def test_long_members_run_after_all_others_or_are_left_for_later_with_the_same_b
         assert np.isnan(column[others.later]).all() or quantity in ("irregular", "branches")
         column[others.later] = late.results[quantity]
         assert column.tobytes() == members.results[quantity].tobytes(), quantity
+
+
+def test_a_storm_ends_before_nearly_every_piece_costs_a_clearing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each clearing frees half of what the one before freed: room for 3000 pieces would be cleared some 20 times."""
+    cleared: list[int] = []
+    clear = long_member.Folding.make_room
+
+    def make_room(watch: long_member.Folding, session: Session) -> bool:
+        cleared.append(session.length)
+        return clear(watch, session)
+
+    monkeypatch.setattr(run, "LARGEST_CAPACITY", 512)
+    monkeypatch.setattr(long_member, "LARGEST", 3000)
+    monkeypatch.setattr(long_member.Folding, "make_room", make_room)
+    members = run_members(replace(load_scenario("fig6-slab"), duration=3e9), {"friction.alpha": np.array([0.2])}, ["events"])
+    assert members.status.tolist() == [FULL_HISTORY]
+    assert len(cleared) < 10

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from stickslip.engine.codegen.cache import SLOW
+
 INTERRUPT_AT = """
 import signal, sys
 signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -74,7 +76,8 @@ def test_output_that_nobody_reads_is_dropped_quietly(tmp_path: Path, arguments: 
 
 def test_files_are_written_though_nobody_reads_the_summary(tmp_path: Path):
     done = run_unheard(["run", "fig6-slab", "--out", "a.nc", "--figure", "a.svg"], tmp_path)
-    assert (done.returncode, done.stderr) == (0, "")
+    said = [line for line in done.stderr.splitlines() if line.removeprefix("stickslip: ") not in SLOW.values()]
+    assert (done.returncode, said) == (0, [])
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.nc", "a.svg"]
 
 

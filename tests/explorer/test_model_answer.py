@@ -1,14 +1,16 @@
 """The answers of the explorer: for every bundled scenario they show what `simulate` calculates."""
 
 import math
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import pytest
 
 import stickslip as ss
 from stickslip.explorer.model.answer import Answer
+from stickslip.explorer.model.energy_picture import energy_picture
 from stickslip.explorer.model.runs import MOST_PIECES, companion_of
+from stickslip.explorer.model.sampled_waves import SampledWaves
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.shown import Shown
 from stickslip.explorer.model.solve import solve
@@ -224,6 +226,35 @@ def test_long_run_that_is_stopped_is_shown_up_to_there() -> None:
     assert found.notes[0].startswith("interrupted")
     assert "years" in lines[0]
     assert found.companion is None
+
+
+@pytest.mark.parametrize("name", ["tides-block", "fig6-block-reconstructed", "fig6-slab"])
+def test_energy_of_a_long_run_is_that_of_a_short_one(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    exact = answer(name).energy
+    shown = Shown.of(answer(name).solution)
+    monkeypatch.setattr("stickslip.explorer.model.energy_picture.MANY", 0)
+    rough = energy_picture(shown, SampledWaves(shown) if "slab" in name else None)
+    assert set(rough.parts) == set(exact.parts)
+    for part, values in exact.parts.items():
+        assert rough.parts[part] == pytest.approx(values, abs=1e-3 * float(np.ptp(values)))
+
+
+def test_pictures_of_a_long_run_are_told_of_and_end_for_newer_work_but_not_for_a_stop(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A stop ends the run; what there is of it is shown, with all pictures."""
+    monkeypatch.setattr("stickslip.explorer.model.solve.LONG", 0)
+    lines: list[str] = []
+
+    def told(text: str, end: type[BaseException]) -> None:
+        lines.append(text)
+        if "the run is finished" in text:
+            raise end
+
+    scenario = Setting.bundled("fig6-block-reconstructed").scenario()
+    found = solve(scenario, partial(told, end=Stopped))
+    assert "the run is finished; working out the energy" in lines
+    assert found.energy.parts
+    with pytest.raises(SystemExit):
+        solve(scenario, partial(told, end=SystemExit))
 
 
 def test_run_that_is_stopped_before_it_begins_is_refused_in_one_line(monkeypatch: pytest.MonkeyPatch) -> None:

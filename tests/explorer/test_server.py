@@ -6,6 +6,8 @@ import asyncio
 import gc
 import re
 import socket
+import threading
+import time
 import weakref
 from collections.abc import Awaitable, Callable
 from pathlib import Path
@@ -261,6 +263,31 @@ def test_one_page_too_many_is_refused_in_a_sentence_until_another_is_closed(monk
         assert (await served.get()).code == 200
 
     with_server(test, sessions=2)
+
+
+def test_a_result_that_comes_while_the_page_is_being_made_is_shown(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Bokeh now and then loses what another thread gives to a document: half of the pages waited for their first picture."""
+    shown, threads, deliver = [], set(), serving.deliver_to
+
+    def noted(document: Callable[[], Any], call: Callable[[], None]) -> None:
+        threads.add(threading.current_thread())
+        deliver(document, call)
+
+    def build(explorer: Explorer) -> Any:
+        explorer.listen("answer", lambda: shown.append(explorer.setting))
+        explorer.change(explorer.setting)
+        time.sleep(0.05)  # the work takes no time: its result is delivered now, while the event loop is busy here
+        return pn.pane.HTML("a page")
+
+    async def test(served: Served) -> None:
+        served.server._build = build
+        await served.enter()
+        await served.connect(await served.get())
+        await until(lambda: len(shown) == 2)  # this one, and that of the address
+        assert threads == {threading.current_thread()}, "the document must be given callbacks by the event loop alone"
+
+    monkeypatch.setattr(serving, "deliver_to", noted)
+    with_server(test)
 
 
 def test_nothing_of_a_closed_page_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import asyncio
 import importlib.util
+import threading
+from collections import deque
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
 import stickslip as ss
 from stickslip.cli.main import main
+from stickslip.explorer.server import in_notebook
 from stickslip.foundation.errors import InputError
 
 
@@ -33,6 +37,33 @@ def test_a_problem_is_shown_in_a_notebook_and_answers() -> None:
         assert callable(page._repr_mimebundle_)  # what a notebook calls; it needs IPython
 
     asyncio.run(cells())
+
+
+def test_of_many_explorers_the_oldest_ends_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A cell that is run again and again must not leave a thread each time."""
+    monkeypatch.setattr(in_notebook, "MOST", 1)
+    monkeypatch.setattr("stickslip.explorer.page.notebook_page.build_for_notebook", lambda explorer: SimpleNamespace())
+
+    monkeypatch.setattr(in_notebook, "_AT_WORK", deque())
+
+    async def cells() -> None:
+        before = desk_threads()
+        first = ss.explore("fig6-slab").explorer
+        (thread,) = desk_threads() - before
+        second = ss.explore("fig6-slab").explorer
+        thread.join(20.0)
+        assert not thread.is_alive()
+        assert (first.fault, second.fault) == (in_notebook.ENDED, "")
+        assert len(desk_threads() - before) == 1
+        for desk in in_notebook._AT_WORK[0][1]:
+            desk.close()
+
+    asyncio.run(cells())
+
+
+def desk_threads() -> set[threading.Thread]:
+    """Return the threads in which explorers work."""
+    return {one for one in threading.enumerate() if one.name == "explorer-desk"}
 
 
 def test_without_a_notebook_explore_says_what_to_do_instead() -> None:

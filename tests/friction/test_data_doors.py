@@ -91,6 +91,8 @@ def test_shear_over_normal_stress_is_friction(tmp_path: Path) -> None:
         ("v,tau,sigma\n1,6,10\n2,-5,10\n", "line 3: shear_stress must not be negative, got -5"),
         ("log10(V),mu\n-3,0.6\n-2,0.5\n", "logarithms are not read: write the numbers themselves, as in a column slip_rate"),
         ("log V,mu\n-3,0.6\n-2,0.5\n", "logarithms are not read"),
+        ("mu,lambda V (mm/s)\n0.6,1\n0.5,2\n", "column 2 is not the slip_rate itself, by its heading; if it is, write slip_rate"),
+        ("v (m/s),shear stress (MPa)\n1,6\n2,5\n", "friction is shear stress over normal stress"),
     ],
 )
 def test_mistakes_have_a_cure(tmp_path: Path, text: str, message: str) -> None:

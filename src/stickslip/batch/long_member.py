@@ -25,8 +25,13 @@ if TYPE_CHECKING:
     import pandas as pd
 
 LARGEST = 500_000
-"""Largest number of pieces of history: those of one event, and those whose waves are still in the body. A member that needs more
-fails, because they take 250 MB."""
+"""Largest number of pieces of history: those of one event, and those whose waves are still in the body. They take 250 MB."""
+LARGEST_SHARE = 0.75
+"""Largest share of LARGEST that a member may need once all other history is discarded; a member that needs more fails.
+
+In a storm of events each piece that is discarded leaves less room than the one before. Near LARGEST the run would discard, which
+takes a second, for every few pieces.
+"""
 FIRST = ("start", "end", "duration", "slip", "traction_drop", "static_drop")
 """Columns of an event table that are kept of the first event, as fields `first_...` of `reduction.Reduced`."""
 
@@ -56,16 +61,20 @@ class Folding:
     def make_room(self, run: Session) -> bool:
         """Reduce the events that are complete, and discard pieces whose waves have left the body: see `run_loop.Watch`.
 
-        Returns False if the history cannot grow any more either.
+        Returns False if that does not make enough room, and the history cannot grow any more either.
         """
         self.count_shocks(run.store, run.length)
         look = self.stream.look(run.store, run.length)
         self.add(look.table())
         look.tell()
-        dropped = run.forget_before(self.stream.needed(run.store)) if run.before_end is None else 0
+        if run.before_end is not None:
+            return run.grow(LARGEST)
+        dropped = run.forget_before(self.stream.needed(run.store))
         if dropped > 0:
             self.stream.forget(dropped)
             self.counted -= dropped
+        if run.length > LARGEST_SHARE * LARGEST:
+            return False
         return run.length < len(run.store.pieces) // 2 or run.grow(LARGEST)
 
     def count_shocks(self, store: Store, length: int) -> None:

@@ -169,8 +169,7 @@ _OFTEN = {"m": "mm", "m/s": "mm/s", "s": "ms", "Pa": "MPa"}
 
 def find(header: Sequence[str], wanted: Sequence[str], place: str) -> dict[str, tuple[int, Fraction]]:
     """Return index and factor to SI of each wanted column that a header has. Raises InputError for two of one kind."""
-    parts = [_HEADING.fullmatch(cell) for cell in header]
-    names = [_plain(part["name"] if part else cell) for cell, part in zip(header, parts, strict=True)]
+    parts, names = [_HEADING.fullmatch(cell) for cell in header], _names(header)
     found = {}
     for column in wanted:
         at = [i for i, name in enumerate(names) if name in _headings(column)]
@@ -184,11 +183,16 @@ def find(header: Sequence[str], wanted: Sequence[str], place: str) -> dict[str, 
     return found
 
 
+def _names(header: Sequence[str]) -> list[str]:
+    """Return headings without their units, in the form in which they are compared."""
+    return [_plain(part["name"] if (part := _HEADING.fullmatch(cell)) else cell) for cell in header]
+
+
 def missing(header: Sequence[str], column: str) -> str:
     """Return a hint for a header that lacks a column: the heading that could be meant, or how a header is written."""
     if len(header) == 1 and len(header[0].split()) > 1:
         return "columns are separated by commas, semicolons or tabs"
-    if column == "friction" and any(_plain(_HEADING.sub(r"\g<name>", cell)) in _headings("shear_stress") for cell in header):
+    if column == "friction" and not _headings("shear_stress").isdisjoint(_names(header)):
         return "friction is shear stress over normal stress, both in one unit"
     if any(_plain(cell).startswith(("log", "ln")) for cell in header):
         return f"logarithms are not read: write the numbers themselves, as in a column {_example(column)}"
@@ -196,6 +200,9 @@ def missing(header: Sequence[str], column: str) -> str:
         return f"the first line must name the columns, as {_example(column)}"
     hint = nearest(column, [cell for cell in header if cell.strip()])
     close = hint[14:-2]
+    for i, name in enumerate(_names(header)):  # "lambda V", "theta v"
+        if name.rpartition(" ")[2] in _headings(column):
+            return f"column {i + 1} is not the {column} itself, by its heading; if it is, write {_example(column)} there"
     return f"rename {ascii(close)[:60]}?" if hint.startswith("did") and close != column else f"write it as {_example(column)}"
 
 

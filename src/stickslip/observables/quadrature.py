@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,44 +12,65 @@ from stickslip.trajectory.history import Floats, History, Positions
 
 Integrand = Callable[[Positions], Floats]
 
-_GAUSS = np.polynomial.legendre.leggauss(20)
-NODES, WEIGHTS = 0.5 * (1.0 + _GAUSS[0]), 0.5 * _GAUSS[1]
-"""Gauss-Legendre rule on [0, 1]. It is exact to degree 39, which includes the squares of the history's polynomials; it integrates
-the law along a Taylor step to rounding.
+FULL = 20
+"""Number of nodes of the Gauss-Legendre rule on a piece. It is exact to degree 39, which includes the squares of the history's
+polynomials; it integrates the law along a Taylor step to rounding.
 """
-
 
 BLOCK = 1 << 14
 """Number of pieces that are integrated together, which keeps the memory bounded."""
 
 
+@cache
+def _gauss(nodes: int) -> tuple[Floats, Floats]:
+    """Return places and weights of the Gauss-Legendre rule on [0, 1]."""
+    places, weights = np.polynomial.legendre.leggauss(nodes)
+    return 0.5 * (1.0 + places), 0.5 * weights
+
+
+NODES, WEIGHTS = _gauss(FULL)
+"""Places and weights of the full rule on [0, 1]."""
+
+
 def over(
-    history: History, piece: NDArray[np.intp], low: Floats, high: Floats, integrand: Integrand, *, leaped: Floats | None = None
+    history: History,
+    piece: NDArray[np.intp],
+    low: Floats,
+    high: Floats,
+    integrand: Integrand,
+    *,
+    leaped: Floats | None = None,
+    nodes: int = FULL,
 ) -> Floats:
     """Integrate over the part [low, high] (in xi) of each piece, or of its echo `leaped` whole rows later if those are given."""
+    places, weights = _gauss(nodes)
     leaped = np.zeros(len(piece)) if leaped is None else leaped
     if len(piece) > BLOCK:
         cuts = [slice(n, n + BLOCK) for n in range(0, len(piece), BLOCK)]
-        return np.concatenate([over(history, piece[cut], low[cut], high[cut], integrand, leaped=leaped[cut]) for cut in cuts])
-    xi = low[:, None] + (high - low)[:, None] * NODES
-    nodes = np.repeat(piece, len(NODES))
-    at = Positions(nodes, xi.ravel(), np.repeat(leaped, len(NODES)), np.zeros(xi.size, bool), nodes)
+        return np.concatenate(
+            [over(history, piece[cut], low[cut], high[cut], integrand, leaped=leaped[cut], nodes=nodes) for cut in cuts]
+        )
+    xi = low[:, None] + (high - low)[:, None] * places
+    pieces = np.repeat(piece, nodes)
+    at = Positions(pieces, xi.ravel(), np.repeat(leaped, nodes), np.zeros(xi.size, bool), pieces)
     values = integrand(at).reshape(xi.shape)
     speed, bend = history.store.speed[piece], history.store.bend[piece]
-    return np.asarray(((speed[:, None] + 2.0 * bend[:, None] * xi) * values) @ WEIGHTS * (high - low))
+    return np.asarray(((speed[:, None] + 2.0 * bend[:, None] * xi) * values) @ weights * (high - low))
 
 
-def up_to(history: History, at: Positions, integrand: Integrand, pieces: NDArray[np.intp] | None = None) -> Floats:
+def up_to(
+    history: History, at: Positions, integrand: Integrand, pieces: NDArray[np.intp] | None = None, *, nodes: int = FULL
+) -> Floats:
     """Integrate over all pieces, or the given ones, up to each position; rest that was not recorded is left out."""
     at = at.recorded()
     pieces = np.arange(len(history)) if pieces is None else pieces
     count = len(pieces)
-    whole = np.concatenate([[0.0], np.cumsum(over(history, pieces, np.zeros(count), np.ones(count), integrand))])
+    whole = np.concatenate([[0.0], np.cumsum(over(history, pieces, np.zeros(count), np.ones(count), integrand, nodes=nodes))])
     done = np.searchsorted(pieces, at.piece)
     total: Floats = whole[done]
     cut = np.append(pieces, -1)[done] == at.piece
     if cut.any():
-        total[cut] += over(history, at.piece[cut], np.zeros(int(cut.sum())), at.xi[cut], integrand)
+        total[cut] += over(history, at.piece[cut], np.zeros(int(cut.sum())), at.xi[cut], integrand, nodes=nodes)
     return total
 
 

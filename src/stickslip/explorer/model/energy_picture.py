@@ -8,10 +8,16 @@ from stickslip.explorer.model.answer import EnergyPicture, Floats
 from stickslip.explorer.model.sampled_waves import SampledWaves
 from stickslip.explorer.model.shown import Shown
 from stickslip.observables.energy.balance import energies, heat
+from stickslip.observables.quadrature import FULL
+from stickslip.trajectory.history import History
 
 TIMES = 160
 """Number of times for a slab; for a block there are `BLOCK_TIMES`."""
 BLOCK_TIMES = 400
+MANY, FEW_NODES = 5_000, 4
+"""Number of pieces of a history from which on energies are integrated with fewer nodes on each: of 100 000 pieces all nodes would
+take seconds, and a picture shows no difference.
+"""
 PLACES = 240
 """Number of places in the slab at which the product of its two waves is added up."""
 
@@ -33,13 +39,18 @@ def energy_picture(shown: Shown, waves: SampledWaves | None) -> EnergyPicture:
 
 def _of_block(shown: Shown, time: Floats) -> dict[str, Floats]:
     history = shown.readings.history
-    return energies(history, history.find(time, "right"))
+    return energies(history, history.find(time, "right"), _nodes(history))
+
+
+def _nodes(history: History) -> int:
+    """Return the number of nodes on each piece."""
+    return FEW_NODES if len(history) > MANY else FULL
 
 
 def _of_slab(waves: SampledWaves, time: Floats) -> dict[str, Floats]:
     """Return the energies of a slab: what is stored follows from work and heat, since nothing is lost."""
     at = waves.history.find(time, "right")
-    warmed, work = heat(waves.history, at), waves.work(time)
+    warmed, work = heat(waves.history, at, _nodes(waves.history)), waves.work(time)
     return {
         "work": work,
         "heat": warmed,

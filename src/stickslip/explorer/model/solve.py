@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+from functools import partial
+
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
 from stickslip.explorer.model.answer import Answer, Motion
 from stickslip.explorer.model.contact_picture import contact_picture
@@ -16,11 +19,14 @@ from stickslip.explorer.model.sampled_waves import SampledWaves
 from stickslip.explorer.model.sentence import sentence
 from stickslip.explorer.model.shown import Shown
 from stickslip.explorer.model.slab_picture import slab_picture
-from stickslip.explorer.model.stop import Told, silent
+from stickslip.explorer.model.stop import Stopped, Told, silent
 from stickslip.foundation.errors import InputError
 from stickslip.scenarios.examine import warnings_of
 from stickslip.scenarios.scenario import Scenario
 from stickslip.solution.solution import Solution
+
+LONG = 5_000
+"""Number of pieces of a run from which on its pictures take long enough to be told of."""
 
 
 def solve(scenario: Scenario, told: Told = silent) -> Answer:
@@ -47,14 +53,32 @@ def solve(scenario: Scenario, told: Told = silent) -> Answer:
     contact = uniqueness_of(scenario.problem)
     solution = run(scenario, told)
     companion = None if solution.status.name == "interrupted" else run_companion(scenario, told)
-    return answer_of(scenario, solution, companion, contact)
+    runs = (solution,) if companion is None else (solution, companion)
+    is_long = max(len(one.history) for one in runs) > LONG
+    return answer_of(scenario, solution, companion, contact, partial(_tell, told) if is_long else silent)
 
 
-def answer_of(scenario: Scenario, solution: Solution, companion: Solution | None, contact: Uniqueness) -> Answer:
-    """Return what is shown of finished runs."""
-    found, own, influence = Found.of(solution), motion(solution), solution.rule_influence
-    shown = Shown.of(solution)
+def _tell(told: Told, text: str) -> None:
+    """Tell how far the pictures are; a stop ends the run, and what there is of it is shown whole."""
+    with suppress(Stopped):
+        told(text)
+
+
+def answer_of(
+    scenario: Scenario, solution: Solution, companion: Solution | None, contact: Uniqueness, told: Told = silent
+) -> Answer:
+    """Return what is shown of finished runs; `told` learns what is worked out next, and may raise to end that."""
+    told("the run is finished; looking for slip events and pulses")
+    found = Found.of(solution)
+    told("the run is finished; drawing its curves")
+    own, influence, shown = motion(solution), solution.rule_influence, Shown.of(solution)
+    beside = _beside(companion)
+    told("the run is finished; working out the inside of the body")
     waves = _waves(shown)
+    slab = None if waves is None else slab_picture(waves)
+    told("the run is finished; working out the energy")
+    energy = energy_picture(shown, waves)
+    told("the run is finished; finding its words")
     return Answer(
         scenario=scenario,
         solution=solution,
@@ -63,9 +87,9 @@ def answer_of(scenario: Scenario, solution: Solution, companion: Solution | None
         sentence=sentence(found, contact, influence),
         law=law_picture(solution, own),
         contact=contact_picture(contact, own),
-        motions=(own, *_beside(companion)),
-        slab=None if waves is None else slab_picture(waves),
-        energy=energy_picture(shown, waves),
+        motions=(own, *beside),
+        slab=slab,
+        energy=energy,
         marks=marks_of(found, own),
         numbers=key_numbers(found, contact, own),
         notes=notes_of(scenario, solution, contact),

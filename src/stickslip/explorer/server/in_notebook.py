@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 import asyncio
+from collections import deque
 from functools import cache
 from typing import Any
 
 import panel as pn
 
 from stickslip.explorer.model.setting import Setting
+from stickslip.explorer.page.explorer import Explorer
 from stickslip.explorer.server.desk import ThreadDesk
 from stickslip.explorer.server.start import explorer_of
 from stickslip.foundation.errors import InputError
 from stickslip.scenarios.scenario import Scenario
+
+MOST = 8
+"""Largest number of explorers that are at work in one notebook."""
+ENDED = f"This explorer has ended, because {MOST} newer ones are open in this notebook: run its cell again to go on with it."
 
 
 def shown_in_notebook(scenario: Scenario) -> Any:
@@ -24,13 +30,32 @@ def shown_in_notebook(scenario: Scenario) -> Any:
     except RuntimeError:
         raise InputError("explore: there is no notebook here; `stickslip explore` opens the explorer in a browser") from None
     _bring_scripts()
-    desk = ThreadDesk(deliver)
-    explorer = explorer_of(Setting.of(scenario), desk, ThreadDesk(deliver))
+    desk, files = ThreadDesk(deliver), ThreadDesk(deliver)
+    explorer = explorer_of(Setting.of(scenario), desk, files)
     desk.report = explorer.told
     page = build_for_notebook(explorer)
     page.explorer = explorer
+    _keep(explorer, desk, files)
     explorer.change(explorer.setting)
     return page
+
+
+_AT_WORK: deque[tuple[Explorer, tuple[ThreadDesk, ...]]] = deque()
+"""The explorers that are at work in this kernel, with their desks, the oldest first."""
+
+
+def _keep(explorer: Explorer, *desks: ThreadDesk) -> None:
+    """Keep an explorer at work, and end the oldest if there are more than `MOST`.
+
+    A kernel does not tell when a cell is run again or deleted, and each explorer has a thread.
+    """
+    _AT_WORK.append((explorer, desks))
+    while len(_AT_WORK) > MOST:
+        oldest, ended = _AT_WORK.popleft()
+        for desk in ended:
+            desk.close()
+        oldest.told("")
+        oldest.refuse(ENDED)
 
 
 @cache

@@ -70,8 +70,9 @@ def scaled(variable: xr.DataArray) -> Scaled:
     """Return a varied key in a readable unit; its values decide whether the axis is logarithmic."""
     name = parameter_name(str(variable.name), variable.attrs.get("long_name", ""))
     if not np.issubdtype(variable.dtype, np.number):
-        words, places = np.unique(np.array(variable.values.tolist(), str), return_inverse=True)
-        return Scaled(places.astype(float), name, words=tuple(words.tolist()))
+        given = [str(word) for word in variable.values.tolist()]
+        words = tuple(dict.fromkeys(given if variable.name in variable.dims else sorted(given)))  # samples are in no order
+        return Scaled(np.array([words.index(word) for word in given], float), name, words=words)
     values = np.asarray(variable.values, float)
     log = is_logarithmic(values)
     unit, size = unit_of(variable.attrs.get("units", "1"), values, log=log)

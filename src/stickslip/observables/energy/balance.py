@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from stickslip.bodies import as_slab
 from stickslip.observables.energy.kinetic import kinetic
-from stickslip.observables.quadrature import Integrand, between, up_to
+from stickslip.observables.quadrature import FULL, Integrand, between, up_to
 from stickslip.observables.waves import Radiation, Waves
 from stickslip.trajectory.history import Epoch, Floats, History, Positions
 
@@ -135,13 +135,14 @@ def epochs(history: History, at: Positions) -> list[Epoch]:
     return [Epoch(int(row), float(offset)) for row, offset in zip(*history.placed(at), strict=True)]
 
 
-def energies(history: History, at: Positions) -> dict[str, Floats]:
+def energies(history: History, at: Positions, nodes: int = FULL) -> dict[str, Floats]:
     """Return the energies at positions in a history.
 
     Work, heat, damped and radiated count from the start of the run; stored and elastic are up to a constant; kinetic and trapped
-    are absolute. All are taken at exactly the same positions, so that their differences balance late in a run too.
+    are absolute. All are taken at exactly the same positions, so that their differences balance late in a run too. The work, heat
+    and damping of a block are integrated with `nodes` nodes on each piece.
     """
-    return _slab(history, at) if history.problem.body.has_waves else _block(history, at)
+    return _slab(history, at) if history.problem.body.has_waves else _block(history, at, nodes)
 
 
 def _slab(history: History, at: Positions) -> dict[str, Floats]:
@@ -161,19 +162,19 @@ def _slab(history: History, at: Positions) -> dict[str, Floats]:
     }
 
 
-def _block(history: History, at: Positions) -> dict[str, Floats]:
+def _block(history: History, at: Positions, nodes: int) -> dict[str, Floats]:
     problem = history.problem
     body = problem.body
     force, rate = history.excess(at), history.rate(at)
     spring = _stretching(history, np.full(len(force), problem.excess), force)
     slipping = np.flatnonzero(history.store.mode)
     return {
-        "work": up_to(history, at, _pulling(history)) + _at_rest(history, at),
+        "work": up_to(history, at, _pulling(history), nodes=nodes) + _at_rest(history, at),
         "stored": spring + 0.5 * body.inertia * rate**2,
         "elastic": spring,
         "kinetic": 0.5 * body.inertia * rate**2,
-        "heat": heat(history, at),
-        "damped": up_to(history, at, _damping(history), slipping),
+        "heat": heat(history, at, nodes),
+        "damped": up_to(history, at, _damping(history), slipping, nodes=nodes) if body.damping else np.zeros(len(force)),
         "radiated": np.zeros(len(force)),
         "trapped": np.zeros(len(force)),
     }
@@ -208,9 +209,9 @@ def _stretching(history: History, force: Floats, later: Floats) -> Floats:
     return np.asarray((later - force) * (force + later + 2.0 * history.problem.strength) / (2.0 * body.stiffness))
 
 
-def heat(history: History, at: Positions) -> Floats:
+def heat(history: History, at: Positions, nodes: int = FULL) -> Floats:
     """Return the friction heat up to each position, from the law. Slab: J/m^2, block: J."""
-    return up_to(history, at, _heating(history), np.flatnonzero(history.store.mode))
+    return up_to(history, at, _heating(history), np.flatnonzero(history.store.mode), nodes=nodes)
 
 
 def resistance(history: History) -> Integrand:
