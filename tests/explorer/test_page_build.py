@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
-
 import panel as pn
 import pytest
 
@@ -14,27 +11,13 @@ from stickslip.explorer.page.explorer import Explorer
 from stickslip.explorer.page.notebook_page import build_for_notebook
 from stickslip.explorer.page.page import Panels, build
 from stickslip.explorer.page.words import Words
-
-
-class AtOnce:
-    """A desk that does its work at once."""
-
-    def ask(self, work: Callable[..., Any], done: Callable[[Any], None], failed: Callable[[Exception], None]) -> None:
-        try:
-            found = work(lambda text: None)
-        except Exception as error:
-            failed(error)
-        else:
-            done(found)
-
-    def stop(self) -> None:
-        pass
+from tests.explorer.desk_at_once import DeskAtOnce
 
 
 @pytest.fixture
 def explorer() -> Explorer:
     setting = Setting.bundled("fig5-slab-reconstructed")
-    made = Explorer(setting, AtOnce(), solve)
+    made = Explorer(setting, DeskAtOnce(), solve)
     made.change(setting)
     return made
 

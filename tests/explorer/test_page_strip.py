@@ -15,37 +15,18 @@ from stickslip.explorer.model.tour import TOUR
 from stickslip.explorer.page.explorer import Explorer
 from stickslip.explorer.page.strip import StripView, place_of, view_of_strip
 from stickslip.explorer.page.tour import Tour, told_steps
-from stickslip.foundation.errors import InputError
+from tests.explorer.desk_at_once import DeskAtOnce
 
 SLAB = Setting.bundled("fig6-slab")
 
 
-class DeskNow:
-    """A desk that does at once what it is asked, and counts."""
-
-    def __init__(self) -> None:
-        self.asked = 0
-
-    def ask(self, work: Any, done: Any, failed: Any) -> None:
-        self.asked += 1
-        try:
-            result = work(lambda text: None)
-        except InputError as error:
-            failed(error)
-        else:
-            done(result)
-
-    def stop(self) -> None:
-        pass
+@pytest.fixture
+def desk() -> DeskAtOnce:
+    return DeskAtOnce()
 
 
 @pytest.fixture
-def desk() -> DeskNow:
-    return DeskNow()
-
-
-@pytest.fixture
-def explorer(desk: DeskNow) -> Explorer:
+def explorer(desk: DeskAtOnce) -> Explorer:
     explorer = Explorer(SLAB, desk, solve)
     explorer.change(SLAB)
     return explorer
@@ -86,7 +67,7 @@ def test_a_message_that_makes_no_sense_changes_nothing(explorer: Explorer, view:
     assert explorer.strip is None
 
 
-def test_a_click_goes_to_the_nearest_run_of_the_strip(explorer: Explorer, view: StripView, desk: DeskNow) -> None:
+def test_a_click_goes_to_the_nearest_run_of_the_strip(explorer: Explorer, view: StripView, desk: DeskAtOnce) -> None:
     explorer.show_strip(TOUR[5].strip)
     strip, asked = view.strip, desk.asked
     assert strip is not None

@@ -216,6 +216,7 @@ class SlipEvents(NamedTuple):
         counted = cls._all_of(history, default_event_rate(history.problem)).some(slice(history.max_events))
         if not len(counted.pulses):
             return found
+        # Piece plus half of xi puts places in order; the end of a piece stays before the start of the next one.
         last = counted.piece[2, -1] + 0.5 * counted.xi[2, -1]
         return found.some(slice(int(np.searchsorted(found.piece[0] + 0.5 * found.xi[0], last))))
 
