@@ -13,8 +13,6 @@ from typing import Any
 HERE = Path(__file__).parent
 sys.path[:0] = [str(HERE / "site"), str(HERE.parent / "src")]
 
-from pygments.lexers.special import TextLexer  # noqa: E402
-
 import stickslip  # noqa: E402  the package of this folder
 
 project = "stickslip"
@@ -117,4 +115,3 @@ def setup(app: Any) -> None:
     app.connect("autodoc-process-docstring", before_napoleon, priority=400)
     app.connect("autodoc-process-docstring", after_napoleon, priority=600)
     app.connect("source-read", link_to_gallery)
-    app.add_lexer("mermaid", TextLexer)  # a diagram that forges draw; here its text, because drawing takes a script

@@ -68,6 +68,14 @@ def test_every_promise_names_a_test() -> None:
     assert [line for line in promises if not NAMED_TEST.search(line)] == []
 
 
+def test_the_diagram_of_the_loop_names_what_there_is() -> None:
+    diagram = (DOCS / "figures" / "states-of-the-loop.svg").read_text(encoding="utf-8").partition("</defs>")[2]
+    named = set(re.findall(r"\w+_\w+|\b[A-Z]{3,}\b", re.sub(r"<[^>]*>", " ", diagram)))
+    source = "\n".join(path.read_text(encoding="utf-8") for path in (ROOT / "src" / "stickslip" / "engine").rglob("*.py"))
+    assert {"next_piece", "approach_fold", "depart_from_fold", "PAUSED"} <= named
+    assert [name for name in sorted(named) if not re.search(rf"^def {name}\(|^    {name} = ", source, re.MULTILINE)] == []
+
+
 @pytest.fixture(scope="module")
 def check_site() -> Any:
     return runpy.run_path(str(DOCS / "site" / "check_site.py"))["main"]
