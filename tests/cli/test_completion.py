@@ -45,6 +45,7 @@ def complete(command: Callable[..., Outcome], monkeypatch: pytest.MonkeyPatch) -
         ("stickslip run mi", ["mine.toml"]),
         ("stickslip sweep fig6-slab -v friction.al", ["friction.alpha="]),
         ("stickslip sweep fig6-slab -v alpha=1,2 --vary friction.al", ["friction.alpha="]),
+        ("stickslip run fig6-slab --set friction.al", ["friction.alpha="]),
         ("stickslip sweep -v friction.al", []),
         ("stickslip sweep nothing.toml -v friction.al", []),
         ("stickslip nothing fig6", []),

@@ -7,13 +7,14 @@ from typing import Any
 
 import pytest
 
-from tests.explorer.browser.harness import NO_BROWSER, Served, Watched, launch, serve
+from tests.explorer.browser.harness import NO_BROWSER, PATIENCE, Served, Watched, launch, serve
 
 
 @pytest.fixture(scope="session")
 def chromium() -> Iterator[Any]:
     """The browser; tests are skipped, with a sentence that says why, where there is none."""
     sync_api = pytest.importorskip("playwright.sync_api")
+    sync_api.expect.set_options(timeout=PATIENCE)
     with sync_api.sync_playwright() as playwright:
         browser = launch(playwright)
         if browser is None:
@@ -39,7 +40,6 @@ def visit(chromium: Any) -> Iterator[Callable[..., Watched]]:
         window = chromium.new_context(viewport={"width": size[0], "height": size[1]}, accept_downloads=True, **context)
         watched = Watched(window.new_page(), origin)
         opened.append(watched)
-        watched.page.set_default_timeout(10_000)
         watched.page.goto(url)
         return watched
 

@@ -19,6 +19,9 @@ NO_BROWSER = (
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 """Commands under which a browser may be installed, as in install_browser.sh."""
 URL = re.compile(r"https?://\S+")
+PATIENCE = 180_000
+"""How long a page may take to show what is waited for, in ms. Only a test that fails waits so long; a busy machine
+that compiles for the first time may need it."""
 
 
 def installed() -> str | None:
@@ -42,7 +45,18 @@ class Watched:
     origin: str
     faults: list[str] = field(default_factory=list)
 
+    def until(self, condition: str) -> None:
+        """Wait until a condition in JavaScript holds, where `model(name)` is a model of Bokeh."""
+        self.page.wait_for_function(
+            f"() => {{ const model = (name) => Bokeh.documents[0].get_model_by_name(name); return {condition}; }}"
+        )
+
+    def until_near(self, expression: str, value: float, within: float) -> None:
+        """Wait until a number of the page is as near to a value as it should be."""
+        self.until(f"Math.abs({expression} - ({value!r})) <= {within!r}")
+
     def __post_init__(self) -> None:
+        self.page.set_default_timeout(PATIENCE)
         self.page.on("console", self._console)
         self.page.on("pageerror", lambda error: self.faults.append(f"error: {error}"))
         self.page.on("request", self._request)

@@ -10,13 +10,15 @@ from typing import Any
 
 import pandas as pd
 import pytest
+from playwright.sync_api import expect
 
 import stickslip as ss
 from stickslip.explorer.model.tour import TOUR
 from stickslip.scenarios.library import text
 from tests.docs.pages import Command, run_command
-from tests.explorer.browser.harness import Served, Watched
+from tests.explorer.browser.harness import PATIENCE, Served, Watched
 
+PANELS = {"law", "contact", "shape", "slip", "rate", "traction", "field", "energy"}
 SIZES = {"laptop": (1280, 800), "projector": (1920, 1080), "phone": (390, 844)}
 MODEL = "(name) => Bokeh.documents[0].get_model_by_name(name)"
 
@@ -25,7 +27,7 @@ class Shown:
     """What a user of the page sees and does."""
 
     def __init__(self, watched: Watched) -> None:
-        self.watched, self.page = watched, watched.page
+        self.watched, self.page, self.until, self.until_near = watched, watched.page, watched.until, watched.until_near
 
     def said(self, part: str) -> Any:
         """Wait until the sentence holds some words; return the whole sentence."""
@@ -75,7 +77,7 @@ class Shown:
 def begun(watched: Watched) -> Shown:
     """A page whose first answer is there."""
     shown = Shown(watched)
-    watched.page.locator(".sentence").filter(has_text="slip event").wait_for(timeout=180_000)
+    watched.page.locator(".sentence").filter(has_text="slip event").wait_for(timeout=PATIENCE)
     return shown
 
 
@@ -84,7 +86,6 @@ def opened(chromium: Any, server: Served) -> Iterator[Shown]:
     """The page that most tests share."""
     window = chromium.new_context(viewport={"width": 1280, "height": 800}, accept_downloads=True, color_scheme="light")
     watched = Watched(window.new_page(), server.origin)
-    watched.page.set_default_timeout(10_000)
     watched.page.goto(server.url)
     yield begun(watched)
     window.close()
@@ -101,9 +102,11 @@ def shown(opened: Shown) -> Iterator[Shown]:
 
 def test_a_page_opens_with_the_papers_slab_and_all_its_panels(shown: Shown) -> None:
     assert shown.said("Irregular").startswith("Irregular: several slip rates at some loads; alpha = 1 s/m is 5.102 times")
+    for panel in PANELS:
+        shown.page.locator(f"[data-panel={panel}]").wait_for()
     panels = shown.page.locator("[data-panel]:visible").evaluate_all("(all) => all.map((one) => one.dataset.panel)")
-    assert set(panels) == {"law", "contact", "shape", "slip", "rate", "traction", "field", "energy"}
-    assert shown.model("source:motion", "get_column('rate')[1]") == pytest.approx(4.102, abs=1e-3)
+    assert set(panels) == PANELS
+    shown.until_near("model('source:motion').get_column('rate')[1]", 4.102, within=1e-3)
 
 
 def test_the_word_for_the_regime_changes_where_alpha_passes_its_critical_value(shown: Shown) -> None:
@@ -122,15 +125,15 @@ def test_one_cursor_moves_through_all_panels_by_slider_key_click_and_mark(shown:
     page.locator("[data-plots]").focus()
     page.keyboard.press("Home")
     page.keyboard.press("Shift+ArrowRight")
-    page.wait_for_function(f"() => ({MODEL})('cursor:slip').location > 0")
+    shown.until("model('cursor:slip').location > 0")
     assert shown.cursor() == pytest.approx(0.05 * 12)
     page.locator("input.time").evaluate("(one) => { one.value = 250; one.dispatchEvent(new Event('input')); }")
-    page.wait_for_function(f"() => ({MODEL})('cursor:slip').location === 3")
+    shown.until("model('cursor:slip').location === 3")
     assert shown.cursor() == 3.0
-    assert shown.model("source:now", "get_column('slip')[0]") == pytest.approx(3.0 * 4.10204, rel=1e-4)
+    shown.until_near("model('source:now').get_column('slip')[0]", 3.0 * 4.10204, within=1e-3)
     page.locator(".marks button.arrest").click()
-    page.wait_for_function(f"() => Math.abs(({MODEL})('cursor:energy').location - 5.7142857) < 1e-5")
-    assert "5.71" in page.locator(".clock").inner_text()
+    shown.until_near("model('cursor:energy').location", 5.7142857, within=1e-5)
+    page.locator(".clock", has_text="5.71").wait_for()
 
 
 def test_playing_moves_the_cursor_until_it_is_paused(shown: Shown) -> None:
@@ -138,7 +141,7 @@ def test_playing_moves_the_cursor_until_it_is_paused(shown: Shown) -> None:
     page.locator(".bar > .start").click()
     page.locator("select[aria-label='Speed of playing']").select_option("4")
     page.get_by_role("button", name="Play", exact=True).click()
-    page.wait_for_function(f"() => ({MODEL})('cursor:slip').location > 0.2")
+    shown.until("model('cursor:slip').location > 0.2")
     page.get_by_role("button", name="Pause").click()
     before = shown.cursor()
     page.wait_for_timeout(100)
@@ -159,10 +162,10 @@ def test_a_pinned_run_is_compared_with_the_next_by_name(shown: Shown) -> None:
 def test_a_strip_is_drawn_and_a_click_goes_to_its_run(shown: Shown) -> None:
     page = shown.page
     page.locator("select.parameter").select_option("friction.alpha")
-    page.wait_for_function(f"() => ({MODEL})('source:strip')?.get_column('slip')?.length === 200")
+    shown.until("model('source:strip')?.get_column('slip')?.length === 200")
     page.locator("input.low").fill("0.1")
     page.locator("input.low").press("Enter")
-    page.wait_for_function(f"() => Math.abs(({MODEL})('range:strip_x').start + 1) < 1e-9")
+    shown.until_near("model('range:strip_x').start", -1, within=1e-9)
     place = page.evaluate(
         f"""() => {{
           const plot = ({MODEL})("plot:strip_slip");
@@ -184,16 +187,16 @@ def test_the_tour_walks_through_the_paper(shown: Shown) -> None:
     page.get_by_role("button", name="Tour", exact=True).click()
     for k, step in enumerate(TOUR, 1):
         page.locator("h2", has_text=f"{k} of 8: {step.title}").wait_for()
-        assert page.locator(".told").inner_text() == step.text
-        assert page.locator("[data-look]").evaluate_all("(all) => all.map((one) => one.dataset.panel)") == [step.panel]
-        seconds = f"() => Math.abs(({MODEL})('cursor:slip').location - {step.cursor}) < 1e-6"
-        page.wait_for_function(seconds)
-        page.wait_for_function(f"() => ({MODEL})('axis:strip_x@strip_slip').axis_label?.startsWith('{step.strip.parameter}')")
+        expect(page.locator(".told")).to_have_text(step.text)
+        page.locator(f"[data-look][data-panel={step.panel}]").wait_for()
+        assert page.locator("[data-look]").count() == 1
+        shown.until_near("model('cursor:slip').location", step.cursor, within=1e-6)
+        shown.until(f"model('axis:strip_x@strip_slip').axis_label?.startsWith('{step.strip.parameter}')")
         page.get_by_role("button", name="Next step").click() if k < len(TOUR) else None
-    assert page.get_by_role("button", name="Next step").is_disabled()
+    expect(page.get_by_role("button", name="Next step")).to_be_disabled()
     page.get_by_role("button", name="Close the tour").click()
     page.locator("section.step").wait_for(state="hidden")
-    assert page.locator("[data-look]").count() == 0
+    expect(page.locator("[data-look]")).to_have_count(0)
 
 
 def test_what_is_saved_runs_on_the_command_line_with_the_same_numbers(
@@ -215,17 +218,17 @@ def test_a_bad_entry_is_told_at_its_field_and_the_last_picture_stays(shown: Show
     before = shown.said("= 1 s/m")
     shown.enter("friction-alpha", "-3")
     shown.page.locator(".fault", has_text="at least 0").first.wait_for()
-    assert shown.page.locator("#control-friction-alpha").get_attribute("aria-invalid") == "true"
+    expect(shown.page.locator("#control-friction-alpha")).to_have_attribute("aria-invalid", "true")
     assert shown.said("Irregular") == before
-    assert shown.model("source:motion", "get_column('rate')[1]") == pytest.approx(4.102, abs=1e-3)
+    shown.until_near("model('source:motion').get_column('rate')[1]", 4.102, within=1e-3)
     shown.enter("friction-alpha", "0.1")
     assert shown.said("= 0.1 s/m").startswith("Regular")
-    assert shown.page.locator("#control-friction-alpha").get_attribute("aria-invalid") != "true"
+    expect(shown.page.locator("#control-friction-alpha")).not_to_have_attribute("aria-invalid", "true")
 
 
 def test_measured_points_are_dropped_in_and_a_broken_file_is_refused_in_one_line(shown: Shown) -> None:
     shown.open("mine.csv", "rate,friction\n0,0.8\n0.5,0.6\n2,0.5\n")
-    shown.page.wait_for_function(f"() => ({MODEL})('axis:law_y@law') && ({MODEL})('source:law').get_column('y').at(-1) < 0.51")
+    shown.until("model('axis:law_y@law') && model('source:law').get_column('y').at(-1) < 0.51")
     sentence = shown.said("normal stress")
     for name, content, message in (
         ("mine.csv", "rate,friction\n0,0.8\nfast,0.6\n", "mine.csv"),
@@ -242,11 +245,11 @@ def test_measured_points_are_dropped_in_and_a_broken_file_is_refused_in_one_line
 def test_nothing_runs_out_of_the_page_at_any_size(shown: Shown, size: str) -> None:
     width, height = SIZES[size]
     shown.page.get_by_role("button", name="Tour", exact=True).click()  # and its strip with it
-    shown.page.wait_for_function(f"() => ({MODEL})('axis:strip_x@strip_slip').axis_label?.startsWith('body.stiffness')")
+    shown.until("model('axis:strip_x@strip_slip').axis_label?.startsWith('body.stiffness')")
     shown.page.set_viewport_size({"width": width, "height": height})
-    shown.page.wait_for_timeout(200)
+    shown.page.wait_for_timeout(200)  # the plots are drawn anew after the change of size
     try:
-        assert shown.page.evaluate("document.documentElement.scrollWidth") <= width
+        shown.until(f"document.documentElement.scrollWidth <= {width}")
         for name in ("[data-panel=slip] .plot", "[data-panel=law] .plot", "[data-panel=energy] .plot", "section.step"):
             box = shown.page.locator(name).bounding_box()
             assert box["width"] > 200
@@ -261,10 +264,10 @@ def test_nothing_runs_out_of_the_page_at_any_size(shown: Shown, size: str) -> No
 def test_the_ground_turns_dark_and_the_plots_with_it(shown: Shown) -> None:
     switch = shown.page.get_by_role("button", name="Dark ground")
     switch.click()
-    assert shown.page.locator("html").get_attribute("data-ground") == "dark"
-    assert shown.model("plot:slip", "background_fill_color") != "#FFFFFF"
+    expect(shown.page.locator("html")).to_have_attribute("data-ground", "dark")
+    shown.until("model('plot:slip').background_fill_color !== '#FFFFFF'")
     switch.click()
-    assert shown.model("plot:slip", "background_fill_color") == "#FFFFFF"
+    shown.until("model('plot:slip').background_fill_color === '#FFFFFF'")
 
 
 def test_the_whole_page_can_be_reached_with_the_tab_key(shown: Shown) -> None:
@@ -294,8 +297,8 @@ def test_a_link_reproduces_the_view_in_another_browser(shown: Shown, visit: Call
     token = server.url.partition("?")[2]
     other = begun(visit(link if "token=" in link else f"{link}&{token}", server.origin))
     assert other.said("= 0.7 s/m") == sentence
-    other.page.wait_for_function(f"() => Math.abs(({MODEL})('cursor:slip').location - 5.7142857) < 1e-4")
-    other.page.wait_for_function(f"() => ({MODEL})('source:strip')?.get_column('slip')?.length === 200")
+    other.until_near("model('cursor:slip').location", 5.7142857, within=1e-4)
+    other.until("model('source:strip')?.get_column('slip')?.length === 200")
 
 
 def test_two_pages_are_independent_and_a_long_run_in_one_does_not_hold_up_the_other(

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from playwright.sync_api import expect
 
 from stickslip.explorer.model.tour import TOUR
 from stickslip.explorer.static.export import write_tour
@@ -19,25 +20,25 @@ def folder(tmp_path_factory: pytest.TempPathFactory, chromium: Any) -> Path:
 
 
 def test_the_tour_works_from_the_disk(folder: Path, visit: Callable[..., Watched]) -> None:
-    page = visit((folder / "index.html").as_uri(), "file://").page
-    model = "Bokeh.documents[0].get_model_by_name"
+    watched = visit((folder / "index.html").as_uri(), "file://")
+    page = watched.page
     for k, step in enumerate(TOUR, 1):
         page.locator("h2", has_text=f"{k} of 8: {step.title}").wait_for()
-        assert page.evaluate("location.hash") == f"#step-{k}"
-        page.wait_for_function(f"() => Math.abs({model}('cursor:slip').location - {step.cursor}) < 1e-6")
-        assert page.locator(".knob label").inner_text() == step.strip.parameter
+        watched.until(f"location.hash === '#step-{k}'")
+        watched.until_near("model('cursor:slip').location", step.cursor, within=1e-6)
+        expect(page.locator(".knob label")).to_have_text(step.strip.parameter)
         page.get_by_role("button", name="Next step").click() if k < len(TOUR) else None
     page.get_by_role("button", name="Step 6: The jump").click()
     page.locator(".sentence", has_text="up to 4.102 m/s").wait_for()
-    assert page.locator(".knob output").inner_text() == "100 MPa"
+    expect(page.locator(".knob output")).to_have_text("100 MPa")
     slider = page.locator("#place")
     slider.press("End")
     page.locator(".sentence", has_text="up to 9.204 m/s").wait_for()
-    assert page.locator(".knob output").inner_text() == "200 MPa"
-    assert page.evaluate(f"Math.abs({model}('here:strip_slip').location - 200) < 1e-9")
-    assert page.evaluate(f"Math.abs(Math.max(...{model}('source:motion').get_column('rate')) - 9.204) < 1e-3")
+    expect(page.locator(".knob output")).to_have_text("200 MPa")
+    watched.until_near("model('here:strip_slip').location", 200, within=1e-9)
+    watched.until_near("Math.max(...model('source:motion').get_column('rate'))", 9.204, within=1e-3)
     page.get_by_role("button", name="Play", exact=True).click()
-    page.wait_for_function(f"() => {model}('cursor:slip').location > {TOUR[5].cursor} + 0.1")
+    watched.until(f"model('cursor:slip').location > {TOUR[5].cursor} + 0.1")
     page.get_by_role("button", name="Pause").click()
 
 
