@@ -6,7 +6,7 @@ from typing import Any
 
 import panel as pn
 
-from stickslip.explorer.page.components import PlayerBar, asset
+from stickslip.explorer.page.components import Markup, PlayerBar, asset
 from stickslip.explorer.page.controls import Controls
 from stickslip.explorer.page.explorer import Explorer
 from stickslip.explorer.page.heading import heading
@@ -35,7 +35,7 @@ class Panels:
         self._explorer, self.stage, self._hears = explorer, Stage(), False
         self.plots = {name: pn.pane.Bokeh(plot, sizing_mode="stretch_both") for name, plot in plots(self.stage).items()}
         self.headings = {
-            name: pn.pane.HTML(heading(TITLES[name], ()), sizing_mode="stretch_width", stylesheets=[asset("heading.css")])
+            name: Markup(heading(TITLES[name], ()), sizing_mode="stretch_width", stylesheets=[asset("heading.css")])
             for name in self.plots
         }
         self.player = PlayerBar(self._moved, sizing_mode="stretch_width")
@@ -54,8 +54,8 @@ class Panels:
             self.stage.show(view)
             for name, pane in self.headings.items():
                 pane.object = heading(view.titles.get(name, TITLES[name]), view.keys.get(name, ()))
-            self.player.facts = view.facts
-        pn.io.push_notebook(*self.plots.values())  # nothing happens where there is a server
+            pn.io.push_notebook(*self.plots.values())  # nothing happens where there is a server
+            self.player.facts = view.facts  # last: the time bar reads from the plots what is true at its time
 
     def _move(self) -> None:
         if not self._hears:  # else it is the browser itself that has moved it, and perhaps further meanwhile

@@ -250,7 +250,16 @@ function shortNumber(value) {
 }
 
 /** Where Panel shows the bar: `model.facts` and `model.cursor` come from Python, and the cursor goes back when it rests. */
+/** Keep changes that are meant for the browser alone from Python. Bokeh's server does so; what Panel puts into a notebook does not. */
+function keepFromKernel(bokeh) {
+  for (const manager of bokeh.roots().filter((root) => root.client_comm_id !== undefined)) {
+    const tell = manager._document_changed.bind(manager);
+    manager._document_changed = (event) => { if (event.sync !== false) tell(event); };
+  }
+}
+
 export function render({ model, view, el }) {
+  keepFromKernel(view.model.document);
   const root = document.createElement("div");
   root.className = "player";
   const player = new Player(view.model.document, root, model.look, (seconds) => model.send_msg({ cursor: seconds }));
