@@ -13,6 +13,7 @@ Key = tuple[str, str]
 REGISTERED = (
     "engine/codegen/simd.py",
     "engine/codegen/compiler.py",
+    "engine/codegen/lean_compiler.py",
     "engine/codegen/one_module.py",
     "engine/codegen/records.py",
     "engine/state/layout.py",

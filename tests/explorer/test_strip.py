@@ -11,7 +11,7 @@ import stickslip as ss
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.strip import KEPT, MEMBERS, Strip, StripRange, present, strip_of, strip_text, usual_range
 from stickslip.foundation.errors import InputError
-from stickslip.sweeps.design.parameter_paths import find_parameter
+from stickslip.scenarios.parameter_paths import find_parameter
 from stickslip.sweeps.design.quantities import QUANTITIES
 
 ALPHA = StripRange("friction.alpha", 0.05, 2.0)

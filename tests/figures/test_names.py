@@ -10,7 +10,7 @@ from matplotlib.mathtext import MathTextParser
 import stickslip as ss
 from stickslip.figures.names import parameter_name, plain_name, symbol
 from stickslip.scenarios.library import names
-from stickslip.sweeps.design.parameter_paths import ParameterPath, parameter_paths
+from stickslip.scenarios.parameter_paths import ParameterPath, parameter_paths
 
 
 def declared() -> list[ParameterPath]:

@@ -23,7 +23,7 @@ import stickslip as ss
 from stickslip.figures.style import INK, PALE
 from stickslip.figures.sweeps.curves import ALL, BESIDE
 from stickslip.figures.sweeps.varied import is_logarithmic
-from stickslip.sweeps.design.parameter_paths import parameter_paths
+from stickslip.scenarios.parameter_paths import parameter_paths
 
 mpl.use("Agg")
 

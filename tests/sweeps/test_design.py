@@ -11,11 +11,11 @@ import pint
 import pytest
 
 import stickslip as ss
+from stickslip.scenarios.parameter_paths import find_parameter, parameter_paths
 from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
 from stickslip.sweeps.design.axis import Axis
 from stickslip.sweeps.design.axis_text import typed_axes
 from stickslip.sweeps.design.design import read_design
-from stickslip.sweeps.design.parameter_paths import find_parameter, parameter_paths
 from stickslip.sweeps.execution.plan import make_plan, tile_of
 
 SLAB = load_scenario("fig6-slab")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
@@ -26,11 +26,13 @@ if TYPE_CHECKING:
 class Request:
     """The options of `stickslip run` as they were typed.
 
+    `changes` are the values of --set.
     `overrides` are those that replace numbers of the scenario: duration, events, rtol, creep_rtol, shortest_event and selection.
     """
 
     scenario: str | None
     resume: Path | None
+    changes: Sequence[str] | None
     overrides: Mapping[str, Any]
     max_pieces: int | None
     out: Path | None
@@ -46,9 +48,9 @@ class Request:
         self.pictures.check()
         if self.scenario is None and self.resume is None:
             raise InputError("run: what is to be run is missing: a SCENARIO, or --resume FILE")
-        as_begun = (self.catalogue, *(self.overrides[name] for name in ("rtol", "creep_rtol", "shortest_event", "selection")))
-        if self.resume is not None and any(option is not None for option in as_begun):
-            options = "--rtol, --creep-rtol, --shortest-event, --selection and --catalogue"
+        as_begun = [self.overrides[name] for name in ("rtol", "creep_rtol", "shortest_event", "selection")]
+        if self.resume is not None and any(option is not None for option in (self.changes, self.catalogue, *as_begun)):
+            options = "--set, --rtol, --creep-rtol, --shortest-event, --selection and --catalogue"
             raise InputError(f"run: --resume goes on as the run began: leave {options} away")
         if self.keeps_events_only and (self.out or self.pictures.wanted):
             options = ", ".join([*["--out"] * (self.out is not None), *self.pictures.wanted])
@@ -84,7 +86,7 @@ class Request:
     def load(self) -> Scenario:
         """Return the scenario with the changes that the options ask for. Raises InputError."""
         assert self.scenario is not None
-        return load_with("run", self.scenario, **self.overrides)
+        return load_with("run", self.scenario, self.changes, **self.overrides)
 
     def file_of(self, solution: Solution) -> Path | None:
         """Return the file into which the run wrote its solution: a full history is written only if --max-pieces was given."""

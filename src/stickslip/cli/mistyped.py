@@ -56,4 +56,6 @@ def _too_many(message: str, teach: str) -> str:
     found = re.search(r"unexpected extra arguments?(?:\(s\))? \((.*)\)", message)
     if found is None:
         return message
+    if "=" in found[1]:
+        return f"{ascii(found[1])[:60]} is too much; a value of the scenario is replaced by --set NAME=VALUE; {teach}"
     return f'{ascii(found[1])[:60]} is too much; a text with spaces stands in quotes, as "480 years"; {teach}'

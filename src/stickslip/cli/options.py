@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from stickslip.cli.names import complete_axis, complete_scenario
+from stickslip.cli.names import complete_axis, complete_scenario, complete_vary
 
 AXIS = "NAME=LOW..HIGH[:POINTS][:log]; give two."
 """How the axes of a map are typed, for the help of --map."""
@@ -44,6 +44,8 @@ def axes_of(what: str) -> Any:
     return option(f"Axis of {what}: {AXIS}", "--map", autocompletion=complete_axis)
 
 
+CHANGES = 'Give a parameter of the scenario another value: "friction.alpha=2", "body.thickness=5 km"; may be repeated.'
+Changes = Annotated[list[str] | None, option(CHANGES, "--set", metavar="<name=value>", autocompletion=complete_vary)]
 ScenarioName = Annotated[str, typer.Argument(help=SCENARIO, autocompletion=complete_scenario)]
 FigureFile = Annotated[Path | None, option("Save a figure (.png, .pdf or .svg).", "--figure", "-f", panel=FIGURES)]
 Dpi = Annotated[float | None, option("Dots per inch of figures (.png): 200 if not given.", panel=FIGURES)]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -28,8 +28,17 @@ STDIN = "-"
 """The name that stands for standard input in place of a scenario's."""
 
 
-def load(scenario: str) -> Scenario:
-    """Load a scenario from a file, by its bundled name, or from standard input. Raises InputError."""
+def load(scenario: str, command: str = "", changes: Sequence[str] | None = None) -> Scenario:
+    """Load a scenario from a file, by its bundled name, or from standard input, with the values of --set. Raises InputError."""
+    loaded = _load(scenario)
+    if not changes:
+        return loaded
+    from stickslip.scenarios.other_values import with_typed_values
+
+    return with_typed_values(loaded, changes, f"{command}: --set")
+
+
+def _load(scenario: str) -> Scenario:
     if scenario != STDIN:
         return load_scenario(scenario)
     if sys.stdin.isatty():
@@ -37,16 +46,19 @@ def load(scenario: str) -> Scenario:
     return read_scenario(text_of(sys.stdin.buffer.read(LARGEST + 1), "standard input"), "standard input", "stdin", Path.cwd())
 
 
-def load_with(command: str, scenario: str, **typed: Any) -> Scenario:
-    """Load a scenario and replace what was typed, by option, such as duration="480 years"; None is not typed. Raises InputError."""
-    loaded = load(scenario)
+def load_with(command: str, scenario: str, changes: Sequence[str] | None = None, **typed: Any) -> Scenario:
+    """Load a scenario and replace what was typed, by option, such as duration="480 years"; None is not typed.
+
+    `changes` are the values of --set, which come first. Raises InputError.
+    """
+    loaded = load(scenario, command, changes)
     readers = _readers(loaded.problem)
-    changes = {}
+    replaced = {}
     for option, value in typed.items():
         if value is not None:
             field, reader = readers[option]
-            changes[field] = read(reader, value, command, option)
-    return replace(loaded, **changes)
+            replaced[field] = read(reader, value, command, option)
+    return replace(loaded, **replaced)
 
 
 def read(reader: Reader, value: Any, command: str, option: str, default: Any = None) -> Any:

@@ -66,7 +66,7 @@ class CreepLeaps:
 
     def table(self, count: Counts) -> Floats:
         """Return the leaps so far, as in `History.creep`."""
-        return np.array([*NO_LEAPS, *self.taken[: count.creep_leaps]]).reshape(-1, NO_LEAPS.shape[1])
+        return np.array(self.taken[: count.creep_leaps]) if count.creep_leaps else NO_LEAPS.copy()
 
     def take_up(self, table: Floats) -> None:
         """Set the leaps of a run that is resumed."""
@@ -74,7 +74,7 @@ class CreepLeaps:
 
     def are_due(self, count: Counts, last_trip: int) -> bool:
         """Return True if the engine has paused for an attempt to leap."""
-        return bool(count.ready == Incoming.NONE and count.source == 0 and count.pause_at <= count.trip <= last_trip)
+        return bool(count.pause_at <= count.trip <= last_trip and count.source == 0 and count.ready == Incoming.NONE)
 
     def at_row_end(self, run: Session, last: tuple[int, float]) -> None:
         """Leap if there is creep, and set when to try again.

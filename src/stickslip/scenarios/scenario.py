@@ -109,6 +109,30 @@ class Scenario:
             name=name,
         )
 
+    def with_values(self, values: Mapping[str, Any]) -> Scenario:
+        """Return a scenario in which some parameters have other values.
+
+        Parameters
+        ----------
+        values : mapping of str to float or str
+            Values by the names of parameters, such as {"friction.alpha": 2.0, "body.thickness": "5 km"}: numbers in SI, texts with
+            a unit, or words. The names are those of `stickslip.sweep`.
+
+        Returns
+        -------
+        Scenario
+            A new scenario; this one stays as it is. The title of the new one tells what was changed, and the description, which may
+            no longer be true, is left out. An initial load replaces an initial excess, and an excess a load.
+
+        Raises
+        ------
+        InputError
+            If there is no such parameter, or if it cannot have the value.
+        """
+        from stickslip.scenarios.other_values import with_values
+
+        return with_values(self, values, self.name)
+
     def to_toml(self) -> str:
         """Return the scenario as TOML text, with every value in SI and to the last digit."""
         problem = self.problem

@@ -20,10 +20,10 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 from stickslip.run.progress_line import told
+from stickslip.scenarios.parameter_paths import ParameterPath
 from stickslip.scenarios.scenario import Scenario
 from stickslip.sweeps.design.adaptive_grid import MOST_MEMBERS, Floats, Integers, refine_cells
 from stickslip.sweeps.design.design import LIST, MEMBER, REFINED, Design, axes_of
-from stickslip.sweeps.design.parameter_paths import ParameterPath
 from stickslip.sweeps.design.quantities import DEFAULT, Summary, Wanted, quantities_named
 from stickslip.sweeps.execution.outcome import FIRST_FAILURE, NOT_RUN
 from stickslip.sweeps.execution.plan import Plan, make_plan, scenario_to_vary

@@ -19,8 +19,9 @@ NO_BROWSER = (
 NAMES = ("chromium", "chromium-browser", "google-chrome")
 """Commands under which a browser may be installed, as in install_browser.sh."""
 URL = re.compile(r"https?://\S+")
-PATIENCE = 60_000
-"""How long a page may take to show what is waited for, in ms. Only a test that fails waits so long; a busy machine may need it."""
+PATIENCE = 180_000
+"""How long a page may take to show what is waited for, in ms. Only a test that fails waits so long; a busy machine
+that compiles for the first time may need it."""
 
 
 def installed() -> str | None:

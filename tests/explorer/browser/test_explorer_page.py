@@ -77,7 +77,7 @@ class Shown:
 def begun(watched: Watched) -> Shown:
     """A page whose first answer is there."""
     shown = Shown(watched)
-    watched.page.locator(".sentence").filter(has_text="slip event").wait_for(timeout=3 * PATIENCE)
+    watched.page.locator(".sentence").filter(has_text="slip event").wait_for(timeout=PATIENCE)
     return shown
 
 

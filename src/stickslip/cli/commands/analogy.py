@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from stickslip.cli.names import complete_scenario
-from stickslip.cli.options import SCENARIO, Dpi, FigureFile, Size, axes_of, option, table_of
+from stickslip.cli.options import SCENARIO, Changes, Dpi, FigureFile, Size, axes_of, option, table_of
 from stickslip.cli.output.files import Look, Target, announce, check_targets, drawing, write_files
 from stickslip.foundation.errors import InputError
 
@@ -25,6 +25,7 @@ AXES = ["wavelength=0.9..60:13:log", "alpha=0.00392..3.92:9:log"]
 def analogy(
     scenario: Annotated[str, typer.Argument(help=f"A slab. {SCENARIO}", autocompletion=complete_scenario)] = BUNDLED,
     *,
+    changes: Changes = None,
     map_axes: Annotated[list[str] | None, axes_of("the map")] = None,
     out: Annotated[Path | None, table_of("point")] = None,
     figure: FigureFile = None,
@@ -57,7 +58,7 @@ def analogy(
     typed = AXES if map_axes is None and scenario == BUNDLED else map_axes or []
     if len(typed) != 2:
         raise InputError(f'analogy: give two --map, as --map "friction.alpha=0.01..10:20:log", got {len(typed)}')
-    chosen = load_with("analogy", scenario, duration=duration)
+    chosen = load_with("analogy", scenario, changes, duration=duration)
     found = _study(chosen, typed, within)
     show_analogy(chosen, found)
     announce(*write_files((out, lambda path: _save(path, chosen, found)), (figure, drawing(found.plot, look))))

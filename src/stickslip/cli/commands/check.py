@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-from stickslip.cli.options import Dpi, ScenarioName, Size, axes_of, option
+from stickslip.cli.options import Changes, Dpi, ScenarioName, Size, axes_of, option
 from stickslip.cli.output.files import Look, announce, check_target, drawing, write_files
 from stickslip.foundation.errors import InputError, InputWarning
 
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 def check(
     scenario: ScenarioName,
     *,
+    changes: Changes = None,
     figure: Annotated[
         Path | None, option("Save a figure of the set K, or of the map (.png, .pdf, .svg).", "--figure", "-f")
     ] = None,
@@ -52,7 +53,7 @@ def check(
     look.check(figure)
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", ".*the points look noisy", InputWarning)  # the examination says so
-        loaded = load(scenario)
+        loaded = load(scenario, "check", changes)
     axes = map_axes or []
     if axes and (len(axes) != 2 or figure is None):
         raise InputError(f"check: a map needs two --map and a --figure, got {len(axes)} and {'one' if figure else 'none'}")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from stickslip.cli.options import SIZE_HELP, Dpi, Duration, FigureFile, Rtol, ScenarioName, option
+from stickslip.cli.options import SIZE_HELP, Changes, Dpi, Duration, FigureFile, Rtol, ScenarioName, option
 from stickslip.cli.output.files import Look, Target, announce, check_targets, drawing, write_files
 
 if TYPE_CHECKING:
@@ -21,6 +21,7 @@ SEED = "Seed of the random disturbances; the same seed gives the same members."
 def ensemble(
     scenario: ScenarioName,
     *,
+    changes: Changes = None,
     members: Annotated[int, typer.Option("--members", "-m", help="How many disturbed runs.")] = 8,
     size: Annotated[float, typer.Option(help=SIZE)] = 1e-12,
     duration: Duration = None,
@@ -56,7 +57,7 @@ def ensemble(
     look = Look(dpi, figure_size)
     check_targets(Target("--out", out, (".csv", ".nc")), Target("--figure", figure))
     look.check(figure)
-    chosen = load_with("ensemble", scenario, duration=duration, events=events, rtol=rtol)
+    chosen = load_with("ensemble", scenario, changes, duration=duration, events=events, rtol=rtol)
     study = _study(chosen, members, size, seed)
     show_ensemble(chosen, study)
     save = study.to_netcdf if out is not None and out.suffix.lower() == ".nc" else study.to_csv

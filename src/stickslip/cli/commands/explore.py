@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from stickslip.cli.names import complete_scenario
-from stickslip.cli.options import SCENARIO, argument, option
+from stickslip.cli.options import SCENARIO, Changes, argument, option
 from stickslip.foundation.errors import InputError
 
 SERVER = "Server"
@@ -27,6 +27,7 @@ NO_BROWSER = "Do not open a browser; the address is printed."
 def explore(
     scenario: Annotated[str | None, argument(SCENARIO, complete_scenario)] = None,
     *,
+    changes: Changes = None,
     port: Annotated[int | None, option(PORT, min=0, max=65535, metavar="<int>", panel=SERVER)] = None,
     address: Annotated[str, option(ADDRESS, panel=SERVER)] = "127.0.0.1",
     allow_origin: Annotated[list[str] | None, option(ALLOW_ORIGIN, panel=SERVER)] = None,
@@ -57,9 +58,9 @@ def explore(
 
     check_extra("explore")
     if static is not None:
-        _write(static, scenario)
+        _write(static, scenario, changes)
         return
-    loaded = load(scenario or FIRST)
+    loaded = load(scenario or FIRST, "explore", changes)
     from stickslip.explorer.model.setting import Setting
     from stickslip.explorer.server.serve import Place
     from stickslip.explorer.server.start import start
@@ -71,14 +72,14 @@ def explore(
     start(Setting.of(loaded), place, browser=not no_browser, say=typer.echo)
 
 
-def _write(folder: Path, scenario: str | None) -> None:
+def _write(folder: Path, scenario: str | None, changes: list[str] | None) -> None:
     """Write the tour into a folder and say how large it is. Raises InputError."""
     from stickslip.explorer.static.export import write_tour
     from stickslip.foundation.errors import InputError
     from stickslip.run.progress_line import progress_line
 
-    if scenario is not None:
-        raise InputError("explore: --static writes the guided tour, which has scenarios of its own: leave SCENARIO away")
+    if scenario is not None or changes:
+        raise InputError("explore: --static writes the guided tour, which has scenarios of its own: leave SCENARIO and --set away")
     with progress_line("explore:") as report:
         written = write_tour(folder, report)
     typer.echo(written)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from stickslip.cli.names import complete_regularisation
-from stickslip.cli.options import Dpi, Duration, FigureFile, Rtol, ScenarioName, Size, option, table_of
+from stickslip.cli.options import Changes, Dpi, Duration, FigureFile, Rtol, ScenarioName, Size, option, table_of
 from stickslip.cli.output.files import Look, Target, announce, check_targets, drawing, write_files
 from stickslip.foundation.errors import InputError
 
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 def regularise(
     scenario: ScenarioName,
     *,
+    changes: Changes = None,
     by: Annotated[str, typer.Option(help="Kind of regularisation.", autocompletion=complete_regularisation)] = "contact-mass",
     largest: Annotated[str | None, option("Largest size: s, or with a unit; default R/30.")] = None,
     smallest: Annotated[str | None, option("Smallest size; default R/491520.")] = None,
@@ -53,7 +54,7 @@ def regularise(
     look = Look(dpi, size)
     check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))
     look.check(figure)
-    chosen = load_with("regularise", scenario, duration=duration, rtol=rtol)
+    chosen = load_with("regularise", scenario, changes, duration=duration, rtol=rtol)
     study = _study(chosen, by, _sizes(chosen, largest, smallest, count))
     show_regularisation(chosen, study)
     announce(*write_files((out, study.to_csv), (figure, drawing(study.plot, look))))

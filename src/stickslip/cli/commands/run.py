@@ -14,6 +14,7 @@ from stickslip.cli.options import (
     SCENARIO,
     Animation,
     CatalogueFigure,
+    Changes,
     Dpi,
     Duration,
     EnergyFigure,
@@ -52,6 +53,7 @@ RULE = "Override the selection rule."
 def run(
     scenario: Annotated[str | None, argument(SCENARIO, complete_scenario)] = None,
     *,
+    changes: Changes = None,
     duration: Duration = None,
     events: Annotated[int | None, option("Stop after this number of slip events.")] = None,
     selection: Annotated[str | None, option(RULE, autocompletion=complete_rule)] = None,
@@ -82,6 +84,7 @@ def run(
       stickslip run fig6-slab
       stickslip run mine.toml --out mine.nc --figure mine.png
       stickslip run fig6-slab --duration "480 years" --selection maxwell
+      stickslip run fig6-slab --set friction.alpha=0.1 --set "body.thickness=5 km"
       stickslip run fig6-slab --space-time waves.png --animation slab.gif
       stickslip run fig5-slab-printed --duration "3 days"
       stickslip run cycles-block --duration "10000 years" --catalogue events.csv
@@ -103,6 +106,7 @@ def run(
     request = Request(
         scenario=scenario,
         resume=resume,
+        changes=changes,
         overrides=replaced,
         max_pieces=max_pieces,
         out=out,

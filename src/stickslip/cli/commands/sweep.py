@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from stickslip.cli.names import complete_design, complete_quantity, complete_series, complete_vary
-from stickslip.cli.options import Dpi, ScenarioName, Size, option
+from stickslip.cli.options import Changes, Dpi, ScenarioName, Size, option
 from stickslip.cli.output.files import Look, announce, drawing
 from stickslip.foundation.errors import InputError
 
@@ -54,6 +54,7 @@ DryRun = Annotated[bool, typer.Option("--dry-run", help="Say how many members, h
 def sweep(
     scenario: ScenarioName,
     *,
+    changes: Changes = None,
     vary: Vary = None,
     table: Table = None,
     design: DesignKind = "grid",
@@ -108,7 +109,7 @@ def sweep(
     look.check(figure)
     if refine is not None and (table or design != "grid" or series or dry_run):
         raise InputError("sweep: --refine needs a grid of --vary; it takes no --list, --design, --series and --dry-run")
-    chosen = load(scenario)
+    chosen = load(scenario, "sweep", changes)
     axes = typed_axes(chosen, vary or (), "--vary")
     plan = make_plan(
         chosen,

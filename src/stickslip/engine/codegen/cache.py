@@ -33,6 +33,7 @@ from numba.core.ccallback import CFunc
 from numba.core.runtime import rtsys
 from numba.core.sigutils import normalize_signature
 
+from stickslip.engine.codegen.lean_compiler import LeanCompiler
 from stickslip.engine.codegen.private_folder import private_folder
 from stickslip.engine.codegen.sources import remembered_key
 from stickslip.engine.codegen.uncompiled import UNCOMPILED
@@ -225,7 +226,7 @@ def sealed_cfunc(signature: Any, **options: Any) -> Callable[[Callable[..., Any]
     def compiled(function: Callable[..., Any]) -> Any:
         if UNCOMPILED:
             return function
-        found: Any = CFunc(function, normalize_signature(signature), locals={}, options=options)
+        found: Any = CFunc(function, normalize_signature(signature), locals={}, options=options, pipeline_class=LeanCompiler)
         found._cache = SealedCache(function)
         found.compile()
         return found

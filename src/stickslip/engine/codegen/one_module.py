@@ -8,27 +8,20 @@ kept on disk.
 
 from __future__ import annotations
 
-import gc
 from collections.abc import Callable, Iterator
 from typing import Any
 
 import llvmlite.binding as llvm
 from numba import njit, types
 from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import Compiler
-from numba.core.typed_passes import InlineOverloads, NopythonRewrites
-from numba.core.untyped_passes import InlineClosureLikes, InlineInlinables, LiteralUnroll, WithLifting
 from numba.extending import typeof_impl
 
 from stickslip.engine.codegen.cache import SealedCache
+from stickslip.engine.codegen.lean_compiler import LeanCompiler
 
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "fastmath": {"contract"}, "no_cfunc_wrapper": True}
 """Options of all kernels: divisions by zero give infinity or NaN as in numpy, the interpreter's lock is released, and a product and
 a sum may be fused into one operation."""
-
-
-NOT_NEEDED = (InlineClosureLikes, InlineInlinables, InlineOverloads, LiteralUnroll, NopythonRewrites, WithLifting)
-"""Passes of numba's compiler that find nothing in kernels, which have no closures, array expressions or `with` statements."""
 
 
 class Part(JITCodeLibrary):  # type: ignore[misc] # numba is untyped
@@ -131,41 +124,20 @@ def others_of(libraries: list[Any]) -> list[Any]:
     return list({id(one): one for one in needed}.values())
 
 
-class KernelCompiler(Compiler):  # type: ignore[misc]
-    """Numba's compiler without what kernels do not need, which would be a tenth of the time that compilation takes."""
-
-    def define_pipelines(self) -> list[Any]:
-        """Return numba's passes but for those that look for closures, array expressions and functions to inline."""
-        (passes,) = super().define_pipelines()
-        passes.passes = [one for one in passes.passes if one[0] not in NOT_NEEDED]
-        passes.finalize()
-        return [passes]
-
-
-class PartCompiler(KernelCompiler):
+class PartCompiler(LeanCompiler):
     """Compiles a function into a `Part`."""
 
     def __init__(self, typingctx: Any, targetctx: Any, library: Any, *rest: Any) -> None:
         super().__init__(typingctx, targetctx, library or Part(targetctx.codegen(), "part"), *rest)
 
 
-class WholeCompiler(KernelCompiler):
+class WholeCompiler(LeanCompiler):
     """Compiles a function into a `Whole`."""
 
     def __init__(self, typingctx: Any, targetctx: Any, library: Any, *rest: Any) -> None:
         library = Whole(targetctx.codegen(), "whole")
         library.enable_object_caching()
         super().__init__(typingctx, targetctx, library, *rest)
-
-    def compile_extra(self, function: Any) -> Any:
-        """Compile a function with all that it calls, while the collector of garbage waits: hardly any of these objects can go."""
-        collecting = gc.isenabled()
-        gc.disable()
-        try:
-            return super().compile_extra(function)
-        finally:
-            if collecting:
-                gc.enable()
 
 
 class Kernel:

@@ -19,10 +19,10 @@ from numpy.typing import NDArray
 from stickslip.explorer.model.setting import Setting
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity
+from stickslip.scenarios.parameter_paths import EXCLUDE_EACH_OTHER, ParameterPath, find_parameter, parameter_paths
 from stickslip.scenarios.scenario import Scenario
-from stickslip.sweeps.design.parameter_paths import ParameterPath, find_parameter, parameter_paths
 from stickslip.sweeps.design.quantities import QUANTITIES, quantities_named
-from stickslip.sweeps.execution.chunk import EXCLUDE_EACH_OTHER, Work, run_chunk
+from stickslip.sweeps.execution.chunk import Work, run_chunk
 
 Floats = NDArray[np.float64]
 Told = Callable[[str], None]

@@ -9,6 +9,7 @@ from typing import Any
 
 import param
 from panel.custom import JSComponent
+from panel.pane import HTML
 
 from stickslip.explorer.page.look import DARK, LIGHT, palettes
 
@@ -27,6 +28,16 @@ def player_script() -> str:
 def look() -> dict[str, Any]:
     """Return colours and colour scales for both grounds, for scripts."""
     return {"colours": {"light": LIGHT, "dark": DARK}, "palettes": palettes()}
+
+
+class Markup(HTML):  # type: ignore[misc] # panel has no types
+    """A text with markup that changes.
+
+    Only the text is sent again. Panel would send the style sheets too, as new ones, which a notebook cannot place.
+    """
+
+    def _update(self, ref: str, model: Any) -> None:
+        model.update(text=self._transform_object(self.object)["object"])
 
 
 class PlayerBar(JSComponent):  # type: ignore[misc] # panel has no types

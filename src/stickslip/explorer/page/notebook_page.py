@@ -6,7 +6,7 @@ from typing import Any
 
 import panel as pn
 
-from stickslip.explorer.page.components import asset
+from stickslip.explorer.page.components import Markup, asset
 from stickslip.explorer.page.controls import Controls
 from stickslip.explorer.page.explorer import Explorer
 from stickslip.explorer.page.look import style_sheet
@@ -26,7 +26,7 @@ ROWS = (("law", "contact", "shape"), (("slip", "rate", "traction"), ("field", "e
 def build_for_notebook(explorer: Explorer) -> Any:
     """Return the explorer as an object that a notebook shows below a cell."""
     panels = Panels(explorer)
-    headings = {name: pn.pane.HTML(sizing_mode="stretch_width", stylesheets=[asset("heading.css")]) for name in panels.plots}
+    headings = {name: Markup(sizing_mode="stretch_width", stylesheets=[asset("heading.css")]) for name in panels.plots}
     cards = {name: _card(headings[name], panels.plots[name], HEIGHTS[name]) for name in panels.plots}
 
     def show() -> None:

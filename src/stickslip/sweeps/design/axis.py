@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from stickslip.foundation.conversion import has_unit, without_unit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Choice, Quantity
+from stickslip.scenarios.parameter_paths import ParameterPath
 from stickslip.scenarios.values import show
-from stickslip.sweeps.design.parameter_paths import ParameterPath
 
 Values = NDArray[Any]
 """Numbers in SI (float64), or words (strings)."""

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 
 from stickslip.foundation.errors import InputError
+from stickslip.scenarios.parameter_paths import ParameterPath, find_parameter
 from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.values import show
 from stickslip.sweeps.design.axis import Axis, check_size, read_values
-from stickslip.sweeps.design.parameter_paths import ParameterPath, find_parameter
 
 FORM = '"KEY=LOW..HIGH:POINTS", followed by ":log" for equal ratios, or "KEY=VALUE,VALUE,..."'
 _RANGE = re.compile(r"(?P<low>.+?)\.\.(?P<high>[^:]+)(?::(?P<points>\d{1,9}))?(?P<log>:log)?")

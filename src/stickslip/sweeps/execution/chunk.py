@@ -18,9 +18,9 @@ from stickslip.batch import run_members, why_not
 from stickslip.foundation.errors import InputError
 from stickslip.run.simulate import simulate
 from stickslip.scenarios.entries import Source
+from stickslip.scenarios.parameter_paths import EXCLUDE_EACH_OTHER, ParameterPath
 from stickslip.scenarios.scenario import Scenario, read_scenario, scenario_of
 from stickslip.sweeps.design.axis import Values
-from stickslip.sweeps.design.parameter_paths import ParameterPath
 from stickslip.sweeps.design.quantities import QUANTITIES, Summary
 from stickslip.sweeps.design.series import Series
 from stickslip.sweeps.execution.outcome import BAD_PARAMETERS, CODES, ERROR, FIRST_FAILURE, NOT_RUN
@@ -33,8 +33,6 @@ MAX_PIECES = 200_000
 """Largest number of polynomial pieces in the history of a member that runs by itself (90 MB); a member that needs more fails."""
 CODE_OF = {STATUSES[code].name: ours for code, ours in CODES.items()}
 """The status code of a member by the name of the status of its run."""
-EXCLUDE_EACH_OTHER = {"initial.load": "excess", "initial.excess": "load"}
-"""A scenario has either an initial load or an initial excess. The one that is varied replaces the other."""
 
 
 @dataclass(frozen=True)

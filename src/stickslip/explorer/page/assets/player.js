@@ -44,7 +44,7 @@ class Player {
     this.slider.addEventListener("input", () => { this.pause(); this.go(this.fromShare(this.slider.value / 1000)); });
     this.slider.addEventListener("change", () => this.report());
     this.slider.addEventListener("keydown", (event) => this.key(event, true));
-    spareStyles();
+    if (document.querySelector("[data-plots]")) spareStyles(); // in a notebook there are plots of others too
     this.holdPlots();
     this.listenToPage();
   }
@@ -251,8 +251,17 @@ function shortNumber(value) {
   return text.replace("-", "−");
 }
 
+/** Keep changes that are meant for the browser alone from Python. Bokeh's server does so; what Panel puts into a notebook does not. */
+function keepFromKernel(bokeh) {
+  for (const manager of bokeh.roots().filter((root) => root.client_comm_id !== undefined)) {
+    const tell = manager._document_changed.bind(manager);
+    manager._document_changed = (event) => { if (event.sync !== false) tell(event); };
+  }
+}
+
 /** Where Panel shows the bar: `model.shown` and `model.cursor` come from Python, and the cursor goes back when it rests. */
 export function render({ model, view, el }) {
+  keepFromKernel(view.model.document);
   const root = document.createElement("div");
   root.className = "player";
   const player = new Player(view.model.document, root, model.look, (seconds) => model.send_msg({ cursor: seconds }));

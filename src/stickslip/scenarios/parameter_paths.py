@@ -1,6 +1,6 @@
-"""The parameters of a scenario that a sweep can vary, named by their place in the file.
+"""The parameters of a scenario that can be given other values, one or many of them, named by their place in the file.
 
-Every quantity can be varied: "body.thickness", "friction.slip.mean", "run.rtol". The last part of a name ("thickness") is
+Every quantity is one: "body.thickness", "friction.slip.mean", "run.rtol". The last part of a name ("thickness") is
 sufficient if it is unambiguous. One element of a series is written "friction.values[2]".
 """
 
@@ -21,6 +21,8 @@ from stickslip.scenarios.values import show
 
 EVENTS = Quantity("1", "stop after this number of slip events", at_least=1)
 SELECTION = "selection rule"
+EXCLUDE_EACH_OTHER = {"initial.load": "excess", "initial.excess": "load"}
+"""A scenario has either an initial load or an initial excess. The one that is given another value replaces the other."""
 _LAST_STEP = re.compile(r"(?P<name>[^\[]+)(?:\[(?P<index>\d+)\])?")
 
 
@@ -81,7 +83,7 @@ def find_parameter(scenario: Scenario, name: str, where: str) -> ParameterPath:
 
 
 def parameter_paths(scenario: Scenario) -> Iterator[ParameterPath]:
-    """Yield every parameter that can be varied, in the order of the scenario file."""
+    """Yield every parameter, in the order of the scenario file."""
     problem = scenario.problem
     yield from _paths_in(problem.body, "body")
     yield from _paths_in(problem.friction, "friction")
