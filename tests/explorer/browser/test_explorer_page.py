@@ -148,6 +148,15 @@ def test_playing_moves_the_cursor_until_it_is_paused(shown: Shown) -> None:
     assert shown.cursor() == before
 
 
+def test_the_slab_is_shown_by_velocity_displacement_or_stress(shown: Shown) -> None:
+    key = shown.page.locator("[data-heading=field] li").first
+    named = {"stress": "±80.4 MPa", "displacement": "±23.4 m", "velocity": "±4.1 m/s"}
+    for name, legend in named.items():
+        shown.page.locator("select[data-field]").select_option(name)
+        expect(key).to_contain_text(legend)
+        shown.until(f"model('glyph:field').image.field === '{name}' && model('colour:field').high > 0")
+
+
 def test_a_pinned_run_is_compared_with_the_next_by_name(shown: Shown) -> None:
     shown.page.get_by_role("button", name="Pin", exact=True).click()
     shown.enter("friction-alpha", "0.5")
@@ -265,9 +274,9 @@ def test_the_ground_turns_dark_and_the_plots_with_it(shown: Shown) -> None:
     switch = shown.page.get_by_role("button", name="Dark ground")
     switch.click()
     expect(shown.page.locator("html")).to_have_attribute("data-ground", "dark")
-    shown.until("model('plot:slip').background_fill_color !== '#FFFFFF'")
+    shown.until("model('axis:time@traction').axis_label_text_color === '#E8EAED'")
     switch.click()
-    shown.until("model('plot:slip').background_fill_color === '#FFFFFF'")
+    shown.until("model('axis:time@traction').axis_label_text_color !== '#E8EAED'")
 
 
 def test_the_whole_page_can_be_reached_with_the_tab_key(shown: Shown) -> None:
