@@ -1,8 +1,9 @@
-"""How long the explorer takes from a slider to the picture: `python -m benchmarks.explorer`, a minute.
+"""How long the explorer takes from a slider to the picture: `python -m benchmarks.explorer`, two minutes.
 
-For the paper's cases a control is moved again and again, as a user does. Reported is processor time of the server: the answer
-(run, companion and all that is shown of them) and the picture (the models of Bokeh, brought up to date, and written as the message
-that goes to the browser). Values differ each time, so nothing is remembered. Minima of repeated measurements.
+For the paper's cases a control is moved again and again, as a user does. Values differ each time, so nothing is remembered. The
+first table is processor time of what the server works out: the answer (run, companion and all that is shown of them) and the
+picture (units, columns and texts, written as the block of bytes that goes to the browser); minima of repeated measurements. The
+second table is that of a real page, server and browser together.
 """
 
 from __future__ import annotations
@@ -12,11 +13,15 @@ import time
 from collections.abc import Callable
 from typing import Any
 
+from benchmarks.explorer_in_browser import print_table
+from stickslip.explorer.model.answer import Answer
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.solve import solve
 from stickslip.explorer.model.strip import StripRange, strip_of
-from stickslip.explorer.page.panels import plots, view_of
-from stickslip.explorer.page.stage import Stage
+from stickslip.explorer.page.heading import headings_of
+from stickslip.explorer.page.page import TITLES
+from stickslip.explorer.page.panels import view_of
+from stickslip.explorer.page.view_bytes import view_bytes
 
 CASES = (
     ("fig5-slab-printed", "friction.wavenumber", 5.0),
@@ -41,30 +46,10 @@ def least(work: Callable[[int], Any], repeats: int = REPEATS) -> float:
     return 1e3 * min(taken)
 
 
-def drawn() -> tuple[Stage, Any]:
-    """The plots of a page in a document that gathers what would be sent."""
-    from bokeh.document import Document
-
-    stage, document = Stage(), Document()
-    for plot in plots(stage).values():
-        document.add_root(plot)
-    return stage, document
-
-
-def message_of(stage: Stage, document: Any, view: Any) -> int:
-    """Bring a view to the plots, and return the size (bytes) of the message to the browser."""
-    from bokeh.protocol import Protocol
-
-    events: list[Any] = []
-    document.on_change(events.append)
-    document.hold("combine")
-    stage.show(view)
-    document.unhold()
-    document.remove_on_change(events.append)
-    message = Protocol().create("PATCH-DOC", events)
-    return sum(len(str(part)) for part in (message.content_json, message.header_json)) + sum(
-        memoryview(one.data).nbytes for one in message.buffers
-    )
+def picture_of(answer: Answer) -> bytes:
+    """Return what is sent of an answer."""
+    view = view_of(answer)
+    return view_bytes(view, headings_of(view, TITLES))
 
 
 def measure(name: str, path: str, value: float) -> tuple[float, float, float, float]:
@@ -73,18 +58,17 @@ def measure(name: str, path: str, value: float) -> tuple[float, float, float, fl
     settings = [setting.with_value(path, value * (1.0 + 1e-4 * k)) for k in range(REPEATS)]
     solve(setting.scenario())
     answers = [solve(one.scenario()) for one in settings[:3]]
-    stage, document = drawn()
-    sizes: list[int] = []
+    size = max(len(picture_of(one)) for one in answers)
     answer = least(lambda k: solve(settings[k].scenario()))
-    picture = least(lambda k: sizes.append(message_of(stage, document, view_of(answers[k % 3]))))
+    picture = least(lambda k: picture_of(answers[k % 3]))
     where = StripRange(path, 0.5 * value, 2.0 * value)
     strip_of(setting.scenario(), where)
     strip = least(lambda k: strip_of(setting.scenario(), where), 5)
-    return answer, picture, max(sizes) / 1e3, strip
+    return answer, picture, size / 1e3, strip
 
 
 def main() -> None:
-    """Print the table of benchmarks/README.md."""
+    """Print the tables of benchmarks/README.md."""
     out = sys.stdout.write
     out("| scenario | control | answer | picture | slider to picture | message | strip of 200 runs |\n")
     out(f"|{' --- |' * 7}\n")
@@ -93,6 +77,8 @@ def main() -> None:
         both = answer + picture
         out(f"| {name} | {path} | {answer:.0f} ms | {picture:.0f} ms | {both:.0f} ms | {size:.0f} kB | {strip:.0f} ms |\n")
         sys.stdout.flush()
+    out("\n")
+    print_table(out)
 
 
 if __name__ == "__main__":

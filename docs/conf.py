@@ -1,8 +1,8 @@
 """Make the site: `make site` builds it in docs/_build/html, with warnings as errors.
 
-The pages are those of this folder, as a code forge shows them. The rest is made here: the gallery from examples/, the reference
-from docstrings (site/api), and the table of contents (index.rst, site/*.rst). Nothing of the site is loaded from another host:
-formulas become MathML, which browsers draw themselves.
+The pages are those of this folder, as a code forge shows them. The rest is made here: the gallery from examples/, the page of the
+lesson from its notebook (site/lesson.py), the reference from docstrings (site/api), and the table of contents (index.rst,
+site/*.rst). Nothing of the site is loaded from another host: formulas become MathML, which browsers draw themselves.
 """
 
 import re
@@ -13,7 +13,7 @@ from typing import Any
 HERE = Path(__file__).parent
 sys.path[:0] = [str(HERE / "site"), str(HERE.parent / "src")]
 
-from pygments.lexers.special import TextLexer  # noqa: E402
+import lesson  # noqa: E402  site/lesson.py
 
 import stickslip  # noqa: E402  the package of this folder
 
@@ -22,6 +22,7 @@ author = "the authors of stickslip"
 version = release = stickslip.__version__
 
 extensions = [
+    "lesson",  # site/lesson.py
     "mathml",  # site/mathml.py
     "myst_parser",
     "sphinx.ext.autodoc",
@@ -55,6 +56,7 @@ sphinx_gallery_conf = {
     "within_subsection_order": "FileNameSortKey",
     "abort_on_example_error": True,
     "capture_repr": (),
+    "image_scrapers": ("pictures",),  # site/pictures.py
     "download_all_examples": False,
     "min_reported_time": 1e9,
     "remove_config_comments": True,
@@ -107,9 +109,17 @@ def after_napoleon(*event: Any) -> None:
 
 
 def link_to_gallery(*event: Any) -> None:
-    """Let links to scripts of examples/ lead to their pages in the gallery."""
+    """Let links to scripts of examples/ and to the notebook lead to their pages in the gallery."""
     source = event[-1]
+    source[0] = source[0].replace(f"]({lesson.NOTEBOOK})", f"](/{lesson.PAGE})")
     source[0] = re.sub(r"\]\((?:\.\./)+examples/(\w+)\.py\)", r"](/gallery/\1.rst)", source[0])
+
+
+def name_thumbnails(*event: Any) -> None:
+    """Give the pictures of the gallery's index the titles below them as the texts that stand for them."""
+    source = event[-1]
+    below = r"(\n\n  :doc:`[^`]+`\n\n\.\. raw:: html\n\n +<div class=\"sphx-glr-thumbnail-title\">)(.*?)(</div>)"
+    source[0] = re.sub(r":alt:" + below, r":alt: \2\1\2\3", source[0])
 
 
 def setup(app: Any) -> None:
@@ -117,4 +127,4 @@ def setup(app: Any) -> None:
     app.connect("autodoc-process-docstring", before_napoleon, priority=400)
     app.connect("autodoc-process-docstring", after_napoleon, priority=600)
     app.connect("source-read", link_to_gallery)
-    app.add_lexer("mermaid", TextLexer)  # a diagram that forges draw; here its text, because drawing takes a script
+    app.connect("source-read", name_thumbnails)

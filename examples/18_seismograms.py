@@ -31,7 +31,8 @@ axes.set(xlabel="time (s)", ylabel="distance from the contact (km)", title="Part
 
 # %%
 # An export for other programs is one call: on-fault time series as in the SCEC/USGS rupture benchmarks, or miniSEED and SAC with
-# ``run.to_seismogram("run.mseed", 100.0)``, which needs ``pip install "stickslip[seismology]"``.
+# ``run.to_seismogram("run.mseed", 100.0)``, which needs ``pip install "stickslip[seismology]"``. With ``x=4e3, station="S4"`` it
+# writes what the second station records. ObsPy reads the same numbers, to the last digit: HXV is the velocity, HXT the stress.
 
 with tempfile.TemporaryDirectory() as folder:
     path = run.to_scec(Path(folder) / "fig5.txt", sampling_rate=100.0)

@@ -128,6 +128,7 @@ def test_keys_quantities_and_designs_are_completed():
     assert complete_vary(context, "friction.") == []
     context.params = {"scenario": "fig6-slab"}
     assert complete_axis(context, "friction.") == ["friction.static=", "friction.dynamic=", "friction.alpha="]
+    assert complete_axis(context, "friction.al") == ["friction.alpha=", "friction.alpha=LOW..HIGH"]
     assert complete_axis(context, "run.") == []
     assert complete_series("sl") == ["slip", "slip_rate"]
     assert complete_series("slip,") == ["slip,slip_rate", "slip,traction", "slip,load"]

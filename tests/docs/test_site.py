@@ -32,7 +32,7 @@ def entries() -> list[Path]:
 
 def test_every_page_is_in_one_table_of_contents() -> None:
     pages = {source.with_suffix("") for source in (*PAGES[1:], *SOURCES)} - {DOCS / "index"}
-    pages.add(DOCS / "gallery" / "index")  # it is made from examples/
+    pages |= {DOCS / "gallery" / "index", DOCS / "gallery" / "lesson"}  # they are made from examples/
     assert sorted(entries()) == sorted(pages), "a new page of docs/ is named in docs/site/guide.rst or docs/site/development.rst"
 
 
@@ -66,6 +66,14 @@ def test_every_promise_names_a_test() -> None:
     promises = [line for line in lines if line.startswith("| ") and not line.startswith(("| promise", "| ---"))]
     assert len(promises) > 20
     assert [line for line in promises if not NAMED_TEST.search(line)] == []
+
+
+def test_the_diagram_of_the_loop_names_what_there_is() -> None:
+    diagram = (DOCS / "figures" / "states-of-the-loop.svg").read_text(encoding="utf-8").partition("</defs>")[2]
+    named = set(re.findall(r"\w+_\w+|\b[A-Z]{3,}\b", re.sub(r"<[^>]*>", " ", diagram)))
+    source = "\n".join(path.read_text(encoding="utf-8") for path in (ROOT / "src" / "stickslip" / "engine").rglob("*.py"))
+    assert {"next_piece", "approach_fold", "depart_from_fold", "PAUSED"} <= named
+    assert [name for name in sorted(named) if not re.search(rf"^def {name}\(|^    {name} = ", source, re.MULTILINE)] == []
 
 
 @pytest.fixture(scope="module")

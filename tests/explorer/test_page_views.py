@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,6 +15,7 @@ from stickslip.explorer.model.solve import solve
 from stickslip.explorer.page.heading import heading
 from stickslip.explorer.page.panels import view_of
 from stickslip.explorer.page.view import Key, View, limits, round_step
+from stickslip.explorer.page.view_bytes import view_bytes
 
 NAMES = ("fig5-slab-reconstructed", "fig6-slab", "fig6-block-reconstructed", "rate-and-state-slab")
 
@@ -138,3 +141,28 @@ def test_a_companion_that_moves_much_further_does_not_flatten_the_body() -> None
     assert view.keys["slip"][1].text.startswith("equivalent block, to ")
     assert view.keys["rate"][1].text == "equivalent block"
     assert view.limits["rate"][1] >= np.max(view.columns["companion"]["rate"])
+
+
+def test_a_block_of_bytes_holds_all_numbers_of_a_view(shown: tuple[Answer, View]) -> None:
+    view = shown[1]
+    block = view_bytes(view, {"law": "<h2>é</h2>"})
+    begin = 8 + int.from_bytes(block[:8], "little")
+    content = json.loads(block[8:begin])
+    assert (begin % 8, len(block) % 8) == (0, 0)
+    assert content["headings"] == {"law": "<h2>é</h2>"}
+    assert content["facts"] == json.loads(json.dumps(view.facts))
+
+    def read(place: Any) -> Any:
+        if isinstance(place, list):
+            return [read(one) for one in place]
+        kind, count = ("<f4", int(np.prod(place["shape"]))) if "shape" in place else ("<f8", place["length"])
+        return np.frombuffer(block, kind, count, begin + place["at"]).reshape(place.get("shape", -1))
+
+    for source, columns in view.columns.items():
+        for name, values in columns.items():
+            found = read(content["columns"][source][name])
+            if isinstance(values, list) and any(np.ndim(one) for one in values):
+                for one, other in zip(found, values, strict=True):
+                    np.testing.assert_array_equal(one, other)
+            else:
+                np.testing.assert_array_equal(found, np.asarray(values, float))

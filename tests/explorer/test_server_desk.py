@@ -45,7 +45,8 @@ class Page:
 
 
 @pytest.fixture
-def page() -> Iterator[Page]:
+def page(monkeypatch: pytest.MonkeyPatch) -> Iterator[Page]:
+    monkeypatch.setattr(desks, "QUIET", 0.0)
     made = Page()
     yield made
     made.desk.close()
@@ -79,6 +80,13 @@ def test_work_is_done_in_another_thread_and_its_result_shown_on_the_page(page: P
     page.until(lambda: bool(page.results))
     assert page.results[0] != threading.get_ident()
     assert page.news == ["half"]
+
+
+def test_nothing_is_said_of_work_that_is_soon_finished(page: Page, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(desks, "QUIET", LONG)
+    page.ask(lambda told: told("half"))
+    page.until(lambda: bool(page.results))
+    assert page.news == []
 
 
 def test_the_latest_of_the_requests_that_wait_is_the_next_one(page: Page, monkeypatch: pytest.MonkeyPatch) -> None:

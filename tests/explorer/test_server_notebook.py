@@ -13,6 +13,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.cli.main import main
+from stickslip.explorer.page.components import Markup
 from stickslip.explorer.server import in_notebook
 from stickslip.foundation.errors import InputError
 
@@ -29,14 +30,33 @@ async def answered(page: Any, regime: str) -> str:
 def test_a_problem_is_shown_in_a_notebook_and_answers() -> None:
     async def cells() -> None:
         page = ss.explore(ss.scenarios["fig6-slab"].problem, "12 s")
-        sentence = await answered(page, "irregular")
-        assert "23.44 m" in sentence
+        assert "23.44 m" in page.explorer.answer.sentence  # within the cell: a browser that loads scripts hears of nothing
         page.explorer.change(page.explorer.setting.with_value("friction.alpha", 0.1))
         assert "alpha = 0.1 s/m" in await answered(page, "regular")
         assert page.explorer.setting.value("run.duration") == 12.0
         assert callable(page._repr_mimebundle_)  # what a notebook calls; it needs IPython
 
     asyncio.run(cells())
+
+
+def test_scripts_and_style_sheets_come_from_the_packages(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A notebook may have no internet: scripts are brought along, and no style sheet is named anew when a text changes."""
+    brought = []
+    monkeypatch.setattr("panel.extension", lambda **given: brought.append(given))
+
+    async def cells() -> None:
+        page = ss.explore("fig6-slab")
+        ss.explore("fig6-slab")  # its page may have been loaded again meanwhile
+        root = page.get_root()
+        heading = page.select(Markup)[0]
+        model = heading._models[root.ref["id"]][0]
+        before = list(model.stylesheets)
+        heading.object = "another title"
+        assert "another title" in model.text
+        assert all(one is other for one, other in zip(model.stylesheets, before, strict=True))
+
+    asyncio.run(cells())
+    assert brought == [{"inline": True}] * 2
 
 
 def test_of_many_explorers_the_oldest_ends_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:

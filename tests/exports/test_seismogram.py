@@ -52,6 +52,19 @@ def test_a_later_start_is_a_later_date(obspy, tmp_path: Path) -> None:
         RUN.to_seismogram(tmp_path / "b.mseed", 10.0, origin="soon")
 
 
+@needs_obspy
+def test_a_station_of_the_example_keeps_its_numbers_times_and_codes(obspy, tmp_path: Path) -> None:
+    run = ss.simulate("fig5-slab-reconstructed")
+    (path,) = run.to_seismogram(tmp_path / "run.mseed", 100.0, x=4e3, station="S4")  # as example 18 names it
+    rate, traction = obspy.read(str(path))
+    times = np.arange(1201) / 100.0
+    field = run.field(4e3, times)
+    assert (rate.id, traction.id) == ("XX.S4..HXV", "XX.S4..HXT")
+    for trace, expected in ((rate, field.velocity), (traction, field.stress)):
+        np.testing.assert_array_equal(trace.times(), times)
+        np.testing.assert_array_equal(trace.data, expected)
+
+
 def test_without_obspy_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setitem(sys.modules, "obspy", None)
     with pytest.raises(ss.InputError, match=r"need ObsPy: pip install 'stickslip\[seismology\]'"):

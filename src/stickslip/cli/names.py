@@ -125,14 +125,24 @@ def complete_template(incomplete: str) -> list[str]:
 
 
 def complete_vary(context: Context, incomplete: str) -> list[str]:
-    """Return the keys that a sweep can vary in the scenario on the command line, as far as they begin with what is typed."""
-    return [f"{name}=" for name in _parameters(context) if name.startswith(incomplete)]
+    """Return the keys of the scenario on the command line that begin with what is typed, each with the sign before its value."""
+    return _before_a_value([name for name in _parameters(context) if name.startswith(incomplete)], "VALUE")
 
 
 def complete_axis(context: Context, incomplete: str) -> list[str]:
     """Return the parameters of the scenario on the command line that can be an axis of a map, as `complete_vary` does."""
     found = (name for name in _parameters(context) if name.startswith(("body.", "friction.")))
-    return [f"{name}=" for name in found if name.startswith(incomplete)]
+    return _before_a_value([name for name in found if name.startswith(incomplete)], "LOW..HIGH")
+
+
+def _before_a_value(names: list[str], value: str) -> list[str]:
+    """Return names with an equals sign, and for a name that is alone also what may follow.
+
+    After a word that is the only one shells put a space. With a second one that begins like it they stop where the two part, which
+    is behind the equals sign, and show both.
+    """
+    found = [f"{name}=" for name in names]
+    return [*found, f"{found[0]}{value}"] if len(found) == 1 else found
 
 
 def _parameters(context: Context) -> list[str]:

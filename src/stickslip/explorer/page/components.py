@@ -9,6 +9,7 @@ from typing import Any
 
 import param
 from panel.custom import JSComponent
+from panel.pane import HTML
 
 from stickslip.explorer.page.look import DARK, LIGHT, palettes
 
@@ -21,7 +22,7 @@ def asset(name: str) -> str:
 
 def player_script() -> str:
     """Return the script of the time bar: a module of JavaScript that exports `Player` and, for Panel, `render`."""
-    return "\n".join(asset(name) for name in ("theme.js", "moment.js", "player.js"))
+    return "\n".join(asset(name) for name in ("theme.js", "moment.js", "view.js", "player.js"))
 
 
 def look() -> dict[str, Any]:
@@ -29,10 +30,20 @@ def look() -> dict[str, Any]:
     return {"colours": {"light": LIGHT, "dark": DARK}, "palettes": palettes()}
 
 
-class PlayerBar(JSComponent):  # type: ignore[misc] # panel has no types
-    """The time bar: it moves the cursor of all panels in the browser, and tells Python where it rests."""
+class Markup(HTML):  # type: ignore[misc] # panel has no types
+    """A text with markup that changes.
 
-    facts = param.Dict(default={}, doc="What the browser must know of the answer: `View.facts`.")
+    Only the text is sent again. Panel would send the style sheets too, as new ones, which a notebook cannot place.
+    """
+
+    def _update(self, ref: str, model: Any) -> None:
+        model.update(text=self._transform_object(self.object)["object"])
+
+
+class PlayerBar(JSComponent):  # type: ignore[misc] # panel has no types
+    """The time bar: it brings answers to the panels, moves the cursor of all of them, and tells Python where the cursor rests."""
+
+    shown = param.Bytes(default=b"", doc="What the panels show: `view_bytes`; empty before the first answer.")
     look = param.Dict(default={}, doc="Colours and colour scales.")
     cursor = param.Dict(
         default={"seconds": 0.0}, doc="Time (s) to which Python moves the cursor, and a number that differs each time."
@@ -53,7 +64,8 @@ class PlayerBar(JSComponent):  # type: ignore[misc] # panel has no types
 class ControlRows(JSComponent):  # type: ignore[misc] # panel has no types
     """Rows of controls, with faults beside those that are wrong; what is entered is handed to a function."""
 
-    groups = param.List(default=[], doc="Groups of rows: title, rows, and for each row path, label, kind, value, unit and range.")
+    groups = param.List(default=[], doc="Groups of rows: title, rows, and for each row path, label, kind and unit.")
+    values = param.Dict(default={}, doc="What the rows hold, by their paths: text, and for a slider its value and its range.")
     faults = param.Dict(default={}, doc="What is wrong, by the path of the row.")
 
     _esm = asset("controls.js")

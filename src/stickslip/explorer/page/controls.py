@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterable
 from typing import Any
 
 from stickslip.explorer.model.controls import Control, Group, controls_of
@@ -25,6 +26,8 @@ SCENARIO, KIND = "scenario", "kind:"
 """The path of the list of scenarios, and what the paths of lists of kinds begin with, before their table."""
 STARTS = {"excess": "excess over the static strength", "load": "load"}
 """Names of the ways to give the load of the start."""
+HELD = ("text", "value", "range")
+"""The parts of a row that change with its value."""
 Row = dict[str, Any]
 
 
@@ -39,7 +42,11 @@ class Controls:
         self._show()
 
     def _show(self) -> None:
-        self.view.groups = groups_of(self._explorer.setting)
+        self._controls = controls_of(self._explorer.setting)
+        groups, values = groups_of(self._explorer.setting, self._controls)
+        if groups != self.view.groups:  # param compares much more slowly
+            self.view.groups = groups
+        self.view.values = values
 
     def _blame(self) -> None:
         """Show the fault at the row that it names, or else at the row in which something was entered last."""
@@ -50,14 +57,14 @@ class Controls:
     def _enter(self, entered: dict[str, Any]) -> None:
         self._entered = str(entered.get("path"))
         try:
-            setting = changed(self._explorer.setting, entered)
+            setting = changed(self._explorer.setting, self._controls, entered)
         except InputError as error:
             self._explorer.refuse(str(error))
             return
         self._explorer.change(setting)
 
 
-def changed(setting: Setting, entered: dict[str, Any]) -> Setting:
+def changed(setting: Setting, controls: Iterable[Group], entered: dict[str, Any]) -> Setting:
     """Return a setting with what was entered in one row: a number of its slider, the text of its field, or a choice.
 
     Raises InputError, in one line, for an entry that cannot be read.
@@ -67,7 +74,7 @@ def changed(setting: Setting, entered: dict[str, Any]) -> Setting:
         return Setting.bundled(str(value))
     if path.startswith(KIND):
         return with_kind(setting, path.removeprefix(KIND), str(value))
-    control = next((one for group in controls_of(setting) for one in group.controls if one.path == path), None)
+    control = next((one for group in controls for one in group.controls if one.path == path), None)
     if control is None:
         raise InputError(f"{path} is not an entry of this scenario")
     if isinstance(value, int | float) and math.isfinite(value):
@@ -77,9 +84,13 @@ def changed(setting: Setting, entered: dict[str, Any]) -> Setting:
     return setting.with_value(path, control.read(str(value)))
 
 
-def groups_of(setting: Setting) -> list[dict[str, Any]]:
-    """Return groups of rows for a setting, as the script of the controls takes them: first the choice of the scenario."""
-    return [_scenarios(setting), *({"title": group.title, "rows": rows_of(group)} for group in controls_of(setting))]
+def groups_of(setting: Setting, controls: Iterable[Group]) -> tuple[list[dict[str, Any]], dict[str, Row]]:
+    """Return groups of rows for a setting, and what the rows hold, as the script of the controls takes them.
+
+    What a row holds is apart, because a slider that moves changes nothing else. The first row is the choice of the scenario.
+    """
+    groups = [_scenarios(setting), *({"title": group.title, "rows": rows_of(group)} for group in controls)]
+    return groups, {row["path"]: {name: row.pop(name) for name in HELD} for group in groups for row in group["rows"]}
 
 
 def _scenarios(setting: Setting) -> dict[str, Any]:

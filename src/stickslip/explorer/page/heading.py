@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from html import escape
 
-from stickslip.explorer.page.view import Key
+from stickslip.explorer.page.view import Key, View
 
 
 def heading(title: str, keys: Sequence[Key]) -> str:
@@ -15,3 +15,8 @@ def heading(title: str, keys: Sequence[Key]) -> str:
         for key in keys
     )
     return f'<div class="heading"><h2>{escape(title)}</h2><ul role="list" aria-label="Legend">{entries}</ul></div>'
+
+
+def headings_of(view: View, titles: Mapping[str, str]) -> dict[str, str]:
+    """Return the heading of each panel as HTML; `titles` are used for panels of which the view says none."""
+    return {name: heading(view.titles.get(name, title), view.keys.get(name, ())) for name, title in titles.items()}

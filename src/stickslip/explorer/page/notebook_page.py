@@ -6,7 +6,7 @@ from typing import Any
 
 import panel as pn
 
-from stickslip.explorer.page.components import asset
+from stickslip.explorer.page.components import Markup, asset
 from stickslip.explorer.page.controls import Controls
 from stickslip.explorer.page.explorer import Explorer
 from stickslip.explorer.page.look import style_sheet
@@ -26,12 +26,13 @@ ROWS = (("law", "contact", "shape"), (("slip", "rate", "traction"), ("field", "e
 def build_for_notebook(explorer: Explorer) -> Any:
     """Return the explorer as an object that a notebook shows below a cell."""
     panels = Panels(explorer)
-    cards = {name: _card(panels, name) for name in panels.plots}
+    headings = {name: Markup(sizing_mode="stretch_width", stylesheets=[asset("heading.css")]) for name in panels.plots}
+    cards = {name: _card(headings[name], panels.plots[name], HEIGHTS[name]) for name in panels.plots}
 
     def show() -> None:
-        hidden = panels.player.facts.get("hidden", ())
-        for name, card in cards.items():
-            card.visible = name not in hidden
+        for name, html in panels.headings.items():
+            headings[name].object = html
+            cards[name].visible = name not in panels.view.hidden
 
     for news in ("answer", "pin"):
         explorer.listen(news, show)
@@ -55,6 +56,6 @@ def build_for_notebook(explorer: Explorer) -> Any:
     )
 
 
-def _card(panels: Panels, name: str) -> Any:
+def _card(heading: Any, plot: Any, height: int) -> Any:
     """Return a panel with its heading."""
-    return pn.Column(panels.headings[name], panels.plots[name], height=HEIGHTS[name], sizing_mode="stretch_width", margin=2)
+    return pn.Column(heading, plot, height=height, sizing_mode="stretch_width", margin=2)

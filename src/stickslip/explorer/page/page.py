@@ -9,7 +9,7 @@ import panel as pn
 from stickslip.explorer.page.components import PlayerBar, asset
 from stickslip.explorer.page.controls import Controls
 from stickslip.explorer.page.explorer import Explorer
-from stickslip.explorer.page.heading import heading
+from stickslip.explorer.page.heading import headings_of
 from stickslip.explorer.page.look import style_sheet
 from stickslip.explorer.page.panels import plots, view_of
 from stickslip.explorer.page.pin import PinnedRun
@@ -17,6 +17,8 @@ from stickslip.explorer.page.stage import Stage
 from stickslip.explorer.page.strip import StripView
 from stickslip.explorer.page.tools import Tools
 from stickslip.explorer.page.tour import Tour
+from stickslip.explorer.page.view import View
+from stickslip.explorer.page.view_bytes import view_bytes
 from stickslip.explorer.page.words import Words
 
 TITLES = {
@@ -29,15 +31,11 @@ SLOTS = ("bar", "aside", "below", "above")
 
 
 class Panels:
-    """The linked panels and the time bar of one page: `plots` and `headings` by name, and `player`."""
+    """The linked panels and the time bar of one page: `plots` by name, and the `player`, which shows each `view` in the browser."""
 
     def __init__(self, explorer: Explorer) -> None:
-        self._explorer, self.stage, self._hears = explorer, Stage(), False
-        self.plots = {name: pn.pane.Bokeh(plot, sizing_mode="stretch_both") for name, plot in plots(self.stage).items()}
-        self.headings = {
-            name: pn.pane.HTML(heading(TITLES[name], ()), sizing_mode="stretch_width", stylesheets=[asset("heading.css")])
-            for name in self.plots
-        }
+        self._explorer, self._hears, self.view = explorer, False, View()
+        self.plots = {name: pn.pane.Bokeh(plot, sizing_mode="stretch_both") for name, plot in plots(Stage()).items()}
         self.player = PlayerBar(self._moved, sizing_mode="stretch_width")
         for news in ("answer", "pin"):
             explorer.listen(news, self.show)
@@ -49,13 +47,13 @@ class Panels:
         answer, pinned = self._explorer.answer, self._explorer.pinned
         if answer is None:
             return
-        view = view_of(answer, pinned[1] if pinned else None)
-        with pn.io.hold():
-            self.stage.show(view)
-            for name, pane in self.headings.items():
-                pane.object = heading(view.titles.get(name, TITLES[name]), view.keys.get(name, ()))
-            self.player.facts = view.facts
-        pn.io.push_notebook(*self.plots.values())  # nothing happens where there is a server
+        self.view = view_of(answer, pinned[1] if pinned else None)
+        self.player.shown = view_bytes(self.view, self.headings)
+
+    @property
+    def headings(self) -> dict[str, str]:
+        """The heading of each panel, as HTML."""
+        return headings_of(self.view, TITLES)
 
     def _move(self) -> None:
         if not self._hears:  # else it is the browser itself that has moved it, and perhaps further meanwhile
@@ -83,12 +81,12 @@ def build(explorer: Explorer, **parts: Any) -> Any:
     parts = {"bar": Tools(explorer).view, "above": PinnedRun(explorer).view} | parts
     tour, strip = Tour(explorer), StripView(explorer)
     page = pn.Template(asset("page.html"))
-    page.add_variable("page_style", style_sheet() + asset("page.css"))
+    page.add_variable("page_style", style_sheet() + asset("page.css") + asset("heading.css"))
     page.add_variable("app_title", "stickslip explorer")
     page.add_variable("parts", sorted(parts))
+    page.add_variable("headings", panels.headings)
     for name, pane in panels.plots.items():
         page.add_panel(name, pane)
-        page.add_panel(f"{name}_heading", panels.headings[name])
     own = {"player": panels.player, "words": words.view, "controls": controls.view}
     own |= {"tour": tour.card, "tour_button": tour.button, "strip": strip.view}
     for name, part in {**own, **parts}.items():

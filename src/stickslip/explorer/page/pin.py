@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from html import escape
 
-import panel as pn
-
 from stickslip.explorer.model.difference import difference
-from stickslip.explorer.page.components import asset
+from stickslip.explorer.page.components import Markup, asset
 from stickslip.explorer.page.explorer import Explorer
 
 MOST = 8
@@ -19,7 +17,7 @@ class PinnedRun:
 
     def __init__(self, explorer: Explorer) -> None:
         self._explorer = explorer
-        self.view = pn.pane.HTML("", sizing_mode="stretch_width", stylesheets=[asset("pin.css")], visible=False, margin=0)
+        self.view = Markup("", sizing_mode="stretch_width", stylesheets=[asset("pin.css")], visible=False, margin=0)
         for news in ("pin", "answer"):
             explorer.listen(news, self.show)
         self.show()

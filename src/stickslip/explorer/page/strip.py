@@ -22,7 +22,7 @@ from stickslip.explorer.model.strip import (
     strip_text,
     usual_range,
 )
-from stickslip.explorer.page.components import asset
+from stickslip.explorer.page.components import Markup, asset
 from stickslip.explorer.page.explorer import Explorer
 from stickslip.explorer.page.heading import heading
 from stickslip.explorer.page.look import paint
@@ -121,7 +121,7 @@ class StripView:
         for plot in found.values():
             plot.on_event("tap", self._tapped)
         css = [asset("heading.css")]
-        self._headings = {name: pn.pane.HTML(sizing_mode="stretch_width", margin=0, stylesheets=css) for name in found}
+        self._headings = {name: Markup(sizing_mode="stretch_width", margin=0, stylesheets=css) for name in found}
         panes = [
             pn.Column(self._headings[name], pn.pane.Bokeh(plot, sizing_mode="stretch_both", margin=0), margin=0, height=HEIGHT)
             for name, plot in found.items()

@@ -46,7 +46,7 @@ class Tools:
     def __init__(self, explorer: Explorer, *, linked: bool = True) -> None:
         self._explorer = explorer
         self.view = ToolBar(self._press, linked=linked, margin=0)
-        for news in ("setting", "answer", "pin", "cursor", "tour", "strip"):
+        for news in ("answer", "pin", "cursor", "tour", "strip"):
             explorer.listen(news, self.update)
         self.update()
 

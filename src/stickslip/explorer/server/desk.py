@@ -17,6 +17,8 @@ Call = Callable[[], None]
 
 PATIENCE = 0.3
 """Work that takes less than this (s) is finished and shown even if a newer request waits: pictures follow while a slider moves."""
+QUIET = 0.2
+"""Nothing is said of work in its first moments (s): most of it is finished then, and lines that flicker tell nothing."""
 LOOK_AGAIN = 0.2
 """Time (s) after which a desk that waits for its page looks whether the page is still open."""
 STOPPED_EARLY = "stopped before there was anything to show"
@@ -148,11 +150,13 @@ class ThreadDesk:
             shown.set()
 
     def _told(self, task: _Task, text: str) -> None:
-        if task.fate == "drop" or (self._next is not None and time.monotonic() - task.begun > PATIENCE):
+        taken = time.monotonic() - task.begun
+        if task.fate == "drop" or (self._next is not None and taken > PATIENCE):
             raise Dropped
         if task.fate == "stop":
             raise Stopped
-        self.say(text)
+        if taken >= QUIET:
+            self.say(text)
 
     def _tell_news(self) -> None:
         with self._changed:

@@ -1,10 +1,11 @@
-"""The explorer beside a kernel: its desk delivers on the kernel's own thread, between two cells."""
+"""The explorer beside a kernel: its desk delivers on the kernel's own thread, at first within the cell, then between two cells."""
 
 from __future__ import annotations
 
 import asyncio
 from collections import deque
-from functools import cache
+from collections.abc import Callable
+from queue import SimpleQueue
 from typing import Any
 
 import panel as pn
@@ -26,7 +27,7 @@ def shown_in_notebook(scenario: Scenario) -> Any:
     from stickslip.explorer.page.notebook_page import build_for_notebook
 
     try:
-        deliver = asyncio.get_running_loop().call_soon_threadsafe
+        deliver = Delivery(asyncio.get_running_loop().call_soon_threadsafe)
     except RuntimeError:
         raise InputError("explore: there is no notebook here; `stickslip explore` opens the explorer in a browser") from None
     _bring_scripts()
@@ -37,7 +38,37 @@ def shown_in_notebook(scenario: Scenario) -> Any:
     page.explorer = explorer
     _keep(explorer, desk, files)
     explorer.change(explorer.setting)
+    deliver.serve_cell(lambda: explorer.answer is not None or bool(explorer.fault))
     return page
+
+
+class Delivery:
+    """What a desk delivers is called within the cell that asks for the first answer, and after that between two cells.
+
+    What is told to a browser while it still loads its scripts is lost. Therefore a page is shown with its first answer in it.
+
+    Parameters
+    ----------
+    between_cells : callable
+        Function that has a function without arguments called by the kernel when no cell runs; any thread may call it.
+    """
+
+    def __init__(self, between_cells: Callable[[Callable[[], None]], object]) -> None:
+        self._calls: SimpleQueue[Callable[[], None]] = SimpleQueue()
+        self._deliver: Callable[[Callable[[], None]], object] = self._calls.put
+        self._between_cells = between_cells
+
+    def __call__(self, call: Callable[[], None]) -> None:
+        """Have a function called on the kernel's own thread."""
+        self._deliver(call)
+
+    def serve_cell(self, is_enough: Callable[[], bool]) -> None:
+        """Call what is delivered until `is_enough` returns True; what comes later is called between two cells."""
+        try:
+            while not is_enough():
+                self._calls.get()()
+        finally:
+            self._deliver = self._between_cells
 
 
 _AT_WORK: deque[tuple[Explorer, tuple[ThreadDesk, ...]]] = deque()
@@ -58,7 +89,9 @@ def _keep(explorer: Explorer, *desks: ThreadDesk) -> None:
         oldest.refuse(ENDED)
 
 
-@cache
 def _bring_scripts() -> None:
-    """Bring the scripts of Panel and Bokeh into the notebook, once: they are some megabytes."""
-    pn.extension()
+    """Bring the scripts of Panel and Bokeh into the notebook, out of the installed packages and not from the internet.
+
+    They come with every explorer: a page of the notebook that is loaded again has lost those of a cell that ran before.
+    """
+    pn.extension(inline=True)

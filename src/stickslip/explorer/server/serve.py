@@ -214,4 +214,10 @@ def deliver_to(document: Callable[[], Any], call: Call) -> None:
     """
     found = document()
     if found is not None:
-        found.add_next_tick_callback(call)
+        found.add_next_tick_callback(partial(in_one_message, found, call))
+
+
+def in_one_message(document: Any, call: Call) -> None:
+    """Call a function, and send all that it changes in a document together: a browser then draws it once."""
+    with pn.io.hold(document):
+        call()

@@ -20,7 +20,7 @@ from stickslip.explorer.model.solve import solve
 from stickslip.explorer.model.strip import setting_at, strip_of
 from stickslip.explorer.model.tour import TOUR, Step
 from stickslip.explorer.page.components import asset, look, player_script
-from stickslip.explorer.page.heading import heading
+from stickslip.explorer.page.heading import headings_of
 from stickslip.explorer.page.look import style_sheet
 from stickslip.explorer.page.page import TITLES
 from stickslip.explorer.page.panels import plots, view_of
@@ -28,7 +28,6 @@ from stickslip.explorer.page.stage import Stage
 from stickslip.explorer.page.strip import place_of, view_of_strip
 from stickslip.explorer.page.strip import plots as strip_plots
 from stickslip.explorer.page.tour import told_steps
-from stickslip.explorer.page.view import View
 from stickslip.explorer.page.words import words_of
 from stickslip.explorer.static.packing import packed_view, script
 from stickslip.figures.style import unit_of
@@ -144,12 +143,7 @@ def content_of(step: Step, places: int) -> dict[str, Any]:
 def shown_of(answer: Answer) -> dict[str, Any]:
     """Return what the panels and the sentence show of an answer."""
     view = view_of(answer)
-    return {"words": words_of(answer), "headings": headings_of(view, TITLES), "view": packed_view(view)}
-
-
-def headings_of(view: View, titles: dict[str, str]) -> dict[str, str]:
-    """Return the heading of each panel as HTML."""
-    return {name: heading(view.titles.get(name, title), view.keys.get(name, ())) for name, title in titles.items()}
+    return {"words": words_of(answer), "view": packed_view(view) | {"headings": headings_of(view, TITLES)}}
 
 
 # ---- the page ---------------------------------------------------------------------------------------------------------------
@@ -167,15 +161,13 @@ def index_page() -> str:
 
     stages = Stage(), Stage()
     models = plots(stages[0]) | {f"strip_{name}": plot for name, plot in strip_plots(stages[1]).items()}
-    one = np.zeros((1, 1), np.float32)  # by which the page knows how Bokeh keeps images
-    stages[0].sources["field"].data = {"velocity": [one], "displacement": [one], "x": [0.0], "y": [0.0], "dw": [1.0], "dh": [1.0]}
     made, places = components(models, wrap_script=False)
-    facts = {"look": look(), "steps": told_steps(), "named": [*stages[0].named, *stages[1].named], "titles": TITLES}
+    facts = {"look": look(), "steps": told_steps()}
     return Template(_asset("index.html")).substitute(
         style=style_sheet() + "\n".join(asset(name) for name in ("page.css", "heading.css")) + _asset("static.css"),
         library=LIBRARY,
         plots=made,
-        player=_module(player_script(), "Player"),
+        player=_module(player_script(), "Player", "imageOf", "showColumns"),
         card=_module(asset("tour.js"), "TourCard"),
         words=asset("words.js") + "\nwindow.Words = render;",
         words_css=_in_script(asset("words.css")),
@@ -191,8 +183,8 @@ def _asset(name: str) -> str:
     return (files("stickslip.explorer.static") / "assets" / name).read_text(encoding="utf-8")
 
 
-def _module(text: str, name: str) -> str:
-    return f"{text}\nwindow.{name} = {name};"
+def _module(text: str, *names: str) -> str:
+    return f"{text}\nObject.assign(window, {{ {', '.join(names)} }});"
 
 
 def _in_script(value: Any) -> str:

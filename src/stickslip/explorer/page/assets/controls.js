@@ -22,12 +22,14 @@ class Controls {
   }
 
   /** Show groups of rows: they are made anew only if other rows are needed, so that the focus stays where it is. */
-  update(groups) {
+  update(groups, values) {
+    const paths = groups.flatMap(({ rows }) => rows.map(({ path }) => path));
+    if (paths.length !== Object.keys(values).length || !paths.every((path) => path in values)) return; // one of the two is still to come
     this.heard();
-    const form = JSON.stringify(groups.map(({ title, rows }) => [title, rows.map(({ path, kind, options, unit, range, rare }) => [path, kind, options, unit, !range, rare])]));
-    if (form !== this.drawn) this.make(groups);
+    const form = JSON.stringify([groups, Object.values(values).map(({ range }) => !range)]);
+    if (form !== this.drawn) this.make(groups.map(({ title, rows }) => ({ title, rows: rows.map((row) => ({ ...row, ...values[row.path] })) })));
     this.drawn = form;
-    for (const { rows } of groups) for (const row of rows) this.fill(row);
+    for (const [path, held] of Object.entries(values)) this.fill(path, held);
   }
 
   /** Say what is wrong beside the rows that are; what was entered there stays. */
@@ -123,9 +125,9 @@ class Controls {
     if (this.waiting) requestAnimationFrame(() => this.sendWaiting());
   }
 
-  fill(row) {
-    const parts = this.rows.get(row.path), active = this.root.getRootNode().activeElement;
-    parts.row = row;
+  fill(path, held) {
+    const parts = this.rows.get(path), active = this.root.getRootNode().activeElement;
+    const row = Object.assign(parts.row, held);
     if (parts.slider && active !== parts.slider) parts.slider.value = positionOf(row.range, row.value);
     if (parts.slider) parts.slider.setAttribute("aria-valuetext", `${row.text} ${row.unit}`);
     if (active === parts.slider && parts.slider) return; // it is being moved: what it says is newer
@@ -154,13 +156,13 @@ function fillChoices(select, options) {
   }
 }
 
-/** Where Panel shows the controls: groups of rows and faults come from Python, and what is entered goes back. */
+/** Where Panel shows the controls: rows, what they hold, and faults come from Python, and what is entered goes back. */
 export function render({ model }) {
   const root = document.createElement("div");
   const controls = new Controls(root, (message) => model.send_msg(message));
-  model.on("groups", () => controls.update(model.groups));
+  model.on(["groups", "values"], () => controls.update(model.groups, model.values));
   model.on("faults", () => controls.blame(model.faults));
-  controls.update(model.groups);
+  controls.update(model.groups, model.values);
   controls.blame(model.faults);
   return root;
 }

@@ -33,6 +33,12 @@ class Models {
   put(source, data) { this.get(`source:${source}`)?.setv({ data }, { sync: false }); }
 
   set(name, changes) { this.get(name)?.setv(changes, { sync: false }); }
+
+  /** The names of all axes of the panels, which a view can hide. */
+  get axes() {
+    this.named ??= [...(this.bokeh.all_models ?? this.bokeh._all_models.values())].map(({ name }) => name).filter((name) => name?.startsWith("axis:") && !name.includes("@strip_"));
+    return this.named;
+  }
 }
 
 const TIME_PLOTS = ["slip", "rate", "traction"], NEAR_PLOTS = ["field", "energy"];

@@ -44,6 +44,7 @@ class Player {
     this.slider.addEventListener("input", () => { this.pause(); this.go(this.fromShare(this.slider.value / 1000)); });
     this.slider.addEventListener("change", () => this.report());
     this.slider.addEventListener("keydown", (event) => this.key(event, true));
+    if (document.querySelector("[data-plots]")) spareStyles(); // in a notebook there are plots of others too
     this.holdPlots();
     this.listenToPage();
   }
@@ -53,9 +54,10 @@ class Player {
   get range() { return this.models.get("range:time"); }
   fromShare(share) { return this.start + share * (this.end - this.start); }
 
-  /** Take the facts of a new answer; the cursor stays at its time as far as the run has it. */
-  update(facts) {
-    this.facts = facts;
+  /** Show a view: a new answer. The cursor stays at its time as far as the run has it. */
+  update(view) {
+    showView(this.models, view);
+    this.facts = view.facts;
     this.showPanels();
     this.root.querySelector(".out").disabled = true; // a new answer is shown whole
     this.showMarks();
@@ -249,13 +251,22 @@ function shortNumber(value) {
   return text.replace("-", "−");
 }
 
-/** Where Panel shows the bar: `model.facts` and `model.cursor` come from Python, and the cursor goes back when it rests. */
+/** Keep changes that are meant for the browser alone from Python. Bokeh's server does so; what Panel puts into a notebook does not. */
+function keepFromKernel(bokeh) {
+  for (const manager of bokeh.roots().filter((root) => root.client_comm_id !== undefined)) {
+    const tell = manager._document_changed.bind(manager);
+    manager._document_changed = (event) => { if (event.sync !== false) tell(event); };
+  }
+}
+
+/** Where Panel shows the bar: `model.shown` and `model.cursor` come from Python, and the cursor goes back when it rests. */
 export function render({ model, view, el }) {
+  keepFromKernel(view.model.document);
   const root = document.createElement("div");
   root.className = "player";
   const player = new Player(view.model.document, root, model.look, (seconds) => model.send_msg({ cursor: seconds }));
-  const update = () => player.update(model.facts);
-  model.on("facts", update);
+  const update = () => { if (model.shown.byteLength) player.update(readView(model.shown)); };
+  model.on("shown", update);
   model.on("cursor", () => player.goSeconds(model.cursor.seconds));
   update();
   player.goSeconds(model.cursor.seconds);

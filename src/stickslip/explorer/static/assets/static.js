@@ -7,10 +7,18 @@ function numbers({ bits, low, high, whole }) {
   return Float32Array.from(found, (one) => (one > most ? NaN : low + (one / most) * (high - low)));
 }
 
-function column(packed, ArrayOfBokeh) {
+const STRIPS = ["pulses", "slip", "first_end", "peak_rate"];
+
+function column(packed) {
   if (Array.isArray(packed)) return packed.map((one) => (one === null ? NaN : Array.isArray(one) ? one.map((inner) => inner ?? NaN) : one));
   const found = numbers(packed);
-  return packed.shape ? [new ArrayOfBokeh(found, packed.shape)] : found;
+  return packed.shape ? [window.imageOf(found, packed.shape)] : found;
+}
+
+/** A view as the time bar takes it, from one in which columns are packed. */
+function unpacked(view) {
+  const columns = (packed) => Object.fromEntries(Object.entries(packed).map(([name, one]) => [name, column(one)]));
+  return { ...view, columns: Object.fromEntries(Object.entries(view.columns).map(([source, packed]) => [source, columns(packed)])) };
 }
 
 const waiting = new Map(), loaded = new Map();
@@ -45,14 +53,13 @@ function part(selector, css) {
 class Tour {
   constructor(bokeh) {
     this.bokeh = bokeh;
-    this.ArrayOfBokeh = bokeh.get_model_by_name("source:field").get_column("velocity")[0].constructor;
     this.player = new window.Player(bokeh, part("footer.time", PLAYER_CSS), FACTS.look);
     this.card = new window.TourCard(part(".tour", CARD_CSS), FACTS.steps, (step) => this.go(step), false);
     this.words = { texts: { sentence: "" }, on: (_, heard) => { this.tell = heard; }, send_msg: () => {} }; // as Panel's model
     part(".words-place", WORDS_CSS).append(window.Words({ model: this.words }));
     this.slider = document.querySelector("#place");
     this.slider.addEventListener("input", () => this.show(Number(this.slider.value)));
-    for (const name of ["pulses", "slip", "first_end", "peak_rate"]) {
+    for (const name of STRIPS) {
       bokeh.get_model_by_name(`plot:strip_${name}`).on_event("tap", (event) => this.goTo(event.x));
     }
     addEventListener("hashchange", () => this.go(this.wanted));
@@ -72,7 +79,7 @@ class Tour {
     this.slider.max = content.places.length - 1;
     document.querySelector(".knob label").textContent = content.parameter;
     document.querySelector(".knob p").textContent = content.meaning;
-    this.put(content.strip);
+    this.showStrip(content.strip);
     this.show(content.start);
     this.player.pause();
     this.player.goSeconds(content.cursor);
@@ -86,9 +93,13 @@ class Tour {
     document.querySelector(".knob output").textContent = `${place.value} ${this.content.unit}`.trim();
     this.slider.setAttribute("aria-valuetext", `${place.value} ${this.content.unit}`);
     this.say(place.words);
-    this.put({ ...place.view, headings: place.headings });
-    for (const name of FACTS.named) if (name.startsWith("here:")) this.bokeh.get_model_by_name(name).location = place.at;
-    this.player.update(place.view.facts);
+    for (const name of STRIPS) this.player.models.set(`here:strip_${name}`, { location: place.at });
+    this.player.update(unpacked(place.view));
+  }
+
+  showStrip(strip) {
+    window.showColumns(this.player.models, unpacked(strip));
+    for (const [name, html] of Object.entries(strip.headings)) document.querySelector(`[data-heading=${name}]`).innerHTML = html;
   }
 
   say(texts) { this.words.texts = texts; this.tell(); }
@@ -97,19 +108,6 @@ class Tour {
   goTo(at) {
     const distances = this.content.places.map((place) => Math.abs(place.at - at));
     this.show(distances.indexOf(Math.min(...distances)));
-  }
-
-  /** Bring what is shown to the models, as `Stage.show` does in Python. */
-  put({ columns, limits, labels, hidden, headings, fastest }) {
-    const find = (name) => this.bokeh.get_model_by_name(name), strip = "strip" in columns;
-    for (const [source, packed] of Object.entries(columns)) {
-      find(`source:${source}`).data = Object.fromEntries(Object.entries(packed).map(([name, one]) => [name, column(one, this.ArrayOfBokeh)]));
-    }
-    for (const [name, [start, end]] of Object.entries(limits)) find(`range:${name}`).setv({ start, end, reset_start: start, reset_end: end });
-    for (const [name, text] of Object.entries(labels)) find(name).axis_label = text;
-    if (!strip) find("colour").setv({ low: -fastest, high: fastest });
-    if (!strip) for (const name of FACTS.named) if (!name.includes("strip_")) find(name).visible = !hidden.includes(name);
-    for (const [name, html] of Object.entries(headings)) document.querySelector(`[data-heading=${name}]`).innerHTML = html;
   }
 }
 
