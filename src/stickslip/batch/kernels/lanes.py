@@ -18,9 +18,9 @@ from stickslip.engine.codegen.simd import WIDTH
 from stickslip.engine.contact.contact_equation import constants_of
 from stickslip.engine.contact.stiffness import judge_stiffness
 from stickslip.engine.contact_step.keep_step import move
+from stickslip.engine.contact_step.negative_friction import goes_below_zero
 from stickslip.engine.contact_step.step_events import knot_crossing
 from stickslip.engine.contact_step.taylor_step import choose_length, first_guess, note_shock, prepare_series
-from stickslip.engine.contact_step.negative_friction import goes_below_zero
 from stickslip.engine.contact_step.verify import begin_verification, is_negative, obeys_contact
 from stickslip.engine.loop import ROOM
 from stickslip.engine.series.polynomial import NONE, bound_below, fill, moment, multiply, powers_of, total

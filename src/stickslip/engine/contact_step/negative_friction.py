@@ -20,7 +20,7 @@ most, because its series must see it."""
 CLOSER = 8.0
 """Factor by which the places around a minimum move together before the minimum is estimated once more (1)."""
 FLOOR = -0.5 * NEGLIGIBLE
-"""Friction coefficient (1) below which a step may not go: above that which ends the run where a step ends."""
+"""Friction coefficient (1) below which no step may go: below the rounding of zero, and above what ends a run where a step ends."""
 CLEARLY = 1e-3
 """Friction coefficient (1) that is clearly above zero: what the series of a step miss of friction is less."""
 
@@ -103,7 +103,7 @@ def last_place_above_zero(run: Run, rate: Floats, length: float, below: float) -
     low, high = 0.0, below
     for _ in range(60):
         middle = 0.5 * (low + high)
-        if friction_in_step(run, rate, length, middle) < FLOOR:
+        if friction_in_step(run, rate, length, middle) < 0.0:
             high = middle
         else:
             low = middle
