@@ -59,7 +59,7 @@ def test_an_unknown_name_is_an_attribute_error() -> None:
 
 def test_mypy_knows_the_names_through_the_stub(tmp_path: Path) -> None:
     code = "import stickslip as ss\nreveal_type(ss.load_scenario)\nreveal_type(ss.studies.compare)\nss.simulat\n"
-    printed = mypy_on(tmp_path / "user.py", code)
-    assert "Scenario" in printed
-    assert "Comparison" in printed
-    assert 'Module has no attribute "simulat"' in printed
+    scenario, comparison, unknown, *_ = mypy_on(tmp_path / "user_of_names.py", code).splitlines()
+    assert scenario.endswith('-> stickslip.scenarios.scenario.Scenario"')
+    assert comparison.endswith('-> stickslip.studies.compare.Comparison"')
+    assert 'Module has no attribute "simulat"' in unknown

@@ -15,7 +15,7 @@ def mypy_on(file: Path, code: str) -> str:
     """Write code into a file, and return what mypy prints about it.
 
     Its options are the project's, so that it finds the types of the package in the cache that `make lint` has left: half a second
-    instead of twenty.
+    instead of twenty. Files of different tests have different names, because that cache knows them by name.
     """
     pytest.importorskip("mypy")
     file.write_text(code)

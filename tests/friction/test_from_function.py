@@ -239,7 +239,7 @@ def test_a_part_that_is_a_function_is_refused_with_what_makes_it_a_law() -> None
 def test_the_type_of_the_law_is_known(tmp_path: Path) -> None:
     """FromFunction gives the law, or a decorator; Problem takes functions and texts, and keeps a law; wrong types are errors."""
     printed = mypy_on(
-        tmp_path / "user.py",
+        tmp_path / "user_of_laws.py",
         "import stickslip as ss\n"
         "slab = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)\n"
         "reveal_type(ss.friction.FromFunction(lambda v: 0.5, counts='path', a=1.0))\n"
@@ -253,7 +253,7 @@ def test_the_type_of_the_law_is_known(tmp_path: Path) -> None:
         "ss.friction.FromFunction(lambda v: 0.5, counts='pth')\n"
         "ss.friction.FromExpression('a', {'a': [0.5]})\n",
     )
-    said = [line.partition("user.py:")[2] for line in printed.splitlines() if "user.py:" in line]
+    said = [line.partition("user_of_laws.py:")[2] for line in printed.splitlines() if "user_of_laws.py:" in line]
     assert [(line.partition(":")[0], line.partition(": ")[2].partition(":")[0]) for line in said] == [
         ("3", "note"), ("6", "note"), ("7", "note"), ("10", "error"), ("11", "error"), ("11", "note"), ("11", "note"),
         ("11", "note"), ("12", "error"),

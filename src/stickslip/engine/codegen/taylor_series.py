@@ -43,7 +43,7 @@ SIGNATURES = {
 }
 """Names of the functions and of their arguments: arrays of floats if marked by [], otherwise single floats."""
 
-MODULE_HEADER = '''"""Generated from the friction formula {formula}; do not edit."""
+MODULE_HEADER = '''"""Generated for the friction formula {formula}; do not edit."""
 
 from math import asinh, cos, exp, log, sin, sqrt, tanh
 
@@ -63,17 +63,6 @@ SIDE_BY_SIDE = {"rate_jets", "motion_jets"}
 
 ONE, SIDE = "_array = types.CPointer(types.float64)", "from stickslip.engine.codegen.simd import POINTER as _array"
 """Lines that say what the arrays of a function consist of: floats, or lanes."""
-
-
-def describe(node: Expression) -> str:
-    """Return a formula in ordinary notation."""
-    signs = {"add": "+", "sub": "-", "mul": "*", "div": "/", "pow": "**"}
-    if node.operation in signs:
-        left, right = (describe(argument) for argument in node.arguments)
-        return f"({left} {signs[node.operation]} {right})"
-    if node.arguments:
-        return f"{node.operation}({describe(node.arguments[0])})"
-    return node.name or repr(node.value)
 
 
 class FormulaWriter(Recurrences):
@@ -194,6 +183,19 @@ class FormulaWriter(Recurrences):
         }
         return write[part]()
 
+    def describe(self, node: Expression) -> str:
+        """Return a formula in ordinary notation, with places of `c` for its constants.
+
+        Formulas that differ in their constants alone so have the same functions, but for `prepare`, and share their machine code.
+        """
+        signs = {"add": "+", "sub": "-", "mul": "*", "div": "/", "pow": "**"}
+        if not self.varies[node]:
+            return self.reference(node)
+        if node.operation in signs:
+            left, right = (self.describe(argument) for argument in node.arguments)
+            return f"({left} {signs[node.operation]} {right})"
+        return f"{node.operation}({self.describe(node.arguments[0])})" if node.arguments else node.name or node.operation
+
     def module(self, part: str) -> str:
         """Return the source text of a module that has one of the functions."""
         arguments = SIGNATURES[part]
@@ -201,7 +203,7 @@ class FormulaWriter(Recurrences):
         head = f"@sealed_cfunc(types.void({kinds}), **_options)\ndef {part}({', '.join(name.strip('[]') for name in arguments)}):\n"
         body = "".join(f"    {line}\n" for line in self.statements(part))
         functions, lanes = ("lane_differences", SIDE) if part in SIDE_BY_SIDE else ("differences", ONE)
-        header = MODULE_HEADER.format(formula=describe(self.formula), functions=functions, lanes=lanes)
+        header = MODULE_HEADER.format(formula=self.describe(self.formula), functions=functions, lanes=lanes)
         return header + head + body
 
 
