@@ -15,8 +15,8 @@ TIMES = 160
 """Number of times for a slab; for a block there are `BLOCK_TIMES`."""
 BLOCK_TIMES = 400
 MANY, FEW_NODES = 1_000, 4
-"""Number of pieces of a history from which on energies are integrated with fewer nodes on each: with all nodes they would take longer
-than the run, and a picture shows no difference.
+"""Number of pieces of a history from which on energies are integrated with fewer nodes on each: with all nodes they would take
+longer than the run, and a picture shows no difference.
 """
 PLACES = 240
 """Number of places in the slab at which the product of its two waves is added up."""
