@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import stickslip as ss
-from stickslip.contact.uniqueness import uniqueness_of
+from stickslip.contact.uniqueness import regime_of, uniqueness_of
 from stickslip.problem.selection_rule import SELECTION_RULES
 
 from .laws import ALPHA_C, S, Wavy, Z, hyperbolic, q_of, slab_problem
@@ -14,8 +14,9 @@ from .laws import ALPHA_C, S, Wavy, Z, hyperbolic, q_of, slab_problem
 
 def test_the_regime_changes_at_the_critical_value():
     for alpha, regime in [(0.1, "regular"), (ALPHA_C, "regular"), (ALPHA_C + 1e-6, "irregular"), (1.0, "irregular")]:
-        found = uniqueness_of(slab_problem(hyperbolic(alpha)))
-        assert found.regime == regime
+        problem = slab_problem(hyperbolic(alpha))
+        found = uniqueness_of(problem)
+        assert found.regime == regime_of(problem) == regime
         assert regime in found.summary
         assert found.critical_parameter == "alpha"
         assert found.critical_value == pytest.approx(0.196, rel=1e-15, abs=0)

@@ -9,6 +9,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.explorer.model.setting import Setting
+from stickslip.explorer.model.stop import Stopped
 from stickslip.explorer.model.strip import KEPT, MEMBERS, Strip, StripRange, present, strip_of, strip_text, usual_range
 from stickslip.foundation.errors import InputError
 from stickslip.scenarios.parameter_paths import find_parameter
@@ -97,7 +98,18 @@ def test_progress_is_told_where_runs_are_made_one_after_the_other_and_can_end_th
 
     with pytest.raises(StopError):
         strip_of(Setting.bundled("cycles-block").scenario(), StripRange("friction.distance", 0.01, 0.02), told, members=30)
-    assert said == ["strip: 0 of 30 runs", "strip: 10 of 30 runs"]
+    assert said == ["strip: 0 of 30 runs", "strip: 1 of 30 runs"]
+
+
+def test_a_strip_that_is_stopped_shows_the_runs_so_far() -> None:
+    def told(text: str) -> None:
+        if text.startswith("strip: 3 "):
+            raise Stopped
+
+    where = StripRange("friction.distance", 0.01, 0.02)
+    strip = strip_of(Setting.bundled("cycles-block").scenario(), where, told, members=5)
+    assert np.isfinite(strip.results["slip"]).tolist() == [True] * 3 + [False] * 2
+    assert strip_text(strip) == f"{strip.meaning}; 2 runs failed: it was stopped"
 
 
 @pytest.mark.parametrize(

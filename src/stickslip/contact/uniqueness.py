@@ -32,6 +32,9 @@ MOST_SHOWN = 6
 """Largest number of folds, and of jumps, that `repr` shows."""
 
 
+Regime = Literal["regular", "irregular", "continuum"]
+
+
 @dataclass(frozen=True, repr=False)
 class Uniqueness:
     """The result of `stickslip.uniqueness`; `print` shows it in sentences.
@@ -39,7 +42,7 @@ class Uniqueness:
     Loads are in Pa and slip rates in m/s, all for forward slip; backward slip is the mirror image.
     """
 
-    regime: Literal["regular", "irregular", "continuum"]
+    regime: Regime
     """regular: one slip rate at every load. irregular: several slip rates at loads between the folds. continuum: all slip rates of
     an interval at one load (there may be folds besides)."""
     rule: str
@@ -200,6 +203,22 @@ def uniqueness_of(problem: Problem, law_slip: float | str | WithUnit | None = No
     return (_kept if problem.selection in SELECTION_RULES else _determined)(problem, slip)
 
 
+def regime_of(problem: Problem) -> Regime:
+    """Return the `regime` of `uniqueness_of`, without what the rule makes of the branches: a sweep asks it of each of its runs."""
+    if problem.body.has_inertia or problem.friction.state is not None:
+        return "regular"
+    g = resistance(problem, None)
+    return _regime(g, _window(branches_of(g, _proof(g))))
+
+
+def _regime(g: Resistance, window: tuple[float, float] | None) -> Regime:
+    return "continuum" if g.plateaus else "irregular" if window else "regular"
+
+
+def _proof(g: Resistance) -> Certificate:
+    return certificate(g) if g.law.depends_on_rate else Certificate("proven")
+
+
 def _determined(problem: Problem, slip: float | None) -> Uniqueness:
     """Determine the uniqueness at a slip (m) of the law; None stands for the initial one."""
     if problem.body.has_inertia:
@@ -208,13 +227,13 @@ def _determined(problem: Problem, slip: float | None) -> Uniqueness:
     if problem.friction.state is not None:
         return Uniqueness("regular", problem.rule, _STATE.format(law=type(problem.friction).__name__, rule=problem.rule))
     g = resistance(problem, slip)
-    proof = certificate(g) if g.law.depends_on_rate else Certificate("proven")
+    proof = _proof(g)
     stable = branches_of(g, proof)
     table, folds = table_of(problem, g, stable), _folds(g, stable, proof)
     window, critical = _window(stable), _critical(problem, g)
     jumps = jumps_of(g, stable, table) if window else ()
     return Uniqueness(
-        regime="continuum" if g.plateaus else "irregular" if window else "regular",
+        regime=_regime(g, window),
         rule=problem.rule,
         summary=_summary(problem, g, critical, window, jumps) + sentence(g, proof, folds),
         critical_parameter=critical[0] if critical else None,

@@ -14,9 +14,9 @@ from stickslip.trajectory.history import History
 TIMES = 160
 """Number of times for a slab; for a block there are `BLOCK_TIMES`."""
 BLOCK_TIMES = 400
-MANY, FEW_NODES = 5_000, 4
-"""Number of pieces of a history from which on energies are integrated with fewer nodes on each: of 100 000 pieces all nodes would
-take seconds, and a picture shows no difference.
+MANY, FEW_NODES = 1_000, 4
+"""Number of pieces of a history from which on energies are integrated with fewer nodes on each: with all nodes they would take
+longer than the run, and a picture shows no difference.
 """
 PLACES = 240
 """Number of places in the slab at which the product of its two waves is added up."""

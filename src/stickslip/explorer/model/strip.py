@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.explorer.model.setting import Setting
+from stickslip.explorer.model.stop import Stopped
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity
 from stickslip.scenarios.parameter_paths import EXCLUDE_EACH_OTHER, ParameterPath, find_parameter, parameter_paths
@@ -32,8 +33,6 @@ MEMBERS = 200
 SHOWN = ("pulses", "slip", "first_end", "peak_rate")
 """The quantities of a strip that are drawn, by their names in a sweep; `first_end` is the time of the first arrest."""
 KEPT = (*SHOWN, "irregular")
-PORTION = 10
-"""Number of runs between two lines on the progress, where the batch cannot run them together."""
 
 
 @dataclass(frozen=True)
@@ -110,7 +109,8 @@ def strip_of(scenario: Scenario, where: StripRange, told: Told = lambda text: No
     where : StripRange
         The parameter and the range of its values.
     told : callable
-        Called with a line on the progress while runs are made one after the other. What it raises ends the strip.
+        Called with a line on the progress while runs are made one after the other. If it raises `Stopped`, the runs so far are
+        the result.
     members : int
         Number of runs.
 
@@ -134,13 +134,18 @@ def strip_of(scenario: Scenario, where: StripRange, told: Told = lambda text: No
 
 
 def _run(work: Work, name: str, values: Floats, told: Told) -> tuple[dict[str, Floats], dict[int, str]]:
-    """Return the results of all members, and why some failed: together in the batch, or in portions one after the other."""
+    """Return the results of all members, and why some failed: together in the batch, or one after the other."""
     count = len(values)
-    portion = PORTION if work.why_one_by_one else count
+    portion = 1 if work.why_one_by_one else count
     results, refused = {one: np.full(count, np.nan) for one in KEPT}, dict[int, str]()
     for start in range(0, count, portion):
-        if work.why_one_by_one:
-            told(f"strip: {start} of {count} runs")
+        try:
+            if work.why_one_by_one:
+                told(f"strip: {start} of {count} runs")
+        except Stopped:
+            if not start:
+                raise
+            return results, refused | dict.fromkeys(range(start, count), "it was stopped")
         some = slice(start, start + portion)
         done = run_chunk(work, {name: values[some]}, threads=1)
         for one, column in done.results.items():

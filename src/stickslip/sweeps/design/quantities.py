@@ -106,6 +106,12 @@ def _uniqueness(solution: Solution) -> Uniqueness:
     return uniqueness_of(solution.problem)
 
 
+def _irregular(solution: Solution) -> bool:
+    from stickslip.contact.uniqueness import regime_of
+
+    return regime_of(solution.problem) != "regular"
+
+
 IRREGULAR = "several slip rates solve the contact equation at some load, at the initial slip"
 _ALL = (
     Summary("events", "1", "slip events", lambda solution: len(solution.events)),
@@ -129,7 +135,7 @@ _ALL = (
     ),
     Summary("end_time", "s", "end of the run", lambda solution: solution.history.duration),
     Summary("arrested", "1", "at rest at the end of the run", lambda s: s.slip_rate(s.history.duration) == 0.0, is_flag=True),
-    Summary("irregular", "1", IRREGULAR, lambda solution: _uniqueness(solution).regime != "regular", is_flag=True),
+    Summary("irregular", "1", IRREGULAR, _irregular, is_flag=True),
     Summary(
         "branches",
         "1",
