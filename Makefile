@@ -32,7 +32,7 @@ bench: $(VENV)/.installed-test
 	$(BIN)/python -m benchmarks.speed
 
 # Pages, gallery and reference as a site that can be read offline: docs/_build/html/index.html. Warnings are errors, and every link
-# within the site is checked.
+# within the site is checked. docs/site/browse_site.py opens every page in a browser, too.
 site: $(VENV)/.installed-site
 	$(BIN)/python -m sphinx -b html -q --fail-on-warning --keep-going docs docs/_build/html
 	$(BIN)/python docs/site/check_site.py docs/_build/html

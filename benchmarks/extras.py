@@ -34,12 +34,26 @@ finally:
 """
 """Start the server, and get its page."""
 IN_NOTEBOOK = """
+import asyncio
 import stickslip as ss
-shown = ss.explore("fig6-slab")
-assert shown.explorer.setting is not None
-assert shown._repr_mimebundle_()
+
+async def cell():
+    shown = ss.explore("fig6-slab")
+    assert "23.44 m" in shown.explorer.answer.sentence
+    assert shown._repr_mimebundle_()
+
+asyncio.run(cell())
 """
 """Make what a notebook shows of the explorer."""
+BUILT = """
+import shutil, subprocess, sys
+from pathlib import Path
+for part in ("docs", "examples"):
+    shutil.copytree(Path(sys.argv[1]) / part, part, ignore=shutil.ignore_patterns("_build", "gallery"))
+subprocess.run([sys.executable, "-m", "sphinx", "-b", "html", "-q", "--fail-on-warning", "docs", "html"], check=True)
+subprocess.run([sys.executable, "docs/site/check_site.py", "html"], check=True)
+"""
+"""Make the site of the pages in the folder that is given, from the installed package, and check its links."""
 REFUSED = """
 import subprocess, sys
 done = subprocess.run([sys.executable, "-m", "stickslip", *sys.argv[1:]], capture_output=True, text=True)
@@ -62,6 +76,7 @@ DOORS: dict[str, tuple[tuple[str, ...], ...]] = {
     "seismology": ((*STICKSLIP, "export", "fig6-slab", "run.mseed"), (*STICKSLIP, "export", "fig6-slab", "run.sac")),
     "explorer": (("-c", SERVED),),
     "notebook": (("-c", IN_NOTEBOOK),),
+    "site": (("-c", BUILT, str(Path(__file__).parents[1])),),
 }
 """What each extra is for, as arguments of Python; "" is the package without extras."""
 

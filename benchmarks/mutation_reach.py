@@ -18,6 +18,8 @@ REGISTERED = (
     "engine/codegen/records.py",
     "engine/state/layout.py",
     "engine/state/workspace.py",
+    "engine/series/differences.py",
+    "engine/series/lane_differences.py",
     "engine/series/sine.py",
 )
 """Files that give types and operations to the compiler, or that generated modules import: no name leads to their users."""

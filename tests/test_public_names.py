@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 import stickslip as ss
+from tests.typed import mypy_on
 
 LAZY = ("stickslip", "stickslip.studies", "stickslip.figures")
 """Packages whose names are those of their stub."""
@@ -57,16 +58,8 @@ def test_an_unknown_name_is_an_attribute_error() -> None:
 
 
 def test_mypy_knows_the_names_through_the_stub(tmp_path: Path) -> None:
-    pytest.importorskip("mypy")
-    file = tmp_path / "user.py"
-    file.write_text("import stickslip as ss\nreveal_type(ss.load_scenario)\nreveal_type(ss.studies.compare)\nss.simulat\n")
-    done = subprocess.run(
-        [sys.executable, "-m", "mypy", "--config-file=", "--ignore-missing-imports", "--follow-imports=silent", str(file)],
-        capture_output=True,
-        text=True,
-        cwd=tmp_path,
-        check=False,
-    )
-    assert "Scenario" in done.stdout
-    assert "Comparison" in done.stdout
-    assert 'Module has no attribute "simulat"' in done.stdout
+    code = "import stickslip as ss\nreveal_type(ss.load_scenario)\nreveal_type(ss.studies.compare)\nss.simulat\n"
+    scenario, comparison, unknown, *_ = mypy_on(tmp_path / "user_of_names.py", code).splitlines()
+    assert scenario.endswith('-> stickslip.scenarios.scenario.Scenario"')
+    assert comparison.endswith('-> stickslip.studies.compare.Comparison"')
+    assert 'Module has no attribute "simulat"' in unknown

@@ -25,7 +25,9 @@ from unittest.mock import patch
 from stickslip.cli.main import main
 
 ROOT = Path(__file__).parents[2]
-PAGES = [ROOT / "README.md", *sorted(page for page in (ROOT / "docs").glob("**/*.md") if "_build" not in page.parts)]
+MADE = {"_build", "gallery"}
+"""Folders of docs/ that hold what `make site` has made."""
+PAGES = [ROOT / "README.md", *sorted(page for page in (ROOT / "docs").glob("**/*.md") if not MADE & set(page.parts))]
 _FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 

@@ -9,9 +9,11 @@ from typing import Any
 import numpy as np
 from hypothesis import assume
 from hypothesis import strategies as st
+from numba import cfunc
 from numpy.typing import NDArray
 
 from stickslip import InputError
+from stickslip.engine.codegen.lean_compiler import LeanCompiler
 from stickslip.engine.codegen.taylor_series import FormulaWriter
 from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, Text, fields_of
 from stickslip.friction import LAWS, FrictionLaw, FromExpression
@@ -26,13 +28,18 @@ EXPRESSIONS: dict[str, dict[str, float | str]] = {
     "0.4 + 0.1*tanh(u)**2 + 0.1*sqrt(1 + v**2) + arcsinh(v) * 1e-2 + (1 + v)**-0.5 - cos(pi*u)/9": {},
     "0.6 - 0.1*v + 0.01*v**3": {},
 }
-SAVED, NOT_KEPT = "from stickslip.engine.codegen.cache import sealed_cfunc", "from numba import cfunc as sealed_cfunc"
+SAVED = "from stickslip.engine.codegen.cache import sealed_cfunc"
+NOT_KEPT = "from tests.friction.drawn import unsaved_cfunc as sealed_cfunc"
 """A line of generated code, and another in its place: what the tests compile is not kept on disk."""
 PAIRS = [
     ("linear-slip-weakening", "hyperbolic-rate"),
     ("sinusoidal-slip", "piecewise-linear-rate"),
     ("table", "exponential-stribeck"),
 ]
+
+
+def unsaved_cfunc(signature: Any, **options: Any) -> Any:
+    return cfunc(signature, pipeline_class=LeanCompiler, **options)
 
 
 @st.composite

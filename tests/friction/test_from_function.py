@@ -5,8 +5,6 @@ from __future__ import annotations
 import functools
 import math
 import pickle
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -18,6 +16,7 @@ import stickslip as ss
 from stickslip import InputError
 from stickslip.friction import FromFunction, HyperbolicRate
 from stickslip.friction.formula.expression import RATE, SLIP
+from tests.typed import mypy_on
 
 
 def hyperbolic(u: Any, v: Any, static: float, dynamic: float, alpha: float = 1.0) -> Any:
@@ -239,9 +238,8 @@ def test_a_part_that_is_a_function_is_refused_with_what_makes_it_a_law() -> None
 
 def test_the_type_of_the_law_is_known(tmp_path: Path) -> None:
     """FromFunction gives the law, or a decorator; Problem takes functions and texts, and keeps a law; wrong types are errors."""
-    pytest.importorskip("mypy")
-    file = tmp_path / "user.py"
-    file.write_text(
+    printed = mypy_on(
+        tmp_path / "user_of_laws.py",
         "import stickslip as ss\n"
         "slab = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)\n"
         "reveal_type(ss.friction.FromFunction(lambda v: 0.5, counts='path', a=1.0))\n"
@@ -253,17 +251,13 @@ def test_the_type_of_the_law_is_known(tmp_path: Path) -> None:
         "ss.friction.FromExpression('a + b*v', {'a': 0.5, 'b': '1 s/m'})\n"
         "ss.Problem(slab, 3, initial_excess=0.0)\n"
         "ss.friction.FromFunction(lambda v: 0.5, counts='pth')\n"
-        "ss.friction.FromExpression('a', {'a': [0.5]})\n"
+        "ss.friction.FromExpression('a', {'a': [0.5]})\n",
     )
-    done = subprocess.run(
-        [sys.executable, "-m", "mypy", "--config-file=", "--ignore-missing-imports", "--follow-imports=silent", str(file)],
-        capture_output=True, text=True, cwd=tmp_path, check=False,
-    )  # fmt: skip
-    said = [line.partition("user.py:")[2] for line in done.stdout.splitlines() if "user.py:" in line]
+    said = [line.partition("user_of_laws.py:")[2] for line in printed.splitlines() if "user_of_laws.py:" in line]
     assert [(line.partition(":")[0], line.partition(": ")[2].partition(":")[0]) for line in said] == [
         ("3", "note"), ("6", "note"), ("7", "note"), ("10", "error"), ("11", "error"), ("11", "note"), ("11", "note"),
         ("11", "note"), ("12", "error"),
-    ], done.stdout  # fmt: skip
+    ], printed  # fmt: skip
     assert "FromExpression" in said[0]
     assert "FromExpression" in said[1]
     assert "FrictionLaw" in said[2]

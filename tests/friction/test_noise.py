@@ -76,9 +76,9 @@ def test_an_examination_says_how_many_folds_noise_makes() -> None:
     with warnings.catch_warnings(action="ignore", category=InputWarning):
         law = FromTable(rate=np.linspace(0, 2, 500), **NOISY)
         problem = ss.Problem(SLAB, law, initial_excess=0.0)
-        mixed = ss.Problem(
-            SLAB, ss.friction.SlipPlusRate(ss.friction.ExponentialSlipWeakening(0.2, 0.1, 1.0), law), initial_excess=0.0
-        )
+        few = FromTable(rate=np.linspace(0, 0.4, 100), friction=NOISY["friction"][:100])  # the examination looks along all slips
+        part = ss.friction.SlipPlusRate(ss.friction.ExponentialSlipWeakening(0.2, 0.1, 1.0), few)
+        mixed = ss.Problem(SLAB, part, initial_excess=0.0)
     folds = len(ss.uniqueness(problem).folds)
     assert folds > 100
     said = examine(Scenario(problem, 12.0)).warnings[0]

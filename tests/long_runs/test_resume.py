@@ -17,6 +17,7 @@ from stickslip.engine.state.layout import State, Stop
 from stickslip.io.netcdf import save_checkpoint
 from stickslip.run.options import RunOptions
 from stickslip.run.progress import Report
+from stickslip.run.resume import resume_run
 from stickslip.run.run_loop import split_time
 from stickslip.run.session import Session
 from stickslip.trajectory.checkpoint import Checkpoint
@@ -49,6 +50,12 @@ def stopped(problem: ss.Problem, duration: float, steps: int, path: Path) -> Che
     return run.snapshot()
 
 
+def continued(path: Path, duration: float | None = None) -> ss.Solution:
+    """Do what `ss.resume` does, but for the file that it would write in the end: that takes longer than the rest."""
+    found = ss.open_solution(path)
+    return resume_run(found, path, RunOptions.to_continue(found, duration, None))
+
+
 @pytest.mark.parametrize("name", RUNS)
 def test_a_run_stopped_anywhere_resumes_bit_for_bit(name: str, tmp_path: Path) -> None:
     problem, duration = RUNS[name]
@@ -56,12 +63,15 @@ def test_a_run_stopped_anywhere_resumes_bit_for_bit(name: str, tmp_path: Path) -
     file_of_whole = whole.to_netcdf(tmp_path / "whole.nc")
     assert differences(ss.open_solution(file_of_whole), whole) == []
     rng, steps = np.random.default_rng(len(name)), steps_of(problem, duration)
-    for stop in {1, 2, *rng.integers(1, steps + 1, 5).tolist(), steps}:
-        stopped(problem, duration, int(stop), path)
-        with h5py.File(path) as file:
-            assert file.attrs["status"] == "under way"
-        assert differences(ss.resume(path), whole) == [], f"after {stop} of {steps} steps"
-        assert differences_of_files(path, file_of_whole) == []
+    anywhere = [int(stop) for stop in rng.integers(1, steps + 1, 5)]
+    for stop in {1, 2, *anywhere, steps}:
+        stopped(problem, duration, stop, path)
+        assert differences(continued(path), whole) == [], f"after {stop} of {steps} steps"
+    stopped(problem, duration, anywhere[0], path)
+    with h5py.File(path) as file:
+        assert file.attrs["status"] == "under way"
+    assert differences(ss.resume(path), whole) == []
+    assert differences_of_files(path, file_of_whole) == []
 
 
 def test_those_stops_meet_the_engine_in_every_state(tmp_path: Path) -> None:
@@ -89,8 +99,9 @@ def test_a_finished_run_continues_as_if_it_had_not_ended(name: str, tmp_path: Pa
     problem, duration = RUNS[name]
     whole, path = ss.simulate(problem, duration), tmp_path / "run.nc"
     for share in np.random.default_rng(len(name)).uniform(0.02, 0.98, 3):
-        ss.simulate(problem, share * duration).to_netcdf(path)
-        assert differences(ss.resume(path, duration), whole) == [], f"from {share} of the way"
+        save_checkpoint(ss.simulate(problem, share * duration), path)
+        assert differences(continued(path, duration), whole) == [], f"from {share} of the way"
+    assert differences(ss.resume(path, duration), whole) == []
     assert differences(ss.resume(path), whole) == []  # and a run taken up at its end is at its end
 
 

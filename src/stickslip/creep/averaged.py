@@ -34,10 +34,13 @@ import numpy as np
 
 from stickslip.creep.pattern import Pattern
 from stickslip.creep.sight import Sight
+from stickslip.engine.contact_step.verify import NEGLIGIBLE
 from stickslip.engine.state.layout import Floats
 from stickslip.engine_input.branch_table import strength_change
 from stickslip.problem.problem import Problem
 
+PLACES = 65
+"""Number of slips at which the lowest friction of a stride is looked for, and again around the lowest of them."""
 COMPLEX_STEP = 1e-30
 """Imaginary part (m) of the slip in a derivative by a complex step: small enough that the derivative is exact to rounding."""
 
@@ -71,6 +74,16 @@ class Strength:
         """Return True if between x and later slips no part of the law can come into view that leaves no trace at x."""
         start = self.law_slip + self.sign * x
         return all(self.sight.used_up(start, self.law_slip + self.sign * end) <= 1.0 for end in later)
+
+    def drives(self, x: float, end: float) -> bool:
+        """Return True if friction falls below zero between two slips, by more than rounding: it would drive slip there."""
+        law = self.problem.friction
+        if not law.can_be_negative:
+            return False
+        slips = self.problem.law_slip + self.law_slip + self.sign * np.linspace(x, end, PLACES)
+        lowest = int(np.argmin(law.piece_coefficient(self.piece, slips, 0.0)))
+        near = np.linspace(slips[max(lowest - 1, 0)], slips[min(lowest + 1, PLACES - 1)], PLACES)
+        return bool(np.min(law.piece_coefficient(self.piece, near, 0.0)) < -NEGLIGIBLE)
 
     @cached_property
     def room(self) -> float:

@@ -77,6 +77,7 @@ def parameters_of(problem: Problem) -> Params:
     params.state_scale = law.state.scale if law.state else 0.0
     params.rate_floor = SMALLEST if law.sticks else SLOWEST * min(law.rate_scales)
     params.healed_piece = int(law.piece_at(problem.law_slip)) if law.memory == "since-arrest" else -1
+    params.can_be_negative = 1.0 if law.can_be_negative else 0.0
     lowest, _ = law.range()
     params.largest_drop = np.maximum(problem.strength - problem.normal * lowest, 0.0)
     params.impedance, params.inertia, params.reflection = body.damping, body.inertia, body.reflection

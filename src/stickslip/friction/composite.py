@@ -32,6 +32,11 @@ class LawOfParts(FrictionLaw):
         """The parts by the name of their field."""
         return {name: getattr(self, name) for name, (declared, _) in fields_of(type(self)).items() if isinstance(declared, Part)}
 
+    @property
+    @override
+    def can_be_negative(self) -> bool:
+        return any(part.can_be_negative for part in self.parts.values())
+
     @override
     def parameters(self) -> tuple[str, ...]:
         of_parts = (f"{place}_{name}" for place, part in self.parts.items() for name in part.parameters())

@@ -95,6 +95,11 @@ class LawContract(ABC):
         The lower bound must not be negative. The upper bound is inf if friction grows without bound.
         """
 
+    @property
+    def can_be_negative(self) -> bool:
+        """True if the friction coefficient is not known to stay above zero: the engine then watches it inside every step."""
+        return False
+
     def check(self) -> None:  # noqa: B027 - most laws have nothing to add
         """Check conditions that involve several fields. Raise InputError if one is violated."""
 

@@ -18,6 +18,7 @@ from stickslip.engine.codegen.simd import WIDTH
 from stickslip.engine.contact.contact_equation import constants_of
 from stickslip.engine.contact.stiffness import judge_stiffness
 from stickslip.engine.contact_step.keep_step import move
+from stickslip.engine.contact_step.negative_friction import goes_below_zero
 from stickslip.engine.contact_step.step_events import knot_crossing
 from stickslip.engine.contact_step.taylor_step import choose_length, first_guess, note_shock, prepare_series
 from stickslip.engine.contact_step.verify import begin_verification, is_negative, obeys_contact
@@ -183,6 +184,7 @@ def take_out(run: Run, own: Block) -> int:
         powers_of(length, run.powers)
         begin_verification(run)
         simple = obeys_contact(run, rate, length, grown, rate_end) and not is_negative(run)
+        simple = simple and not goes_below_zero(run, rate, length)
     if not simple or (run.pieces > 1 and knot_crossing(run, rate, length, 1.0) != NONE):
         run.state.last_step = own.last_step
         return Waits.ALONE

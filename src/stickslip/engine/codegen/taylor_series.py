@@ -25,7 +25,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from stickslip.engine.codegen.guards import HIDDEN, IN_SIGHT
 from stickslip.engine.codegen.recurrences import Recurrences
 from stickslip.friction.formula.expression import RATE, SLIP, STATE, Expression
 
@@ -44,109 +43,26 @@ SIGNATURES = {
 }
 """Names of the functions and of their arguments: arrays of floats if marked by [], otherwise single floats."""
 
-MODULE_HEADER = '''"""Generated from the friction formula {formula}; do not edit."""
+MODULE_HEADER = '''"""Generated for the friction formula {formula}; do not edit."""
 
-from math import asinh, cos, cosh, exp, expm1, log, log1p, sin, sinh, sqrt, tanh
+from math import asinh, cos, exp, log, sin, sqrt, tanh
 
-from numba import njit, types
+from numba import types
 
 from stickslip.engine.codegen.cache import sealed_cfunc
+from stickslip.engine.series.{functions} import arcsinh_difference, exp_difference, exp_value, log_difference
+from stickslip.engine.series.{functions} import power_difference, power_pull, power_value, tanh_difference
 from stickslip.engine.series.sine import sine, versine
-
-_array = types.CPointer(types.float64)
+{lanes}
 _options = dict(nopython=True, error_model="numpy", fastmath={{"contract"}})
-
-
-# f(now) - f(reference), where now = reference + step: near the reference without cancellation, far from it by the values.
-
-
-@njit(error_model="numpy")
-def exp_difference(value, now, step, largest):
-    if abs(step) < 1.0:
-        return value * expm1(step)
-    return exp(min(now, largest)) - value
-
-
-@njit(error_model="numpy")
-def log_difference(reference, now, step):
-    if abs(step) < 0.5 * abs(reference):
-        return log1p(step / reference)
-    return log(now / reference)
-
-
-@njit(error_model="numpy")
-def tanh_difference(value, now, step):
-    if abs(step) < 1.0 or (abs(step) < 300.0 and now * value > 0.0):  # on one side both may be 1 but for their last digits
-        return sinh(step) / cosh(now - step) / cosh(now)
-    return tanh(now) - value
-
-
-@njit(error_model="numpy")
-def power_difference(reference, now, step, exponent):
-    if abs(step) < 0.5 * reference:
-        return reference**exponent * expm1(exponent * log1p(step / reference))
-    return now**exponent - reference**exponent
-
-
-@njit(error_model="numpy")
-def arcsinh_difference(reference, now, step):
-    if abs(reference) > 1e150 or abs(now) > 1e150:  # their squares are no numbers
-        return asinh(now) - asinh(reference)
-    root, other = sqrt(1.0 + reference * reference), sqrt(1.0 + now * now)
-    if abs(step) < 0.5 * root:
-        return asinh(step * (root - reference * (2.0 * reference + step) / (root + other)))
-    return asinh(now) - asinh(reference)
-
-
-@njit(error_model="numpy")
-def power_pull(base, exponent):
-    height = exponent * log(base)  # the power is exp(height)
-    if height == 0.0:
-        return 0.0
-    room = max(abs(height) - {hidden!r}, {in_sight!r})
-    return 1.0 / (base * expm1((-room if height > 0.0 else room) / exponent))
-
-
-@njit(error_model="numpy")
-def exp_value(reference, difference, step, argument, largest):
-    """Far from the reference the exponential may be so much smaller that nothing of it is left in the sum."""
-    return reference + difference if abs(step) < 1.0 else exp(min(argument, largest))
-
-
-@njit(error_model="numpy")
-def power_value(reference, difference, base, exponent):
-    return reference + difference if abs(difference) < 0.5 * abs(reference) else base**exponent
 
 '''
 
 SIDE_BY_SIDE = {"rate_jets", "motion_jets"}
 """Functions that work on lanes."""
 
-LANES_HEADER = """
-from stickslip.engine.codegen.simd import POINTER as _array
-from stickslip.engine.codegen.simd import lane_by_lane
-
-exp_difference = lane_by_lane(exp_difference)
-log_difference = lane_by_lane(log_difference)
-tanh_difference = lane_by_lane(tanh_difference)
-power_difference = lane_by_lane(power_difference)
-exp_value = lane_by_lane(exp_value)
-arcsinh_difference = lane_by_lane(arcsinh_difference)
-power_pull = lane_by_lane(power_pull)
-power_value = lane_by_lane(power_value)
-
-"""
-
-
-def describe(node: Expression) -> str:
-    """Return a formula in ordinary notation."""
-    signs = {"add": "+", "sub": "-", "mul": "*", "div": "/", "pow": "**"}
-    if node.operation in signs:
-        left, right = (describe(argument) for argument in node.arguments)
-        return f"({left} {signs[node.operation]} {right})"
-    if node.arguments:
-        return f"{node.operation}({describe(node.arguments[0])})"
-    return node.name or repr(node.value)
+ONE, SIDE = "_array = types.CPointer(types.float64)", "from stickslip.engine.codegen.simd import POINTER as _array"
+"""Lines that say what the arrays of a function consist of: floats, or lanes."""
 
 
 class FormulaWriter(Recurrences):
@@ -267,14 +183,27 @@ class FormulaWriter(Recurrences):
         }
         return write[part]()
 
+    def describe(self, node: Expression) -> str:
+        """Return a formula in ordinary notation, with places of `c` for its constants.
+
+        Formulas that differ in their constants alone so have the same functions, but for `prepare`, and share their machine code.
+        """
+        signs = {"add": "+", "sub": "-", "mul": "*", "div": "/", "pow": "**"}
+        if not self.varies[node]:
+            return self.reference(node)
+        if node.operation in signs:
+            left, right = (self.describe(argument) for argument in node.arguments)
+            return f"({left} {signs[node.operation]} {right})"
+        return f"{node.operation}({self.describe(node.arguments[0])})" if node.arguments else node.name or node.operation
+
     def module(self, part: str) -> str:
         """Return the source text of a module that has one of the functions."""
         arguments = SIGNATURES[part]
         kinds = ", ".join("_array" if name.endswith("[]") else "types.float64" for name in arguments)
         head = f"@sealed_cfunc(types.void({kinds}), **_options)\ndef {part}({', '.join(name.strip('[]') for name in arguments)}):\n"
         body = "".join(f"    {line}\n" for line in self.statements(part))
-        header = MODULE_HEADER.format(formula=describe(self.formula), hidden=HIDDEN, in_sight=IN_SIGHT)
-        header += LANES_HEADER if part in SIDE_BY_SIDE else ""
+        functions, lanes = ("lane_differences", SIDE) if part in SIDE_BY_SIDE else ("differences", ONE)
+        header = MODULE_HEADER.format(formula=self.describe(self.formula), functions=functions, lanes=lanes)
         return header + head + body
 
 

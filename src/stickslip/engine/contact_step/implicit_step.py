@@ -13,12 +13,13 @@ from stickslip.engine.contact.contact_equation import onset_of_slip
 from stickslip.engine.contact.law_knots import settle_piece
 from stickslip.engine.contact.stiffness import NOT_STIFF, contact_at, forgotten, settling_rate
 from stickslip.engine.contact_step.keep_step import keep_step
-from stickslip.engine.contact_step.step_events import cut_at_first_event, resolve, stretch
+from stickslip.engine.contact_step.negative_friction import last_place_above_zero, place_below_zero
+from stickslip.engine.contact_step.step_events import Cut, cut_at_first_event, resolve, stretch
 from stickslip.engine.contact_step.taylor_step import note_shock
-from stickslip.engine.contact_step.verify import NEGLIGIBLE
+from stickslip.engine.contact_step.verify import NEGLIGIBLE, TRIFLE
 from stickslip.engine.series.polynomial import NONE, copy, fill, scale, total
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Stop, Task
+from stickslip.engine.state.layout import Floats, StepEvent, Stop, Task
 from stickslip.engine.state.workspace import Run
 
 
@@ -35,10 +36,28 @@ def slip_implicitly(run: Run, xi_to: float) -> None:
     if run.counts.has_state == 0 and run.k.speed * settling_rate(run) < NOT_STIFF:
         run.counts.stiff = 0
     cut = cut_at_first_event(run, rate, 1.0)
+    cut = end_above_zero(run, rate, cut)
     keep_state(run, cut.end)
     keep_step(run, rate, cut.end, xi_to if reached and cut.end == 1.0 else run.state.xi + cut.end * guess)
     note_negative_friction(run)
     resolve(run, cut)
+
+
+@kernel
+def end_above_zero(run: Run, rate: Floats, cut: Cut) -> Cut:
+    """Return the cut of a step before which friction stays above zero, and note a breach if it is below zero from the start.
+
+    `rate` is cut accordingly.
+    """
+    below = place_below_zero(run, rate, cut.end)
+    if below == NONE:
+        return cut
+    end = cut.end * last_place_above_zero(run, rate, cut.end, below)
+    if end < TRIFLE:
+        run.counts.breach = Stop.NEGATIVE_FRICTION
+        return cut
+    stretch(run, end, rate)
+    return Cut(StepEvent.NONE, 0, end)
 
 
 @kernel

@@ -15,6 +15,7 @@ from stickslip.engine.contact.contact_equation import TIE, constants_of, load_ah
 from stickslip.engine.contact.law_knots import settle_piece
 from stickslip.engine.contact.stiffness import judge_stiffness
 from stickslip.engine.contact_step.keep_step import move
+from stickslip.engine.contact_step.negative_friction import goes_below_zero
 from stickslip.engine.contact_step.step_events import cut_at_first_event, growth, resolve, stretch
 from stickslip.engine.contact_step.step_plan import StepPlan, plan_step, plan_to_moving_fold
 from stickslip.engine.contact_step.verify import (
@@ -136,10 +137,14 @@ def take_step(run: Run, plan: StepPlan, guess: float) -> None:
     cut = cut_at_first_event(run, kept.rate, length)
     grown, rate_end = growth(run, kept.rate, length * cut.end, 1.0), total(kept.rate)
     for halving in range(HALVINGS + 1):
-        if is_straight(run) or (obeys_contact(run, kept.rate, length * cut.end, grown, rate_end) and not is_negative(run)):
+        if is_straight(run):
+            break
+        obeys = obeys_contact(run, kept.rate, length * cut.end, grown, rate_end)
+        negative = is_negative(run) or goes_below_zero(run, kept.rate, length * cut.end)
+        if obeys and not negative:
             break
         if halving == HALVINGS:
-            run.counts.breach = Stop.NEGATIVE_FRICTION if is_negative(run) else Stop.OFF_THE_LAW
+            run.counts.breach = Stop.NEGATIVE_FRICTION if negative else Stop.OFF_THE_LAW
             break
         if run.state.rounded == 0.0:
             note_rounding(run, length)

@@ -39,6 +39,7 @@ class Params(Record):
     inflow_rate: float  # Pa/s: growth of that inflow
     reference: float  # Pa or N: reference strength (static strength at the start), from which loads are differences
     largest_drop: float  # Pa or N: reference strength minus the least friction of the law, or 0 if that is negative
+    can_be_negative: float  # 1 if the law is not known to stay above zero, else 0
     counts_net: float  # 1 if the law counts net slip, 0 if it counts the path
     static_excess: float  # 1: static friction coefficient minus that of sliding at slip rate 0
     stick_to: float  # Pa or N: load at which rest ends, minus the static strength at the present slip; never above 0

@@ -133,9 +133,17 @@ class FromExpression(RemembersSlip):
 
         The upper bound includes the coefficient at rest.
         """
-        slip = (0.0 if self.counts == "path" else -math.inf, math.inf)
-        low, high = bounds(self.tree, self.numbers(), slip, (0.0, math.inf))
+        low, high = self._bounds()
         return max(low, 0.0), max(high, self.static or 0.0)
+
+    @property
+    @override
+    def can_be_negative(self) -> bool:
+        return not self._bounds()[0] >= 0.0
+
+    def _bounds(self) -> tuple[float, float]:
+        slip = (0.0 if self.counts == "path" else -math.inf, math.inf)
+        return bounds(self.tree, self.numbers(), slip, (0.0, math.inf))
 
     @property
     @override

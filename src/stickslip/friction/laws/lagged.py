@@ -69,6 +69,12 @@ class LaggedFriction(LawOfParts):
         """
         return super().coefficient(u, v, np.maximum(np.asarray(w, float), 0.0))
 
+    @property
+    @override
+    def can_be_negative(self) -> bool:
+        """True with a direct effect: where slip is slow, but was fast a moment ago, it lowers friction without bound."""
+        return self.direct > 0.0 or super().can_be_negative
+
     @override
     def range(self) -> tuple[float, float]:
         low, high = self.rate.range()

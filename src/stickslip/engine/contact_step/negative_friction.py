@@ -1,0 +1,119 @@
+"""Find where friction falls below zero inside a step, under a law that is not known to stay above zero.
+
+At the end of each step friction is known anyway (`verify.is_negative`). A user's formula can dip below zero and return between two
+ends, and friction that drives slip must not pass unnoticed.
+"""
+
+from __future__ import annotations
+
+from stickslip.engine.codegen.compiler import kernel
+from stickslip.engine.contact.stiffness import contact_at
+from stickslip.engine.contact_step.step_events import growth
+from stickslip.engine.contact_step.verify import ALLOWED, ALLOWED_SLOPE, NEGLIGIBLE
+from stickslip.engine.series.polynomial import NONE, RECIPROCAL, bound_below, evaluate
+from stickslip.engine.state.layout import TERMS, Floats
+from stickslip.engine.state.workspace import Run
+
+PLACES = 16
+"""Number of parts into which a step is divided to look for minima of friction: a step covers about one oscillation of a law at
+most, because its series must see it."""
+CLOSER = 8.0
+"""Factor by which the places around a minimum move together before the minimum is estimated once more (1)."""
+FLOOR = -0.5 * NEGLIGIBLE
+"""Friction coefficient (1) below which no step may go: below the rounding of zero, and above what ends a run where a step ends."""
+CLEARLY = 1e-3
+"""Friction coefficient (1) that is clearly above zero: what the series of a step miss of friction is less."""
+
+
+@kernel
+def goes_below_zero(run: Run, rate: Floats, length: float) -> bool:
+    """Return True if friction falls below zero in an explicit step, whose series are in `rate`, run.load_along_slip and run.powers.
+
+    Most steps are cleared by a bound on the polynomial that is left of the load without radiation, spring and inertia.
+    """
+    if run.params.can_be_negative == 0.0:
+        return False
+    if run.k.bend == 0.0 and is_clearly_positive(run, rate, run.k.speed * length):
+        return False
+    return place_below_zero(run, rate, length) != NONE
+
+
+@kernel
+def is_clearly_positive(run: Run, rate: Floats, duration: float) -> bool:
+    """Return True if a bound proves that friction is clearly above zero over an explicit step of the given duration (s)."""
+    params, friction = run.params, run.spare
+    for k in range(TERMS):
+        friction[k] = -params.impedance * rate[k]
+    for k in range(run.counts.degree + 1):
+        friction[k] += run.load_along_slip[k] * run.powers[k]
+    allowed = ALLOWED * params.tolerance * params.impedance * abs(rate[0])
+    if run.counts.has_inertia == 1:
+        for k in range(TERMS - 1):
+            friction[k + 1] -= params.stiffness * duration * RECIPROCAL[k + 1] * rate[k]
+            friction[k] -= params.inertia / duration * (k + 1) * rate[k + 1]
+        allowed = ALLOWED_SLOPE * params.tolerance * params.inertia / duration * abs(rate[0])
+    friction[0] += params.reference - run.state.unbalanced - CLEARLY * params.normal - allowed
+    return friction[0] > 0.0 and bound_below(friction) > 0.0
+
+
+@kernel
+def place_below_zero(run: Run, rate: Floats, length: float) -> float:
+    """Return a place on [0, 1] of a step at which friction is below zero, or NONE if there is none.
+
+    `rate` is the magnitude of the slip rate (m/s) as a polynomial on [0, 1], and `length` the length of the step (in guesses). A
+    minimum between two places is found but for about a millionth of the change of friction between them.
+    """
+    if run.params.can_be_negative == 0.0:
+        return NONE
+    width = 1.0 / PLACES
+    before, here = friction_in_step(run, rate, length, 0.0), friction_in_step(run, rate, length, width)
+    for k in range(2, PLACES + 1):
+        after = friction_in_step(run, rate, length, k * width)
+        if here < FLOOR:
+            return (k - 1) * width
+        if (here <= before or k == 2) and (here <= after or k == PLACES):  # at the ends the minimum may be next to them
+            lowest = place_of_minimum(run, rate, length, (k - 1) * width)
+            if friction_in_step(run, rate, length, lowest) < FLOOR:
+                return lowest
+        before, here = here, after
+    return 1.0 if here < FLOOR else NONE
+
+
+@kernel
+def place_of_minimum(run: Run, rate: Floats, length: float, place: float) -> float:
+    """Return the place on [0, 1] of a step near `place` at which friction is lowest, by two parabolas."""
+    width = 1.0 / PLACES
+    for _ in range(2):
+        here = friction_in_step(run, rate, length, place)
+        before, after = friction_in_step(run, rate, length, place - width), friction_in_step(run, rate, length, place + width)
+        bend = before - 2.0 * here + after
+        if not bend > 0.0:
+            return place
+        place = min(max(place + 0.5 * width * (before - after) / bend, width / CLOSER), 1.0 - width / CLOSER)
+        width /= CLOSER
+    return place
+
+
+@kernel
+def last_place_above_zero(run: Run, rate: Floats, length: float, below: float) -> float:
+    """Return the place on [0, 1] of a step at which friction falls below zero, if it is below zero at the place `below`.
+
+    It is 0 if friction is below zero already where the step begins.
+    """
+    low, high = 0.0, below
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        if friction_in_step(run, rate, length, middle) < 0.0:
+            high = middle
+        else:
+            low = middle
+    return low
+
+
+@kernel
+def friction_in_step(run: Run, rate: Floats, length: float, place: float) -> float:
+    """Return the friction coefficient at a place on [0, 1] of a step that is `length` guesses long."""
+    state = evaluate(run.state_jet, place * length) if run.counts.has_state == 1 else 0.0
+    slip = run.state.law_slip + run.k.chi * growth(run, rate, length, place)
+    contact_at(run, slip, max(evaluate(rate, place), 0.0), state)
+    return run.params.reference / run.params.normal + run.value.mu
