@@ -51,7 +51,7 @@ def _plot(stage: Stage, name: str) -> Any:
     from bokeh.models import CustomJSTickFormatter, Span
 
     drawn = stage.plot(f"strip_{name}", "strip_x", f"strip_{name}_y", f"Strip: {NAMES[name]} of 200 runs against a parameter")
-    drawn.yaxis[0].ticker.desired_num_ticks = 3
+    drawn.xaxis[0].ticker.desired_num_ticks = drawn.yaxis[0].ticker.desired_num_ticks = 3
     bands = stage.source("strip_bands", "x0", "x1")
     paint(drawn.vstrip(x0="x0", x1="x1", source=bands, line_width=0, fill_alpha=0.1).glyph, fill_color="unstable")
     facts = stage.source("strip_facts", "log")

@@ -71,8 +71,12 @@ class Player {
   /** Show what is chosen of the slab: velocity, displacement or stress. */
   showField() {
     const name = this.field?.value ?? "velocity", found = this.facts.fields?.[name];
-    if (!found) return;
-    this.models.set("glyph:field", { image: { field: name } });
+    const image = this.models.column("field", name);
+    if (image !== this.models.column("picture", "image")) {
+      const place = ["x", "y", "dw", "dh"].map((one) => [one, this.models.column("field", one)]);
+      this.models.put("picture", { image, ...Object.fromEntries(place) });
+    }
+    if (!found) return; // a block
     this.models.set("colour:field", { low: -found.most, high: found.most });
     const key = document.querySelector("[data-heading=field] li");
     if (key && this.field) key.lastChild.textContent = found.text; // beside the name that is chosen

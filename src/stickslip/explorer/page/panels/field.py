@@ -1,6 +1,6 @@
 """The space-time panel: what happens in the slab as an image, with the wave fronts that leave the contact.
 
-The browser has velocity, displacement and stress, and shows the one that is chosen (assets/player.js).
+The browser has velocity, displacement and stress, and draws the one that is chosen (assets/player.js).
 """
 
 from __future__ import annotations
@@ -66,9 +66,9 @@ def _field(values: Any, unit: str) -> dict[str, Any]:
 def plot(stage: Stage) -> Any:
     """Return the plot of velocity over time and place."""
     drawn = stage.plot("field", "near", "place", TEXT, left=NARROW, bare=True)
-    source, colours = stage.source("field", *EMPTY), signed_scale("colour:field")
-    image = drawn.image("velocity", "x", "y", "dw", "dh", source=source, color_mapper=colours, level="image")
-    image.glyph.name = "glyph:field"
+    picture, colours = stage.source("picture", "image", "x", "y", "dw", "dh"), signed_scale("colour:field")
+    drawn.image("image", "x", "y", "dw", "dh", source=picture, color_mapper=colours, level="image")
+    picture.tags = [stage.source("field", *EMPTY)]  # what nothing refers to, the browser does not get
     fronts = drawn.multi_line("time", "place", source=stage.source("fronts", "time", "place"), line_width=1)
     paint(fronts.glyph, line_color="front")
     drawn.grid.visible = False
