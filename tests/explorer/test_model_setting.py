@@ -351,35 +351,6 @@ def test_opened_points_become_the_law() -> None:
     assert made.value("body.thickness") == "10 km"
 
 
-@pytest.mark.parametrize(
-    ("file", "content", "part"),
-    [
-        ("a.csv", b"", "is empty"),
-        ("a.csv", b"\xff\xfe\x00", "not a text file"),
-        ("a.csv", b"slip,friction\n0,0.5\n", "at least two points"),
-        ("a.csv", b"slip,friction\n0,0.5\n1,-1\n", "must not be negative"),
-        ("a.csv", b"slip,friction\n1,0.5\n0,0.4\n", "slip must ascend"),
-        ("a.csv", b"0" * 1_000_001, "larger than 1000000 bytes"),
-        ("a\n\x1b[31m.csv", b"", "a[31m.csv"),
-        ("a.toml", b"x = 1", "x is unknown"),
-        ("a.toml", b"[[[", "not TOML"),
-        ("a.toml", b"a." * 50 + b"b = 1", "not a scenario"),
-        ("../../secret.toml", b"[body]", "secret.toml: "),
-    ],
-)
-def test_bad_file_is_refused_in_one_line(file: str, content: bytes, part: str) -> None:
-    with pytest.raises(InputError) as error:
-        opened(file, content, Setting.bundled("fig6-slab"))
-    assert part in one_line(error)
-
-
-def test_opened_scenario_cannot_name_a_file() -> None:
-    text = library.text("fig6-slab").partition("[friction]")[0] + '[friction]\nkind = "table"\nfile = "/etc/passwd"\n'
-    text += "[initial]\nexcess = 0.0\n[run]\nduration = 1.0\n"
-    with pytest.raises(InputError, match="write the points as lists"):
-        opened("mine.toml", text.encode(), Setting.bundled("fig6-slab"))
-
-
 def test_formula_brings_its_parameters() -> None:
     setting = with_expression(Setting.bundled("fig6-slab"), "mu_d + (mu_s - mu_d)/(1 + alpha*v)")
     assert setting.value("friction.parameters.alpha") == "1 s/m"

@@ -74,6 +74,12 @@ def test_a_slab_is_an_image_and_a_block_has_none() -> None:
     slab, block = view_of(answer("fig6-slab")), view_of(answer("fig6-block-reconstructed"))
     assert slab.columns["field"]["velocity"][0].dtype == np.float32
     assert slab.fastest == pytest.approx(float(np.abs(slab.columns["field"]["velocity"][0]).max()))
+    change = slab.columns["field"]["stress"][0]
+    assert not change[:, 0].any()
+    assert slab.facts["fields"]["stress"] == {
+        "most": pytest.approx(np.abs(change).max()),
+        "text": "±80.4 MPa",
+    }
     assert "field" in block.hidden
     assert block.facts["shape"]["kind"] == "block"
 
@@ -166,3 +172,12 @@ def test_a_block_of_bytes_holds_all_numbers_of_a_view(shown: tuple[Answer, View]
                     np.testing.assert_array_equal(one, other)
             else:
                 np.testing.assert_array_equal(found, np.asarray(values, float))
+
+
+@pytest.mark.parametrize(("name", "law", "contact"), [("fig5-slab-reconstructed", False, True), ("fig6-slab", False, False)])
+def test_panels_of_a_law_that_changes_with_slip_say_at_which_slip_they_are(name: str, law: bool, contact: bool) -> None:
+    titles = view_of(answer(name)).titles
+    assert [panel in titles and titles[panel].endswith("at the slip of the start") for panel in ("law", "contact")] == [
+        law,
+        contact,
+    ]

@@ -377,5 +377,5 @@ def test_pages_are_told_that_the_compiler_is_being_warmed_and_when_it_is_warm(mo
     warming.tell(lines.append)
     warming.tell(others.append)()
     warming._warm()
-    assert lines == ["The compiler is being warmed: the first picture takes a moment longer.", ""]
+    assert lines == ["The engine is being loaded: the first picture takes a moment longer.", ""]
     assert others == lines[:1]

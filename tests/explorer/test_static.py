@@ -18,7 +18,7 @@ from stickslip.explorer.model.tour import TOUR
 from stickslip.explorer.page.panels import view_of
 from stickslip.explorer.static import export
 from stickslip.explorer.static.export import check_folder, content_of, write_tour
-from stickslip.explorer.static.packing import LEVELS, SHORT, packed, script
+from stickslip.explorer.static.packing import COARSE, LEVELS, SHORT, packed, script
 from stickslip.foundation.errors import InputError
 
 
@@ -79,7 +79,7 @@ def test_the_kept_answer_of_a_step_is_that_of_its_setting(k: int) -> None:
             expected = np.asarray(whole[0] if np.ndim(whole[0]) == 2 else whole, float)
             found = unpacked(own["view"]["columns"][source][name])
             reach = np.ptp(expected[np.isfinite(expected)]) if np.isfinite(expected).any() else 0.0
-            np.testing.assert_allclose(found, expected, rtol=1e-6, atol=reach * (2.1e-3 if name == "velocity" else 1e-5))
+            np.testing.assert_allclose(found, expected, rtol=1e-6, atol=reach * (2.1e-3 if name in COARSE else 1e-5))
     assert [place["at"] for place in kept["places"]] == sorted(place["at"] for place in kept["places"])
     assert len(kept["places"]) == 3
 

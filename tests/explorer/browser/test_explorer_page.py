@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
-from io import StringIO
+from io import BytesIO, StringIO
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 import pytest
+from PIL import Image
 from playwright.sync_api import expect
 
 import stickslip as ss
@@ -148,6 +149,24 @@ def test_playing_moves_the_cursor_until_it_is_paused(shown: Shown) -> None:
     assert shown.cursor() == before
 
 
+@pytest.mark.parametrize(
+    ("name", "legend", "colour"),
+    [("stress", "±80.4 MPa", "blue"), ("displacement", "±23.4 m", "red"), ("velocity", "±4.1 m/s", "red")],
+)
+def test_the_slab_is_shown_by_velocity_displacement_or_stress(shown: Shown, name: str, legend: str, colour: str) -> None:
+    """Behind the wave that leaves the contact particles move forwards (red), and the stress has fallen (blue)."""
+    shown.page.locator("select[data-field]").select_option(name)
+    expect(shown.page.locator("[data-heading=field] li").first).to_contain_text(legend)
+    plot = shown.page.locator("[data-panel=field] .plot")
+    for _ in range(PATIENCE // 100):
+        picture = Image.open(BytesIO(plot.screenshot())).convert("RGB")
+        red, _, blue = picture.getpixel((int(0.3 * picture.width), int(0.6 * picture.height)))
+        if ("red" if red > blue + 30 else "blue" if blue > red + 30 else "neither") == colour:
+            return
+        shown.page.wait_for_timeout(100)
+    raise AssertionError(f"the slab is not {colour} there: {red}, {blue}")
+
+
 def test_a_pinned_run_is_compared_with_the_next_by_name(shown: Shown) -> None:
     shown.page.get_by_role("button", name="Pin", exact=True).click()
     shown.enter("friction-alpha", "0.5")
@@ -257,6 +276,11 @@ def test_nothing_runs_out_of_the_page_at_any_size(shown: Shown, size: str) -> No
             assert box["x"] >= 0
             assert box["x"] + box["width"] <= width
         assert shown.page.get_by_role("button", name="Play", exact=True).is_visible()
+        shown.until(
+            """["pulses", "slip", "first_end", "peak_rate"]
+            .map((name) => Bokeh.index.find_one(model(`plot:strip_${name}`)).el.getBoundingClientRect())
+            .every((one, i, all) => all.slice(0, i).every((other) => other.right <= one.left + 1 || other.bottom <= one.top + 1))"""
+        )  # no plot of the strip lies on another
     finally:
         shown.page.set_viewport_size({"width": 1280, "height": 800})
 
@@ -265,9 +289,9 @@ def test_the_ground_turns_dark_and_the_plots_with_it(shown: Shown) -> None:
     switch = shown.page.get_by_role("button", name="Dark ground")
     switch.click()
     expect(shown.page.locator("html")).to_have_attribute("data-ground", "dark")
-    shown.until("model('plot:slip').background_fill_color !== '#FFFFFF'")
+    shown.until("model('axis:time@traction').axis_label_text_color === '#E8EAED'")
     switch.click()
-    shown.until("model('plot:slip').background_fill_color === '#FFFFFF'")
+    shown.until("model('axis:time@traction').axis_label_text_color !== '#E8EAED'")
 
 
 def test_the_whole_page_can_be_reached_with_the_tab_key(shown: Shown) -> None:

@@ -23,7 +23,7 @@ from stickslip.explorer.page.words import Words
 
 TITLES = {
     "law": "Friction law", "contact": "Contact g(v)", "shape": "Body now", "slip": "Slip", "rate": "Slip rate",
-    "traction": "Traction", "field": "Velocity in the slab", "energy": "Energy",
+    "traction": "Traction", "field": "Slab in space and time", "energy": "Energy",
 }  # fmt: skip
 """Titles of the panels before the first answer, and of those whose axes have texts of their own."""
 SLOTS = ("bar", "aside", "below", "above")

@@ -22,8 +22,7 @@ class Stage:
         self.ranges: dict[str, Any] = {}
         self.named: dict[str, Any] = {}
         self.plots: dict[str, Any] = {}
-        self.signed = LinearColorMapper(palette=palettes()["light"]["signed"], low=-1.0, high=1.0, name="colour")
-        self.signed.tags = [{"palette": "signed"}]
+        self.signed = signed_scale("colour")
 
     def source(self, name: str, *columns: str) -> Any:
         """Return the source of this name; it is made, with empty columns, when it is first asked for."""
@@ -56,17 +55,13 @@ class Stage:
             tools="", toolbar_location=None, output_backend="canvas", name=f"plot:{name}", lod_threshold=None,
         )  # fmt: skip
         drawn.min_border_top = 6
-        paint(
-            drawn,
-            border_fill_color="card",
-            background_fill_color="card",
-            sizes={"min_border_left": left, "min_border_right": RIGHT},
-        )
-        drawn.outline_line_color = None
+        # The card below shows through: Bokeh clears the edge of a canvas by half only, so that the colour of another ground stays.
+        drawn.border_fill_color = drawn.background_fill_color = drawn.outline_line_color = None
+        paint(drawn, sizes={"min_border_left": left, "min_border_right": RIGHT})
         drawn.xaxis.name, drawn.yaxis.name = f"axis:{x}@{name}", f"axis:{y}@{name}"
         dress(drawn.xaxis[0], 0 if bare else 11)
         dress(drawn.yaxis[0])
-        drawn.yaxis[0].ticker.desired_num_ticks = 3 if left == NARROW else 5
+        drawn.yaxis[0].ticker.desired_num_ticks = 2 if left == NARROW else 5
         for grid in drawn.grid:
             paint(grid, grid_line_color="grid")
         if bare:
@@ -93,6 +88,11 @@ class Stage:
             self.named[name].axis_label = text
         for name, model in self.named.items():
             model.visible = name not in view.hidden
+
+
+def signed_scale(name: str) -> Any:
+    """Return a colour scale of signed values, under a name by which the browser sets its ends."""
+    return LinearColorMapper(palette=palettes()["light"]["signed"], low=-1.0, high=1.0, name=name, tags=[{"palette": "signed"}])
 
 
 def dress(axis: Any, size: float = 11) -> None:

@@ -35,7 +35,7 @@ from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.values import read_typed
 
 NAMES = {"pulses": "Pulses", "slip": "Slip", "first_end": "First arrest", "peak_rate": "Peak slip rate"}
-HEIGHT = 132
+HEIGHT = 124
 """Height (px) of the plots with their headings."""
 COLOURS = {"pulses": "ink", "slip": "slip", "first_end": "traction", "peak_rate": "rate"}
 TICK = "return facts.data.log[0] ? String(Number((10 ** tick).toPrecision(3))) : String(Number(tick.toPrecision(6)))"
@@ -51,6 +51,7 @@ def _plot(stage: Stage, name: str) -> Any:
     from bokeh.models import CustomJSTickFormatter, Span
 
     drawn = stage.plot(f"strip_{name}", "strip_x", f"strip_{name}_y", f"Strip: {NAMES[name]} of 200 runs against a parameter")
+    drawn.xaxis[0].ticker.desired_num_ticks = drawn.yaxis[0].ticker.desired_num_ticks = 3
     bands = stage.source("strip_bands", "x0", "x1")
     paint(drawn.vstrip(x0="x0", x1="x1", source=bands, line_width=0, fill_alpha=0.1).glyph, fill_color="unstable")
     facts = stage.source("strip_facts", "log")

@@ -13,7 +13,7 @@ FIRST_RUNS = (("fig6-slab", 20.0), ("fig6-block-reconstructed", 20.0), ("rate-an
 """Scenarios, each with a duration (s), that between them use the parts of the engine that most runs need."""
 FIRST_STRIP, FEW = StripRange("friction.alpha", 0.05, 2.0), 16
 """A strip, and a number of its runs, by which batches are warmed."""
-LINE = "The compiler is being warmed: the first picture takes a moment longer."
+LINE = "The engine is being loaded: the first picture takes a moment longer."
 
 
 @dataclass(eq=False)
@@ -49,7 +49,7 @@ class Warming:
             from stickslip.run.simulate import simulate
             from stickslip.scenarios.scenario import load_scenario
 
-            announce_by(lambda text: self._say(f"{LINE} {text[0].upper()}{text[1:]}."))
+            announce_by(lambda text: self._say(f"{text[0].upper()}{text[1:]}."))
             try:
                 for name, duration in FIRST_RUNS:
                     simulate(load_scenario(name), duration)

@@ -16,7 +16,7 @@ SHORT = 8
 """Columns of at most this many numbers are written as they are."""
 LEVELS = {8: 2**8 - 2, 16: 2**16 - 2}
 """The largest whole number of a packed column by its bits; the one after it stands for NaN."""
-COARSE = {"velocity"}
+COARSE = {"velocity", "stress"}
 """Images that are only drawn in colours, for which 8 bits are enough."""
 
 

@@ -43,7 +43,14 @@ class Controls {
     }
   }
 
+  /** Send what was entered in a field or chosen; a value of a slider that still waits is older. */
+  enter(message) {
+    this.waiting = null;
+    this.send(message);
+  }
+
   make(groups) {
+    this.waiting = null; // it was meant for other rows
     const open = this.wasOpen = new Map([...this.root.querySelectorAll("details")].map((one) => [one.dataset.title, one.open]));
     const focused = this.root.getRootNode().activeElement?.id;
     this.rows.clear();
@@ -72,7 +79,7 @@ class Controls {
     this.rows.set(row.path, parts);
     if (row.kind === "choice") {
       parts.field = document.createElement("select");
-      parts.field.addEventListener("change", () => this.send({ path: row.path, value: parts.field.value }));
+      parts.field.addEventListener("change", () => this.enter({ path: row.path, value: parts.field.value }));
       entry.append(parts.field);
       fillChoices(parts.field, row.options);
     } else {
@@ -80,7 +87,7 @@ class Controls {
       parts.field.type = "text"; parts.field.spellcheck = false; parts.field.autocomplete = "off";
       if (row.kind === "number" || row.kind === "whole") parts.field.inputMode = "decimal";
       if (row.empty) parts.field.placeholder = row.empty;
-      parts.field.addEventListener("change", () => this.send({ path: row.path, text: parts.field.value }));
+      parts.field.addEventListener("change", () => this.enter({ path: row.path, text: parts.field.value }));
       entry.append(parts.field);
       if (row.unit) entry.append(Object.assign(document.createElement("span"), { className: "unit", textContent: row.unit }));
       if (row.range) this.makeSlider(parts, id);

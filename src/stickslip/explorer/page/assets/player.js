@@ -45,6 +45,8 @@ class Player {
     this.slider.addEventListener("change", () => this.report());
     this.slider.addEventListener("keydown", (event) => this.key(event, true));
     if (document.querySelector("[data-plots]")) spareStyles(); // in a notebook there are plots of others too
+    this.field = document.querySelector("select[data-field]");
+    this.field?.addEventListener("change", () => this.showField());
     this.holdPlots();
     this.listenToPage();
   }
@@ -58,11 +60,26 @@ class Player {
   update(view) {
     showView(this.models, view);
     this.facts = view.facts;
+    this.showField();
     this.showPanels();
     this.root.querySelector(".out").disabled = true; // a new answer is shown whole
     this.showMarks();
     this.t = this.t === null ? this.start : Math.min(Math.max(this.t, this.start), this.end);
     this.draw(); // at once: what is drawn next must not hold the old moment in the new axes
+  }
+
+  /** Show what is chosen of the slab: velocity, displacement or stress. */
+  showField() {
+    const name = this.field?.value ?? "velocity", found = this.facts.fields?.[name];
+    const image = this.models.column("field", name);
+    if (image !== this.models.column("picture", "image")) {
+      const place = ["x", "y", "dw", "dh"].map((one) => [one, this.models.column("field", one)]);
+      this.models.put("picture", { image, ...Object.fromEntries(place) });
+    }
+    if (!found) return; // a block
+    this.models.set("colour:field", { low: -found.most, high: found.most });
+    const key = document.querySelector("[data-heading=field] li");
+    if (key && this.field) key.lastChild.textContent = found.text; // beside the name that is chosen
   }
 
   /** Bring the cursor to a time in seconds. */

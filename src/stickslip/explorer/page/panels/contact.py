@@ -53,6 +53,7 @@ def data_of(answer: Answer, units: Units) -> View:
             "axis:contact_rate@contact": axis_label("slip rate", "v", units.on_curve[0]),
             "axis:contact_load@contact": axis_label(name, "β", units.load[0]),
         },
+        titles={"contact": "Contact g(v) at the slip of the start"} if answer.scenario.problem.friction.depends_on_slip else {},
         keys={"contact": tuple(keys)},
         facts={"contact": {}},
     )

@@ -1,4 +1,7 @@
-"""The space-time panel: the velocity in the slab as an image, with the wave fronts that leave the contact."""
+"""The space-time panel: what happens in the slab as an image, with the wave fronts that leave the contact.
+
+The browser has velocity, displacement and stress, and draws the one that is chosen (assets/player.js).
+"""
 
 from __future__ import annotations
 
@@ -8,20 +11,20 @@ import numpy as np
 
 from stickslip.explorer.model.answer import Answer
 from stickslip.explorer.page.look import paint
-from stickslip.explorer.page.stage import NARROW, Stage
+from stickslip.explorer.page.stage import NARROW, Stage, signed_scale
 from stickslip.explorer.page.view import Columns, Key, Units, View, axis_label, single
 from stickslip.figures.style import unit_of
 
-TEXT = "Velocity in the slab: distance from the contact against time, with wave fronts"
-EMPTY: Columns = {"velocity": [], "displacement": [], "x": [], "y": [], "dw": [], "dh": []}
+TEXT = "Velocity, displacement or stress in the slab: distance from the contact against time, with wave fronts"
+EMPTY: Columns = {"velocity": [], "displacement": [], "stress": [], "x": [], "y": [], "dw": [], "dh": []}
 
 
 def data_of(answer: Answer, units: Units) -> View:
-    """Return velocity and displacement as images (rows are places, columns are times), and the fronts as lines."""
+    """Return velocity, displacement and change of stress as images (rows are places, columns are times), and fronts as lines."""
     slab = answer.slab
     if slab is None:
         return View(
-            columns={"field": dict(EMPTY), "fronts": {"time": [], "place": []}}, hidden={"field"}, facts={"field": None}
+            columns={"field": dict(EMPTY), "fronts": {"time": [], "place": []}}, hidden={"field"}, facts={"fields": {}}
         )  # fmt: skip
     time, place = units.nearby(slab.time), slab.place / units.place[1]
     step, height = (float(np.mean(np.diff(one))) if one.size > 1 else 1.0 for one in (time, place))
@@ -30,7 +33,14 @@ def data_of(answer: Answer, units: Units) -> View:
     largest = float(np.abs(velocity).max()) or 1.0
     thickness = float(place[-1] + 0.5 * height)
     shape = {"x": [float(time[0]) - 0.5 * step], "y": [0.0], "dw": [step * time.size], "dh": [thickness]}
-    image = {"velocity": [velocity], "displacement": [single(slab.displacement.T / units.slip[1])]}
+    displacement, change = slab.displacement.T, (slab.stress - slab.stress[0]).T
+    of_stress, pascal = unit_of("Pa", change)
+    image = {"velocity": [velocity], "displacement": [single(displacement / units.slip[1])], "stress": [single(change / pascal)]}
+    fields = {
+        "velocity": _field(velocity, name),
+        "displacement": _field(image["displacement"][0], units.slip[0]),
+        "stress": _field(image["stress"][0], of_stress),
+    }
     return View(
         columns={
             "field": image | shape,
@@ -41,16 +51,24 @@ def data_of(answer: Answer, units: Units) -> View:
         },
         limits={"place": (0.0, thickness)},
         fastest=largest,
-        titles={"field": axis_label("Slab: distance", "x", units.place[0])},
-        keys={"field": (Key(f"velocity ±{largest:.3g} {name}", "signed", "scale"), Key("wave front", "front"))},
-        facts={"field": {"thickness": thickness}},
+        titles={"field": axis_label("Slab:", "x", units.place[0])},
+        keys={"field": (Key(f"velocity {fields['velocity']['text']}", "signed", "scale"), Key("wave front", "front"))},
+        facts={"fields": fields},
     )
+
+
+def _field(values: Any, unit: str) -> dict[str, Any]:
+    """Return the ends of the colour scale of an image, as a number and as the text of the legend."""
+    most = float(np.abs(values).max()) or 1.0
+    return {"most": most, "text": f"±{most:.3g} {unit}"}
 
 
 def plot(stage: Stage) -> Any:
     """Return the plot of velocity over time and place."""
     drawn = stage.plot("field", "near", "place", TEXT, left=NARROW, bare=True)
-    drawn.image("velocity", "x", "y", "dw", "dh", source=stage.source("field", *EMPTY), color_mapper=stage.signed, level="image")
+    picture, colours = stage.source("picture", "image", "x", "y", "dw", "dh"), signed_scale("colour:field")
+    drawn.image("image", "x", "y", "dw", "dh", source=picture, color_mapper=colours, level="image")
+    picture.tags = [stage.source("field", *EMPTY)]  # what nothing refers to, the browser does not get
     fronts = drawn.multi_line("time", "place", source=stage.source("fronts", "time", "place"), line_width=1)
     paint(fronts.glyph, line_color="front")
     drawn.grid.visible = False

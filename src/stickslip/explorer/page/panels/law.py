@@ -31,7 +31,7 @@ def data_of(answer: Answer, units: Units) -> View:
     inside = (x >= low) & (x <= high)
     ends = [np.interp(end, x, law.coefficient) for end in (low, high)]
     visited = np.concatenate([[low], x[inside], [high]]), np.concatenate([ends[:1], law.coefficient[inside], ends[1:]])
-    label = axis_label(name, symbol, unit[0])
+    label, depends_on_slip = axis_label(name, symbol, unit[0]), answer.scenario.problem.friction.depends_on_slip
     main = answer.motions[0]
     along = main.slip if law.along == "slip" else np.abs(main.slip_rate)
     now = {
@@ -41,7 +41,8 @@ def data_of(answer: Answer, units: Units) -> View:
     return View(
         columns={"law": {"x": x, "y": law.coefficient}, "visited": {"x": visited[0], "y": visited[1]}, "motion": now},
         limits={"law_x": (least, most), "law_y": limits(law.coefficient)},
-        labels={"axis:law_x@law": label, "axis:law_powers": label, "axis:law_y@law": "friction coefficient μ"},
+        labels={"axis:law_x@law": label, "axis:law_powers": label, "axis:law_y@law": "friction μ"},
+        titles={"law": "Friction law at the slip of the start"} if depends_on_slip and law.along == "slip_rate" else {},
         keys={"law": (Key("law", "ink"), Key("visited by the run", "law"))},
         hidden={"axis:law_x@law" if law.log else "axis:law_powers"},
     )

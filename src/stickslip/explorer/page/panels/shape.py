@@ -32,8 +32,8 @@ def data_of(answer: Answer, units: Units) -> View:
     keys = [Key("velocity of particles", "signed", "scale")] if slab is not None else []
     height = (answer.slab.place[-1] + answer.slab.place[0]) / units.place[1] if answer.slab is not None else 1.0
     return View(
-        limits={"shape_x": (0.0, WIDTH), "shape_y": (-0.16 * height, 1.1 * height)},
-        labels={"axis:shape_y@shape": axis_label("distance from contact", "x", units.place[0])},
+        limits={"shape_x": (0.0, WIDTH), "shape_y": (-0.16 * height, 1.17 * height)},
+        labels={"axis:shape_y@shape": axis_label("distance", "x", units.place[0])},
         keys={"shape": tuple(keys)},
         hidden={"axis:shape_x@shape"} | (set() if slab is not None else {"axis:shape_y@shape"}),
         facts={
