@@ -10,13 +10,17 @@ import threading
 import time
 import weakref
 from collections.abc import Awaitable, Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 from urllib.parse import urlsplit
 from urllib.request import url2pathname
 
 import panel as pn
 import pytest
+from bokeh.document import Document
+from bokeh.events import DocumentReady
 from tornado.httpclient import AsyncHTTPClient, HTTPRequest, HTTPResponse
 from tornado.websocket import WebSocketClientConnection, websocket_connect
 
@@ -89,7 +93,10 @@ class Served:
 
 
 def with_server(test: Callable[[Served], Awaitable[None]], **place: Any) -> None:
-    """Run a test beside a server, in one event loop."""
+    """Run a test beside a server, in one event loop.
+
+    The browsers of these tests do not tell that they have put a page together: it is taken to be there at once.
+    """
 
     async def run() -> None:
         served = Served(Place(**({"port": 0} | place)))
@@ -100,7 +107,8 @@ def with_server(test: Callable[[Served], Awaitable[None]], **place: Any) -> None
         finally:
             served.server.stop()
 
-    asyncio.run(run())
+    with patch.object(serving, "LONGEST_LOADING", 0.0):
+        asyncio.run(run())
 
 
 async def until(reached: Callable[[], bool]) -> None:
@@ -267,11 +275,11 @@ def test_one_page_too_many_is_refused_in_a_sentence_until_another_is_closed(monk
 
 def test_a_result_that_comes_while_the_page_is_being_made_is_shown(monkeypatch: pytest.MonkeyPatch) -> None:
     """Bokeh now and then loses what another thread gives to a document: half of the pages waited for their first picture."""
-    shown, threads, deliver = [], set(), serving.deliver_to
+    shown, threads, take = [], set(), serving.Delivery.take
 
-    def noted(document: Callable[[], Any], call: Callable[[], None]) -> None:
+    def noted(delivery: serving.Delivery, call: Callable[[], None]) -> None:
         threads.add(threading.current_thread())
-        deliver(document, call)
+        take(delivery, call)
 
     def build(explorer: Explorer) -> Any:
         explorer.listen("answer", lambda: shown.append(explorer.setting))
@@ -286,8 +294,21 @@ def test_a_result_that_comes_while_the_page_is_being_made_is_shown(monkeypatch: 
         await until(lambda: len(shown) == 2)  # this one, and that of the address
         assert threads == {threading.current_thread()}, "the document must be given callbacks by the event loop alone"
 
-    monkeypatch.setattr(serving, "deliver_to", noted)
+    monkeypatch.setattr(serving.Delivery, "take", noted)
     with_server(test)
+
+
+def test_what_comes_before_the_browser_has_the_page_waits_for_it_in_order() -> None:
+    """What changes after a page was sent and before it was put together is lost: some first answers were never shown."""
+    document, called = Document(), []
+    delivery = serving.Delivery(document)
+    with patch.object(document, "add_next_tick_callback", lambda call: call()):
+        for number in (1, 2):
+            delivery.take(partial(called.append, number))
+        assert called == []
+        document.callbacks.trigger_event(DocumentReady())
+        delivery.take(partial(called.append, 3))
+    assert called == [1, 2, 3]
 
 
 def test_nothing_of_a_closed_page_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:

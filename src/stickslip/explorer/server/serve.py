@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import signal
 import socket
+from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -33,6 +34,8 @@ LARGEST_MESSAGE = 4_000_000
 """Size (bytes) of the largest message from a browser: an upload of 1 MB with all that surrounds it."""
 LARGEST_REQUEST = {"max_body_size": 10_000, "max_header_size": 100_000, "max_buffer_size": LARGEST_MESSAGE, "body_timeout": 30}
 """Bounds of what a browser may send outside the websocket: there is nothing to send but an address, which can hold a long link."""
+LONGEST_LOADING = 10.0
+"""Time (s) after which a page that has not told that it is there is taken to be there."""
 EVERYWHERE = ("0.0.0.0", "::", "")
 """Addresses by which a server listens on all networks of the computer."""
 
@@ -172,7 +175,9 @@ class ExplorerServer:
     def _page(self) -> None:
         """Fill the document of a new tab with its page, whose work ends with it."""
         document = pn.state.curdoc
-        deliver = partial(self._bokeh.io_loop.add_callback, deliver_to, ref(document))
+        delivery, loop = Delivery(document), self._bokeh.io_loop
+        loop.call_later(LONGEST_LOADING, delivery.begin)
+        deliver = partial(loop.add_callback, delivery.take)
         desk, files = ThreadDesk(deliver), ThreadDesk(deliver)
         explorer = self._make(desk, files)
         desk.report = explorer.told
@@ -206,18 +211,29 @@ def arguments_of(given: Mapping[str, list[bytes]]) -> dict[str, str]:
     return {name: values[-1].decode("utf-8", "replace") for name, values in given.items() if values}
 
 
-def deliver_to(document: Callable[[], Any], call: Call) -> None:
-    """Have a function called with the lock of a document, if that is still there.
+class Delivery:
+    """Call functions with the lock of a page's document, from the moment on at which the browser has the page.
 
-    This runs in the event loop itself: Bokeh loses callbacks that another thread adds while a session is being made, or while the
-    changes of its document are held back.
+    All of it runs in the event loop itself: Bokeh loses callbacks that another thread adds while a session is being made, or while
+    the changes of its document are held back. It also loses changes that are made after the page was sent and before the browser
+    has put it together, so that a page whose first answer took that long would wait for it for ever.
     """
-    found = document()
-    if found is not None:
-        found.add_next_tick_callback(partial(in_one_message, found, call))
 
+    def __init__(self, document: Any) -> None:
+        self._document, self._waiting = ref(document), deque[Call]()
+        self._is_ready = False
+        document.on_event("document_ready", lambda _: self.begin())
 
-def in_one_message(document: Any, call: Call) -> None:
-    """Call a function, and send all that it changes in a document together: a browser then draws it once."""
-    with pn.io.hold(document):
-        call()
+    def take(self, call: Call) -> None:
+        """Call a function on the page, or keep it until the page is there."""
+        self._waiting.append(call)
+        if self._is_ready:
+            self.begin()
+
+    def begin(self) -> None:
+        """Call what has waited, if the document is still there."""
+        self._is_ready, document = True, self._document()
+        while self._waiting:
+            call = self._waiting.popleft()
+            if document is not None:
+                document.add_next_tick_callback(call)
