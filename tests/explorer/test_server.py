@@ -275,9 +275,9 @@ def test_one_page_too_many_is_refused_in_a_sentence_until_another_is_closed(monk
 
 def test_a_result_that_comes_while_the_page_is_being_made_is_shown(monkeypatch: pytest.MonkeyPatch) -> None:
     """Bokeh now and then loses what another thread gives to a document: half of the pages waited for their first picture."""
-    shown, threads, take = [], set(), serving.Delivery.take
+    shown, threads, take = [], set(), serving.DeliveryToTab.take
 
-    def noted(delivery: serving.Delivery, call: Callable[[], None]) -> None:
+    def noted(delivery: serving.DeliveryToTab, call: Callable[[], None]) -> None:
         threads.add(threading.current_thread())
         take(delivery, call)
 
@@ -294,14 +294,14 @@ def test_a_result_that_comes_while_the_page_is_being_made_is_shown(monkeypatch: 
         await until(lambda: len(shown) == 2)  # this one, and that of the address
         assert threads == {threading.current_thread()}, "the document must be given callbacks by the event loop alone"
 
-    monkeypatch.setattr(serving.Delivery, "take", noted)
+    monkeypatch.setattr(serving.DeliveryToTab, "take", noted)
     with_server(test)
 
 
 def test_what_comes_before_the_browser_has_the_page_waits_for_it_in_order() -> None:
     """What changes after a page was sent and before it was put together is lost: some first answers were never shown."""
     document, called = Document(), []
-    delivery = serving.Delivery(document)
+    delivery = serving.DeliveryToTab(document)
     with patch.object(document, "add_next_tick_callback", lambda call: call()):
         for number in (1, 2):
             delivery.take(partial(called.append, number))

@@ -33,6 +33,7 @@ MOST_SHOWN = 6
 
 
 Regime = Literal["regular", "irregular", "continuum"]
+"""What `Uniqueness.regime` can be."""
 
 
 @dataclass(frozen=True, repr=False)

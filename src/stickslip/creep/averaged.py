@@ -75,7 +75,7 @@ class Strength:
         start = self.law_slip + self.sign * x
         return all(self.sight.used_up(start, self.law_slip + self.sign * end) <= 1.0 for end in later)
 
-    def drives(self, x: float, end: float) -> bool:
+    def falls_below_zero(self, x: float, end: float) -> bool:
         """Return True if friction falls below zero between two slips, by more than rounding: it would drive slip there."""
         law = self.problem.friction
         if not law.can_be_negative:

@@ -29,7 +29,7 @@ CLEARLY = 1e-3
 def goes_below_zero(run: Run, rate: Floats, length: float) -> bool:
     """Return True if friction falls below zero in an explicit step, whose series are in `rate`, run.load_along_slip and run.powers.
 
-    Most steps are cleared by a bound on the polynomial that is left of the load without radiation, spring and inertia.
+    For most steps a bound tells that it does not: friction is the load less radiation, spring and inertia, all of them polynomials.
     """
     if run.params.can_be_negative == 0.0:
         return False

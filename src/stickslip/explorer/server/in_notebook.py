@@ -27,7 +27,7 @@ def shown_in_notebook(scenario: Scenario) -> Any:
     from stickslip.explorer.page.notebook_page import build_for_notebook
 
     try:
-        deliver = Delivery(asyncio.get_running_loop().call_soon_threadsafe)
+        deliver = DeliveryToCell(asyncio.get_running_loop().call_soon_threadsafe)
     except RuntimeError:
         raise InputError("explore: there is no notebook here; `stickslip explore` opens the explorer in a browser") from None
     _bring_scripts()
@@ -42,7 +42,7 @@ def shown_in_notebook(scenario: Scenario) -> Any:
     return page
 
 
-class Delivery:
+class DeliveryToCell:
     """What a desk delivers is called within the cell that asks for the first answer, and after that between two cells.
 
     What is told to a browser while it still loads its scripts is lost. Therefore a page is shown with its first answer in it.

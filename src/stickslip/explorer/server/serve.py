@@ -175,7 +175,7 @@ class ExplorerServer:
     def _page(self) -> None:
         """Fill the document of a new tab with its page, whose work ends with it."""
         document = pn.state.curdoc
-        delivery, loop = Delivery(document), self._bokeh.io_loop
+        delivery, loop = DeliveryToTab(document), self._bokeh.io_loop
         loop.call_later(LONGEST_LOADING, delivery.begin)
         deliver = partial(loop.add_callback, delivery.take)
         desk, files = ThreadDesk(deliver), ThreadDesk(deliver)
@@ -211,7 +211,7 @@ def arguments_of(given: Mapping[str, list[bytes]]) -> dict[str, str]:
     return {name: values[-1].decode("utf-8", "replace") for name, values in given.items() if values}
 
 
-class Delivery:
+class DeliveryToTab:
     """Call functions with the lock of a page's document, from the moment on at which the browser has the page.
 
     All of it runs in the event loop itself: Bokeh loses callbacks that another thread adds while a session is being made, or while

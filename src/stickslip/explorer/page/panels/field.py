@@ -64,7 +64,7 @@ def _field(values: Any, unit: str) -> dict[str, Any]:
 
 
 def plot(stage: Stage) -> Any:
-    """Return the plot of velocity over time and place."""
+    """Return the plot of what is chosen of the slab, over time and place."""
     drawn = stage.plot("field", "near", "place", TEXT, left=NARROW, bare=True)
     picture, colours = stage.source("picture", "image", "x", "y", "dw", "dh"), signed_scale("colour:field")
     drawn.image("image", "x", "y", "dw", "dh", source=picture, color_mapper=colours, level="image")
