@@ -35,7 +35,7 @@ class Setups(NamedTuple):
     """
 
     params: Floats  # (members, numbers of Params)
-    jets: Integers  # (pieces,): addresses of the formulas' series for lanes; (0,) if members take their steps alone
+    jets: Integers  # (2 pieces,): addresses of the formulas' series and radii for lanes; (0,) if members take their steps alone
     constants: Floats  # (members, pieces, size)
     law: Integers  # (members, pieces of the law, LawPiece.total)
     branch_table: Floats  # (members, largest number of branches, Branch.total); for member n the first branches[n] are filled
@@ -71,7 +71,7 @@ def alike(scenario: Scenario, values: Values) -> Alike:
     with LOADING:
         compiled = [compile_formula(tree, law.parameters(), None) for tree in law.trees()]
         functions = functions_of(compiled, problem)
-        jets = np.array([jets_of(formula, problem) for formula in compiled if not steps_alone(problem)], np.int64)
+        jets = np.array([jets_of(formula, problem) for formula in compiled if not steps_alone(problem)], np.int64).ravel()
         prepare = np.array([formula.address("prepare") for formula in compiled], np.int64)
     state, counts = start_of(problem)
     set_lumping(counts, problem, scenario.shortest_event)
@@ -171,9 +171,9 @@ def steps_alone(problem: Problem) -> bool:
     return is_algebraic(problem) or (len(problem.friction.knots) > 0 and problem.friction.knot_variable == "rate")
 
 
-def jets_of(formula: CompiledFormula, problem: Problem) -> int:
-    """Return the address of the compiled series of a formula for lanes."""
-    return formula.address("motion_jets" if problem.body.has_inertia else "rate_jets")
+def jets_of(formula: CompiledFormula, problem: Problem) -> tuple[int, int]:
+    """Return the addresses of the compiled series and radii of a formula for lanes."""
+    return formula.address("motion_jets" if problem.body.has_inertia else "rate_jets"), formula.address("radii_in_lanes")
 
 
 # ---- the contact equation ---------------------------------------------------------------------------------------------------

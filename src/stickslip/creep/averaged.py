@@ -34,7 +34,7 @@ import numpy as np
 
 from stickslip.creep.pattern import Pattern
 from stickslip.creep.sight import Sight
-from stickslip.engine.contact_step.verify import NEGLIGIBLE
+from stickslip.engine.contact_step.certificate import NEGLIGIBLE
 from stickslip.engine.state.layout import Floats
 from stickslip.engine_input.branch_table import strength_change
 from stickslip.problem.problem import Problem

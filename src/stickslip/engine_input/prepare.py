@@ -218,12 +218,12 @@ def functions_of(formulas: Sequence[CompiledFormula], problem: Problem) -> at.In
     table, has_state = LawPiece.table(len(formulas)), problem.friction.state is not None
     for place, formula in zip(table, formulas, strict=True):
         piece = LawPiece(place)
-        piece.guard_count = formula.guard_count
-        if formula.guard_count and (has_state or problem.body.has_inertia):
-            piece.guards_at = formula.address("guards")
+        if not is_algebraic(problem):
+            piece.balls_at = formula.address("balls")
         if has_state:
             piece.state_at = formula.address("state_value")
         else:
+            piece.radii_at = formula.address("radii")
             piece.value_at = formula.address("value")
             piece.jet_at = formula.address("motion_jet" if problem.body.has_inertia else "rate_jet")
     return table

@@ -11,21 +11,35 @@ import math
 from enum import IntEnum
 from typing import Any
 
-from stickslip.engine.codegen.compiler import ahead, call_jet, inlined, kernel
+from stickslip.engine.codegen.compiler import ahead, call_jet, call_radii, inlined, kernel
 from stickslip.engine.codegen.lane_records import all_lanes, floats_of, one_lane
 from stickslip.engine.codegen.records import Record, floats_inside, inside
 from stickslip.engine.codegen.simd import WIDTH
 from stickslip.engine.contact.contact_equation import constants_of
 from stickslip.engine.contact.stiffness import judge_stiffness
+from stickslip.engine.contact_step.certificate import (
+    RATIOS,
+    SHRUNK,
+    SHRUNK_SLOPE,
+    allowed,
+    begin_step,
+    force_on_disc,
+    is_negative,
+    load_on_disc,
+    measure_rounding,
+    note_residual,
+    put_discs,
+    size_of_rate,
+    slope_on_disc,
+)
 from stickslip.engine.contact_step.keep_step import move
 from stickslip.engine.contact_step.negative_friction import goes_below_zero
 from stickslip.engine.contact_step.step_events import knot_crossing
-from stickslip.engine.contact_step.taylor_step import choose_length, first_guess, note_shock, prepare_series
-from stickslip.engine.contact_step.verify import begin_verification, is_negative, obeys_contact
+from stickslip.engine.contact_step.taylor_step import first_guess, length_to, note_shock, prepare_series, settle_length
 from stickslip.engine.loop import ROOM
 from stickslip.engine.series.polynomial import NONE, bound_below, fill, moment, multiply, powers_of, total
 from stickslip.engine.series.step_size import FAR_FROM_GUESS, length_at, usable_length
-from stickslip.engine.state.layout import TERMS, Floats, Integers, Series
+from stickslip.engine.state.layout import TERMS, Ball, Floats, Integers, Series
 from stickslip.engine.state.workspace import PLACES, Run, borrow
 
 
@@ -35,11 +49,17 @@ class Block(Record):
     k: Series = inside(Series)  # input of the series
     load_along_slip: Floats = floats_inside(TERMS)  # as in `engine.state.workspace.Run`
     local: Floats = floats_inside(TERMS)
-    jet: Floats = floats_inside(TERMS)  # the law's functions write `reach` right after it
-    reach: Floats = floats_inside(TERMS)
+    jet: Floats = floats_inside(TERMS)  # the law's functions write `centres` right after it
+    centres: Floats = floats_inside(TERMS)
+    disc_powers: Floats = floats_inside(TERMS)  # powers of the radius of the disc on which a step is proven, in guesses
+    ball: Ball = inside(Ball)  # radii on that disc
+    ratio: float  # 1: radius of that disc, in lengths of the step
+    shrunk: float  # 1: factor by which what the step misses is smaller on the step than on that disc
+    share: float  # 1: bound of what the step misses, as a share (`contact_step.certificate`)
     powers: Floats = floats_inside(TERMS)
     rate: Floats = floats_inside(TERMS)  # m/s: slip rate over the step, as a polynomial on [0, 1]
     load: Floats = floats_inside(TERMS)  # Pa or N: load over the step
+    usable: float  # length that the error allows the step, in guesses
     length: float  # length of the step, in guesses
     bound: float  # m/s: lower bound of the slip rate
     grown: float  # m: slip in the step
@@ -74,14 +94,14 @@ def step_side_by_side(table: Integers, waits: Integers, jets: Integers, block: i
     """Take one step in each lane that waits for one; lanes under the same formula of the law step together.
 
     table points to the memory of the runs in the lanes, waits to what each lane waits for, and jets to the addresses of the
-    formulas' series, one for each piece of the law; block is the address of the numbers in lanes.
+    formulas' series and radii, in turn for each piece of the law; block is the address of the numbers in lanes.
     """
     for lane in range(WIDTH):
         if waits[lane] == Waits.FRESH or waits[lane] == Waits.SLIPPING:
             waits[lane] = -waits[lane]
     for lane in range(WIDTH):
         if waits[lane] < 0:
-            step_under(jets[piece_of(table, lane)], table, waits, jets, block)
+            step_under(ahead(jets, 2 * piece_of(table, lane)), table, waits, jets, block)
 
 
 @inlined
@@ -91,18 +111,26 @@ def piece_of(table: Integers, lane: int) -> int:
 
 
 @kernel
-def step_under(address: int, table: Integers, waits: Integers, jets: Integers, block: int) -> None:
-    """Take one step in the lanes under the formula at `address` that have not taken theirs, which a negative `waits` marks."""
-    rows, lane_0, taking = block_in_all_lanes(block), block_in_one_lane(block), 0
+def step_under(formula: Integers, table: Integers, waits: Integers, jets: Integers, block: int) -> None:
+    """Take one step in the lanes under a formula that have not taken theirs, which a negative `waits` marks.
+
+    `formula` points to the addresses of its series and of its radii.
+    """
+    rows, lane_0, taking, moves = block_in_all_lanes(block), block_in_one_lane(block), 0, False
     for lane in range(WIDTH):
-        if waits[lane] < 0 and jets[piece_of(table, lane)] == address:
+        if waits[lane] < 0 and jets[2 * piece_of(table, lane)] == formula[0]:
+            moves = borrow(ahead(table, lane * PLACES)).counts.has_inertia == 1
             put_in(borrow(ahead(table, lane * PLACES)), lane_0[lane], -waits[lane] == Waits.FRESH)
             waits[lane], taking = Waits.SLIPPING, taking | 1 << lane
-    call_jet(address, floats_of(rows.constants), floats_of(rows.k), floats_of(rows.load_along_slip), floats_of(rows.jet))
+    call_jet(formula[0], floats_of(rows.constants), floats_of(rows.k), floats_of(rows.load_along_slip), floats_of(rows.jet))
     rows.length = length_at(rows.jet, rows.tolerance, 0.5)
     for lane in range(WIDTH):
         if taking >> lane & 1:
             take_length(borrow(ahead(table, lane * PLACES)), lane_0[lane])
+    prove(rows, formula[1], moves)
+    for lane in range(WIDTH):
+        if taking >> lane & 1:
+            settle(borrow(ahead(table, lane * PLACES)), lane_0[lane])
     calculate(rows)
     for lane in range(WIDTH):
         if taking >> lane & 1:
@@ -131,17 +159,40 @@ def put_in(run: Run, own: Block, fresh: bool) -> None:
 
 @inlined
 def take_length(run: Run, own: Block) -> None:
-    """Choose the length of a run's step, in units of the guess, and store it in the run's lane of the block."""
+    """Store the length of a run's step that must be proven, in units of the guess, in the run's lane of the block."""
     usable = own.length
     if not usable >= FAR_FROM_GUESS or own.jet[TERMS - 1] == 0.0:  # `length_at` alone does not decide here
         for k in range(TERMS):
             run.jet[k] = own.jet[k]
         usable = usable_length(run.jet, run.params.tolerance)
-    if run.law[run.counts.piece].guard_count > 0:
-        for k in range(TERMS):
-            run.reach[k] = own.reach[k]
+    own.usable, own.length = usable, min(usable, length_to(run, run.state.target, own.guess))
+    moves, disc = run.counts.has_inertia == 1, run.counts.disc
+    own.ratio, own.shrunk = RATIOS[disc], SHRUNK_SLOPE[disc] if moves else SHRUNK[disc]
+
+
+@inlined
+def prove(rows: Block, radii: int, moves: bool) -> None:
+    """Calculate in all lanes what a step may miss, as `certificate.share_on_disc` does; with inertia if the contact `moves`."""
+    powers = rows.disc_powers
+    powers_of(rows.ratio * rows.length, powers)
+    put_discs(rows.k, rows.jet, powers, rows.ball)
+    call_radii(radii, floats_of(rows.constants), floats_of(rows.jet), floats_of(rows.ball))
+    force = force_on_disc(rows.k, rows.ball, load_on_disc(rows.load_along_slip, powers, TERMS - 1))
+    if moves:
+        missed = rows.length * (abs(rows.k.speed) / rows.k.inertia * force + slope_on_disc(rows.jet, powers)) * rows.shrunk
+    else:
+        missed = force / rows.k.impedance * rows.shrunk
+    rows.share = missed / (rows.tolerance * size_of_rate(rows.jet, rows.length))
+
+
+@inlined
+def settle(run: Run, own: Block) -> None:
+    """Choose the length of a run's step, now that it is proven or not, and store it in the run's lane of the block."""
     own.last_step = run.state.last_step
-    length, reached = choose_length(run, run.state.target, own.guess, usable)
+    if own.share <= allowed(run):
+        run.jet[0], run.jet[1], run.jet[2], run.jet[3] = own.jet[0], own.jet[1], own.jet[2], own.jet[3]
+        note_residual(run, own.length, own.share)
+    length, reached = settle_length(run, run.state.target, own.guess, own.usable)
     own.length, own.reached = length, 1.0 if reached else 0.0
 
 
@@ -165,8 +216,8 @@ def calculate(rows: Block) -> None:
 def take_out(run: Run, own: Block) -> int:
     """Append the step to the run's history if it is a simple one, and return what the lane waits for then.
 
-    A step is simple if the rate stays positive, the contact equation is obeyed and no knot is met. Otherwise the step is dropped
-    and Waits.ALONE is returned.
+    A step is simple if it is proven, the rate stays positive and no knot is met. Otherwise the step is dropped and Waits.ALONE is
+    returned.
     """
     length, target = own.length, run.state.target
     rate, load = run.history[run.counts.length].rate, run.history[run.counts.length].load
@@ -178,13 +229,13 @@ def take_out(run: Run, own: Block) -> int:
     else:
         for k in range(TERMS):
             load[k] = own.load[k]
-    simple = rate[0] > 0.0 and own.bound > 0.0 and math.isfinite(own.last)
+    simple = own.share <= allowed(run) and rate[0] > 0.0 and own.bound > 0.0 and math.isfinite(own.last)
     grown, rate_end = own.grown, own.last
     if simple:
         powers_of(length, run.powers)
-        begin_verification(run)
-        simple = obeys_contact(run, rate, length, grown, rate_end) and not is_negative(run)
-        simple = simple and not goes_below_zero(run, rate, length)
+        begin_step(run)
+        measure_rounding(run, rate, length, grown, rate_end)
+        simple = not is_negative(run) and not goes_below_zero(run, rate, length)
     if not simple or (run.pieces > 1 and knot_crossing(run, rate, length, 1.0) != NONE):
         run.state.last_step = own.last_step
         return Waits.ALONE
@@ -192,7 +243,6 @@ def take_out(run: Run, own: Block) -> int:
     note_shock(run)
     to = target if own.reached == 1.0 else run.state.xi + length * own.guess
     move(run, length, grown, rate_end, to)
-    if run.counts.has_inertia == 1:
-        judge_stiffness(run)
+    judge_stiffness(run)
     goes_on = run.state.xi < target and run.counts.stalled == 0 and run.counts.stiff == 0
     return Waits.SLIPPING if goes_on and run.counts.length + ROOM <= run.capacity else Waits.NONE

@@ -55,11 +55,6 @@ class CompiledFormula:
         self._functions: dict[str, Any] = {}
         self.size = self._writer.size
 
-    @property
-    def guard_count(self) -> int:
-        """The number of guards of the formula (see `codegen.guards`)."""
-        return len(self._writer.guards)
-
     def address(self, part: str) -> int:
         """Return the address of one of the functions, given its name in `taylor_series.SIGNATURES`."""
         function = self._function(part)
@@ -72,14 +67,6 @@ class CompiledFormula:
             prepare(values, reference, constants)
         else:
             prepare.ctypes(values.ctypes.data_as(_DOUBLE), reference, constants.ctypes.data_as(_DOUBLE))
-
-    def fill_guards(self, constants: Floats, slip: float, out: Floats) -> None:
-        """Write argument and pull of each guard into `out`, for a contact at rest at a slip (m, minus the reference slip)."""
-        guards = self._function("guards")
-        if UNCOMPILED:
-            guards(constants, slip, 0.0, 0.0, out)
-        else:
-            guards.ctypes(constants.ctypes.data_as(_DOUBLE), slip, 0.0, 0.0, out.ctypes.data_as(_DOUBLE))
 
     def _function(self, part: str) -> Any:
         """Return one of the functions, and generate and load it first if this has not been done yet."""
@@ -125,9 +112,9 @@ def call_state_value(typingctx: Any, address: Any, c: Any, dx: Any, s: Any, w: A
 
 
 @intrinsic
-def call_guards(typingctx: Any, address: Any, c: Any, dx: Any, s: Any, w: Any, out: Any) -> Any:
-    """Call `guards(c, dx, s, w, out)`, the function of a formula at `address`."""
-    return types.void(types.int64, FLOATS, types.float64, types.float64, types.float64, FLOATS), _call
+def call_radii(typingctx: Any, address: Any, c: Any, s: Any, k: Any) -> Any:
+    """Call `radii(c, s, k)` or `balls(c, s, k)`, or the version for lanes: the function at `address`."""
+    return types.void(types.int64, FLOATS, FLOATS, FLOATS), _call
 
 
 @intrinsic
@@ -226,7 +213,7 @@ def float_of(typingctx: Any, bits: Any) -> Any:
 
 
 if UNCOMPILED:
-    call_prepare = call_value = call_state_value = call_guards = call_jet = call_part = call
+    call_prepare = call_value = call_state_value = call_radii = call_jet = call_part = call
 
     def floats(address: int) -> Pointer:
         """Return the pointer to floats at an address."""

@@ -8,7 +8,6 @@ from their differential equations, such as (exp a)' = a' exp a, order by order.
 
 from __future__ import annotations
 
-from stickslip.engine.codegen.guards import guards_of
 from stickslip.friction.formula.denominators import LARGEST_EXPONENT, in_denominators_only
 from stickslip.friction.formula.expression import RATE, SLIP, STATE, Expression, depends_on, nodes_of
 
@@ -64,8 +63,6 @@ class Recurrences:
         self.varies = {node: any(depends_on(node, one) for one in (SLIP, RATE, STATE)) for node in self.nodes}
         self.rate_dependent = {node: depends_on(node, RATE) for node in self.nodes}
         self.dynamic = [n for n in self.nodes if self.varies[n] and n not in (SLIP, RATE, STATE)]
-        own = {*nodes_of(formula), *(nodes_of(state_rate) if state_rate is not None else ())}
-        self.guards = guards_of([node for node in self.dynamic if node in own])  # the auxiliary nodes of arcsinh need no guard
         self._only_below = in_denominators_only(self.nodes)
         self.pending_rate: int | None = None
         self.size = len(self.nodes) + 1
@@ -241,26 +238,6 @@ class Recurrences:
                 }[node.operation]
             lines.append(f"{tag}{self.index[node]} = {rule}")
         return lines
-
-    # ---- guards -------------------------------------------------------------------------------------------------------------
-
-    def pulls(self) -> list[str]:
-        """Write the pull of each guard: the inverse of how far its argument may move, see `engine.codegen.guards`."""
-        lines = []
-        for j, guard in enumerate(self.guards):
-            exponent = self.reference(guard.exponent) if guard.exponent is not None else ""
-            lines.append(f"g_{j} = {guard.pull(self.coefficient(guard.argument, 0) or '', exponent)}")
-        return lines
-
-    def reach(self, k: int) -> str:
-        """Write the k-th coefficient of an upper bound on the share of its room that any guard has used up."""
-        used = [
-            f"{coefficient} * g_{j}" for j, guard in enumerate(self.guards) if (coefficient := self.coefficient(guard.argument, k))
-        ]
-        text = used[0]
-        for other in used[1:]:
-            text = f"max({text}, {other})"
-        return f"max({text}, 0.0)"
 
     # ---- higher orders ------------------------------------------------------------------------------------------------------
 

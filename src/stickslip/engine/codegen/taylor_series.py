@@ -7,11 +7,11 @@ value        mu(x, s) - mu(x_ref, 0), and its derivatives with respect to s and 
 state_value  mu(x, s, w) - mu(x_ref, 0, 0) and dw/dt, each with its derivatives with respect to s, x and the state w
 rate_jet     massless contact, Z s + S mu(x, s) = L: the series of s, solved order by order (an index-1 system)
 motion_jet   contact with mass, M s' = L - K q - Z s - S mu(x, s): the series of s
-guards       the argument and the pull of each guard of the formula (see `engine.codegen.guards`)
-rate_jets, motion_jets  the two series for several runs side by side (see `simd`)
+radii        how far mu may be from its value where a series starts, if slip and slip rate vary in complex discs (see `balls`)
+balls        the same around any slip, slip rate and state, and for dw/dt
+rate_jets, motion_jets, radii_in_lanes  the two series and their radii for several runs side by side (see `simd`)
 
-If the formula has guards, a jet writes the coefficients of a bound after the ORDER + 1 coefficients of its series. The step may be
-as long as the sum of the bound's series stays below 1.
+A jet writes the values of the nodes that `radii` needs right after the ORDER + 1 coefficients of its series, if there is room.
 
 Friction is computed as a *difference* from the reference, node by node (sin(r+e) - sin(r), expm1, log1p ...), so that a contact
 released at the very edge of equilibrium keeps its digits. Here s >= 0 is the magnitude of the slip rate, q its integral, and
@@ -25,6 +25,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from stickslip.engine.codegen.balls import Balls
 from stickslip.engine.codegen.recurrences import Recurrences
 from stickslip.friction.formula.expression import RATE, SLIP, STATE, Expression
 
@@ -35,11 +36,13 @@ SIGNATURES = {
     "prepare": ("p[]", "x_ref", "c[]"),
     "value": ("c[]", "dx", "s", "out[]"),
     "state_value": ("c[]", "dx", "s", "w", "out[]"),
-    "guards": ("c[]", "dx", "s", "w", "out[]"),
+    "radii": ("c[]", "s[]", "k[]"),
+    "balls": ("c[]", "s[]", "k[]"),
     "rate_jet": ("c[]", "k[]", "L[]", "s[]"),
     "motion_jet": ("c[]", "k[]", "L[]", "s[]"),
     "rate_jets": ("c[]", "k[]", "L[]", "s[]"),
     "motion_jets": ("c[]", "k[]", "L[]", "s[]"),
+    "radii_in_lanes": ("c[]", "s[]", "k[]"),
 }
 """Names of the functions and of their arguments: arrays of floats if marked by [], otherwise single floats."""
 
@@ -51,15 +54,22 @@ from numba import types
 
 from stickslip.engine.codegen.cache import sealed_cfunc
 from stickslip.engine.series.{functions} import arcsinh_difference, exp_difference, exp_value, log_difference
-from stickslip.engine.series.{functions} import power_difference, power_pull, power_value, tanh_difference
+from stickslip.engine.series.{functions} import power_difference, power_value, tanh_difference
 from stickslip.engine.series.sine import sine, versine
 {lanes}
 _options = dict(nopython=True, error_model="numpy", fastmath={{"contract"}})
 
 '''
 
-SIDE_BY_SIDE = {"rate_jets", "motion_jets"}
+RADII_HEADER = """from stickslip.engine.series.ball_radii import arcsinh_radius, exp_above, exp_radius, log_radius
+from stickslip.engine.series.ball_radii import power_radius, sine_radius, tanh_radius
+"""
+"""Further lines of the header for functions that work out radii."""
+
+SIDE_BY_SIDE = {"rate_jets", "motion_jets", "radii_in_lanes"}
 """Functions that work on lanes."""
+RADII = {"radii", "radii_in_lanes", "balls"}
+"""Functions that work out radii."""
 
 ONE, SIDE = "_array = types.CPointer(types.float64)", "from stickslip.engine.codegen.simd import POINTER as _array"
 """Lines that say what the arrays of a function consist of: floats, or lanes."""
@@ -73,6 +83,7 @@ class FormulaWriter(Recurrences):
     ) -> None:
         super().__init__(formula, parameters, state_rate)
         self.limit = order
+        self.balls = Balls(self, [formula] if state_rate is None else [formula, state_rate])
 
     def prepare(self) -> list[str]:
         """Write the body of `prepare(p, x_ref, c)`."""
@@ -105,12 +116,34 @@ class FormulaWriter(Recurrences):
             body += [f"out[{4 * i + j}] = {text or '0.0'}" for j, text in enumerate((level, *slopes))]
         return body
 
-    def guard_values(self) -> list[str]:
-        """Write the body of `guards(c, dx, s, w, out)`; out receives the argument and the pull of each guard in turn."""
-        body = ["s_0 = s", *self.order_zero(), *self.pulls()]
-        for j, guard in enumerate(self.guards):
-            body += [f"out[{2 * j}] = {self.coefficient(guard.argument, 0)}", f"out[{2 * j + 1}] = g_{j}"]
-        return body
+    @property
+    def has_room_for_centres(self) -> bool:
+        """True if the values that `radii` needs fit in the row after a series."""
+        return len(self.balls.centres) <= self.limit + 1
+
+    def centres(self) -> list[str]:
+        """Write the values that `radii` needs right after the series, if there is room."""
+        if not self.has_room_for_centres:
+            return []
+        return [f"s[{self.limit + 1 + j}] = {self.coefficient(node, 0)}" for j, node in enumerate(self.balls.centres)]
+
+    def radii(self) -> list[str]:
+        """Write the body of `radii(c, s, k)`: s is what a jet has written, and k holds the numbers of `engine.state.layout.Ball`."""
+        if not self.has_room_for_centres:
+            return self.around()
+        own = {SLIP: "x_0", RATE: "s_0"}
+        body = [f"{own.get(node) or self.coefficient(node, 0)} = s[{self.limit + 1 + j}]" for j, node in enumerate(self.balls.centres)]
+        return [*body, *self._radii()]
+
+    def around(self) -> list[str]:
+        """Write the body of `balls(c, s, k)`, which works out the values at the centre itself; `s` is not used."""
+        return ["dx = k[5]", "s_0 = k[6]", "w = k[7]", *self.order_zero(), *self._radii()]
+
+    def _radii(self) -> list[str]:
+        results = [f"k[3] = {self.balls.radius(self.formula) or '0.0'}"]
+        if self.state_rate is not None:
+            results.append(f"k[4] = {self.balls.radius(self.state_rate) or '0.0'}")
+        return ["r_slip = k[0]", "r_rate = k[1]", "r_state = k[2]", *self.balls.lines, *results]
 
     def rate_jet(self) -> list[str]:
         """Write the body of `rate_jet(c, k, L, s)`, for a massless contact.
@@ -127,7 +160,7 @@ class FormulaWriter(Recurrences):
         else:
             body += [*self.order_zero(), "resistance = 1.0 / Z"]
             body += [f"s_0 = k[10] * (L[0] - S * ({self.difference(self.formula) or '0.0'} + offset)) * resistance"]
-        body += ["s[0] = s_0", "share = S * resistance", *self.pulls()]
+        body += ["s[0] = s_0", "share = S * resistance", *self.centres()]
         for k in range(1, self.limit + 1):
             body.append(f"x_{k} = {_integral('s', k)}")
             self.pending_rate = k
@@ -138,12 +171,8 @@ class FormulaWriter(Recurrences):
             for node in self.dynamic:
                 if self.rate_dependent[node]:
                     body.append(f"n{self.index[node]}_{k} += {self.slope(node, RATE, 'd')} * s_{k}")
-            body += [*self.weights(k), f"s[{k}] = s_{k}", *self.bound(k)]
+            body += [*self.weights(k), f"s[{k}] = s_{k}"]
         return body
-
-    def bound(self, k: int) -> list[str]:
-        """Write the k-th coefficient of the guards' bound, which is stored after the series, if the formula has guards."""
-        return [f"s[{self.limit + 1 + k}] = {self.reach(k)}"] if self.guards else []
 
     def motion_jet(self) -> list[str]:
         """Write the body of `motion_jet(c, k, L, s)`, for a contact with mass: M ds/dt = L - K q - Z s - S mu.
@@ -153,14 +182,13 @@ class FormulaWriter(Recurrences):
         body = ["Z = k[0]", "S = k[1]", "chi = k[2]", "A = k[3]", "B = k[4]", "dx = k[5]", "offset = k[6]", "inertia = 1.0 / k[7]"]
         body += ["K = k[8]", "s_0 = k[9]", *self.order_zero(), "s[0] = s_0"]
         force = f"L[0] - Z * s_0 - S * ({self.difference(self.formula) or '0.0'} + offset)"
-        body += [f"a_0 = (k[10] * ({force}) + k[11]) * inertia", *self.pulls()]
+        body += [f"a_0 = (k[10] * ({force}) + k[11]) * inertia", *self.centres()]
         for k in range(1, self.limit + 1):
             body += [f"q_{k} = {_integral('s', k)}", f"s_{k} = {_integral('a', k)}"]
             body.append(f"s[{k}] = s_{k}")
             if k == self.limit:
-                body += [f"s[{2 * k + 1}] = s[{2 * k}]"] if self.guards else []  # the coefficients of the formula end at k - 1
                 break
-            body += [f"x_{k} = chi * q_{k}", *self.order(k), *self.weights(k), *self.bound(k)]
+            body += [f"x_{k} = chi * q_{k}", *self.order(k), *self.weights(k)]
             friction = self.coefficient(self.formula, k)
             force = f"L[{k}] - K * q_{k} - Z * s_{k}{f' - S * {friction}' if friction else ''}"
             body.append(f"a_{k} = ({force}) * inertia")
@@ -175,7 +203,9 @@ class FormulaWriter(Recurrences):
             "prepare": self.prepare,
             "value": self.value,
             "state_value": self.state_value,
-            "guards": self.guard_values,
+            "radii": self.radii,
+            "balls": self.around,
+            "radii_in_lanes": self.radii,
             "rate_jet": self.rate_jet,
             "motion_jet": self.motion_jet,
             "rate_jets": self.rate_jet,
@@ -203,6 +233,7 @@ class FormulaWriter(Recurrences):
         head = f"@sealed_cfunc(types.void({kinds}), **_options)\ndef {part}({', '.join(name.strip('[]') for name in arguments)}):\n"
         body = "".join(f"    {line}\n" for line in self.statements(part))
         functions, lanes = ("lane_differences", SIDE) if part in SIDE_BY_SIDE else ("differences", ONE)
+        lanes = RADII_HEADER + lanes if part in RADII else lanes
         header = MODULE_HEADER.format(formula=self.describe(self.formula), functions=functions, lanes=lanes)
         return header + head + body
 

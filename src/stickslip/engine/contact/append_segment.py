@@ -59,11 +59,14 @@ def record(run: Run, xi_to: float) -> None:
         kept.slip, kept.law_slip = run.state.slip_now, run.state.law_slip
         kept.amplified = run.state.amplified
         kept.gain = abs(run.params.reflection) * (run.state.gain if run.counts.mode != 0 else 1.0)
+        kept.residual = run.state.residual
+        run.state.largest_residual = max(run.state.largest_residual, run.state.residual)
         note_slip(run, n, phase_from)
         run.counts.length = n + 1
         run.counts.jump = run.counts.cause = run.counts.stalled = 0
     else:
         run.counts.stalled += 1
+    run.state.residual = 0.0  # rest without a state is exact, and every other step sets its own
     run.state.xi = xi_to
 
 

@@ -10,8 +10,9 @@ from stickslip.engine.state.workspace import Run
 STIFF, NOT_STIFF = 4.0, 1.5
 """Number of settling times (1) in an explicit step above which the contact is stiff, because only stability can have kept the
 step so short; and in an implicit step, below which the contact is no longer stiff."""
-
-
+SETTLED, NOT_SETTLED = 1.0, 0.2
+"""The same two numbers for a massless contact: there the slip rate only decays, and explicit steps would follow the decay to the
+smallest number there is."""
 CHECKED = 16
 """Number of explicit steps (1) between two checks of the stiffness."""
 
@@ -47,16 +48,26 @@ def is_implicit(run: Run) -> bool:
 
 @kernel
 def settling_rate(run: Run) -> float:
-    """Return the rate (1/s) at which the slip rate of a contact with mass settles: (Z + S dmu/dv) / M."""
+    """Return the rate (1/s) at which the slip rate settles: (Z + S dmu/dv) / M with mass, S dmu/du / (Z + S dmu/dv) without."""
     contact_at(run, run.state.law_slip, abs(run.state.rate_now), run.state.state_now)
-    return (run.params.impedance + run.params.normal * run.value.by_rate) / run.params.inertia
+    resistance = run.params.impedance + run.params.normal * run.value.by_rate
+    if run.counts.has_inertia == 1:
+        return resistance / run.params.inertia
+    return run.k.chi * run.params.normal * run.value.by_slip / resistance
+
+
+@kernel
+def is_no_longer_stiff(run: Run) -> bool:
+    """Return True if the implicit step that was just made is so short that an explicit one would do."""
+    return run.k.speed * settling_rate(run) < (NOT_STIFF if run.counts.has_inertia == 1 else NOT_SETTLED)
 
 
 @kernel
 def judge_stiffness(run: Run) -> None:
-    """Check now and then, after an explicit step of a contact with mass, whether the contact has become stiff."""
+    """Check now and then, after an explicit step, whether the contact has become stiff."""
     run.counts.steps += 1
-    if run.counts.steps % CHECKED == 0 and run.state.last_step * settling_rate(run) > STIFF:
+    limit = STIFF if run.counts.has_inertia == 1 else SETTLED
+    if run.counts.steps % CHECKED == 0 and run.state.last_step * settling_rate(run) > limit:
         run.counts.stiff = 1
 
 

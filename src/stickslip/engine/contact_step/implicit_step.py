@@ -11,16 +11,19 @@ from stickslip.engine.codegen.compiler import ahead, call_part, kernel
 from stickslip.engine.contact.append_segment import record
 from stickslip.engine.contact.contact_equation import onset_of_slip
 from stickslip.engine.contact.law_knots import settle_piece
-from stickslip.engine.contact.stiffness import NOT_STIFF, contact_at, forgotten, settling_rate
+from stickslip.engine.contact.stiffness import contact_at, forgotten, is_no_longer_stiff
+from stickslip.engine.contact_step.certificate import NEGLIGIBLE
 from stickslip.engine.contact_step.keep_step import keep_step
 from stickslip.engine.contact_step.negative_friction import last_place_above_zero, place_below_zero
 from stickslip.engine.contact_step.step_events import Cut, cut_at_first_event, resolve, stretch
 from stickslip.engine.contact_step.taylor_step import note_shock
-from stickslip.engine.contact_step.verify import NEGLIGIBLE, TRIFLE
 from stickslip.engine.series.polynomial import NONE, copy, fill, scale, total
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Floats, StepEvent, Stop, Task
 from stickslip.engine.state.workspace import Run
+
+TRIFLE = 2.0**-30
+"""Share of a step (1) that is so short that nothing happens in it."""
 
 
 @kernel
@@ -33,7 +36,7 @@ def slip_implicitly(run: Run, xi_to: float) -> None:
     rate = run.history[run.counts.length].rate
     stretch(run, 1.0, rate)
     reached = guess >= xi_to - run.state.xi
-    if run.counts.has_state == 0 and run.k.speed * settling_rate(run) < NOT_STIFF:
+    if run.counts.has_state == 0 and is_no_longer_stiff(run):
         run.counts.stiff = 0
     cut = cut_at_first_event(run, rate, 1.0)
     cut = end_above_zero(run, rate, cut)

@@ -1,6 +1,6 @@
 """Find where friction falls below zero inside a step, under a law that is not known to stay above zero.
 
-At the end of each step friction is known anyway (`verify.is_negative`). A user's formula can dip below zero and return between two
+At the end of each step friction is known anyway (`certificate.is_negative`). A user's formula can dip below zero and return between two
 ends, and friction that drives slip must not pass unnoticed.
 """
 
@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from stickslip.engine.codegen.compiler import kernel
 from stickslip.engine.contact.stiffness import contact_at
+from stickslip.engine.contact_step.certificate import ALLOWED, ALLOWED_SLOPE, NEGLIGIBLE
 from stickslip.engine.contact_step.step_events import growth
-from stickslip.engine.contact_step.verify import ALLOWED, ALLOWED_SLOPE, NEGLIGIBLE
 from stickslip.engine.series.polynomial import NONE, RECIPROCAL, bound_below, evaluate
 from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.engine.state.workspace import Run

@@ -8,25 +8,17 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.codegen.compiler import call_jet, kernel
+from stickslip.engine.codegen.compiler import call_jet, inlined, kernel
 from stickslip.engine.codegen.records import numbers_of
 from stickslip.engine.contact.append_segment import note_jump
 from stickslip.engine.contact.contact_equation import TIE, constants_of, load_ahead, rate_from_here, rate_on_branch
 from stickslip.engine.contact.law_knots import settle_piece
 from stickslip.engine.contact.stiffness import judge_stiffness
+from stickslip.engine.contact_step.certificate import begin_step, is_negative, measure_rounding, proven_length
 from stickslip.engine.contact_step.keep_step import move
 from stickslip.engine.contact_step.negative_friction import goes_below_zero
 from stickslip.engine.contact_step.step_events import cut_at_first_event, growth, resolve, stretch
 from stickslip.engine.contact_step.step_plan import StepPlan, plan_step, plan_to_moving_fold
-from stickslip.engine.contact_step.verify import (
-    HALVINGS,
-    begin_verification,
-    is_negative,
-    note_rough_step,
-    note_rounding,
-    obeys_contact,
-    within_guards,
-)
 from stickslip.engine.folds.fold import last_to_fold, reach_end, straight_from_fold, straight_to_fold
 from stickslip.engine.series.polynomial import multiply, total
 from stickslip.engine.series.step_size import usable_length
@@ -39,6 +31,8 @@ LONGEST_GUESS = 2.0
 SHORTEST_GUESS = 1e-16
 """Least guess as a share of the way to go (1): in units of a last step of next to no length, high orders would vanish or
 overflow."""
+HALVINGS = 40
+"""Number of halvings of a step in which friction falls below zero (1): 2^-40 of a step is next to nothing."""
 
 
 @kernel
@@ -87,7 +81,7 @@ def slip(run: Run, xi_to: float) -> None:
             return
     note_shock(run)
     take_step(run, plan, guess)
-    if run.counts.has_inertia == 1:
+    if run.counts.is_algebraic == 0:
         judge_stiffness(run)
 
 
@@ -126,35 +120,27 @@ def note_shock(run: Run) -> None:
 
 @kernel
 def take_step(run: Run, plan: StepPlan, guess: float) -> None:
-    """Take an explicit step: choose its length, cut it at the first event, shorten it until it obeys the law, and keep it.
+    """Take an explicit step: choose its length, prove it, cut it at the first event, and keep it.
 
-    `guess` (in xi) is the unit of the series.
+    `guess` (in xi) is the unit of the series. A step in which friction falls below zero is halved until it does not, or until
+    there is nothing left of it.
     """
     length, reached = choose_length(run, plan.target, guess, usable_length(run.jet, run.params.tolerance))
     kept = run.history[run.counts.length]
-    begin_verification(run)
-    stretch(run, length, kept.rate)
-    cut = cut_at_first_event(run, kept.rate, length)
-    grown, rate_end = growth(run, kept.rate, length * cut.end, 1.0), total(kept.rate)
+    begin_step(run)
     for halving in range(HALVINGS + 1):
-        if is_straight(run):
-            break
-        obeys = obeys_contact(run, kept.rate, length * cut.end, grown, rate_end)
-        negative = is_negative(run) or goes_below_zero(run, kept.rate, length * cut.end)
-        if obeys and not negative:
-            break
-        if halving == HALVINGS:
-            run.counts.breach = Stop.NEGATIVE_FRICTION if negative else Stop.OFF_THE_LAW
-            break
-        if run.state.rounded == 0.0:
-            note_rounding(run, length)
-        length *= 0.5 * cut.end
-        reached, run.state.last_step = False, min(run.state.last_step, duration_of(run, length))
         stretch(run, length, kept.rate)
         cut = cut_at_first_event(run, kept.rate, length)
         grown, rate_end = growth(run, kept.rate, length * cut.end, 1.0), total(kept.rate)
-    if run.state.rounded > 0.0:
-        note_rough_step(run, kept.rate, rate_end)
+        if is_straight(run):
+            break
+        measure_rounding(run, kept.rate, length * cut.end, grown, rate_end)
+        if not (is_negative(run) or goes_below_zero(run, kept.rate, length * cut.end)):
+            break
+        if halving == HALVINGS:
+            run.counts.breach = Stop.NEGATIVE_FRICTION
+        length *= 0.5 * cut.end
+        reached, run.state.last_step = False, min(run.state.last_step, duration_of(run, length))
     multiply(run.local, run.powers, kept.load)
     to = plan.target if reached and cut.end == 1.0 else run.state.xi + cut.end * length * guess
     move(run, cut.end * length, grown, rate_end, to)
@@ -172,10 +158,23 @@ def is_straight(run: Run) -> bool:
 @kernel
 def choose_length(run: Run, target: float, guess: float, length: float) -> tuple[float, bool]:
     """Return the length (in guesses) of an explicit step that may be `length` guesses long, and whether it reaches the target."""
-    limit = (target - run.state.xi) / guess
-    if run.law[run.counts.piece].guard_count > 0 and not is_straight(run):
-        seen = within_guards(run, min(length, limit))
-        length = seen if seen < min(length, limit) else length
+    limit = length_to(run, target, guess)
+    if not is_straight(run):
+        proven = proven_length(run, min(length, limit))
+        length = proven if proven < min(length, limit) else length
+    return settle_length(run, target, guess, length)
+
+
+@inlined
+def length_to(run: Run, target: float, guess: float) -> float:
+    """Return the way to a place xi = `target`, in guesses."""
+    return (target - run.state.xi) / guess
+
+
+@inlined
+def settle_length(run: Run, target: float, guess: float, length: float) -> tuple[float, bool]:
+    """Return the length of a proven step so that no tiny step is left before the target, and whether it reaches the target."""
+    limit = length_to(run, target, guess)
     # Store the error-controlled length: truncation at an event must not shrink the next guess.
     run.state.last_step = duration_of(run, length)
     reached = length >= limit

@@ -11,11 +11,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
-from stickslip.engine.codegen.compiler import ahead, call_guards, floats_in, kernel
+from stickslip.engine.codegen.compiler import ahead, kernel
 from stickslip.engine.codegen.records import record_at
-from stickslip.engine.contact.contact_equation import constants_of
 from stickslip.engine.contact.stiffness import contact_at
 from stickslip.engine.series.polynomial import evaluate
 from stickslip.engine.series.radau_nodes import (
@@ -32,12 +29,6 @@ from stickslip.engine.series.radau_nodes import (
 from stickslip.engine.state.layout import TERMS, Between, Floats
 from stickslip.engine.state.workspace import Run
 
-STRIDE = 1e-4
-"""Share of the way between two places (1) over which the slope of a guard's argument is taken."""
-CHORD = np.array([0.0, STRIDE, 1.0 - STRIDE, 1.0])
-"""Places (1) on the straight way between two places at which guards are evaluated: the ends, and one near each for the slope."""
-PLACES_ON_CHORD = 4
-"""Number of places in CHORD (1)."""
 NUDGE = 1e-15
 """Relative change of a number (1) that is rounding: 4 ulp or more."""
 ITERATIONS = 40
@@ -265,73 +256,6 @@ def defects(run: Run, h: float, force: float) -> tuple[float, float]:
         missed = larger(missed, abs(missing) * by_load)
         missed_state = larger(missed_state, abs(value.change - middle.evolved / h) * by_change)
     return missed, missed_state if run.counts.has_state == 1 else 0.0
-
-
-@kernel
-def look_at_guards(run: Run, walked: float, rate: float, state: float, out: Floats) -> None:
-    """Put arguments and pulls of the law's guards into out, `walked` metres of law slip after the start of the step."""
-    piece = run.counts.piece
-    slip = run.state.law_slip + walked + run.law[piece].slip_shift
-    call_guards(run.law[piece].guards_at, constants_of(run, piece), slip, rate, state, out)
-
-
-@kernel
-def follow_step(run: Run, h: float, way: Floats) -> None:
-    """Write law slip (m, since the start), slip rate and state along the step into `way`.
-
-    The rows are in order: the start, then the places between the points and the points by turns.
-    """
-    chi = run.k.chi * h
-    for point in range(POINTS):
-        walked = 0.0
-        for j in range(POINTS):
-            walked += INTEGRAL[point, j] * run.stage_rate[j]
-        here = ahead(way, 6 * point)
-        here[0], here[1], here[2] = chi * walked, run.stage_rate[point], run.stage_state[point]
-    for i in range(STAGES):
-        row, middle = between(run, i), ahead(way, 6 * i + 3)
-        middle[0], middle[1], middle[2] = chi * row.walked, row.rate, row.state
-
-
-@kernel
-def rise(first: float, climb: float, last: float, descent: float) -> float:
-    """Return how far a concave function may rise above its start, from its values and its slopes at both ends of [0, 1]."""
-    if climb > 0.0 and descent < 0.0:
-        return climb * min(max((last - first - descent) / (climb - descent), 0.0), 1.0)
-    return max(last - first, 0.0)
-
-
-@kernel
-def stays_in_sight(run: Run, h: float) -> float:
-    """Return the share of its room that the hardest-pressed guard of the law uses up in a step of h seconds.
-
-    It must not exceed 1. A part of the law that is smaller than rounding at the start leaves no trace at the points. It comes
-    back where the argument of its guard moves by its room in the direction of its pull (see `engine/codegen/guards.py`). Every
-    movement in that direction counts. A narrow part may lie between two places: there its argument goes up and down again, which
-    its slopes at both of them show.
-    """
-    n = run.law[run.counts.piece].guard_count
-    if n == 0:
-        return 0.0
-    room, used = np.empty(3 * (2 * POINTS - 1) + 2 * n * PLACES_ON_CHORD), np.zeros(n)
-    way = floats_in(room)
-    seen = ahead(way, 3 * (2 * POINTS - 1))
-    follow_step(run, h, way)
-    for i in range(2 * STAGES):
-        begin, end = ahead(way, 3 * i), ahead(way, 3 * i + 3)
-        for k in range(PLACES_ON_CHORD):
-            walked, rate = begin[0] + CHORD[k] * (end[0] - begin[0]), begin[1] + CHORD[k] * (end[1] - begin[1])
-            look_at_guards(run, walked, rate, begin[2] + CHORD[k] * (end[2] - begin[2]), ahead(seen, 2 * n * k))
-        for j in range(n):
-            # Take the pull at this place, not at the start: an argument that rises from zero has no room there, but soon enough.
-            pull = seen[2 * j + 1]
-            first, last = pull * seen[2 * j], pull * seen[6 * n + 2 * j]
-            climb, descent = pull * seen[2 * n + 2 * j] - first, last - pull * seen[4 * n + 2 * j]
-            used[j] += rise(first, climb / STRIDE, last, descent / STRIDE)
-    hardest = 0.0
-    for j in range(n):
-        hardest = max(hardest, used[j])
-    return hardest
 
 
 @kernel

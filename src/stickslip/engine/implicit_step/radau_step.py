@@ -10,6 +10,7 @@ import math
 from stickslip.engine.codegen.compiler import kernel
 from stickslip.engine.contact.contact_equation import TIE, load_ahead
 from stickslip.engine.contact.stiffness import contact_at
+from stickslip.engine.implicit_step.proof import prove_step
 from stickslip.engine.implicit_step.radau_stages import (
     defects,
     larger,
@@ -17,7 +18,6 @@ from stickslip.engine.implicit_step.radau_stages import (
     rounding_of_law,
     size_of_load,
     solve_stages,
-    stays_in_sight,
 )
 from stickslip.engine.series.polynomial import evaluate, fill, first_descent, restrict
 from stickslip.engine.series.radau_nodes import MIDDLE, POINTS, STAGES, TO_POWERS_SUM, interpolate, last_terms
@@ -37,6 +37,9 @@ DEFECT_ROUNDING = 1e-14
 """Share (1) of the largest slip rate, or state, that rounding makes of the defect: derivatives of polynomials lose two digits."""
 ALLOWED = 0.1
 """Share of the defect (1) that counts: it changes its sign at every point, and leaves hardly anything in slip and state."""
+UNPROVEN = 1e-3
+"""Share of the proven bound (1) that counts: it is larger than the defect by orders of magnitude, and still far below what a hidden
+feature of the law would make of it."""
 LEAST_TREND = 0.7
 """Least value (1) of the factor by which a step that had to be shortened limits the length of the next one."""
 LAW_ROUNDING = 5.0
@@ -50,14 +53,15 @@ error has not halved, after which the error is taken to be rounding."""
 def growth_rate(run: Run) -> float:
     """Return the rate (1/s) at which a disturbance of slip rate and state grows at the start of the step; 0 where none grows.
 
-    An implicit step much longer than 1 over that rate would follow an unstable solution as if it were stable. The effect of slip is
-    left out: a contact with mass takes explicit steps out of rest, and later the solution itself grows with the disturbance.
+    An implicit step much longer than 1 over that rate would follow an unstable solution as if it were stable. With mass the effect of
+    slip is left out: such a contact takes explicit steps out of rest, and later the solution itself grows with the disturbance.
     """
     params, value = run.params, run.value
     contact_at(run, run.state.law_slip, run.stage_rate[0], run.stage_state[0])
     resistance = params.impedance + params.normal * value.by_rate
     if run.counts.has_inertia == 0:
-        return max(value.change_by_state - value.change_by_rate * params.normal * value.by_state / resistance, 0.0)
+        weakening = -run.k.chi * params.normal * value.by_slip / resistance if run.counts.has_state == 0 else 0.0
+        return max(value.change_by_state - value.change_by_rate * params.normal * value.by_state / resistance + weakening, 0.0)
     mass = params.inertia
     trace = value.change_by_state - resistance / mass
     product = (params.normal * value.by_state * value.change_by_rate - resistance * value.change_by_state) / mass
@@ -110,12 +114,21 @@ def strength_ahead(run: Run) -> float:
 
 
 @kernel
+def rounding_of_slip(run: Run) -> float:
+    """Return the friction (Pa or N) that a relative change of 1 in the law's slip makes, by the slope in run.value.
+
+    A contact that settles against a steep barrier ends with slips that are closer together than floats.
+    """
+    return run.params.normal * abs(run.value.by_slip * (run.state.law_slip + run.law[run.counts.piece].slip_shift))
+
+
+@kernel
 def error_of(run: Run, force: float, lost: float, lost_state: float) -> float:
     """Return the error of the step's polynomials, in units of the tolerance and of what rounding makes of slip rate and state.
 
     The error is the larger of what more points would still change and of what the polynomials miss of the governing equation
-    between the points, where a feature of the law may lie that none of the points sees. `force` (Pa or N) is the force that the
-    step ignores; `lost` (m/s) and `lost_state` (in units of the state) are known to be lost by rounding in the law itself.
+    between the points; where that is small enough, a share of the proven bound counts too (`proof`), which also sees a feature of
+    the law that lies between all places. `force` (Pa or N) is the force that the step ignores; `lost` (m/s) and `lost_state` (in units of the state) are known to be lost by rounding in the law itself.
     """
     params, value, h = run.params, run.value, run.k.speed
     fastest, farthest = params.rate_floor, params.state_scale + 1e-300
@@ -123,7 +136,7 @@ def error_of(run: Run, force: float, lost: float, lost_state: float) -> float:
         fastest, farthest = max(fastest, abs(run.stage_rate[i])), max(farthest, abs(run.stage_state[i]))
     # run.value is from the latest evaluation, at or near the end of the step.
     resistance = params.impedance + params.normal * value.by_rate + params.inertia / h
-    noise = ROUNDING * size_of_load(run) / resistance if resistance > 0.0 else 0.0
+    noise = ROUNDING * (size_of_load(run) + rounding_of_slip(run)) / resistance if resistance > 0.0 else 0.0
     state_noise = noise * abs(value.change_by_rate / value.change_by_state) if value.change_by_state != 0.0 else noise
     missed, missed_state = defects(run, h, force)
     missed = ALLOWED * max(missed - DEFECT_ROUNDING * fastest, 0.0)
@@ -134,6 +147,14 @@ def error_of(run: Run, force: float, lost: float, lost_state: float) -> float:
         error = max(error, max(last_terms(run.state_jet), missed_state) / (params.tolerance * farthest + state_noise))
     if run.counts.mode == 0:
         error = max(error, strength_ahead(run))
+    if error > 1.0:
+        return error
+    unproven, unproven_state = prove_step(run, h, force)
+    if run.counts.mode == 0:
+        noise, fastest = ROUNDING * params.reference / params.tolerance, params.reference + abs(run.load_along_slip[0])
+    error = larger(error, UNPROVEN * unproven / (params.tolerance * fastest + noise + lost))
+    if run.counts.has_state == 1:
+        error = larger(error, UNPROVEN * unproven_state / (params.tolerance * farthest + state_noise))
     return error
 
 
@@ -223,7 +244,7 @@ def first_length(run: Run, left: float) -> float:
 def collocate(run: Run, left: float) -> float:
     """Make polynomials of slip rate and state (run.jet, run.state_jet) for an implicit step, and return its length (in xi).
 
-    The step is repeated, shorter, until no part of the law is out of sight and its error is below the tolerance. After PATIENCE
+    The step is repeated, shorter, until it is proven and its error is below the tolerance. After PATIENCE
     attempts in a row in which the error did not shrink with the step, it is taken to be rounding. The polynomials are NaN if all
     attempts fail.
     """
@@ -235,11 +256,10 @@ def collocate(run: Run, left: float) -> float:
     for _ in range(ATTEMPTS):
         force = begin_step(run, guess)
         solved = solve_stages(run, run.k.speed, force, guess / solution_over if solution_over > 0.0 else 0.0)
-        used, solution_over = stays_in_sight(run, run.k.speed) if solved else math.inf, guess if solved else 0.0
+        solution_over = guess if solved else 0.0
         if solved:
             interpolate(run.stage_rate, run.jet, run.spare)
             interpolate(run.stage_state, run.state_jet, run.spare)
-        if used <= 1.0:
             error = judged_error(run, force, before)
             factor = 0.9 * min(max(error, 1e-12), 1e12) ** (-1.0 / (STAGES + 1.0))
             in_vain = in_vain + 1 if 0.5 * before < error < LARGEST_ROUNDING else 0
@@ -255,7 +275,7 @@ def collocate(run: Run, left: float) -> float:
             guess *= max(min(factor, 0.8), 0.1)
         else:
             before = math.inf
-            guess *= max(min(0.9 / used, 0.8), 0.1) if solved else 0.25
+            guess *= 0.25
     fill(run.jet, math.nan)
     fill(run.state_jet, math.nan)
     return guess

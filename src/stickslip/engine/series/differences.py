@@ -11,7 +11,6 @@ from typing import Any
 
 from numba import njit
 
-from stickslip.engine.codegen.guards import HIDDEN, IN_SIGHT
 from stickslip.engine.codegen.uncompiled import MATHS, UNCOMPILED
 
 maths: Any = MATHS if UNCOMPILED else math
@@ -51,23 +50,12 @@ def power_difference(reference: float, now: float, step: float, exponent: float)
 
 @njit(error_model="numpy")
 def arcsinh_difference(reference: float, now: float, step: float) -> float:
-    """Return arcsinh(now) - arcsinh(reference)."""
+    """Return arcsinh(now) - arcsinh(reference) = arcsinh(step (1 + p q - x y) / (p + q)), p^2 = 1 + x^2, q^2 = 1 + y^2."""
     if abs(reference) > 1e150 or abs(now) > 1e150:  # their squares are no numbers
         return maths.asinh(now) - maths.asinh(reference)
-    root, other = maths.sqrt(1.0 + reference * reference), maths.sqrt(1.0 + now * now)
-    if abs(step) < 0.5 * root:
-        return maths.asinh(step * (root - reference * (2.0 * reference + step) / (root + other)))
-    return maths.asinh(now) - maths.asinh(reference)
-
-
-@njit(error_model="numpy")
-def power_pull(base: float, exponent: float) -> float:
-    """Return the pull of the guard of a power (see `engine.codegen.guards`), which is exp(exponent log(base))."""
-    height = exponent * maths.log(base)
-    if height == 0.0:
-        return 0.0
-    room = max(abs(height) - HIDDEN, IN_SIGHT)
-    return 1.0 / (base * maths.expm1((-room if height > 0.0 else room) / exponent))
+    p, q, xy = maths.sqrt(1.0 + now * now), maths.sqrt(1.0 + reference * reference), now * reference
+    gap = (1.0 + now * now + reference * reference) / (p * q + xy) if xy > 0.0 else p * q - xy
+    return maths.asinh(step * (1.0 + gap) / (p + q))
 
 
 @njit(error_model="numpy")

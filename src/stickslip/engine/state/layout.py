@@ -80,8 +80,9 @@ class State(Record):
     taken: float  # 1: xi of the source of load up to which a loading that varies has delivered it; 0 if a new source is next
     taken_to_phase: float  # s: phase that belongs to `taken`
     target: float  # 1: xi up to which a run that waits for others may slip in the step that it takes beside them
-    unbalanced: float  # Pa or N: force that the step at hand ignores by definition, because it leaves rest (`contact_step.verify`)
-    rounded: float  # m/s: allowance for rounding in the law where the step at hand seemed to miss the contact equation; else 0
+    unbalanced: float  # Pa or N: force that the step at hand ignores by definition, because it leaves rest
+    residual: float  # Pa or N: bound of what the contact equation lacks on the step at hand (`contact_step.certificate`)
+    largest_residual: float  # Pa or N: largest such bound of any step so far
     roughest: float  # 1: largest share of the slip rate that rounding in the law has taken in any rough step (`Counts.rough`)
     exit: float  # 1: xi at which an algebraic contact leaves its branch; inf if not on this piece, NaN if not known yet
 
@@ -142,6 +143,7 @@ class Counts(Record):
     lumps: int  # 1 if short pieces of load are lumped
     lump_above: int  # number of pieces in a round trip above which lumping begins
     lumped_since: int  # round trip from which on short pieces are lumped
+    disc: int  # radius of the disc on which the last explicit step was proven, as an index of `contact_step.certificate.RATIOS`
     rough: int  # number of steps in which rounding in the law hides more than the tolerance
     breach: int  # OFF_THE_LAW or NEGATIVE_FRICTION if no step can be made from here, else 0
     degree: int  # degree of the present piece of load: its coefficients beyond are zero
@@ -162,6 +164,19 @@ class Series(Record):
     rate: float  # k[9], m/s: magnitude of the slip rate at the start of the step
     free: float  # k[10], 0 if the contact leaves rest exactly at its strength (no net force by definition), else 1
     force: float  # k[11], Pa or N: the net force where `free` is 0, which is the step from static to sliding friction; else 0
+
+
+class Ball(Record):
+    """Hold the input and output of a law's compiled radii (`codegen.balls`); generated code reads it by number, k[0], k[1], ..."""
+
+    slip: float  # k[0], m: radius of the disc in which the law slip varies
+    rate: float  # k[1], m/s: radius of that of the slip rate
+    state: float  # k[2], unit of the law's state: radius of that of the state
+    friction: float  # k[3], 1: result, how far mu may be from its value at the centre
+    change: float  # k[4], unit of the law's state over s: the same for dw/dt, under a law with a state
+    at_slip: float  # k[5], m: law slip at the centre, minus the reference slip of the piece of the law; k[5] to k[7] for `balls`
+    at_rate: float  # k[6], m/s: slip rate at the centre
+    at_state: float  # k[7], unit of the law's state: state at the centre
 
 
 NEVER = 2**62
@@ -294,8 +309,8 @@ class LawPiece(Record):
     value_at: int  # address of `value`; 0 for a law with a state, which has the next but one instead
     jet_at: int  # address of `rate_jet` or `motion_jet`; 0 for a law with a state
     state_at: int  # address of `state_value`; 0 for a law without a state
-    guards_at: int  # address of `guards`, for implicit steps; 0 if they are not needed
-    guard_count: int  # number of guards of the formula
+    radii_at: int  # address of `radii`, for explicit steps; 0 for a law with a state
+    balls_at: int  # address of `balls`, for implicit steps; 0 if they are not needed
     slip_shift: float  # m: initial slip of the law minus the reference slip of the piece
     offset: float  # 1: sliding friction coefficient at that reference, minus the static coefficient at the start of the run
     knot: float  # m (minus the initial slip of the law) or m/s: end of the piece; inf for the last one
@@ -351,6 +366,7 @@ class HistoryPiece(Record):
     law_slip: float  # m: slip that the law counts there, minus its initial value
     amplified: float  # 1: size in this piece of an error of 1 in the load at the start of the run; NaN if not known (see `gain`)
     gain: float  # 1: factor from an error in its load to its echo; NaN if it depends on more than the phase
+    residual: float  # Pa or N: bound of what the contact equation lacks on the piece (`contact_step.certificate`)
     load: Floats = floats_inside(TERMS)  # Pa or N, minus the reference strength
     rate: Floats = floats_inside(TERMS)  # m/s, with its sign
 

@@ -15,6 +15,7 @@ from stickslip.engine.codegen.records import Record, floats_at, floats_inside, i
 from stickslip.engine.codegen.uncompiled import UNCOMPILED, lend_memory
 from stickslip.engine.state.layout import (
     TERMS,
+    Ball,
     Branch,
     Counts,
     EchoNode,
@@ -71,10 +72,11 @@ class Run(Record):
         TERMS
     )  # Pa or N: the same as seen in the direction of slip, minus the reference strength
     jet: Floats = floats_inside(TERMS)  # m/s: series of the magnitude of the slip rate, in units of the guess
-    reach: Floats = floats_inside(TERMS)  # bound that guards write right after the series: the step ends where its sum is 1
+    centres: Floats = floats_inside(TERMS)  # what the series writes right after itself, for `radii`
     powers: Floats = floats_inside(TERMS)  # powers of the length of the step, in guesses
     k: Series = inside(Series, TERMS)  # input of the series
     value: LawValue = inside(LawValue, TERMS)  # what the law's formula returned last
+    ball: Ball = inside(Ball, TERMS)  # discs of slip, slip rate and state, and the radius of friction on them
     friction: Friction = inside(Friction, TERMS)  # friction at the contact, as last evaluated
     saved_load: Floats = floats_inside(TERMS)  # Pa or N: the piece of load that is continued after a fold
     saved: State = inside(State, TERMS)  # the first SAVED fields of the state that belong to it

@@ -1,0 +1,250 @@
+"""Prove every explicit step by Schwarz's lemma, and shorten the step where the proof needs it.
+
+Let g be what the contact equation lacks along a step, for the polynomials of the step themselves and xi on [0, 1]:
+
+    g = Z v + S mu(u, v) - load, with inertia times dt/dxi / m, plus dv/dxi.
+
+The first n Taylor coefficients of g vanish, because the series of the step was made so: n is ORDER + 1, and ORDER with inertia. If g
+is analytic on the disc |xi| <= r, and |g| <= M there, then |g(xi)| <= M (xi / r)^n on the disc. M follows from one evaluation of
+the law's formula in ball arithmetic (`engine.codegen.balls`). Whatever a law hides, a singularity, a narrow feature, a number that
+overflows, makes M large or infinite, wherever it lies in the disc.
+
+A bound counts as a share: the slip rate that it makes, in units of the tolerance times the slip rate of the step. Rounding is no
+part of the proof. It is measured where the step ends, and noted where it exceeds the tolerance. Bounds are calculated in floats: the
+rounding of a few hundred operations is far below MARGIN.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from stickslip.engine.codegen.compiler import call_radii, call_value, inlined, kernel
+from stickslip.engine.codegen.records import numbers_of
+from stickslip.engine.contact.contact_equation import constants_of
+from stickslip.engine.series.polynomial import RECIPROCAL, powers_of
+from stickslip.engine.state.layout import TERMS, Ball, Floats, Series, Stop
+from stickslip.engine.state.workspace import Run
+
+ALLOWED, ALLOWED_SLOPE = 10.0, 300.0
+"""Largest share of a step (1). The second number is for a contact with inertia, where a bound is one of the error of the series'
+slope, which is larger than that of the series."""
+MARGIN = 1.01
+"""Factor (1) that covers the rounding of bounds."""
+RATIOS = np.array([8.0, 6.4, 5.2, 4.4, 3.8, 3.3, 2.9, 2.5, 2.2, 1.9, 1.65, 1.45, 1.3, 1.2])
+"""Radii of the discs that are tried, in lengths of the step (1)."""
+SHRUNK, SHRUNK_SLOPE = RATIOS ** -float(TERMS), RATIOS ** -float(TERMS - 1)
+"""Factors (1) by which g is smaller on the step than on each of the discs, without and with inertia."""
+ATTEMPTS = 60
+"""Number of times (1) that a step is shortened before the run ends: each time at least to LONGEST of its length."""
+SHORTEST, LONGEST = 0.2, 0.9
+"""Smallest and largest factor (1) by which a step without a proof is shortened at a time."""
+ROUNDING = 1e-14
+"""Rounding of the terms of the contact equation (1), relative to the largest of them."""
+NEGLIGIBLE = 1e-9
+"""Size of a friction coefficient (1) that may be below zero by rounding."""
+LOST = 1e-6
+"""Share of the terms of the contact equation (1) that is more than rounding in any law: a step cannot begin on such a law."""
+
+
+# ---- the bound: these functions work on lanes, too -------------------------------------------------------------------------
+
+
+@inlined
+def put_discs(k: Series, jet: Floats, powers: Floats, ball: Ball) -> None:
+    """Put the radii of slip (m) and slip rate (m/s) on a disc into `ball`, from the powers of the disc's radius (in guesses)."""
+    rate = abs(jet[1]) * powers[1]
+    straight, bent = abs(jet[0]) + 0.5 * rate, 0.5 * abs(jet[0]) + RECIPROCAL[3] * rate
+    for n in range(2, TERMS):
+        size = abs(jet[n]) * powers[n]
+        rate, straight, bent = rate + size, straight + RECIPROCAL[n + 1] * size, bent + RECIPROCAL[n + 2] * size
+    ball.rate = rate
+    ball.slip = powers[1] * (abs(k.speed) * straight + abs(k.bend) * powers[1] * bent)
+    ball.state = 0.0 * rate
+
+
+@inlined
+def load_on_disc(load: Floats, powers: Floats, degree: int) -> float:
+    """Return how far a load of the given degree can be from its value at the centre of a disc (Pa or N)."""
+    moved = abs(load[1]) * powers[1]
+    for n in range(2, degree + 1):
+        moved = moved + abs(load[n]) * powers[n]
+    return moved
+
+
+@inlined
+def force_on_disc(k: Series, ball: Ball, load: float) -> float:
+    """Return a bound (Pa or N) on a disc of what load, spring, radiation and friction add up to, less its value at the centre."""
+    return MARGIN * (k.impedance * ball.rate + k.normal * ball.friction + k.stiffness * ball.slip + load)
+
+
+@inlined
+def slope_on_disc(jet: Floats, powers: Floats) -> float:
+    """Return how far the slope of the slip rate (m/s per guess) can be from its value at the centre of a disc."""
+    moved = 2.0 * abs(jet[2]) * powers[1]
+    for n in range(3, TERMS):
+        moved = moved + n * abs(jet[n]) * powers[n - 1]
+    return moved
+
+
+@inlined
+def size_of_rate(jet: Floats, length: float) -> float:
+    """Return a size of the slip rate (m/s) over a step of the given length (in guesses)."""
+    square = length * length
+    return max(max(abs(jet[0]), length * abs(jet[1])), max(square * abs(jet[2]), square * length * abs(jet[3])))
+
+
+# ---- a step of a single run ------------------------------------------------------------------------------------------------
+
+
+@kernel
+def share_on_disc(run: Run, length: float, disc: int) -> float:
+    """Return the share that a step of the given length (in guesses) may miss, by the disc with number `disc` of RATIOS."""
+    powers = run.spare
+    powers_of(RATIOS[disc] * length, powers)
+    piece = run.counts.piece
+    put_discs(run.k, run.jet, powers, run.ball)
+    call_radii(run.law[piece].radii_at, constants_of(run, piece), run.jet, numbers_of(run.ball))
+    load = load_on_disc(run.load_along_slip, powers, run.counts.degree)
+    force = force_on_disc(run.k, run.ball, load)
+    if run.counts.has_inertia == 1:
+        missed = length * (abs(run.k.speed) / run.k.inertia * force + slope_on_disc(run.jet, powers)) * SHRUNK_SLOPE[disc]
+    else:
+        missed = force / resistance(run) * SHRUNK[disc]
+    return missed / (run.params.tolerance * size_of_rate(run.jet, length))
+
+
+@inlined
+def resistance(run: Run) -> float:
+    """Return Z, or g'(v) on a branch where friction grows with the slip rate (Pa s/m): it turns a missing load into a slip rate."""
+    return run.k.impedance + (max(run.friction.by_rate, 0.0) if run.counts.is_algebraic == 1 else 0.0)
+
+
+@inlined
+def allowed(run: Run) -> float:
+    """Return the largest share of a step (1)."""
+    return ALLOWED_SLOPE if run.counts.has_inertia == 1 else ALLOWED
+
+
+@kernel
+def proven_length(run: Run, length: float) -> float:
+    """Return a length (in guesses), at most the given one, for which the step is proven; note the bound in run.state.residual.
+
+    The disc that served the step before is tried first. If no length is proven the run ends: `breach` is OFF_THE_LAW.
+    """
+    share = share_on_disc(run, length, run.counts.disc)
+    attempt = 0
+    while not share <= allowed(run) and attempt < ATTEMPTS:
+        share = math.inf
+        for disc in range(len(RATIOS)):
+            other = share_on_disc(run, length, disc)
+            if other < share:
+                share, run.counts.disc = other, disc
+        if not share <= allowed(run):
+            length *= min(max(0.98 * (allowed(run) / share) ** (1.0 / (TERMS - 1)), SHORTEST), LONGEST)
+        attempt += 1
+    if not share <= allowed(run):
+        run.counts.breach = Stop.OFF_THE_LAW
+    note_residual(run, length, share)
+    return length
+
+
+@inlined
+def note_residual(run: Run, length: float, share: float) -> None:
+    """Note the load (Pa or N) that a step of the given length (in guesses) may lack, from its share."""
+    load = run.k.inertia / (length * abs(run.k.speed)) if run.counts.has_inertia == 1 else resistance(run)
+    run.state.residual = load * share * run.params.tolerance * size_of_rate(run.jet, length)
+
+
+# ---- rounding ---------------------------------------------------------------------------------------------------------------
+
+
+@kernel
+def begin_step(run: Run) -> None:
+    """Note the force (Pa or N) that a step ignores at its start, because it leaves rest without a net force by definition.
+
+    A massless contact must balance: where it does not, no solution begins.
+    """
+    run.state.unbalanced = 0.0
+    if run.k.free != 0.0 or run.counts.is_algebraic == 1:  # An algebraic contact solves its equation at the start too.
+        return
+    piece = run.counts.piece
+    call_value(run.law[piece].value_at, constants_of(run, piece), run.k.slip, 0.0, numbers_of(run.value))
+    balance = run.load_along_slip[0] - run.params.normal * (run.value.mu + run.law[piece].offset)
+    run.state.unbalanced = balance - run.k.force
+    if run.counts.has_inertia == 0 and abs(run.state.unbalanced) > (LOST + ALLOWED * run.params.tolerance) * run.params.normal:
+        run.counts.breach = Stop.OFF_THE_LAW
+
+
+@inlined
+def measure_rounding(run: Run, rate: Floats, length: float, grown: float, rate_end: float) -> None:
+    """Put the end of a step into the contact equation, and note what it lacks if that exceeds the tolerance: it is rounding.
+
+    `rate` is the slip rate on [0, 1], `length` the length of the step (in guesses), `grown` the slip in it (m) and `rate_end` the
+    slip rate at its end (m/s). Friction there is left in run.value.
+    """
+    params, value, piece = run.params, run.value, run.counts.piece
+    call_value(run.law[piece].value_at, constants_of(run, piece), run.k.slip + run.k.chi * grown, rate_end, numbers_of(value))
+    missing = load_at_end(run) - params.impedance * rate_end - params.normal * (value.mu + run.law[piece].offset)
+    missing -= run.state.unbalanced
+    size = max(max(abs(rate[0]), abs(rate_end)), max(abs(rate[1]), max(abs(rate[2]), abs(rate[3]))))
+    if run.counts.has_inertia == 1:
+        pace = (run.k.speed + run.k.bend * length) * length / params.inertia
+        missed = abs((missing - params.stiffness * grown) * pace - slope_at_end(rate))
+    else:
+        missed = abs(missing) / (params.impedance + params.normal * max(value.by_rate, 0.0))
+    if missed > allowed(run) * params.tolerance * size:
+        note_rounding(run, missed, size, length)
+
+
+@kernel
+def note_rounding(run: Run, missed: float, size: float, length: float) -> None:
+    """Count a step if rounding (m/s) in the law hides more than the tolerance. Not every law can be blamed: its terms have a size.
+
+    `size` is that of the slip rate (m/s). Rounding that slip rate and slip have by themselves is no fault of the law.
+    """
+    params, value = run.params, run.value
+    friction = value.mu + run.law[run.counts.piece].offset
+    slip = run.k.slip + run.k.chi * run.state.slip_now
+    terms = params.reference + abs(run.load_along_slip[0]) + params.normal * (abs(friction) + abs(value.by_rate * size))
+    terms += params.normal * abs(value.by_slip * slip)
+    if run.counts.has_inertia == 1:
+        known = ROUNDING * terms * abs(run.k.speed) * length / params.inertia
+    else:
+        known = ROUNDING * terms / (params.impedance + params.normal * max(value.by_rate, 0.0))
+    if missed > known + allowed(run) * params.tolerance * size:
+        run.counts.rough += 1
+        run.state.roughest = max(run.state.roughest, missed / size)
+        if missed * ROUNDING > LOST * known:
+            run.counts.breach = Stop.OFF_THE_LAW
+
+
+@inlined
+def slope_at_end(rate: Floats) -> float:
+    """Return p'(1), the slope of the slip rate's polynomial at the end of the step."""
+    a, b = rate[1], 2.0 * rate[2]
+    for k in range(3, TERMS - 1, 2):
+        a, b = a + k * rate[k], b + (k + 1) * rate[k + 1]
+    return a + b
+
+
+@inlined
+def load_at_end(run: Run) -> float:
+    """Return the load at the end of a step (Pa or N, minus the reference), as seen in the direction of slip.
+
+    run.powers must hold the powers of the step's length.
+    """
+    if run.counts.degree <= 1:
+        return run.load_along_slip[0] + run.powers[1] * run.load_along_slip[1]
+    load = run.load_along_slip[0]
+    for k in range(1, run.counts.degree + 1):
+        load += run.powers[k] * run.load_along_slip[k]
+    return load
+
+
+@inlined
+def is_negative(run: Run) -> bool:
+    """Return True if the friction that was evaluated last (in run.value) is below zero: it would drive slip."""
+    friction = run.value.mu + run.law[run.counts.piece].offset
+    return run.params.reference + run.params.normal * friction < -NEGLIGIBLE * run.params.normal

@@ -1,0 +1,117 @@
+"""Bound what the polynomials of an implicit step lack of the governing equations anywhere in the step, by Schwarz's lemma.
+
+Let g be what an equation lacks, as a function of the place x on [0, 1], and y = x - 1/2. The polynomials obey the equations at Radau's
+points, where g is zero but for what Newton's method leaves. If g is analytic on the disc |y| <= R and |g| <= M there, then
+
+    |g(x)| <= M product of |R (y - y_i) / (R^2 - y_i y)|
+
+over these points y_i: g divided by the product is analytic, and the product has magnitude 1 on the circle (Blaschke factors). M follows
+from ball arithmetic of the law's formula, as for explicit steps (`contact_step.certificate`).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.engine.codegen.compiler import call_radii, kernel
+from stickslip.engine.codegen.records import numbers_of
+from stickslip.engine.contact.contact_equation import constants_of
+from stickslip.engine.contact.stiffness import contact_at
+from stickslip.engine.implicit_step.radau_stages import yielding
+from stickslip.engine.series.polynomial import RECIPROCAL, integral, restrict
+from stickslip.engine.series.radau_nodes import POINT, POINTS, STAGES
+from stickslip.engine.state.layout import Floats
+from stickslip.engine.state.workspace import Run
+
+DISCS = np.array([4.0, 2.8, 2.0, 1.5, 1.2, 1.0, 0.85, 0.75, 0.68, 0.62])
+"""Radii (1) of the discs around the middle of a step that are tried, in lengths of the step."""
+PLACES_ON_STEP = 4001
+"""Number of places at which the largest product is looked for."""
+MARGIN = 1.02
+"""Factor (1) that covers rounding, and what lies between those places."""
+
+
+def _products(zeros: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the largest product of Blaschke factors on the step, for each of DISCS, if g is zero at the given places on [0, 1]."""
+    y, radius = np.linspace(-0.5, 0.5, PLACES_ON_STEP), DISCS[:, None, None]
+    own = (zeros - 0.5)[:, None]
+    return np.asarray(MARGIN * abs(radius * (y - own) / (radius * radius - own * y)).prod(axis=1).max(axis=1))
+
+
+AT_STAGES, AT_POINTS = _products(POINT[1:]), _products(POINT)
+"""Largest products for functions that are zero at Radau's points, and for those that are zero at the start of the step, too."""
+
+
+@kernel
+def size_on_disc(c: Floats, radius: float) -> float:
+    """Return how far a polynomial of degree STAGES in y can be from its value at y = 0 on a disc."""
+    size = 0.0
+    for k in range(STAGES, 0, -1):
+        size = (size + abs(c[k])) * radius
+    return size
+
+
+@kernel
+def slope_on_disc(c: Floats, radius: float) -> float:
+    """Return how far the slope of a polynomial of degree STAGES in y can be from its value at y = 0 on a disc."""
+    size = 0.0
+    for k in range(STAGES, 1, -1):
+        size = (size + k * abs(c[k])) * radius
+    return size
+
+
+@kernel
+def walk_on_disc(c: Floats, radius: float) -> float:
+    """Return how far the integral of a polynomial of degree STAGES in y can be from its value at y = 0 on a disc."""
+    size = 0.0
+    for k in range(STAGES, -1, -1):
+        size = (size + RECIPROCAL[k + 1] * abs(c[k])) * radius
+    return size
+
+
+@kernel
+def prove_step(run: Run, h: float, force: float) -> tuple[float, float]:
+    """Return bounds of what the step of h seconds lacks: as slip rate (m/s), and in units of the state.
+
+    The polynomials are in run.jet and run.state_jet. At rest, run.jet is the strength, and the first bound is one of its error (Pa
+    or N). The bound of the load that the contact equation lacks is left in run.state.residual. `force` (Pa or N) is the force that
+    the step ignores.
+    """
+    slips, rate, state, load = run.counts.mode != 0, run.part, run.powers, run.spare
+    restrict(run.jet, 0.5, 1.0, rate)
+    restrict(run.state_jet, 0.5, 1.0, state)
+    restrict(run.load_along_slip, 0.5, 1.0, load)
+    params, ball, value = run.params, run.ball, run.value
+    at_rate = rate[0] if slips else 0.0
+    walked = h * integral(run.jet, 0.5, 1) if slips else 0.0
+    law_slip = run.state.law_slip + run.k.chi * walked
+    contact_at(run, law_slip, at_rate, state[0])
+    if slips:
+        missing = load[0] - force - params.impedance * rate[0] - params.normal * value.mu - params.stiffness * walked
+        missing -= params.inertia / h * rate[1]
+    else:
+        missing = rate[0] - params.normal * value.mu
+    stray = value.change - state[1] / h
+    by_load, by_change = yielding(run, h)
+    piece, least, least_state = run.counts.piece, math.inf, math.inf
+    ball.at_slip, ball.at_rate, ball.at_state = law_slip + run.law[piece].slip_shift, at_rate, state[0]
+    for n in range(len(DISCS)):
+        radius = DISCS[n]
+        ball.rate = size_on_disc(rate, radius) if slips else 0.0
+        ball.slip = h * walk_on_disc(rate, radius) if slips else 0.0
+        ball.state = size_on_disc(state, radius)
+        call_radii(run.law[piece].balls_at, constants_of(run, piece), run.jet, numbers_of(ball))
+        if slips:
+            moved = size_on_disc(load, radius) + params.impedance * ball.rate + params.stiffness * ball.slip
+            moved += params.inertia / h * slope_on_disc(rate, radius)
+            least = min(least, AT_STAGES[n] * (abs(missing) + params.normal * ball.friction + moved))
+        else:
+            least = min(least, AT_POINTS[n] * (abs(missing) + params.normal * ball.friction + size_on_disc(rate, radius)))
+        if run.counts.has_state == 1:
+            moved = slope_on_disc(state, radius) / h
+            least_state = min(least_state, AT_STAGES[n] * (abs(stray) + ball.change + moved))
+    run.state.residual = least
+    return least * by_load if slips else least, least_state * by_change if run.counts.has_state == 1 else 0.0
