@@ -41,6 +41,9 @@ from stickslip.problem.problem import Problem
 
 PLACES = 65
 """Number of slips at which the lowest friction of a stride is looked for, and again around the lowest of them."""
+IN_SIGHT = 10.0
+"""Largest factor by which friction may be proven to change more than its slopes suggest: the bound of a smooth law is larger by a
+few."""
 COMPLEX_STEP = 1e-30
 """Imaginary part (m) of the slip in a derivative by a complex step: small enough that the derivative is exact to rounding."""
 
@@ -66,14 +69,18 @@ class Strength:
 
     @cached_property
     def sight(self) -> Sight:
-        """The guards of the piece of the law that holds at x = 0."""
+        """The ball arithmetic of the piece of the law that holds at x = 0."""
         law = self.problem.friction
         return Sight.of(law.trees()[self.piece], law.parameters(), law.piece_values(self.piece), self.problem.law_slip)
 
-    def in_sight(self, x: float, later: tuple[float, ...]) -> bool:
-        """Return True if between x and later slips no part of the law can come into view that leaves no trace at x."""
-        start = self.law_slip + self.sign * x
-        return all(self.sight.used_up(start, self.law_slip + self.sign * end) <= 1.0 for end in later)
+    def in_sight(self, x: float, end: float) -> bool:
+        """Return True if friction is proven to change from x to `end` no more than its slopes at x suggest.
+
+        A part of the law that leaves no trace at x would be missed between the places at which a leap looks at friction.
+        """
+        way, unit = abs(end - x), self.problem.normal
+        expected = abs(self.slope(x)) * way + abs(self.curvature(x)) * way * way
+        return unit * self.sight.change(self.law_slip + self.sign * x, way) <= IN_SIGHT * expected + unit * NEGLIGIBLE
 
     def falls_below_zero(self, x: float, end: float) -> bool:
         """Return True if friction falls below zero between two slips, by more than rounding: it would drive slip there."""

@@ -112,7 +112,7 @@ class Planner:
         """Return the state one stride later, or None if it cannot be trusted or the slip up to it cannot be interpolated."""
         middle, end = self.averaged.at(begin.lift + 0.5 * stride), self.averaged.at(begin.lift + stride)
         strength = self.averaged.strength
-        if not strength.in_sight(begin.slip, (middle.slip, end.slip)) or strength.falls_below_zero(begin.slip, end.slip):
+        if not strength.in_sight(begin.slip, end.slip) or strength.falls_below_zero(begin.slip, end.slip):
             return None
         swing = swing_of(begin, middle, end)
         if not (self._fits(middle, swing) and self._fits(end, swing)):

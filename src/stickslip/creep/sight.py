@@ -1,4 +1,4 @@
-"""Guards of a law of slip for leaps over creep: they tell which parts of the law leave no trace at a given slip (see `guards`)."""
+"""Ball arithmetic of a law of slip for leaps over creep: it tells how far friction can be from its value at a given slip."""
 
 from __future__ import annotations
 
@@ -8,37 +8,31 @@ from typing import Self
 import numpy as np
 
 from stickslip.engine.codegen.compiler import CompiledFormula, compile_formula
-from stickslip.engine.state.layout import Floats
+from stickslip.engine.state.layout import Ball, Floats
 from stickslip.friction.formula.expression import Expression
 
 
 @dataclass(frozen=True)
 class Sight:
-    """The guards of a compiled formula, with its constants at a reference slip."""
+    """A compiled formula, with its constants at a reference slip."""
 
     formula: CompiledFormula
     constants: Floats
 
     @classmethod
     def of(cls, tree: Expression, parameters: tuple[str, ...], values: tuple[float, ...], reference: float) -> Self:
-        """Return the guards of a formula with these values of its parameters; slips count from the reference (m)."""
+        """Return a formula with these values of its parameters; slips count from the reference (m)."""
         formula = compile_formula(tree, parameters)
         numbers, constants = np.array(values), np.zeros(formula.size)
         formula.fill(numbers, reference, constants)
         return cls(formula, constants)
 
-    def used_up(self, start: float, end: float) -> float:
-        """Return the share of its room that the most critical guard uses up from one slip to another (m, minus the reference).
+    def change(self, slip: float, radius: float) -> float:
+        """Return a bound (1) of the change of friction at rest from a slip to slips up to `radius` away (both m).
 
-        Beyond 1 a part of the formula that leaves no trace at the start may have come into view.
+        The bound is infinite or NaN where nothing is known. Slips count from the reference.
         """
-        if self.formula.guard_count == 0:
-            return 0.0
-        before, after = self._at(start), self._at(end)
-        return float(np.max(before[:, 1] * (after[:, 0] - before[:, 0])))
-
-    def _at(self, slip: float) -> Floats:
-        """Return the arguments and pulls of the guards at a slip (m, minus the reference)."""
-        out = np.zeros(2 * self.formula.guard_count)
-        self.formula.fill_guards(self.constants, slip, out)
-        return out.reshape(-1, 2)
+        ball = Ball(np.zeros(Ball.total))
+        ball.slip, ball.at_slip = radius, slip
+        self.formula.fill_radii(self.constants, ball.numbers)
+        return float(ball.friction)

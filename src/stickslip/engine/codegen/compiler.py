@@ -68,6 +68,15 @@ class CompiledFormula:
         else:
             prepare.ctypes(values.ctypes.data_as(_DOUBLE), reference, constants.ctypes.data_as(_DOUBLE))
 
+    def fill_radii(self, constants: Floats, ball: Floats) -> None:
+        """Fill in the radii of friction and of dw/dt in `ball`, the numbers of a `layout.Ball` with centres and discs."""
+        balls = self._function("balls")
+        if UNCOMPILED:
+            balls(constants, ball, ball)
+        else:
+            numbers = ball.ctypes.data_as(_DOUBLE)
+            balls.ctypes(constants.ctypes.data_as(_DOUBLE), numbers, numbers)
+
     def _function(self, part: str) -> Any:
         """Return one of the functions, and generate and load it first if this has not been done yet."""
         if part not in self._functions:

@@ -144,10 +144,19 @@ def size_of_load(run: Run) -> float:
 
 
 @kernel
+def rounding_of_slip(run: Run) -> float:
+    """Return the friction (Pa or N) that a relative change of 1 in the law's slip makes, by the slope in run.value.
+
+    A contact that settles against a steep barrier ends with slips that are closer together than floats.
+    """
+    return run.params.normal * abs(run.value.by_slip * (run.state.law_slip + run.law[run.counts.piece].slip_shift))
+
+
+@kernel
 def correct(run: Run, size: int, rounding: float) -> float:
     """Add the solution of Newton's equations to the stages; return how large the change is, relative to the stages.
 
-    `rounding` is that of the load (Pa or N); a change of the slip rate that it can explain counts as none.
+    `rounding` is that of the load (Pa or N); a change of the slip rate that it, or the rounding of slip, can explain counts as none.
     """
     v, w, m = run.stage_rate, run.stage_state, run.matrix
     fastest, farthest, moved, evolved = 1e-300, run.params.state_scale + 1e-300, 0.0, 0.0
@@ -163,6 +172,7 @@ def correct(run: Run, size: int, rounding: float) -> float:
             return math.inf
     if rounding > 0.0:
         # run.value is still that of the last stage.
+        rounding += NEWTON_ROUNDING * rounding_of_slip(run)
         moved = max(moved - rounding / abs(run.params.impedance + run.params.normal * run.value.by_rate), 0.0)
     return max(moved / fastest, evolved / farthest)
 

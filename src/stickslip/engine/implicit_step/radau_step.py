@@ -16,6 +16,7 @@ from stickslip.engine.implicit_step.radau_stages import (
     larger,
     rate_at_load,
     rounding_of_law,
+    rounding_of_slip,
     size_of_load,
     solve_stages,
 )
@@ -111,15 +112,6 @@ def strength_ahead(run: Run) -> float:
         missed = larger(missed, abs(params.normal * run.value.mu - evaluate(run.jet, MIDDLE[i])))
     fill(run.stage_rate, 0.0)
     return max(missed, last_terms(run.jet)) / (params.tolerance * largest)
-
-
-@kernel
-def rounding_of_slip(run: Run) -> float:
-    """Return the friction (Pa or N) that a relative change of 1 in the law's slip makes, by the slope in run.value.
-
-    A contact that settles against a steep barrier ends with slips that are closer together than floats.
-    """
-    return run.params.normal * abs(run.value.by_slip * (run.state.law_slip + run.law[run.counts.piece].slip_shift))
 
 
 @kernel
