@@ -129,6 +129,8 @@ def sampled(run: ss.Solution, points: int) -> list[tuple[float, float, float]]:
     mode, law = run.history.store.mode[at.piece], run.problem.friction
     walked = run.history.grown(at) * (mode if law.counts == "path" else 1)
     slips = run.problem.law_slip + run.history.store.law_slip[at.piece] + walked
+    if law.counts == "net":  # a piece that comes back in a leap over rest knows the load of that phase, but an older slip
+        slips = np.where(at.leaped > 0, run.slip(times), slips)
     loads = np.where(mode == 0, np.abs(run.load(times)), mode * run.load(times))
     return list(zip(slips.tolist(), np.abs(run.slip_rate(times)).tolist(), loads.tolist(), strict=True))
 

@@ -8,7 +8,7 @@ from their differential equations, such as (exp a)' = a' exp a, order by order.
 
 from __future__ import annotations
 
-from stickslip.friction.formula.denominators import LARGEST_EXPONENT, in_denominators_only
+from stickslip.friction.formula.denominators import LARGEST_EXPONENT, harmless_overflows
 from stickslip.friction.formula.expression import RATE, SLIP, STATE, Expression, depends_on, nodes_of
 
 NO_LIMIT = 1e308
@@ -63,7 +63,7 @@ class Recurrences:
         self.varies = {node: any(depends_on(node, one) for one in (SLIP, RATE, STATE)) for node in self.nodes}
         self.rate_dependent = {node: depends_on(node, RATE) for node in self.nodes}
         self.dynamic = [n for n in self.nodes if self.varies[n] and n not in (SLIP, RATE, STATE)]
-        self._only_below = in_denominators_only(self.nodes)
+        self._only_below = harmless_overflows(self.nodes)
         self.pending_rate: int | None = None
         self.size = len(self.nodes) + 1
 

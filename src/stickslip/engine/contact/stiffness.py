@@ -13,6 +13,8 @@ step so short; and in an implicit step, below which the contact is no longer sti
 SETTLED, NOT_SETTLED = 1.0, 0.2
 """The same two numbers for a massless contact: there the slip rate only decays, and explicit steps would follow the decay to the
 smallest number there is."""
+PATIENCE = 200
+"""Number of explicit steps (1) since slip last began before a massless contact may count as stiff: in fewer, none is."""
 CHECKED = 16
 """Number of explicit steps (1) between two checks of the stiffness."""
 
@@ -66,8 +68,9 @@ def is_no_longer_stiff(run: Run) -> bool:
 def judge_stiffness(run: Run) -> None:
     """Check now and then, after an explicit step, whether the contact has become stiff."""
     run.counts.steps += 1
-    limit = STIFF if run.counts.has_inertia == 1 else SETTLED
-    if run.counts.steps % CHECKED == 0 and run.state.last_step * settling_rate(run) > limit:
+    limit, least = (STIFF, 0) if run.counts.has_inertia == 1 else (SETTLED, PATIENCE)
+    due = run.counts.steps % CHECKED == 0 and run.counts.steps > least
+    if due and run.state.last_step * settling_rate(run) > limit:
         run.counts.stiff = 1
 
 

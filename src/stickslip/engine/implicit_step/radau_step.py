@@ -38,7 +38,7 @@ DEFECT_ROUNDING = 1e-14
 """Share (1) of the largest slip rate, or state, that rounding makes of the defect: derivatives of polynomials lose two digits."""
 ALLOWED = 0.1
 """Share of the defect (1) that counts: it changes its sign at every point, and leaves hardly anything in slip and state."""
-UNPROVEN = 1e-3
+UNPROVEN = 1e-4
 """Share of the proven bound (1) that counts: it is larger than the defect by orders of magnitude, and still far below what a hidden
 feature of the law would make of it."""
 LEAST_TREND = 0.7

@@ -119,7 +119,7 @@ class Counts(Record):
     has_state: int  # 1 if the law has a state variable
     sticks: int  # 1 if the law knows rest
     stiff: int  # 1 while a contact with mass is stiff and takes implicit steps
-    steps: int  # number of explicit steps of a contact with mass since slip last began from rest
+    steps: int  # number of explicit steps since slip last began from rest
     folds_move: int  # 1 if the branches change with slip
     knots_in_rate: int  # 1 if the knots of the law are slip rates, 0 if they are slips
     branch_ended: int  # 1 if a moving branch has ended and the next one has not been chosen yet

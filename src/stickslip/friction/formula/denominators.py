@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
-from stickslip.friction.formula.expression import Expression
+from stickslip.friction.formula.expression import Expression, nodes_of
 
 LARGEST_EXPONENT = 150.0
-"""Largest exponent, dimensionless, of an exp that occurs in denominators only; larger ones are replaced by it. A quotient over
-e^150 is negligible, and the square and the series of e^150 are still finite."""
+"""Largest exponent, dimensionless, of an exp whose overflow is harmless; larger ones are replaced by it. A quotient over e^150 is
+negligible, exp(-e^150) is zero, and the square and the series of e^150 are still finite."""
+SQUASH = ("exp", "tanh")
+"""Functions that no longer change when their argument grows beyond e^150, or are infinite there already."""
 
 
-def in_denominators_only(nodes: list[Expression]) -> set[Expression]:
-    """Return the nodes whose every way into the formula leads through sums, differences, products and roots to a denominator."""
+def harmless_overflows(nodes: list[Expression]) -> set[Expression]:
+    """Return the nodes whose every way into the formula leads to a denominator or into one of SQUASH.
+
+    The way may lead through sums, differences, roots and products, but not through a product with a factor that may be as small as
+    the node is large.
+    """
     parents: dict[Expression, list[Expression]] = {node: [] for node in nodes}
     for node in nodes:
         for argument in node.arguments:
@@ -19,7 +25,7 @@ def in_denominators_only(nodes: list[Expression]) -> set[Expression]:
     for node in reversed(nodes):
         ways = parents[node]
         if ways and all(
-            _divides(node, parent) or (parent in below and parent.operation in ("add", "sub", "mul", "sqrt")) for parent in ways
+            parent.operation in SQUASH or _divides(node, parent) or (parent in below and _keeps_large(node, parent)) for parent in ways
         ):
             below.add(node)
     return below
@@ -28,3 +34,11 @@ def in_denominators_only(nodes: list[Expression]) -> set[Expression]:
 def _divides(node: Expression, parent: Expression) -> bool:
     """Return True if a node is the denominator, and not also the numerator, of its parent."""
     return parent.operation == "div" and parent.arguments[1] == node and parent.arguments[0] != node
+
+
+def _keeps_large(node: Expression, parent: Expression) -> bool:
+    """Return True if the parent of a node is large wherever the node is."""
+    if parent.operation != "mul":
+        return parent.operation in ("add", "sub", "sqrt")
+    others = [argument for argument in parent.arguments if argument != node]
+    return all(part.operation not in ("exp", "pow", "div") for other in others for part in nodes_of(other))

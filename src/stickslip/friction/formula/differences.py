@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.friction.formula.denominators import LARGEST_EXPONENT, in_denominators_only
+from stickslip.friction.formula.denominators import LARGEST_EXPONENT, harmless_overflows
 from stickslip.friction.formula.expression import RATE, SLIP, STATE, Expression, nodes_of
 
 Array = NDArray[np.float64]
@@ -45,7 +45,7 @@ def difference(
     du, v = np.broadcast_arrays(np.asarray(slip_step, float), np.asarray(rate, float))
     found = {SLIP: _Node(slip, du, slip + du, 0.0), RATE: _Node(0.0, v, v, 1.0), STATE: _Node(0.0, 0.0, 0.0, 0.0)}
     nodes = nodes_of(tree)
-    limited = {node for node in in_denominators_only(nodes) if node.operation == "exp"}
+    limited = {node for node in harmless_overflows(nodes) if node.operation == "exp"}
     with np.errstate(divide="ignore", over="ignore"):
         for node in nodes:
             if node in limited:
