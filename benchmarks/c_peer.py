@@ -66,7 +66,6 @@ def header(writer: FormulaWriter) -> str:
         code.name: int(code) for codes in (layout.Stop, layout.Cause, layout.Incoming) for code in codes if code.name != "NONE"
     }
     defines = [f"#define {name} {value}" for name, value in names.items() if name.isupper()]
-    defines.append(f"#define GUARDS {len(writer.guards)}")
     records = [structure(one) for one in vars(layout).values() if isinstance(one, type) and issubclass(one, Record) and one.places]
     return (
         "\n".join([*defines, *records, structure(workspace.Run, "Memory"), *SINES, *NAMES])

@@ -72,12 +72,17 @@ NAMED = (
         "return direction * run.part[1] < run.friction.by_slip",
     ),
     Named("tolerance-times-1000", "engine_input/prepare.py", "= rtol * SAFETY,", "= 1000.0 * rtol * SAFETY,"),
-    Named("no-verification", "engine/contact_step/verify.py", "return missing <= allowed", "return True or missing <= allowed"),
     Named(
-        "no-guards",
-        "engine/contact_step/verify.py",
-        "    if not used_up(run.reach, run.powers) > 1.0:\n        return length\n",
-        "    return length\n",
+        "no-certificates",
+        "engine/contact_step/certificate.py",
+        "    while not share <= allowed(run) and attempt < ATTEMPTS:",
+        "    while not share <= 1e300 and attempt < ATTEMPTS:",
+    ),
+    Named(
+        "no-proof-of-implicit-steps",
+        "engine/implicit_step/radau_step.py",
+        "if proven > 1.0 and passes_zero(run):",
+        "if proven > 1.0:",
     ),
     Named(
         "left-and-right-exchanged",

@@ -35,7 +35,7 @@ ENGINE_TESTS = (
     "tests/adversarial/test_known_failures.py",
     "tests/engine/test_located_events.py",
     "tests/engine/test_solution.py",
-    "tests/engine/test_guards.py",
+    "tests/engine/test_certificate.py",
     "tests/reference",
 )
 """Where mistakes in compiled code show soonest."""

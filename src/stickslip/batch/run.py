@@ -233,6 +233,8 @@ class _Batch:
                 break
             if work.stage[lane] == Stage.AT_END:
                 work = work.with_more_points()
+            elif work.code[lane] == Stop.NEED_PART:
+                work.lend_missing(lane)
             elif work.code[lane] != Stop.PAUSED and work.capacity < LARGEST_CAPACITY:
                 work = work.larger()
             else:

@@ -83,5 +83,6 @@ class HistoryWriter:
         kept.jump, kept.cause, kept.echo_of = 0, 0, -1
         kept.phase_from, kept.phase_to, kept.speed, kept.bend = piece.phase_from, piece.phase_to, piece.speed, piece.bend
         kept.slip, kept.law_slip, kept.amplified, kept.gain = slip, law_slip, np.nan, np.nan
+        kept.residual = 0.0  # a leap has an error bound of its own
         store.load[n] = seen(piece.load[None, :], self.problem.strength, self.direction)[0]
         store.rate[n] = self.direction * piece.rate

@@ -99,6 +99,7 @@ def origin(solution: Solution) -> dict[str, Any]:
         "status_ok": int(solution.status.ok),
         "lumping": solution.lumping_note,
         "rounding": solution.rounding_note,
+        "proven": solution.proven.text,
     }
 
 
@@ -218,7 +219,7 @@ def history_dataset(solution: Solution) -> xr.Dataset:
 
 def _history(solution: Solution) -> xr.Dataset:
     store, history, load = solution.history.store, solution.history, solution.problem.load_unit
-    units, known = HISTORY_UNITS | {"load": load}, {"load": "load minus reference", "rate": "slip rate"}
+    units, known = HISTORY_UNITS | {"load": load, "residual": load}, {"load": "load minus reference", "rate": "slip rate"}
     variables: dict[str, Any] = {}
     for name, axes in HISTORY_AXES.items():
         meaning = f"{known[name]}, Taylor coefficients" if name in known else f"{name} of a piece of the history"

@@ -17,6 +17,7 @@ from stickslip.io.netcdf import CATALOGUE, FORMAT, origin, save_checkpoint
 from stickslip.observables.energy.balance import trapped_note
 from stickslip.observables.event_stream import EventStream, Look
 from stickslip.observables.predictability import attributes_of, is_followed, predictability_of_events
+from stickslip.observables.proof import proof_from
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_event_rate
 from stickslip.run.monitor import run_to_end, stream_of
@@ -226,7 +227,8 @@ class EventRows:
         solution = run.solution(code)
         known = is_followed(run.problem)
         prediction = predictability_of_events(self.rows.columns("start", "amplification"), run.options.rtol) if known else None
-        self.rows.publish(origin(solution) | attributes_of(prediction), run.problem.load_unit)
+        proven = proof_from(run.problem, run.state.largest_residual, run.count.unproven).text
+        self.rows.publish(origin(solution) | {"proven": proven} | attributes_of(prediction), run.problem.load_unit)
         self.save(run, code)
         self.rows.tidy()
         notes = {
@@ -235,6 +237,7 @@ class EventRows:
             "creep": creep_note(run.creep),
             "lumping": run.lumping_note,
             "rounding": run.rounding_note,
+            "proven": proven,
         }
         return Catalogue(self.rows, stream.told, solution.status, {name: note for name, note in notes.items() if note})
 

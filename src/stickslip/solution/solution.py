@@ -14,6 +14,7 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief, html_table
 from stickslip.observables.event_table import events_table
+from stickslip.observables.proof import Proof, proof_of
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_event_rate
 from stickslip.solution.accessors import Exports, SolutionPlots, to_netcdf
@@ -238,6 +239,7 @@ class Solution(Exports):
             ("events", f"{len(events)}{largest}"),
             ("shocks", f"{len(self.shocks)}"),
             ("selection", self.selection_note),
+            ("proven", self.proven.text),
             *([("creep", self.creep_note)] if self.creep_note else []),
             *([("lumping", self.lumping_note)] if self.lumping_note else []),
             *([("rounding", self.rounding_note)] if self.rounding_note else []),
@@ -251,6 +253,11 @@ class Solution(Exports):
         from stickslip.observables.energy.balance import trapped_note
 
         return trapped_note(self.history)
+
+    @cached_property
+    def proven(self) -> Proof:
+        """How far, at most, the run is from obeying the contact equation at any moment: a bound that is proven, see `Proof`."""
+        return proof_of(self.history)
 
     @cached_property
     def horizon_note(self) -> str:

@@ -21,6 +21,7 @@ from stickslip.engine.contact_step.certificate import (
     RATIOS,
     SHRUNK,
     SHRUNK_SLOPE,
+    SMALLEST,
     allowed,
     begin_step,
     force_on_disc,
@@ -182,7 +183,7 @@ def prove(rows: Block, radii: int, moves: bool) -> None:
         missed = rows.length * (abs(rows.k.speed) / rows.k.inertia * force + slope_on_disc(rows.jet, powers)) * rows.shrunk
     else:
         missed = force / rows.k.impedance * rows.shrunk
-    rows.share = missed / (rows.tolerance * size_of_rate(rows.jet, rows.length))
+    rows.share = missed / max(rows.tolerance * size_of_rate(rows.jet, rows.length), SMALLEST)
 
 
 @inlined

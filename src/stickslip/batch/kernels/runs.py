@@ -72,8 +72,8 @@ def run_group(group: Group, base: Integers, stride: Integers, work: Workspace) -
     """Run members, each in a lane of the workspace, and write their stop codes and numbers into the group.
 
     base and stride are those of `batch.workspace.table_of`. Returns WIDTH when all members are done or `stop` is set. Otherwise it
-    returns the lane that has no room, or whose member has crept for so long (code PAUSED) that it should be run alone. Called
-    again, it continues from there.
+    returns the lane that has no room, or needs a part of the engine (code NEED_PART), or whose member has crept for so long (code
+    PAUSED) that it should be run alone. Called again, it continues from there.
     """
     first = first_lane(work, base, stride)
     jets, block = integers(group.setups.jets.ctypes.data), work.block[0]
@@ -150,7 +150,8 @@ def advance_member(group: Group, lane: Lane) -> None:
         code = run_until_at(group.engine, table, last_trip, last_phase, BUDGET)
     lane.code[0] = code
     lane.waits[0] = Waits.FRESH if code == Stop.SLIPS else Waits.NONE
-    if code != Stop.SLIPS and code != Stop.FULL and code != Stop.PAUSED and code != Stop.NONE:
+    asks = code == Stop.SLIPS or code == Stop.FULL or code == Stop.PAUSED or code == Stop.NEED_PART
+    if not asks and code != Stop.NONE:
         lane.stage[0] = Stage.AT_END
 
 
@@ -158,7 +159,8 @@ def advance_member(group: Group, lane: Lane) -> None:
 def bring_on(group: Group, lane: Lane, work: Workspace, place: int) -> bool:
     """Reduce runs that have ended and start further members in a lane, until one waits for a step side by side or none is left.
 
-    place is the index of the lane. Returns True in these cases, and False if there is no room or the member has paused.
+    place is the index of the lane. Returns True in these cases, and False if there is no room, a part is missing or the member has
+    paused.
     """
     setups, codes, numbers = group.setups, group.codes, floats(group.out.ctypes.data)
     while lane.stage[0] != Stage.UNDER_WAY:

@@ -41,8 +41,8 @@ def show_solution(scenario: Scenario, solution: Solution) -> None:
     say(screen, f"selection rule {solution.selection_note}\n")
     _print_events(screen, event_columns(history, SlipEvents.of(history, default_event_rate(solution.problem))), solution.problem)
     _print(screen, "shock", shock_columns(history), ("s", "", "m/s", "m/s", load, load))
-    notes = (solution.trapped_note, solution.horizon_note, solution.rounding_note)
-    for what, note in zip(("trapped energy", "predictability", "rounding"), notes, strict=True):
+    notes = (solution.trapped_note, solution.horizon_note, solution.proven.text, solution.rounding_note)
+    for what, note in zip(("trapped energy", "predictability", "proven", "rounding"), notes, strict=True):
         if note:
             say(screen, f"{what}: {note}\n")
 
@@ -52,7 +52,12 @@ def show_catalogue(scenario: Scenario, found: Catalogue) -> None:
     screen = titled(scenario)
     _say_how(screen, scenario, found.status, found.notes.get("creep", ""), found.notes.get("lumping", ""))
     say(screen, f"{found.events} slip event{'' if found.events == 1 else 's'}")
-    for name, what in (("predictability", "predictability"), ("trapped", "trapped energy"), ("rounding", "rounding")):
+    for name, what in (
+        ("predictability", "predictability"),
+        ("trapped", "trapped energy"),
+        ("proven", "proven"),
+        ("rounding", "rounding"),
+    ):
         if name in found.notes:
             say(screen, f"{what}: {found.notes[name]}")
     announce(*found.files)

@@ -21,8 +21,8 @@ from stickslip.friction.formula.expression import RATE, SLIP, STATE, Expression,
 VARIED = ("exp", "pow")
 """Operations whose results vary by orders of magnitude without coming near zero."""
 TINIEST = 1e-300
-"""Smallest bound of a magnitude from below. In place of zero it makes radii huge instead of infinite, which proves as little, and no
-division by zero."""
+"""Smallest bound of a magnitude from below. In place of zero it makes radii huge instead of infinite, which proves as little, and
+no division by zero."""
 
 
 class Balls:

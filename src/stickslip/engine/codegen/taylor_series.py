@@ -128,11 +128,13 @@ class FormulaWriter(Recurrences):
         return [f"s[{self.limit + 1 + j}] = {self.coefficient(node, 0)}" for j, node in enumerate(self.balls.centres)]
 
     def radii(self) -> list[str]:
-        """Write the body of `radii(c, s, k)`: s is what a jet has written, and k holds the numbers of `engine.state.layout.Ball`."""
+        """Write the body of `radii(c, s, k)`: s is what a jet has written, and k holds the numbers of a `layout.Ball`."""
         if not self.has_room_for_centres:
             return self.around()
         own = {SLIP: "x_0", RATE: "s_0"}
-        body = [f"{own.get(node) or self.coefficient(node, 0)} = s[{self.limit + 1 + j}]" for j, node in enumerate(self.balls.centres)]
+        body = [
+            f"{own.get(node) or self.coefficient(node, 0)} = s[{self.limit + 1 + j}]" for j, node in enumerate(self.balls.centres)
+        ]
         return [*body, *self._radii()]
 
     def around(self) -> list[str]:

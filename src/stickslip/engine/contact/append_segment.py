@@ -60,7 +60,8 @@ def record(run: Run, xi_to: float) -> None:
         kept.amplified = run.state.amplified
         kept.gain = abs(run.params.reflection) * (run.state.gain if run.counts.mode != 0 else 1.0)
         kept.residual = run.state.residual
-        run.state.largest_residual = max(run.state.largest_residual, run.state.residual)
+        if run.state.residual > run.state.largest_residual:
+            run.state.largest_residual = run.state.residual
         note_slip(run, n, phase_from)
         run.counts.length = n + 1
         run.counts.jump = run.counts.cause = run.counts.stalled = 0

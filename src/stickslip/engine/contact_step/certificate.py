@@ -4,14 +4,14 @@ Let g be what the contact equation lacks along a step, for the polynomials of th
 
     g = Z v + S mu(u, v) - load, with inertia times dt/dxi / m, plus dv/dxi.
 
-The first n Taylor coefficients of g vanish, because the series of the step was made so: n is ORDER + 1, and ORDER with inertia. If g
-is analytic on the disc |xi| <= r, and |g| <= M there, then |g(xi)| <= M (xi / r)^n on the disc. M follows from one evaluation of
+The first n Taylor coefficients of g vanish, because the series of the step was made so: n is ORDER + 1, and ORDER with inertia. If
+g is analytic on the disc |xi| <= r, and |g| <= M there, then |g(xi)| <= M (xi / r)^n on the disc. M follows from one evaluation of
 the law's formula in ball arithmetic (`engine.codegen.balls`). Whatever a law hides, a singularity, a narrow feature, a number that
 overflows, makes M large or infinite, wherever it lies in the disc.
 
 A bound counts as a share: the slip rate that it makes, in units of the tolerance times the slip rate of the step. Rounding is no
-part of the proof. It is measured where the step ends, and noted where it exceeds the tolerance. Bounds are calculated in floats: the
-rounding of a few hundred operations is far below MARGIN.
+part of the proof. It is measured where the step ends, and noted where it exceeds the tolerance. Bounds are calculated in floats:
+the rounding of a few hundred operations is far below MARGIN.
 """
 
 from __future__ import annotations
@@ -36,6 +36,10 @@ RATIOS = np.array([8.0, 6.4, 5.2, 4.4, 3.8, 3.3, 2.9, 2.5, 2.2, 1.9, 1.65, 1.45,
 """Radii of the discs that are tried, in lengths of the step (1)."""
 SHRUNK, SHRUNK_SLOPE = RATIOS ** -float(TERMS), RATIOS ** -float(TERMS - 1)
 """Factors (1) by which g is smaller on the step than on each of the discs, without and with inertia."""
+SMALLEST = 1e-300
+"""Slip rate (m/s) below which errors are not measured relative to it: a contact may slip at a rate of exactly zero for a while."""
+FIRST_RATIO, NEXT_RATIO, STRAIGHT_DISCS = 4.0, 8.0, 9
+"""Radius of the first disc for a bit next to a fold, in its lengths, factor from one disc to the next, and number of discs (1)."""
 ATTEMPTS = 60
 """Number of times (1) that a step is shortened before the run ends: each time at least to LONGEST of its length."""
 SHORTEST, LONGEST = 0.2, 0.9
@@ -112,7 +116,7 @@ def share_on_disc(run: Run, length: float, disc: int) -> float:
         missed = length * (abs(run.k.speed) / run.k.inertia * force + slope_on_disc(run.jet, powers)) * SHRUNK_SLOPE[disc]
     else:
         missed = force / resistance(run) * SHRUNK[disc]
-    return missed / (run.params.tolerance * size_of_rate(run.jet, length))
+    return missed / max(run.params.tolerance * size_of_rate(run.jet, length), SMALLEST)
 
 
 @inlined
@@ -157,6 +161,30 @@ def note_residual(run: Run, length: float, share: float) -> None:
     run.state.residual = load * share * run.params.tolerance * size_of_rate(run.jet, length)
 
 
+# ---- bits next to a fold -----------------------------------------------------------------------------------------------------
+
+
+@kernel
+def bound_straight_bit(run: Run, length: float, grown: float, rate_end: float) -> None:
+    """Note the bound of a bit next to a fold in which the slip rate is a straight line in the root of time.
+
+    The contact equation holds where the bit begins, and where it ends but for what is measured there. With two zeros, at 0 and 1,
+    Schwarz's lemma gives |g| <= M x (1 - x) / (r^2 - x), at most M / (4 (r^2 - 1)). The bit is `length`
+    guesses long, `grown` is the slip (m) in it and `rate_end` the slip rate (m/s) at its end.
+    """
+    piece, powers, least, ratio = run.counts.piece, run.spare, math.inf, FIRST_RATIO
+    for _ in range(STRAIGHT_DISCS):
+        powers_of(ratio * length, powers)
+        put_discs(run.k, run.jet, powers, run.ball)
+        call_radii(run.law[piece].radii_at, constants_of(run, piece), run.jet, numbers_of(run.ball))
+        force = force_on_disc(run.k, run.ball, load_on_disc(run.load_along_slip, powers, run.counts.degree))
+        bound = force / (4.0 * (ratio * ratio - 1.0))
+        if bound < least:
+            least = bound
+        ratio *= NEXT_RATIO
+    run.state.residual = least + abs(missing_at_end(run, grown, rate_end))
+
+
 # ---- rounding ---------------------------------------------------------------------------------------------------------------
 
 
@@ -178,16 +206,27 @@ def begin_step(run: Run) -> None:
 
 
 @inlined
+def missing_at_end(run: Run, grown: float, rate_end: float) -> float:
+    """Return the load (Pa or N) that the contact equation lacks at the end of a step, but for the force of inertia and of a spring.
+
+    `grown` is the slip (m) in the step and `rate_end` the slip rate (m/s) at its end; run.powers must hold the powers of its
+    length. Friction there is left in run.value.
+    """
+    piece, value = run.counts.piece, run.value
+    call_value(run.law[piece].value_at, constants_of(run, piece), run.k.slip + run.k.chi * grown, rate_end, numbers_of(value))
+    friction = run.params.normal * (value.mu + run.law[piece].offset)
+    return load_at_end(run) - run.params.impedance * rate_end - friction - run.state.unbalanced
+
+
+@inlined
 def measure_rounding(run: Run, rate: Floats, length: float, grown: float, rate_end: float) -> None:
     """Put the end of a step into the contact equation, and note what it lacks if that exceeds the tolerance: it is rounding.
 
     `rate` is the slip rate on [0, 1], `length` the length of the step (in guesses), `grown` the slip in it (m) and `rate_end` the
     slip rate at its end (m/s). Friction there is left in run.value.
     """
-    params, value, piece = run.params, run.value, run.counts.piece
-    call_value(run.law[piece].value_at, constants_of(run, piece), run.k.slip + run.k.chi * grown, rate_end, numbers_of(value))
-    missing = load_at_end(run) - params.impedance * rate_end - params.normal * (value.mu + run.law[piece].offset)
-    missing -= run.state.unbalanced
+    params, value = run.params, run.value
+    missing = missing_at_end(run, grown, rate_end)
     size = max(max(abs(rate[0]), abs(rate_end)), max(abs(rate[1]), max(abs(rate[2]), abs(rate[3]))))
     if run.counts.has_inertia == 1:
         pace = (run.k.speed + run.k.bend * length) * length / params.inertia

@@ -1,7 +1,7 @@
 """Find where friction falls below zero inside a step, under a law that is not known to stay above zero.
 
-At the end of each step friction is known anyway (`certificate.is_negative`). A user's formula can dip below zero and return between two
-ends, and friction that drives slip must not pass unnoticed.
+At the end of each step friction is known anyway (`certificate.is_negative`). A user's formula can dip below zero and return between
+two ends, and friction that drives slip must not pass unnoticed.
 """
 
 from __future__ import annotations

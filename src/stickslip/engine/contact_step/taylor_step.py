@@ -14,7 +14,7 @@ from stickslip.engine.contact.append_segment import note_jump
 from stickslip.engine.contact.contact_equation import TIE, constants_of, load_ahead, rate_from_here, rate_on_branch
 from stickslip.engine.contact.law_knots import settle_piece
 from stickslip.engine.contact.stiffness import judge_stiffness
-from stickslip.engine.contact_step.certificate import begin_step, is_negative, measure_rounding, proven_length
+from stickslip.engine.contact_step.certificate import begin_step, bound_straight_bit, is_negative, measure_rounding, proven_length
 from stickslip.engine.contact_step.keep_step import move
 from stickslip.engine.contact_step.negative_friction import goes_below_zero
 from stickslip.engine.contact_step.step_events import cut_at_first_event, growth, resolve, stretch
@@ -133,6 +133,7 @@ def take_step(run: Run, plan: StepPlan, guess: float) -> None:
         cut = cut_at_first_event(run, kept.rate, length)
         grown, rate_end = growth(run, kept.rate, length * cut.end, 1.0), total(kept.rate)
         if is_straight(run):
+            bound_straight_bit(run, length, grown, rate_end)
             break
         measure_rounding(run, kept.rate, length * cut.end, grown, rate_end)
         if not (is_negative(run) or goes_below_zero(run, kept.rate, length * cut.end)):

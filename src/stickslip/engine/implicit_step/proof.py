@@ -1,12 +1,12 @@
 """Bound what the polynomials of an implicit step lack of the governing equations anywhere in the step, by Schwarz's lemma.
 
-Let g be what an equation lacks, as a function of the place x on [0, 1], and y = x - 1/2. The polynomials obey the equations at Radau's
-points, where g is zero but for what Newton's method leaves. If g is analytic on the disc |y| <= R and |g| <= M there, then
+Let g be what an equation lacks, as a function of the place x on [0, 1], and y = x - 1/2. The polynomials obey the equations at
+Radau's points, where g is zero but for what Newton's method leaves. If g is analytic on the disc |y| <= R and |g| <= M there, then
 
     |g(x)| <= M product of |R (y - y_i) / (R^2 - y_i y)|
 
-over these points y_i: g divided by the product is analytic, and the product has magnitude 1 on the circle (Blaschke factors). M follows
-from ball arithmetic of the law's formula, as for explicit steps (`contact_step.certificate`).
+over these points y_i: g divided by the product is analytic, and the product has magnitude 1 on the circle (Blaschke factors). M
+follows from ball arithmetic of the law's formula, as for explicit steps (`contact_step.certificate`).
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from stickslip.engine.contact.contact_equation import constants_of
 from stickslip.engine.contact.stiffness import contact_at
 from stickslip.engine.implicit_step.radau_stages import yielding
 from stickslip.engine.series.polynomial import RECIPROCAL, integral, restrict
-from stickslip.engine.series.radau_nodes import POINT, POINTS, STAGES
+from stickslip.engine.series.radau_nodes import POINT, STAGES
 from stickslip.engine.state.layout import Floats
 from stickslip.engine.state.workspace import Run
 
@@ -32,6 +32,8 @@ PLACES_ON_STEP = 4001
 """Number of places at which the largest product is looked for."""
 MARGIN = 1.02
 """Factor (1) that covers rounding, and what lies between those places."""
+NEAR_ZERO = 0.1
+"""Share (1) of the slip rate in the middle of a step by which it changes if zero counts as near."""
 
 
 def _products(zeros: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -115,3 +117,9 @@ def prove_step(run: Run, h: float, force: float) -> tuple[float, float]:
             least_state = min(least_state, AT_STAGES[n] * (abs(stray) + ball.change + moved))
     run.state.residual = least
     return least * by_load if slips else least, least_state * by_change if run.counts.has_state == 1 else 0.0
+
+
+@kernel
+def passes_zero(run: Run) -> bool:
+    """Return True if the contact never sticks, and the slip rate is near zero on the smallest disc on which `prove_step` looked."""
+    return run.counts.sticks == 0 and run.ball.rate >= NEAR_ZERO * run.ball.at_rate

@@ -156,7 +156,8 @@ def rounding_of_slip(run: Run) -> float:
 def correct(run: Run, size: int, rounding: float) -> float:
     """Add the solution of Newton's equations to the stages; return how large the change is, relative to the stages.
 
-    `rounding` is that of the load (Pa or N); a change of the slip rate that it, or the rounding of slip, can explain counts as none.
+    `rounding` is that of the load (Pa or N); a change of the slip rate that it, or the rounding of slip, can explain counts as
+    none.
     """
     v, w, m = run.stage_rate, run.stage_state, run.matrix
     fastest, farthest, moved, evolved = 1e-300, run.params.state_scale + 1e-300, 0.0, 0.0

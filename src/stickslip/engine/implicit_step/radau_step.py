@@ -10,7 +10,7 @@ import math
 from stickslip.engine.codegen.compiler import kernel
 from stickslip.engine.contact.contact_equation import TIE, load_ahead
 from stickslip.engine.contact.stiffness import contact_at
-from stickslip.engine.implicit_step.proof import prove_step
+from stickslip.engine.implicit_step.proof import passes_zero, prove_step
 from stickslip.engine.implicit_step.radau_stages import (
     defects,
     larger,
@@ -54,8 +54,8 @@ error has not halved, after which the error is taken to be rounding."""
 def growth_rate(run: Run) -> float:
     """Return the rate (1/s) at which a disturbance of slip rate and state grows at the start of the step; 0 where none grows.
 
-    An implicit step much longer than 1 over that rate would follow an unstable solution as if it were stable. With mass the effect of
-    slip is left out: such a contact takes explicit steps out of rest, and later the solution itself grows with the disturbance.
+    An implicit step much longer than 1 over that rate would follow an unstable solution as if it were stable. With mass the effect
+    of slip is left out: such a contact takes explicit steps out of rest, and later the solution itself grows with the disturbance.
     """
     params, value = run.params, run.value
     contact_at(run, run.state.law_slip, run.stage_rate[0], run.stage_state[0])
@@ -120,7 +120,9 @@ def error_of(run: Run, force: float, lost: float, lost_state: float) -> float:
 
     The error is the larger of what more points would still change and of what the polynomials miss of the governing equation
     between the points; where that is small enough, a share of the proven bound counts too (`proof`), which also sees a feature of
-    the law that lies between all places. `force` (Pa or N) is the force that the step ignores; `lost` (m/s) and `lost_state` (in units of the state) are known to be lost by rounding in the law itself.
+    the law that lies between all places. Under a law that never sticks, a step past a slip rate of zero may do without: friction
+    need not be analytic there. `force` (Pa or N) is the force that the step ignores; `lost` (m/s) and `lost_state` (in units of the
+    state) are known to be lost by rounding in the law itself.
     """
     params, value, h = run.params, run.value, run.k.speed
     fastest, farthest = params.rate_floor, params.state_scale + 1e-300
@@ -141,13 +143,16 @@ def error_of(run: Run, force: float, lost: float, lost_state: float) -> float:
         error = max(error, strength_ahead(run))
     if error > 1.0:
         return error
-    unproven, unproven_state = prove_step(run, h, force)
+    missed, missed_state = prove_step(run, h, force)
     if run.counts.mode == 0:
         noise, fastest = ROUNDING * params.reference / params.tolerance, params.reference + abs(run.load_along_slip[0])
-    error = larger(error, UNPROVEN * unproven / (params.tolerance * fastest + noise + lost))
+    proven = larger(error, UNPROVEN * missed / (params.tolerance * fastest + noise + lost))
     if run.counts.has_state == 1:
-        error = larger(error, UNPROVEN * unproven_state / (params.tolerance * farthest + state_noise))
-    return error
+        proven = larger(proven, UNPROVEN * missed_state / (params.tolerance * farthest + state_noise))
+    if proven > 1.0 and passes_zero(run):
+        run.state.residual = math.nan
+        return error
+    return proven
 
 
 @kernel
@@ -261,6 +266,7 @@ def collocate(run: Run, left: float) -> float:
                     run.state.roughest = max(run.state.roughest, error * run.params.tolerance)
                 # Where this step had to shrink, the next one probably has to shrink as well.
                 change = max(guess / longest, LEAST_TREND) if before < math.inf else 5.0
+                run.counts.unproven += 1 if math.isnan(run.state.residual) else 0
                 run.state.last_step = speed * (guess * min(factor, change) if error <= 1.0 else longest)
                 return guess
             before = error

@@ -25,7 +25,8 @@ def harmless_overflows(nodes: list[Expression]) -> set[Expression]:
     for node in reversed(nodes):
         ways = parents[node]
         if ways and all(
-            parent.operation in SQUASH or _divides(node, parent) or (parent in below and _keeps_large(node, parent)) for parent in ways
+            parent.operation in SQUASH or _divides(node, parent) or (parent in below and _keeps_large(node, parent))
+            for parent in ways
         ):
             below.add(node)
     return below

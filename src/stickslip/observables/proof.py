@@ -1,0 +1,56 @@
+"""What is proven of a run: how far, at most, it is from obeying the contact equation at any moment."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from stickslip.foundation.brief_repr import brief_repr
+from stickslip.foundation.formatting import brief
+from stickslip.problem.problem import Problem
+from stickslip.trajectory.history import History
+
+
+@dataclass(frozen=True)
+class Proof:
+    """Bounds of what a run's polynomials lack of the contact equation, at every moment and not only at places.
+
+    Leaps over creep have error bounds of their own (`Solution.creep_leaps`). Rounding in the law's formula is no part of the bound:
+    where it exceeds the tolerance, `Solution.rounding_note` says so. Method and proof: docs/theory/certificate.md.
+    """
+
+    residual: float
+    """Largest bound (Pa; block: N) of |Z v + S mu(u, v) - load|, with inertia and damping where the contact has them."""
+    relative: float
+    """The same as a share (1) of the static strength at the start."""
+    unproven: int
+    """Number of pieces of the history that are checked at places only: the law is not analytic where the slip rate passes zero."""
+    unit: str
+    """Unit of the residual: Pa or N."""
+
+    units: ClassVar = {"relative": "1"}
+    __repr__ = brief_repr
+
+    @property
+    def text(self) -> str:
+        """One line on the bound."""
+        found = (
+            f"the contact equation holds to {brief(self.residual, self.unit)} at every moment, {self.relative:.1g} of the strength"
+        )
+        if not self.unproven:
+            return found
+        pieces = "1 piece" if self.unproven == 1 else f"{self.unproven} pieces"
+        return f"{found}, except in {pieces} next to a slip rate of zero, checked at places and not proven"
+
+
+def proof_of(history: History) -> Proof:
+    """Return what is proven of a history."""
+    residual = history.store.residual
+    return proof_from(history.problem, np.nanmax(residual, initial=0.0), int(np.count_nonzero(np.isnan(residual))))
+
+
+def proof_from(problem: Problem, residual: float, unproven: int) -> Proof:
+    """Return what is proven of a run, from its largest bound (Pa or N) and the number of pieces without one."""
+    return Proof(float(residual), float(residual / problem.strength), int(unproven), problem.load_unit)
