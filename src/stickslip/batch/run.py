@@ -22,6 +22,7 @@ from stickslip.batch.setups import Alike, alike, set_up
 from stickslip.batch.vectorised_problem import Values, are_fine, groups, member
 from stickslip.batch.workspace import LARGEST_CAPACITY, Workspace, new_workspace, table_of
 from stickslip.engine.codegen.simd import WIDTH
+from stickslip.engine.on_demand import lend_part
 from stickslip.engine.state.layout import Floats, Integers, Stop
 from stickslip.foundation.errors import InputError
 from stickslip.scenarios.scenario import Scenario
@@ -234,7 +235,7 @@ class _Batch:
             if work.stage[lane] == Stage.AT_END:
                 work = work.with_more_points()
             elif work.code[lane] == Stop.NEED_PART:
-                work.lend_missing(lane)
+                lend_part(work.table[lane])  # and to the other lanes by `table_of`
             elif work.code[lane] != Stop.PAUSED and work.capacity < LARGEST_CAPACITY:
                 work = work.larger()
             else:

@@ -12,9 +12,9 @@ from stickslip.batch.kernels.points import POINTS_PER_PIECE, Points, new_points
 from stickslip.batch.kernels.runs import Stage
 from stickslip.batch.setups import Setups
 from stickslip.engine.codegen.simd import WIDTH
-from stickslip.engine.on_demand import lend_part, lend_parts_of_batch
+from stickslip.engine.on_demand import lend_parts_of_batch
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Counts, EchoNode, Floats, Integers, Params, Part, Setup, Store
+from stickslip.engine.state.layout import Counts, EchoNode, Floats, Integers, Params, Setup, Store
 from stickslip.engine.state.workspace import ADDRESSES, PLACES, Run, lend
 from stickslip.engine_input.prepare import NOT_VARYING
 
@@ -57,12 +57,6 @@ class Workspace(NamedTuple):
         for old, new in zip((*self.store, self.echoes), (*store, echoes), strict=True):
             new[:, : old.shape[1]] = old
         return self._replace(store=store, echoes=echoes, points=new_points(POINTS_PER_PIECE * capacity))
-
-    def lend_missing(self, lane: int) -> None:
-        """Give all lanes the part of the engine for which the member in a lane has asked."""
-        part = Part(Run(self.table[lane]).missing)
-        for table in self.table:
-            lend_part(table, part)
 
     def with_more_points(self) -> Workspace:
         """Return a workspace with twice the room for turning points."""

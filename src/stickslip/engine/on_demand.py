@@ -89,7 +89,11 @@ def lend_parts_at_hand(memory: Integers) -> None:
 
 
 def lend_parts_of_batch(memory: Integers, params: Params, counts: Counts) -> None:
-    """Write the addresses of those parts that members with such numbers may ever need; batches have no loading histories."""
+    """Write the addresses of those parts that members with such numbers are likely to need; batches have no loading histories.
+
+    A massless contact rarely needs implicit steps: they are lent if they are there, and otherwise when it asks for them.
+    """
+    Run(memory).implicit_steps = _at_hand.get(Part.IMPLICIT_STEPS, 0)
     if counts.has_inertia == 1 or counts.has_state == 1:
         lend_part(memory, Part.IMPLICIT_STEPS)
     if params.reflection == -1.0 and counts.is_block == 0:
