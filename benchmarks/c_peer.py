@@ -16,6 +16,7 @@ from benchmarks.problems import Case
 from benchmarks.runner import Runner, UnavailableError
 from stickslip.engine.codegen.records import FLOATS, Record
 from stickslip.engine.codegen.taylor_series import SIGNATURES, FormulaWriter
+from stickslip.engine.contact_step import certificate
 from stickslip.engine.state import layout, workspace
 from stickslip.friction.formula.expression import Expression
 
@@ -26,8 +27,8 @@ FLAGS = ("-O3", "-march=native", "-shared", "-fPIC", "-fno-math-errno", "-fopenm
 SINES = ("#define sine(e) (2.0 * sin(0.5 * (e)) * cos(0.5 * (e)))", "#define versine(e) (2.0 * sin(0.5 * (e)) * sin(0.5 * (e)))")
 """What `engine.series.sine` does, by the C library: the compiler makes one call of all."""
 
-NAMES = ("#define abs(x) fabs(x)", "#define max(x, y) fmax(x, y)")
-"""What the statements call otherwise than C."""
+NAMES = ("#define abs(x) fabs(x)", "#define max(x, y) fmax(x, y)", "#define min(x, y) fmin(x, y)", '#include "balls.h"')
+"""What the statements call otherwise than C, and the radii of elementary functions (c_kernel/balls.h)."""
 
 
 def c_function(writer: FormulaWriter, part: str) -> str:
@@ -66,11 +67,13 @@ def header(writer: FormulaWriter) -> str:
         code.name: int(code) for codes in (layout.Stop, layout.Cause, layout.Incoming) for code in codes if code.name != "NONE"
     }
     defines = [f"#define {name} {value}" for name, value in names.items() if name.isupper()]
+    ratios = ", ".join(repr(float(ratio)) for ratio in certificate.RATIOS)
+    defines.append(f"static const double RATIOS[] = {{{ratios}}};\n#define DISCS {len(certificate.RATIOS)}")
     records = [structure(one) for one in vars(layout).values() if isinstance(one, type) and issubclass(one, Record) and one.places]
     return (
         "\n".join([*defines, *records, structure(workspace.Run, "Memory"), *SINES, *NAMES])
         + "\n\n"
-        + "\n".join(c_function(writer, part) for part in ("value", "rate_jet", "motion_jet"))
+        + "\n".join(c_function(writer, part) for part in ("value", "rate_jet", "motion_jet", "radii"))
     )
 
 
@@ -83,7 +86,7 @@ def library(formula: Expression, parameters: tuple[str, ...]) -> ctypes.CDLL:
     folder = Path(tempfile.mkdtemp(prefix="stickslip-c-"))
     (folder / "law.h").write_text(header(FormulaWriter(formula, parameters)))
     target = folder / "taylor.so"
-    subprocess.run([compiler, *FLAGS, f"-I{folder}", str(SOURCE), "-o", str(target), "-lm"], check=True)
+    subprocess.run([compiler, *FLAGS, f"-I{folder}", f"-I{SOURCE.parent}", str(SOURCE), "-o", str(target), "-lm"], check=True)
     loaded = ctypes.CDLL(str(target))
     loaded.prepare_tables()
     loaded.advance.argtypes = (ctypes.c_void_p, ctypes.c_int64, ctypes.c_double, ctypes.c_int64)

@@ -81,8 +81,8 @@ NAMED = (
     Named(
         "no-proof-of-implicit-steps",
         "engine/implicit_step/radau_step.py",
-        "if proven > 1.0 and passes_zero(run):",
-        "if proven > 1.0:",
+        "    if passes_zero(run):",
+        "    if True:",
     ),
     Named(
         "left-and-right-exchanged",

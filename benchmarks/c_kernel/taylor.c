@@ -29,6 +29,7 @@ typedef struct {
     LawValue value;
     Friction friction;
     Series k;
+    Ball ball;
 } Run;
 
 static double reciprocal[2 * TERMS], bernstein[TERMS][TERMS], low_bernstein[LOW][LOW];
@@ -374,6 +375,46 @@ static void stretch(Run *r, double length, double *restrict rate) {
     for (int k = 0; k < TERMS; k++) rate[k] = r->jet[k] * r->powers[k];
 }
 
+/* What a step may miss, by Schwarz's lemma on one disc: as in engine/contact_step/certificate.py. */
+static double share_on_disc(Run *r, double length, int64_t disc) {
+    double powers[TERMS], ratio = RATIOS[disc], first = fabs(r->jet[1]), load = 0.0, slopes = 0.0, missed;
+    powers_of(ratio * length, powers);
+    double rate = first * powers[1], straight = fabs(r->jet[0]) + 0.5 * rate, bent = 0.5 * fabs(r->jet[0]) + reciprocal[3] * rate;
+    for (int n = 2; n < TERMS; n++) {
+        double size = fabs(r->jet[n]) * powers[n];
+        rate += size, straight += reciprocal[n + 1] * size, bent += reciprocal[n + 2] * size;
+        slopes += n * fabs(r->jet[n]) * powers[n - 1];
+    }
+    for (int n = 1; n <= r->count->degree; n++) load += fabs(r->load_along_slip[n]) * powers[n];
+    Ball *ball = &r->ball;
+    ball->rate = rate, ball->slip = powers[1] * (fabs(r->k.speed) * straight + fabs(r->k.bend) * powers[1] * bent), ball->state = 0.0;
+    radii(r->c, r->jet, (double *)ball);
+    double force = 1.01 * (r->k.impedance * ball->rate + r->k.normal * ball->friction + r->k.stiffness * ball->slip + load);
+    double square = length * length, size = fmax(fabs(r->jet[0]), length * first);
+    size = fmax(size, fmax(square * fabs(r->jet[2]), square * length * fabs(r->jet[3])));
+    if (r->count->has_inertia) missed = length * (fabs(r->k.speed) / r->k.inertia * force + slopes) * pow(ratio, 1 - TERMS);
+    else {
+        double now[4], resistance = r->k.impedance;
+        if (r->count->is_algebraic) value(r->c, r->k.slip, r->jet[0], now), resistance += fmax(r->k.normal * now[1], 0.0);
+        missed = force / resistance * pow(ratio, -TERMS);
+    }
+    return missed / fmax(r->params->tolerance * size, 1e-300);
+}
+
+static double proven_length(Run *r, double length) {
+    double allowed = r->count->has_inertia ? 300.0 : 10.0, share = share_on_disc(r, length, r->count->disc);
+    for (int attempt = 0; !(share <= allowed); attempt++) {
+        if (attempt == 60) abort();
+        share = INFINITY;
+        for (int disc = 0; disc < DISCS; disc++) {
+            double other = share_on_disc(r, length, disc);
+            if (other < share) share = other, r->count->disc = disc;
+        }
+        if (!(share <= allowed)) length *= fmin(fmax(0.98 * pow(allowed / share, 1.0 / (TERMS - 1)), 0.2), 0.9);
+    }
+    return length;
+}
+
 /* Whether the contact equation holds at the end of a step, to the tolerance or to rounding. */
 static int obeys_contact(Run *r, const double *rate, double length, double grown, double rate_end) {
     double dx = r->k.slip + r->k.chi * grown, load = r->load_along_slip[0], now[4], unbalanced = 0.0, slope = 0.0;
@@ -434,6 +475,8 @@ static void slip(Run *r, double xi_to) {
     else if (r->count->leaving_rest != 0 && !r->count->has_inertia) note_jump(r, r->count->mode * r->jet[0], FOLD);
 
     double limit = left / guess, length = usable_length(r->jet, r->params->tolerance), end = NONE;
+    double proven = proven_length(r, fmin(length, limit));
+    if (proven < fmin(length, limit)) length = proven;
     r->state->last_step = length * fabs(r->k.speed + 0.5 * r->k.bend * fmin(length, 1.0));
     int reached = length >= limit;
     if (reached) length = limit;

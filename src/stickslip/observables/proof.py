@@ -24,7 +24,7 @@ class Proof:
     residual: float
     """Largest bound (Pa; block: N) of |Z v + S mu(u, v) - load|, with inertia and damping where the contact has them."""
     relative: float
-    """The same as a share (1) of the static strength at the start."""
+    """The same as a share (1) of the normal stress, or force."""
     unproven: int
     """Number of pieces of the history that are checked at places only: the law is not analytic where the slip rate passes zero."""
     unit: str
@@ -36,9 +36,8 @@ class Proof:
     @property
     def text(self) -> str:
         """One line on the bound."""
-        found = (
-            f"the contact equation holds to {brief(self.residual, self.unit)} at every moment, {self.relative:.1g} of the strength"
-        )
+        share = f"{self.relative:.1g} of the normal {'stress' if self.unit == 'Pa' else 'force'}"
+        found = f"the contact equation holds to {brief(self.residual, self.unit)} at every moment, {share}"
         if not self.unproven:
             return found
         pieces = "1 piece" if self.unproven == 1 else f"{self.unproven} pieces"
@@ -53,4 +52,4 @@ def proof_of(history: History) -> Proof:
 
 def proof_from(problem: Problem, residual: float, unproven: int) -> Proof:
     """Return what is proven of a run, from its largest bound (Pa or N) and the number of pieces without one."""
-    return Proof(float(residual), float(residual / problem.strength), int(unproven), problem.load_unit)
+    return Proof(float(residual), float(residual / problem.normal), int(unproven), problem.load_unit)

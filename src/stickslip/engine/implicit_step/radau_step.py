@@ -146,10 +146,12 @@ def error_of(run: Run, force: float, lost: float, lost_state: float) -> float:
     missed, missed_state = prove_step(run, h, force)
     if run.counts.mode == 0:
         noise, fastest = ROUNDING * params.reference / params.tolerance, params.reference + abs(run.load_along_slip[0])
-    proven = larger(error, UNPROVEN * missed / (params.tolerance * fastest + noise + lost))
+    proven = larger(0.0, UNPROVEN * missed / (params.tolerance * fastest + noise + lost))
     if run.counts.has_state == 1:
         proven = larger(proven, UNPROVEN * missed_state / (params.tolerance * farthest + state_noise))
-    if proven > 1.0 and passes_zero(run):
+    if proven <= 1.0:
+        return error
+    if passes_zero(run):
         run.state.residual = math.nan
         return error
     return proven
