@@ -161,7 +161,9 @@ def bring_on(group: Group, lane: Lane, work: Workspace, place: int) -> bool:
     place is the index of the lane. Returns True in these cases, and False if there is no room or the member has paused.
     """
     setups, codes, numbers = group.setups, group.codes, floats(group.out.ctypes.data)
-    while lane.stage[0] != Stage.UNDER_WAY:
+    for _ in range(len(codes) + 1):
+        if lane.stage[0] == Stage.UNDER_WAY:
+            break
         n = lane.member[0]
         if lane.stage[0] == Stage.AT_END:
             run = borrow(lane.table)

@@ -143,7 +143,7 @@ class Counts(Record):
     lump_above: int  # number of pieces in a round trip above which lumping begins
     lumped_since: int  # round trip from which on short pieces are lumped
     rough: int  # number of steps in which rounding in the law hides more than the tolerance
-    breach: int  # OFF_THE_LAW or NEGATIVE_FRICTION if no step can be made from here, else 0
+    breach: int  # OFF_THE_LAW, NEGATIVE_FRICTION or FAILED if no step can be made from here, else 0
     degree: int  # degree of the present piece of load: its coefficients beyond are zero
 
 
@@ -270,7 +270,7 @@ class Stop(IntEnum):
     END_AHEAD = 4
     """The next step or leap depends on where the run ends: the caller sets `to_the_end`."""
     FAILED = 5
-    """Slip, slip rate or state is not finite."""
+    """Slip, slip rate, state, load or strength is not finite."""
     NEED_BRANCHES = 6
     """The caller must put the branches at the present slip into the table."""
     PAUSED = 7
