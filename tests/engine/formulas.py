@@ -25,6 +25,8 @@ FORMULAS: dict[str, Formula] = {
     "sqrt": lambda f, u, v: 0.3 + 0.2 * f.sqrt(1.0 + u * u),
     "tanh": lambda f, u, v: 0.6 - 0.2 * f.tanh(3.0 * u - v),
     "arcsinh": lambda f, u, v: 0.5 + 0.05 * f.arcsinh(2.0 * v + u),
+    "expm1": lambda f, u, v: 0.4 + 0.2 * f.expm1(-2.0 * v - u),
+    "log1p": lambda f, u, v: 0.4 + 0.1 * f.log1p(3.0 * v + 2.0 * u),
     "quotient": lambda f, u, v: 0.3 + 0.5 / (1.0 + 2.0 * v),
     "product": lambda f, u, v: (0.9 - 0.2 * u) * (0.7 + 0.1 * v),
     "power": lambda f, u, v: 0.3 + 0.2 * (1.0 + u) ** -1.7,

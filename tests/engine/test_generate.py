@@ -20,7 +20,7 @@ from tests.engine.formulas import FORMULAS, JET, VALUE, compiled, pointer
 class MpmathFunctions:
     """The same names in 50 digits."""
 
-    sin, cos, exp, log, sqrt, tanh, arcsinh = (
+    sin, cos, exp, log, sqrt, tanh, arcsinh, expm1, log1p = (
         mpmath.sin,
         mpmath.cos,
         mpmath.exp,
@@ -28,6 +28,8 @@ class MpmathFunctions:
         mpmath.sqrt,
         mpmath.tanh,
         mpmath.asinh,
+        mpmath.expm1,
+        mpmath.log1p,
     )
 
 

@@ -19,13 +19,19 @@ FORMULAS = {
     "sqrt": lambda u, v, f: f.sqrt(2.0 + v + u),
     "tanh": lambda u, v, f: f.tanh(v - u),
     "arcsinh": lambda u, v, f: f.arcsinh(100.0 * v + u) + f.arcsinh(u - 3.0 * v),
+    "expm1": lambda u, v, f: f.expm1(-2.0 * v - 0.1 * u) + f.expm1(1e-18 * v) * 1e16,
+    "log1p": lambda u, v, f: f.log1p(30.0 * v + u) + f.log1p(1e-18 * v) * 1e16,
     "power": lambda u, v, f: (1.0 + 2.0 * v + u) ** 2.7 - (-v) ** 2,
 }
 
 
 class _Exact:
-    sin, cos, exp, log, sqrt, tanh, arcsinh = map(
-        staticmethod, (mpmath.sin, mpmath.cos, mpmath.exp, mpmath.log, mpmath.sqrt, mpmath.tanh, mpmath.asinh)
+    sin, cos, exp, log, sqrt, tanh, arcsinh, expm1, log1p = map(
+        staticmethod,
+        (
+            *(mpmath.sin, mpmath.cos, mpmath.exp, mpmath.log, mpmath.sqrt, mpmath.tanh, mpmath.asinh),
+            *(mpmath.expm1, mpmath.log1p),
+        ),
     )
 
 

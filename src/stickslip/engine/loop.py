@@ -48,6 +48,7 @@ from stickslip.engine.contact_step.implicit_step import evolves_at_rest, slip_im
 from stickslip.engine.contact_step.stick import arrive, stick
 from stickslip.engine.contact_step.taylor_step import slip
 from stickslip.engine.folds.fold import leave_fold_piece, leave_moving_branch
+from stickslip.engine.series.polynomial import total
 from stickslip.engine.state.layout import Incoming, Integers, NearFold, Part, Stop
 from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.incoming_load import next_piece
@@ -103,6 +104,8 @@ def make_pass(run: Run, last_trip: int, last_phase: float) -> int:
         if run.counts.ready == Incoming.NONE or run.counts.folds_move == 1:
             return code  # where folds move, the answer to the piece of load may need branches first
     if run.counts.ready == Incoming.BROUGHT:
+        if not math.isfinite(total(run.load)):
+            return Stop.FAILED
         arrive(run)
         run.counts.ready = Incoming.MET
         if run.counts.folds_move == 1:

@@ -49,6 +49,8 @@ class PiecewiseLaw(FrictionLaw):
 
     coefficient_names: ClassVar[tuple[str, ...]] = _CUBIC
     """Parameters of the formula of every piece."""
+    least_distance: ClassVar[float] = 1e-100
+    """Distance of two points (m or m/s) at which all coefficients are finite: the last one has its third power below it."""
 
     @property
     @abstractmethod
@@ -67,10 +69,23 @@ class PiecewiseLaw(FrictionLaw):
         places, values = self.points
         if len(places) != len(values):
             raise InputError(f"{type(self).__name__}: {len(places)} places but {len(values)} friction coefficients")
+        self._check_coefficients()
         note_percent(values, type(self).__name__)
         noise = noise_in(places, values)
         if noise is not None:
             warn(f"{type(self).__name__}: {noise.warning()}")
+
+    def _check_coefficients(self) -> None:
+        """Refuse points so close to each other that the polynomial between them has a coefficient beyond all floats."""
+        with np.errstate(all="ignore"):
+            finite = np.isfinite(self.rows).all(axis=1)
+        if not finite.all():
+            first = int(np.argmin(finite)) - self._before
+            unit, near = "m" if self.knot_variable == "slip" else "m/s", self.points[0][first : first + 2]
+            raise InputError(
+                f"{type(self).__name__}: the points at {near[0]:g} and {near[1]:g} {unit} are too close together: the curve between"
+                f" them is too steep for floating-point numbers; a distance of {self.least_distance:g} {unit} is allowed"
+            )
 
     @property
     def _before(self) -> bool:
@@ -119,6 +134,7 @@ class PiecewiseLinearLaw(PiecewiseLaw):
     """A law that runs straight from point to point."""
 
     coefficient_names = _LINE
+    least_distance = 1e-300
 
     @override
     def polynomials(self) -> NDArray[np.float64]:

@@ -214,7 +214,7 @@ def _faults_of_codes(count: Counts, fresh: Counts) -> Iterator[Fault]:
     yield "engine_count ready", not 0 <= count.ready <= Incoming.BROUGHT
     yield "engine_count at_fold", not 0 <= count.at_fold <= 3
     yield "engine_count waits", count.waits != 0
-    yield "engine_count breach", count.breach not in (0, Stop.OFF_THE_LAW, Stop.NEGATIVE_FRICTION)
+    yield "engine_count breach", count.breach not in (0, Stop.OFF_THE_LAW, Stop.NEGATIVE_FRICTION, Stop.FAILED)
 
 
 def _faults_of_state(checkpoint: Checkpoint, history: History) -> Iterator[Fault]:

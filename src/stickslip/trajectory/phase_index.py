@@ -18,6 +18,8 @@ from stickslip.engine.state.layout import Floats, Integers, Store, trimmed
 
 NOTHING = -1
 """Marks a phase at which no piece has been recorded."""
+LEVELS = 64
+"""Largest number of halvings of an index or of a range of indices: they have 64 bits."""
 FEW = 64
 """Number of recent pieces that are searched first for the waves in the body."""
 
@@ -27,7 +29,9 @@ def _collect(first: Integers, past: Integers, leaves: int, place: Integers, memb
     """Enter each piece into the nodes that make up its interval, from place[node] on; with empty `members`, only count them."""
     for n in range(len(first)):
         low, high = first[n] + leaves, past[n] + leaves
-        while low < high:
+        for _ in range(LEVELS):
+            if low >= high:
+                break
             if low & 1:
                 _put(low, n, place, members)
                 low += 1
@@ -48,7 +52,9 @@ def _put(node: int, n: int, place: Integers, members: Integers) -> None:
 @kernel
 def _last(members: Integers, begin: int, end: int, upto: int) -> int:
     """Return the index of the last of members[begin:end] (ascending) that is at most `upto`; begin - 1 if there is none."""
-    while begin < end:
+    for _ in range(LEVELS):
+        if begin >= end:
+            break
         middle = (begin + end) // 2
         if members[middle] <= upto:
             begin = middle + 1

@@ -32,6 +32,8 @@ NEVER_RISES, TOO_MANY = 0, -1
 """Results instead of a number of branches: g still falls at the fastest rate, or there are more branches than fit."""
 NEARBY = 1e-14
 """Relative rounding error of the rate at which a law itself says that the fold is."""
+PROBES = 128
+"""Largest number of slip rates (1) that are tried for one turn: more than the 64 bits that are halved and STEPS together."""
 OCTAVE, STEPS = 2**52, 16
 """A factor of two between slip rates, as a difference of their bits; number of steps of false position after which the search
 returns to halving the bits."""
@@ -93,7 +95,9 @@ def turn_between(g: Resistance, low: float, high: float, at_low: float, at_high:
     """
     rises, side, steps = at_low > 0.0, 0, 0
     before, behind = bits_of(low), bits_of(high)
-    while behind - before > 1:
+    for _ in range(PROBES):
+        if behind - before <= 1:
+            break
         probe = before + (behind - before) // 2
         near = behind - before <= OCTAVE and steps < STEPS
         if near:

@@ -163,7 +163,9 @@ def bring_on(group: Group, lane: Lane, work: Workspace, place: int) -> bool:
     paused.
     """
     setups, codes, numbers = group.setups, group.codes, floats(group.out.ctypes.data)
-    while lane.stage[0] != Stage.UNDER_WAY:
+    for _ in range(len(codes) + 1):
+        if lane.stage[0] == Stage.UNDER_WAY:
+            break
         n = lane.member[0]
         if lane.stage[0] == Stage.AT_END:
             run = borrow(lane.table)

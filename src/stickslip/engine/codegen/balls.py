@@ -15,10 +15,10 @@ Sources: Rump 2010, Verification methods, Acta Numerica 19 (balls); Rudin 1987, 
 
 from __future__ import annotations
 
-from stickslip.engine.codegen.recurrences import Recurrences
+from stickslip.engine.codegen.recurrences import Recurrences, exp_of
 from stickslip.friction.formula.expression import RATE, SLIP, STATE, Expression, nodes_of
 
-VARIED = ("exp", "pow")
+VARIED = ("exp", "expm1", "pow")
 """Operations whose results vary by orders of magnitude without coming near zero."""
 TINIEST = 1e-300
 """Smallest bound of a magnitude from below. In place of zero it makes radii huge instead of infinite, which proves as little, and
@@ -86,6 +86,10 @@ class Balls:
             return f"sine_radius({first}, {second}, {ra})"
         if node.operation == "exp":
             return f"exp_radius({self._centre(a)}, {self._centre(node)}, {ra})"
+        if node.operation == "expm1":
+            return f"exp_radius({self._centre(a)}, {self._centre(exp_of(node))}, {ra})"
+        if node.operation == "log1p":
+            return f"log_radius(abs(1.0 + {self._centre(a)}), {ra})"
         if node.operation == "tanh":
             return f"tanh_radius({self._size(a)}, {ra})"
         if node.operation == "arcsinh":

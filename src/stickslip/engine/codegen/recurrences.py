@@ -48,7 +48,12 @@ def _vanishes(node: Expression) -> bool:
         return True
     if node.operation == "mul":
         return any(_vanishes(argument) for argument in node.arguments)
-    return node.operation in ("div", "sin", "tanh", "arcsinh", "sqrt") and _vanishes(node.arguments[0])
+    return node.operation in ("div", "sin", "tanh", "arcsinh", "sqrt", "expm1", "log1p") and _vanishes(node.arguments[0])
+
+
+def exp_of(node: Expression) -> Expression:
+    """Return the node exp(a) for a node exp(a) - 1: the two have the same derivatives."""
+    return Expression("exp", node.arguments)
 
 
 class Recurrences:
@@ -63,6 +68,7 @@ class Recurrences:
         self.varies = {node: any(depends_on(node, one) for one in (SLIP, RATE, STATE)) for node in self.nodes}
         self.rate_dependent = {node: depends_on(node, RATE) for node in self.nodes}
         self.dynamic = [n for n in self.nodes if self.varies[n] and n not in (SLIP, RATE, STATE)]
+        self._own = {*nodes_of(formula), *(nodes_of(state_rate) if state_rate is not None else ())}
         self._only_below = harmless_overflows(self.nodes)
         self.pending_rate: int | None = None
         self.size = len(self.nodes) + 1
@@ -77,6 +83,8 @@ class Recurrences:
                 found.update(dict.fromkeys((Expression("sin", (argument,)), Expression("cos", (argument,)))))
             elif node.operation == "arcsinh":
                 found.update(dict.fromkeys(nodes_of(Expression("sqrt", (1.0 + argument * argument,)))))
+            elif node.operation == "expm1":
+                found[exp_of(node)] = None
             found[node] = None
             if node.operation == "tanh":
                 found[node * node] = None
@@ -131,8 +139,8 @@ class Recurrences:
         signs = {"add": "+", "sub": "-", "mul": "*", "div": "/", "pow": "**"}
         if node.operation in signs:
             return f"{arguments[0]} {signs[node.operation]} {arguments[1]}"
-        if node.operation == "exp":
-            return f"exp(min({arguments[0]}, {self.largest_exponent(node)}))"
+        if node.operation in ("exp", "expm1"):
+            return f"{node.operation}(min({arguments[0]}, {self.largest_exponent(node)}))"
         if node.arguments:
             return f"{'asinh' if node.operation == 'arcsinh' else node.operation}({arguments[0]})"
         if node.operation == "parameter":
@@ -140,8 +148,9 @@ class Recurrences:
         return {"slip": "x_ref", "rate": "0.0", "state": "0.0"}.get(node.operation, repr(node.value))
 
     def largest_exponent(self, node: Expression) -> float:
-        """Return the exponent beyond which an exp node no longer grows."""
-        return LARGEST_EXPONENT if node in self._only_below else NO_LIMIT
+        """Return the exponent beyond which an exp node, and the node exp - 1 with the same exponent, no longer grow."""
+        both = {Expression(name, node.arguments) for name in ("exp", "expm1")} & self._own
+        return LARGEST_EXPONENT if both <= self._only_below else NO_LIMIT
 
     def order_zero(self) -> list[str]:
         """Write the difference from the reference and the value of every varying node, at slip difference dx and rate s_0."""
@@ -165,6 +174,10 @@ class Recurrences:
             a = node.arguments[0]
             near = f"{self.reference(node)}, e{self.index[node]}, {self.difference(a)}"
             return f"exp_value({near}, {self.coefficient(a, 0)}, {self.largest_exponent(node)})"
+        if node.operation in ("expm1", "log1p"):
+            near = f"{self.reference(node)}, e{self.index[node]}, {self.coefficient(node.arguments[0], 0)}"
+            limit = f", {self.largest_exponent(node)}" if node.operation == "expm1" else ""
+            return f"{node.operation}_value({near}{limit})"
         if node.operation == "sqrt":
             return f"sqrt({self.coefficient(node.arguments[0], 0)})"
         if node.operation == "pow":
@@ -200,6 +213,8 @@ class Recurrences:
         return {
             "exp": f"exp_difference({r}, {now}, {ea}, {self.largest_exponent(node)})",
             "log": f"log_difference({ra}, {now}, {ea})",
+            "log1p": f"log_difference(1.0 + {ra}, 1.0 + {now}, {ea})",
+            "expm1": f"e{self.index.get(exp_of(node))}",
             "sqrt": f"{ea} / (sqrt({now}) + {r})",
             "tanh": f"tanh_difference({r}, {now}, {ea})",
             "arcsinh": f"arcsinh_difference({ra}, {now}, {ea})",
@@ -231,6 +246,8 @@ class Recurrences:
                     "cos": f"-{other} * {da}",
                     "exp": f"{value} * {da}",
                     "log": f"{da} / {a0}",
+                    "log1p": f"{da} / (1.0 + {a0})",
+                    "expm1": f"{self.coefficient(exp_of(node), 0) if node.operation == 'expm1' else ''} * {da}",
                     "sqrt": f"{da} / (2.0 * {value})",
                     "tanh": f"(1.0 - {value} * {value}) * {da}",
                     "arcsinh": f"{da} / (sqrt(1.0 + {a0} * {a0}) if abs({a0}) < 1e150 else abs({a0}))",
@@ -248,7 +265,7 @@ class Recurrences:
     def weights(self, k: int) -> list[str]:
         """Write k a_k for every series a for which recurrences of higher order need it; several may share it."""
         arguments = {n.arguments[0] for n in self.dynamic if n.operation in ("sin", "cos", "exp", "tanh")}
-        arguments |= {n for n in self.dynamic if n.operation in ("log", "arcsinh")}
+        arguments |= {n for n in self.dynamic if n.operation in ("log", "log1p", "arcsinh")}
         return [f"w{self.index[a]}_{k} = {k}.0 * {self.coefficient(a, k)}" for a in sorted(arguments, key=self.index.__getitem__)]
 
     def _weighted(self, a: Expression, b: Expression, k: int) -> str:
@@ -291,8 +308,11 @@ class Recurrences:
             return f"-({ak} * {self.coefficient(sine, 0)}" + self._weighted(a, sine, k) + ")"
         if node.operation == "exp":
             return f"{ak} * {self.coefficient(node, 0)}" + self._weighted(a, node, k)
-        if node.operation == "log":
-            return f"({ak} - (0.0{self._weighted(node, a, k)})) / {self.coefficient(a, 0)}"
+        if node.operation == "expm1":
+            return f"{self.coefficient(exp_of(node), k)}"
+        if node.operation in ("log", "log1p"):
+            shift = "1.0 + " if node.operation == "log1p" else ""
+            return f"({ak} - (0.0{self._weighted(node, a, k)})) / ({shift}{self.coefficient(a, 0)})"
         if node.operation == "tanh":
             square = node * node
             return f"{ak} * (1.0 - {self.coefficient(square, 0)}) - (0.0{self._weighted(a, square, k)})"

@@ -9,7 +9,7 @@ from stickslip.engine.codegen.records import numbers_of
 from stickslip.engine.contact.append_segment import note_jump
 from stickslip.engine.series.polynomial import NONE, evaluate, first_descent, restrict, restrict_low
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Branch, Cause, Floats, Incoming
+from stickslip.engine.state.layout import Branch, Cause, Floats, Incoming, Stop
 from stickslip.engine.state.workspace import Run
 
 TIE = 1e-13
@@ -73,9 +73,12 @@ def friction_of(run: Run, piece: int, law_slip: float, rate: float) -> None:
 def rest_limit(run: Run) -> float:
     """Return the load (Pa or N, minus the reference) at which the selection rule leaves rest forwards.
 
-    It is the static strength, or less where the rule lets slip begin below it.
+    It is the static strength, or less where the rule lets slip begin below it. A strength that is not finite ends the run: no load
+    would ever exceed one that is not a number.
     """
     friction_at(run, run.state.law_slip, 0.0)
+    if not math.isfinite(run.friction.stress):
+        run.counts.breach = Stop.FAILED
     # The step to static friction is added to the coefficient before any product: where the two cancel, they must cancel exactly.
     coefficient = run.friction.coefficient + run.params.static_excess
     return run.params.normal * coefficient + run.params.stick_to

@@ -20,6 +20,8 @@ FLAT = 1e-11
 """Slope of g, relative to Z (1), up to which g counts as flat and not as rising."""
 BETWEEN = 16
 """Number of parts (1) into which a step of the scan is divided if g' may touch zero near it."""
+PANELS = 4096
+"""Largest number of panels of an area (1) beside its knots: the smallest float becomes the largest by half as many doublings."""
 FIRST_PANEL = 1e5
 """End of the first panel of an area, in units of the slowest rate scanned: a thousandth of the law's slowest scale."""
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
@@ -206,9 +208,14 @@ def rate_at(contact: Contact, load: float, low: float, high: float) -> float:
 
 @kernel
 def area(contact: Contact, load: float, low: float, high: float) -> float:
-    """Return the integral of g - load over slip rates (Pa m/s), by Gauss's rule between knots, on panels that double in width."""
+    """Return the integral of g - load over slip rates (Pa m/s), by Gauss's rule between knots, on panels that double in width.
+
+    It is NaN if PANELS do not reach from `low` to `high`.
+    """
     run, whole, start, first = contact.run, 0.0, low, FIRST_PANEL * contact.scan[1]
-    while start < high:
+    for _ in range(PANELS + run.pieces):
+        if not start < high:
+            return whole
         end = min(max(first, 2.0 * start), high)
         if run.counts.knots_in_rate == 1:
             for k in range(run.pieces - 1):
@@ -218,4 +225,4 @@ def area(contact: Contact, load: float, low: float, high: float) -> float:
         for k in range(len(NODES)):
             whole += half * WEIGHTS[k] * (level_at(contact, start + half * (1.0 + NODES[k])) - load)
         start = end
-    return whole
+    return math.nan

@@ -38,6 +38,11 @@ SMALLEST_INTERVAL = 1e-15
 NEGLIGIBLE = 1e-300
 """Magnitude (any unit) up to which a polynomial on an interval counts as zero there: near the smallest normal number its
 coefficients lose their digits or vanish one after the other, and a bisection would never end."""
+DOUBLINGS = 64
+"""Largest number of doublings (1) that lead from the narrowest interval of a bisection to the whole of [0, 1], and more."""
+MOST_INTERVALS = 4096
+"""Largest number of intervals (1) of a bisection. Clusters of roots and roots of any order take at most some 400 of them; a
+polynomial that is not finite could be bisected for ever."""
 
 
 @inlined
@@ -267,18 +272,28 @@ def first_descent(c: Floats, spare: Floats) -> float:
 def _next_interval(start: float, width: float) -> tuple[float, float]:
     """Return start and width of the next interval of a bisection of [0, 1], which is the widest that begins where this one ends."""
     start += width
-    while start < 1.0 and math.floor(start / (2.0 * width)) * 2.0 * width == start:
+    for _ in range(DOUBLINGS):
+        if not (start < 1.0 and math.floor(start / (2.0 * width)) * 2.0 * width == start):
+            break
         width *= 2.0
     return start, width
 
 
 @kernel
 def _isolate(q: Floats) -> float:
-    """Return the first x in [0, 1] at which a polynomial, positive at 0, falls below zero, or NONE; by bisection from the left."""
+    """Return the first x in [0, 1] at which a polynomial, positive at 0, falls below zero, or NONE; by bisection from the left.
+
+    It is NONE, too, for a polynomial that is not finite. If MOST_INTERVALS do not decide, it is the end of the part that has been
+    proven to be positive.
+    """
     part, start, width = np.empty(TERMS), 0.0, 1.0
-    while start < 1.0:
+    for _ in range(MOST_INTERVALS):
+        if start >= 1.0:
+            return NONE
         restrict(q, start + 0.5 * width, 0.5 * width, part)
         tail, slope_tail = magnitude(part), slope_magnitude(part)
+        if not abs(part[0]) + tail < math.inf:
+            return NONE
         if part[0] < -tail or (width < SMALLEST_INTERVAL and part[0] < 0.0):
             return start
         if -part[1] > slope_tail and total(part) <= 0.0:
@@ -288,35 +303,43 @@ def _isolate(q: Floats) -> float:
             start, width = _next_interval(start, width)
         else:
             width *= 0.5
-    return NONE
+    return start
 
 
 @kernel
 def maximum(c: Floats, sign: float = 1.0) -> float:
-    """Return the largest value of sign * p on [0, 1], to rounding, by branch and bound."""
+    """Return the largest value of sign * p on [0, 1], to rounding, by branch and bound.
+
+    If MOST_INTERVALS do not decide, or p is not finite, it is the sum of the coefficients' magnitudes, which bounds p.
+    """
     best = max(sign * c[0], sign * total(c))
     if degree(c) <= 1:
         return best
     q, part, start, width = np.empty(TERMS), np.empty(TERMS), 0.0, 1.0
     for k in range(TERMS):
         q[k] = sign * c[k]
-    while start < 1.0:
+    for _ in range(MOST_INTERVALS):
+        if start >= 1.0:
+            return best
         restrict(q, start + 0.5 * width, 0.5 * width, part)
         best, tail = max(best, part[0]), magnitude(part)
+        if not abs(part[0]) + tail < math.inf:
+            break
         below = part[0] + tail <= best + 4e-16 * abs(best) or abs(part[0]) + tail < NEGLIGIBLE
         if below or abs(part[1]) > slope_magnitude(part) or width < SMALLEST_INTERVAL:
             best = max(best, total(part), evaluate(part, -1.0))
             start, width = _next_interval(start, width)
         else:
             width *= 0.5
-    return best
+    return q[0] + magnitude(q)
 
 
 @kernel
 def crossings(c: Floats, out: Floats) -> int:
     """Write every x in (0, 1) at which p changes sign into `out`, ascending, up to its length; return their number.
 
-    The sign is carried from interval to interval, so that a root on the border between two is found once.
+    The sign is carried from interval to interval, so that a root on the border between two is found once. A polynomial that is not
+    finite has none.
     """
     found, sign = 0, 0.0
     for k in range(TERMS - 1, -1, -1):
@@ -324,9 +347,13 @@ def crossings(c: Floats, out: Floats) -> int:
     if sign == 0.0:
         return 0
     part, start, width = np.empty(TERMS), 0.0, 1.0
-    while start < 1.0 and found < len(out):
+    for _ in range(MOST_INTERVALS):
+        if start >= 1.0 or found >= len(out):
+            break
         restrict(c, start + 0.5 * width, 0.5 * width, part)
         tail = magnitude(part)
+        if not abs(part[0]) + tail < math.inf:
+            break
         if abs(part[0]) + tail < NEGLIGIBLE:
             start, width = _next_interval(start, width)
             continue

@@ -146,7 +146,7 @@ class Counts(Record):
     unproven: int  # number of implicit steps without a bound, because the law is not analytic where the slip rate passes zero
     disc: int  # radius of the disc on which the last explicit step was proven, as an index of `contact_step.certificate.RATIOS`
     rough: int  # number of steps in which rounding in the law hides more than the tolerance
-    breach: int  # OFF_THE_LAW or NEGATIVE_FRICTION if no step can be made from here, else 0
+    breach: int  # OFF_THE_LAW, NEGATIVE_FRICTION or FAILED if no step can be made from here, else 0
     degree: int  # degree of the present piece of load: its coefficients beyond are zero
 
 
@@ -286,7 +286,7 @@ class Stop(IntEnum):
     END_AHEAD = 4
     """The next step or leap depends on where the run ends: the caller sets `to_the_end`."""
     FAILED = 5
-    """Slip, slip rate or state is not finite."""
+    """Slip, slip rate, state, load or strength is not finite."""
     NEED_BRANCHES = 6
     """The caller must put the branches at the present slip into the table."""
     PAUSED = 7

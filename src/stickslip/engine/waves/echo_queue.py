@@ -25,6 +25,8 @@ NOTHING = -1
 """Index of no piece and of an empty tree."""
 FOREVER = 2**62
 """Number of a round trip that never comes."""
+LONGEST_SEARCH = 4096
+"""Largest number of round trips (1) that are tried one by one: near 2^62, floats are 512 to 1024 apart."""
 NEARLY = 2e-15
 """Share of the reference strength (1), for rounding of the load, by which a piece is met early rather than late."""
 MANY = 16
@@ -99,7 +101,9 @@ def without_first(nodes: EchoNode, ramp: float, n: int) -> int:
 @kernel
 def first_of(run: Run, n: int) -> int:
     """Return the first piece in tree n, in order of phase, or NOTHING."""
-    while n != NOTHING and run.echoes[n].left != NOTHING:
+    for _ in range(run.counts.length):
+        if n == NOTHING or run.echoes[n].left == NOTHING:
+            break
         n = run.echoes[n].left
     return n
 
@@ -144,7 +148,7 @@ def first_to_break(run: Run, n: int, limit: float, trip: int) -> int:
     """Return the first piece of tree n, in order of phase, under which the contact may slip in round trip `trip`, or NOTHING."""
     if n == NOTHING or not any_breaks(run, n, limit, trip):
         return NOTHING
-    while True:
+    for _ in range(run.counts.length):
         left = run.echoes[n].left
         if left != NOTHING and any_breaks(run, left, limit, trip):
             n = left
@@ -152,11 +156,16 @@ def first_to_break(run: Run, n: int, limit: float, trip: int) -> int:
             return n
         else:
             n = run.echoes[n].right
+    return NOTHING
 
 
 @kernel
 def next_trip(run: Run, n: int, limit: float) -> int:
-    """Return the next round trip in which the contact may slip under any piece of tree n, or FOREVER."""
+    """Return the next round trip in which the contact may slip under any piece of tree n, or FOREVER.
+
+    The quotient of floats may be early by rounding: the search from there on ends after LONGEST_SEARCH round trips. To meet a piece
+    too early is no fault.
+    """
     coming = run.counts.trip + 1
     if any_breaks(run, n, limit, coming):
         return coming
@@ -166,7 +175,9 @@ def next_trip(run: Run, n: int, limit: float) -> int:
     if not trips < 4e18:
         return FOREVER
     trip = max(run.echoes[first].trip + int(trips), coming)
-    while not breaks(run, first, way, limit, trip):
+    for _ in range(LONGEST_SEARCH):
+        if breaks(run, first, way, limit, trip):
+            break
         trip += 1
     return trip
 

@@ -17,6 +17,8 @@ from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import TERMS, Cause
 from stickslip.engine.state.workspace import Run
 
+BISECTIONS = 64
+"""Largest number of bisections (1) of a number of round trips, which are at most 2^63."""
 TIE = 1e-13
 """Distance, as a share of a round trip (1), within which a break of the loading lies on the edge of a piece: it is rounding."""
 
@@ -45,7 +47,9 @@ def take_loading(run: Run) -> None:
 def enter_segment(run: Run, phase: float) -> bool:
     """Enter the segment of the loading that has arrived at a phase (s) of this round trip; return True if the loading jumps."""
     jumps, tie = False, TIE * run.params.round_trip_time
-    while next_change(run) <= phase + tie:
+    for _ in range(run.segments):
+        if not next_change(run) <= phase + tie:
+            break
         run.counts.segment += 1
         run.counts.trips_at_rest = -1  # the last round trip at rest does not predict the next one
         jumps = jumps or run.loading[run.counts.segment].jump == 1.0
@@ -188,7 +192,9 @@ def trips_withstood(run: Run, limit: float) -> int:
     low, high = 0.0, max(room, 0.0)
     if withstands(run, high, top, bottom):
         return int(high)
-    while high - low > 1.0 and high - low > 1e-3 * low:
+    for _ in range(BISECTIONS):
+        if not (high - low > 1.0 and high - low > 1e-3 * low):
+            break
         middle = math.floor(0.5 * (low + high))
         if withstands(run, middle, top, bottom):
             low = middle

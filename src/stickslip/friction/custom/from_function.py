@@ -20,7 +20,7 @@ VARIABLES = {"u": SLIP, "v": RATE}
 """Symbols of the arguments of which friction may be a function."""
 OPTIONS = ("static", "counts", "memory")
 """Options of the law itself, given together with the values of the function's parameters."""
-NUMPY = "sin, cos, exp, log, sqrt, tanh, arcsinh"
+NUMPY = "sin, cos, exp, log, sqrt, tanh, arcsinh, expm1, log1p"
 """The functions of numpy that a message names."""
 _NAMED = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
 """Kinds of arguments that have a name each: not *args, not **named."""
@@ -83,8 +83,8 @@ def FromFunction(function: Callable[..., Any] | None = None, /, **given: Any) ->
     drops by the difference as soon as the contact slips.
 
     The function is called once, with symbols for u, v and the parameters. Ordinary operators, numpy's sin, cos, exp, log, sqrt,
-    tanh and arcsinh, and numpy functions composed of these are recorded. Branches on values cannot be recorded: a law with a kink
-    is `PiecewiseLinearRate`, `PiecewiseLinearSlip`, `LinearSlipWeakening` or `FromTable`.
+    tanh, arcsinh, expm1 and log1p, and numpy functions composed of these are recorded. Branches on values cannot be recorded: a law
+    with a kink is `PiecewiseLinearRate`, `PiecewiseLinearSlip`, `LinearSlipWeakening` or `FromTable`.
     """
     if function is None:
         return lambda decorated: FromFunction(decorated, **given)

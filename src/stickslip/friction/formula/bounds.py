@@ -47,6 +47,8 @@ _GROWING: dict[str, Callable[[np.float64], np.float64]] = {
     "exp": np.exp,
     "tanh": np.tanh,
     "arcsinh": np.arcsinh,
+    "expm1": np.expm1,
+    "log1p": lambda x: np.log1p(np.maximum(x, -1.0)),
     "log": lambda x: np.log(np.maximum(x, 0.0)),
     "sqrt": lambda x: np.sqrt(np.maximum(x, 0.0)),
 }

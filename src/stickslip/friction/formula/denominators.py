@@ -7,7 +7,7 @@ from stickslip.friction.formula.expression import Expression, nodes_of
 LARGEST_EXPONENT = 150.0
 """Largest exponent, dimensionless, of an exp whose overflow is harmless; larger ones are replaced by it. A quotient over e^150 is
 negligible, exp(-e^150) is zero, and the square and the series of e^150 are still finite."""
-SQUASH = ("exp", "tanh")
+SQUASH = ("exp", "expm1", "tanh")
 """Functions that no longer change when their argument grows beyond e^150, or are infinite there already."""
 
 
@@ -42,4 +42,4 @@ def _keeps_large(node: Expression, parent: Expression) -> bool:
     if parent.operation != "mul":
         return parent.operation in ("add", "sub", "sqrt")
     others = [argument for argument in parent.arguments if argument != node]
-    return all(part.operation not in ("exp", "pow", "div") for other in others for part in nodes_of(other))
+    return all(part.operation not in ("exp", "expm1", "pow", "div") for other in others for part in nodes_of(other))

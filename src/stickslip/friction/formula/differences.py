@@ -45,11 +45,11 @@ def difference(
     du, v = np.broadcast_arrays(np.asarray(slip_step, float), np.asarray(rate, float))
     found = {SLIP: _Node(slip, du, slip + du, 0.0), RATE: _Node(0.0, v, v, 1.0), STATE: _Node(0.0, 0.0, 0.0, 0.0)}
     nodes = nodes_of(tree)
-    limited = {node for node in harmless_overflows(nodes) if node.operation == "exp"}
+    limited = {node for node in harmless_overflows(nodes) if node.operation in ("exp", "expm1")}
     with np.errstate(divide="ignore", over="ignore"):
         for node in nodes:
             if node in limited:
-                found[node] = _exp(_at_most(found[node.arguments[0]], LARGEST_EXPONENT))
+                found[node] = _RULES[node.operation](_at_most(found[node.arguments[0]], LARGEST_EXPONENT))
             elif node.arguments:
                 found[node] = _RULES[node.operation](*(found[argument] for argument in node.arguments))
             elif node not in found:
@@ -117,6 +117,17 @@ def _exp(a: _Node) -> _Node:
         return _Node(start, step, end, end * a.slope)
 
 
+def _expm1(a: _Node) -> _Node:
+    """Return the node of exp - 1, which has the step and the slope of exp."""
+    power = _exp(a)
+    with np.errstate(over="ignore"):
+        return _Node(np.expm1(a.reference), power.step, np.expm1(a.value), power.slope)
+
+
+def _log1p(a: _Node) -> _Node:
+    return _Node(np.log1p(a.reference), np.log1p(a.step / (1.0 + a.reference)), np.log1p(a.value), a.slope / (1.0 + a.value))
+
+
 def _log(a: _Node) -> _Node:
     return _Node(np.log(a.reference), np.log1p(a.step / a.reference), np.log(a.value), a.slope / a.value)
 
@@ -165,5 +176,6 @@ def _chain(outer: Any, inner: Any) -> Any:
 _RULES: dict[str, Callable[..., _Node]] = {
     **{"add": _add, "sub": _sub, "mul": _mul, "div": _div, "pow": _pow},
     **{"sin": _sin, "cos": _cos, "exp": _exp, "log": _log, "sqrt": _sqrt, "tanh": _tanh, "arcsinh": _arcsinh},
+    **{"expm1": _expm1, "log1p": _log1p},
 }
 """Rule of each operation."""

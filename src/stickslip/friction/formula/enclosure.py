@@ -208,6 +208,16 @@ def _exp(x: Array) -> tuple[Array, Array, Array]:
     return value, value, iv.scale(value, 0.5)
 
 
+def _expm1(x: Array) -> tuple[Array, Array, Array]:
+    slope = iv.exp(x)
+    return iv.expm1(x), slope, iv.scale(slope, 0.5)
+
+
+def _log1p(x: Array) -> tuple[Array, Array, Array]:
+    _, first, second = _log(iv.add(x, iv.exact(1.0)))
+    return iv.log1p(x), first, second
+
+
 def _log(x: Array) -> tuple[Array, Array, Array]:
     inverse = iv.reciprocal(_positive(x))
     return iv.log(x), inverse, iv.negative(iv.scale(iv.square(inverse), 0.5))
@@ -255,5 +265,7 @@ _UNARY: dict[str, Callable[[Array], Any]] = {
     "sqrt": _sqrt,
     "tanh": _tanh,
     "arcsinh": _arcsinh,
+    "expm1": _expm1,
+    "log1p": _log1p,
     "logistic": _logistic,
 }

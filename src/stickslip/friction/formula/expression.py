@@ -16,7 +16,7 @@ import numpy as np
 
 from stickslip.foundation.errors import InputError
 
-FUNCTIONS = ("sin", "cos", "exp", "log", "sqrt", "tanh", "arcsinh")
+FUNCTIONS = ("sin", "cos", "exp", "log", "sqrt", "tanh", "arcsinh", "expm1", "log1p")
 """Elementary functions that a formula may use; each has a compiled Taylor recurrence."""
 LARGEST_SIZE = 10_000
 """Largest number of nodes of a formula, shared parts counted at each use: n repeated squarings make 2^n of them."""
@@ -186,20 +186,18 @@ def _function(name: str) -> Callable[[Any], Any]:
     return apply
 
 
-sin, cos, exp, log, sqrt, tanh, arcsinh = (_function(name) for name in FUNCTIONS)
+sin, cos, exp, log, sqrt, tanh, arcsinh, expm1, log1p = (_function(name) for name in FUNCTIONS)
 
 
 COMPOSED: dict[str, Callable[..., Any]] = {
     "square": lambda x: x * x,
     "reciprocal": lambda x: 1.0 / x,
-    "log1p": lambda x: log(1.0 + x),
     "log10": lambda x: log(x) / math.log(10.0),
     "log2": lambda x: log(x) / math.log(2.0),
     "exp2": lambda x: exp(x * math.log(2.0)),
-    "expm1": lambda x: exp(x) - 1.0,
     "tan": lambda x: sin(x) / cos(x),
     "cosh": lambda x: 0.5 * (exp(x) + exp(-x)),
-    "sinh": lambda x: 0.5 * (exp(x) - exp(-x)),
+    "sinh": lambda x: 0.5 * (expm1(x) - expm1(-x)),
 }
 """Further functions, named as in numpy, that are expressed by those in FUNCTIONS."""
 
@@ -209,7 +207,7 @@ OPERATIONS: dict[str, Callable[..., Any]] = {
     "mul": lambda a, b: a * b,
     "div": lambda a, b: a / b,
     "pow": lambda a, b: a**b,
-} | dict(zip(FUNCTIONS, (sin, cos, exp, log, sqrt, tanh, arcsinh), strict=True))
+} | dict(zip(FUNCTIONS, (sin, cos, exp, log, sqrt, tanh, arcsinh, expm1, log1p), strict=True))
 """Function of each operation, for numbers and for expressions."""
 _KINKED = ("maximum", "minimum", "fmax", "fmin", "sign", "heaviside", "floor", "ceil", "rint", "trunc", "fabs", "copysign")
 """Functions of numpy with kinks or jumps, which have no Taylor series there."""

@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 LIBRARY_ERROR = 8.0 * float(np.finfo(float).eps)
-"""Relative error assumed for exp, log, tanh, arcsinh and powers: twice the 4 units in the last place that numpy states."""
+"""Relative error assumed for exp, expm1, log, log1p, tanh, arcsinh and powers: twice the 4 units in the last place that numpy
+states."""
 WAVE_ERROR = 8.0 * float(np.finfo(float).eps)
 """Absolute error assumed for sin and cos, whose values are at most 1."""
 _UNDERFLOW = float(np.finfo(float).tiny)
@@ -122,6 +123,16 @@ def _rising(function: Callable[[Array], Array], a: Array) -> Array:
 def exp(a: Array) -> Array:
     """Return e**a, which is never negative."""
     return np.minimum(_rising(np.exp, a), [[0.0], [np.inf]])
+
+
+def expm1(a: Array) -> Array:
+    """Return e**a - 1, which is never below -1."""
+    return np.minimum(_rising(np.expm1, a), [[1.0], [np.inf]])
+
+
+def log1p(a: Array) -> Array:
+    """Return the logarithm of the positive part of 1 + a, unbounded where it has none."""
+    return np.where(a[..., 1:, :] > -1.0, _rising(np.log1p, np.minimum(a, [[1.0], [np.inf]])), np.inf)
 
 
 def log(a: Array) -> Array:
