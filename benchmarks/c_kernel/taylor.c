@@ -402,7 +402,7 @@ static double share_on_disc(Run *r, double length, int64_t disc) {
 }
 
 static double proven_length(Run *r, double length) {
-    double allowed = r->count->has_inertia ? 300.0 : 10.0, share = share_on_disc(r, length, r->count->disc);
+    double allowed = r->count->has_inertia ? 1000.0 : 100.0, share = share_on_disc(r, length, r->count->disc);
     for (int attempt = 0; !(share <= allowed); attempt++) {
         if (attempt == 60) abort();
         share = INFINITY;

@@ -163,6 +163,9 @@ def _parts(problem: Problem, pieces: at.Floats) -> at.Floats:
 
 NOT_VARYING = LoadingSegment.table(1)
 """Table `Setup.loading` of a loading that does not vary."""
+FIRST_DISC = 3
+"""Disc on which a run tries to prove its first step, as an index of `certificate.RATIOS`: one that serves most steps at the default
+tolerance."""
 LARGEST_TURN, MOST_PARTS = 1.0, 100_000
 """Largest phase (rad) over which a sine's Taylor series is right to rounding, and the largest number of parts of a round trip."""
 
@@ -247,5 +250,6 @@ def start_of(problem: Problem) -> tuple[State, Counts]:
         count.mode = 1 if problem.load >= 0.0 else -1
     count.pause_at = count.lumped_since = count.lump_above = at.NEVER
     count.folds_move = folds_move(problem)
+    count.disc = FIRST_DISC
     count.knots_in_rate = len(problem.friction.pieces) > 1 and problem.friction.knot_variable == "rate"
     return state, count

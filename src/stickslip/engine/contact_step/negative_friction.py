@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from stickslip.engine.codegen.compiler import kernel
 from stickslip.engine.contact.stiffness import contact_at
-from stickslip.engine.contact_step.certificate import ALLOWED, ALLOWED_SLOPE, NEGLIGIBLE
+from stickslip.engine.contact_step.certificate import NEGLIGIBLE, rough
 from stickslip.engine.contact_step.step_events import growth
 from stickslip.engine.series.polynomial import NONE, RECIPROCAL, bound_below, evaluate
 from stickslip.engine.state.layout import TERMS, Floats
@@ -46,12 +46,12 @@ def is_clearly_positive(run: Run, rate: Floats, duration: float) -> bool:
         friction[k] = -params.impedance * rate[k]
     for k in range(run.counts.degree + 1):
         friction[k] += run.load_along_slip[k] * run.powers[k]
-    allowed = ALLOWED * params.tolerance * params.impedance * abs(rate[0])
+    allowed = rough(run) * params.tolerance * params.impedance * abs(rate[0])
     if run.counts.has_inertia == 1:
         for k in range(TERMS - 1):
             friction[k + 1] -= params.stiffness * duration * RECIPROCAL[k + 1] * rate[k]
             friction[k] -= params.inertia / duration * (k + 1) * rate[k + 1]
-        allowed = ALLOWED_SLOPE * params.tolerance * params.inertia / duration * abs(rate[0])
+        allowed = rough(run) * params.tolerance * params.inertia / duration * abs(rate[0])
     friction[0] += params.reference - run.state.unbalanced - CLEARLY * params.normal - allowed
     return friction[0] > 0.0 and bound_below(friction) > 0.0
 
