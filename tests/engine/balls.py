@@ -18,9 +18,11 @@ from stickslip.friction.formula import expression as e
 
 Complexes = NDArray[np.complex128]
 LEAVES = (e.SLIP, e.RATE, e.STATE)
-EXACT = SimpleNamespace(**{name: getattr(mpmath, name) for name in ("sin", "cos", "exp", "log", "sqrt", "tanh")}, arcsinh=mpmath.asinh)
+EXACT = SimpleNamespace(
+    **{name: getattr(mpmath, name) for name in ("sin", "cos", "exp", "log", "sqrt", "tanh")}, arcsinh=mpmath.asinh
+)
 ROUNDING = 1e-14
-"""Absolute error of a value at the centre (1): of order one as friction is, some nodes are known as a difference from a reference."""
+"""Absolute error of a value at the centre (1): some nodes are known as a difference from a reference of order one."""
 DIGITS = 60
 """Digits of the second look at what seems to be too far away: doubles may have lost theirs."""
 
@@ -76,7 +78,9 @@ def drawn_formula(rng: np.random.Generator, depth: int) -> e.Expression:
     if kind in ("log", "sqrt", "pow") and rng.random() < 0.8:
         a = 0.5 + a * a if rng.random() < 0.5 else 0.1 + e.exp(a)
     if kind == "pow":
-        return e.Expression("pow", (a, e.as_expression(round(rng.uniform(-30.0, 30.0), 2) if rng.random() < 0.5 else rng.uniform(-2.0, 2.0))))
+        return e.Expression(
+            "pow", (a, e.as_expression(round(rng.uniform(-30.0, 30.0), 2) if rng.random() < 0.5 else rng.uniform(-2.0, 2.0)))
+        )
     return e.OPERATIONS[kind](a)
 
 

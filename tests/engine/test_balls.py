@@ -117,7 +117,7 @@ def test_compiled_balls_are_those_of_the_text(seed: int) -> None:
 
 @pytest.mark.parametrize("name", FORMULAS)
 def test_radii_after_a_series_are_the_same_in_lanes_and_floats_and_hold(name: str) -> None:
-    """`radii` uses what the series has left behind it. Relative 1e-14: a processor may fuse products and sums otherwise in lanes."""
+    """`radii` uses what the series has left. Relative 1e-14: a processor may fuse products and sums otherwise in lanes."""
     functions, constants = compiled(FORMULAS[name], 0.0)
     rng = np.random.default_rng(3)
     c, k, load, series, ball = (apart(rows, WIDTH) for rows in (len(constants), 12, TERMS, 2 * TERMS, Ball.total))

@@ -103,7 +103,7 @@ def barrier(seed: int) -> ss.Problem:
 
 
 def rate_and_state(seed: int) -> ss.Problem:
-    law = F.RateAndState(0.6, 0.012, 0.01 + 0.002 * seed, 0.01, evolution=("aging", "slip", "aging")[seed % 3])
+    law = F.RateAndState(0.6, 0.012, 0.01 + 0.002 * seed, 0.01, evolution=("ageing", "slip", "ageing")[seed % 3])
     return ss.Problem(SLAB, law, pull_rate=1.0, initial_load=6.3e7, initial_state=1e-2)
 
 
@@ -120,28 +120,31 @@ def coefficient(problem: ss.Problem) -> Mu:
     return lambda u, v, w: law.coefficient(u, v, w) if law.state is not None else law.coefficient(u, v)
 
 
-@pytest.mark.parametrize("rtol", [1e-4, 1e-7])
+def duration(problem: ss.Problem) -> float:
+    """Up to the first echo of a slab, or some way through the swing of a block, s."""
+    return 5.5 if isinstance(problem.body, ss.ElasticSlab) else 1.5
+
+
 @pytest.mark.parametrize("make", RUNS)
-def test_no_step_lacks_more_than_its_bound(make: Callable[[int], ss.Problem], rtol: float) -> None:
+def test_no_step_lacks_more_than_its_bound(make: Callable[[int], ss.Problem]) -> None:
     """Less the rounding of terms; a bound a million times smaller would be exceeded somewhere."""
     shares = []
-    for seed in range(3):
+    for seed, rtol in ((0, 1e-4), (1, 1e-4), (2, 1e-4), (0, 1e-6), (1, 1e-6), (2, 1e-8)):
         problem = make(seed)
-        run = ss.simulate(problem, 5.5 if isinstance(problem.body, ss.ElasticSlab) else 1.5, rtol)
+        run = ss.simulate(problem, duration(problem), rtol)
         assert run.status.ok
         real, bound = shortfall(run.history, coefficient(problem))
         assert np.isfinite(bound).all()
-        assert (real <= bound).all(), f"seed {seed}: {np.flatnonzero(real > bound)}"
+        assert (real <= bound).all(), f"seed {seed}, rtol {rtol}: pieces {np.flatnonzero(real > bound)}"
         shares.append(np.max(real / np.maximum(bound, 1e-300), initial=0.0))
-    print(make.__name__, rtol, shares)
     assert max(shares) > 1e-6
 
 
 @pytest.mark.parametrize("make", RUNS)
-def test_a_step_that_is_wrong_by_ten_times_the_tolerance_exceeds_its_bound(make: Callable[[int], ss.Problem]) -> None:
-    """The tests above would notice slip rates that bend by 1e-3 of themselves within each piece."""
+def test_a_step_that_is_bent_by_a_thousandth_exceeds_its_bound(make: Callable[[int], ss.Problem]) -> None:
+    """The test above would notice it: in more than half of the pieces of slip."""
     problem = make(1)
-    run = ss.simulate(problem, 5.5 if isinstance(problem.body, ss.ElasticSlab) else 1.5, 1e-7)
+    run = ss.simulate(problem, duration(problem), 1e-7)
     wrong = run.history.store._replace(pieces=run.history.store.pieces.copy())
     size = np.abs(wrong.rate).sum(axis=1)
     wrong.rate[:, 1] += 1e-3 * size
