@@ -33,6 +33,7 @@ RARE = ("run.rtol", "run.creep_rtol", "run.shortest_event", "body.p_wave_speed",
 TITLES: dict[str, str] = {"body": "Body", "friction": "Friction", "loading": "Loading", "initial": "Start", "run": "Run"}
 EMPTY = {
     "initial.state": "needed",
+    "initial.rate": "load and friction balance",
     "loading.far_stress": "the initial load",
     "run.creep_rtol": "automatic",
     "run.shortest_event": "automatic",
@@ -212,6 +213,8 @@ class _Tables:
         if path in ("loading.far_stress", "loading.far_stress_rate") and math.isinf(self.problem.body.driver_impedance):
             return False
         if path == "initial.state" and self.problem.friction.state is None:
+            return False
+        if path == "initial.rate" and not self.problem.has_initial_rate:
             return False
         if path in ("initial.load", "initial.excess"):
             return self.setting.value(path) is not None

@@ -1,0 +1,97 @@
+"""Find the slip rate, load and state with which a contact starts that has a mass and never sticks.
+
+Such a contact has no rest to start from. What the problem leaves out follows from the balance of forces at the start,
+load = damping v + S mu(u, v, state), or from steady sliding.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
+
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.formatting import brief
+
+if TYPE_CHECKING:
+    from stickslip.problem.problem import Problem
+
+FASTEST, SLOWEST = 1e3, 1e-300
+"""Slip rates (m/s) between which load and friction must balance; a contact that would be slower starts at rate 0."""
+WIDER = 32.0
+"""Factor by which the bracket of the balance grows."""
+
+
+class Start(NamedTuple):
+    """A contact at the start, with signs: slip rate (m/s), load (Pa or N), and state in the form that the formulas use."""
+
+    rate: float
+    load: float
+    state: float
+
+
+def check_rate(problem: Problem) -> None:
+    """Raise InputError if a problem has an initial rate to which it is not entitled."""
+    if problem.initial_rate is None or problem.has_initial_rate:
+        return
+    if problem.friction.sticks:
+        name = type(problem.friction).__name__
+        raise InputError(f"Problem: initial_rate: {name} has a rest, from which the contact starts: leave initial_rate out")
+    why = "a contact without mass has no slip rate of its own, load and friction determine it"
+    raise InputError(f"Problem: initial_rate: {why}: leave it out, or give the contact a mass")
+
+
+def start_of(problem: Problem) -> Start:
+    """Return the start of a problem that `has_initial_rate`. Raises InputError if it lacks something, or if nothing balances."""
+    rate = problem.initial_rate
+    if problem.initial_load is None and problem.initial_excess is None:
+        return _steady(problem, problem.first_pull_rate if rate is None else rate)
+    load = problem.strength + problem.initial_excess if problem.initial_load is None else problem.initial_load  # type: ignore[operator]
+    state = 0.0 if problem.initial_state is None else problem.friction.inner_state(problem.initial_state)
+    if rate is None:
+        rate = math.copysign(_balance(_resistance(problem, state), abs(load), problem), load)
+    return Start(rate, load, state)
+
+
+def _steady(problem: Problem, rate: float) -> Start:
+    """Return steady sliding at a slip rate (m/s) of either sign."""
+    law, state = problem.friction, 0.0
+    if rate == 0.0:
+        none = "the pull rate is 0 at first" if problem.initial_rate is None else "initial_rate is 0"
+        raise InputError(
+            f"Problem: needs initial_load, and initial_state if the law has a state: {none}, so nothing slides steadily"
+        )
+    if law.state is not None:
+        sliding = law.steady_state(abs(rate))
+        if sliding is None:
+            name = type(law).__name__
+            raise InputError(
+                f"Problem: needs initial_load and initial_state: {name} does not say in which state it slides steadily"
+            )
+        state = law.inner_state(float(sliding))
+    return Start(rate, math.copysign(_resistance(problem, state)(abs(rate)), rate), state)
+
+
+def _resistance(problem: Problem, state: float) -> Callable[[float], float]:
+    """Return the load (Pa or N) that a slip rate v >= 0 (m/s) takes: damping v + S mu."""
+    law, slip, damping, normal = problem.friction, problem.law_slip, problem.body.damping, problem.normal
+    return lambda rate: damping * rate + normal * float(law.coefficient(slip, rate, state))
+
+
+def _balance(resistance: Callable[[float], float], load: float, problem: Problem) -> float:
+    """Return the slip rate (m/s, >= 0) at which the resistance is a load (>= 0), to rounding."""
+    low = high = min(problem.friction.rate_scales, default=1.0)
+    while low > SLOWEST and resistance(low) > load:
+        low, high = low / WIDER, low
+    if low <= SLOWEST or load == 0.0:
+        return 0.0
+    while resistance(high) < load:
+        if high > FASTEST:
+            beyond = f"is more than the contact resists at any slip rate up to {FASTEST:g} m/s"
+            raise InputError(f"Problem: a load of {brief(load, problem.load_unit)} {beyond}: give initial_rate")
+        low, high = high, high * WIDER
+    while True:
+        middle = math.sqrt(low) * math.sqrt(high)  # slip rates span hundreds of decades
+        if not low < middle < high:
+            return low
+        low, high = (low, middle) if resistance(middle) > load else (middle, high)
