@@ -91,7 +91,7 @@ class Problem:
     left limit at t = 0 is then the initial state at rest.
 
     A contact with inertia that never sticks (`has_initial_rate`) starts at its initial rate; any other starts at rest, and a
-    contact without mass then slips at once at the rate that load and friction determine.
+    contact without mass then slips at once at the rate that load and friction determine. `Problem.rate` is this rate.
 
     At most one of `pull_rate` and `far_stress` may be a loading history (`stickslip.loading`). The initial velocity in a slab is
     linear in x, from the initial rate, or rest, at the contact to the pull rate at 0 s at the driver.

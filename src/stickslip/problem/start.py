@@ -8,7 +8,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
 
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief
@@ -39,6 +42,15 @@ def check_rate(problem: Problem) -> None:
         raise InputError(f"Problem: initial_rate: {name} has a rest, from which the contact starts: leave initial_rate out")
     why = "a contact without mass has no slip rate of its own, load and friction determine it"
     raise InputError(f"Problem: initial_rate: {why}: leave it out, or give the contact a mass")
+
+
+def written_out(problem: Problem) -> Problem:
+    """Return a problem with its initial load and state as numbers, where they followed from steady sliding."""
+    if not problem.has_initial_rate or problem.initial_load is not None or problem.initial_excess is not None:
+        return problem
+    law = problem.friction
+    state = None if law.state is None else float(law.outer_state(np.array(problem.state)))
+    return replace(problem, initial_load=problem.load, initial_state=state)
 
 
 def start_of(problem: Problem) -> Start:

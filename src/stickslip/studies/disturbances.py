@@ -10,6 +10,7 @@ import numpy as np
 from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
+from stickslip.problem.start import written_out
 from stickslip.trajectory.history import Floats
 
 SMALLEST, LARGEST = 1e-15, 1e-2
@@ -22,16 +23,8 @@ def disturbed(problem: Problem, push: float) -> Problem:
     """Return the problem with `push` (Pa; block: N) added to its initial load, and with the same far stress."""
     far = problem.stress if problem.far_stress is None and is_lossy(problem) else problem.far_stress
     if not problem.friction.sticks:
-        return replace(_with_state(problem), initial_load=problem.load + push, far_stress=far)
+        return replace(written_out(problem), initial_load=problem.load + push, far_stress=far)
     return replace(problem, initial_load=None, initial_excess=problem.excess + push, far_stress=far)
-
-
-def _with_state(problem: Problem) -> Problem:
-    """Return the problem with the load and state that it starts from written out, so that one of them can be changed alone."""
-    if problem.initial_load is not None or problem.friction.state is None:
-        return problem
-    state = float(problem.friction.outer_state(np.array(problem.state)))
-    return replace(problem, initial_load=problem.load, initial_state=state)
 
 
 def is_lossy(problem: Problem) -> bool:
