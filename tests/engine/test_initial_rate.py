@@ -300,6 +300,9 @@ def test_a_law_without_state_starts_so_too_and_is_no_case_for_a_batch() -> None:
     steady = ss.Problem(block, Smooth(0.6, 1e-3), pull_rate=1e-2)
     assert ss.simulate(steady, 5.0).slip_rate(np.linspace(0.0, 5.0, 50)) == pytest.approx(1e-2, rel=1e-12)
     assert "starts at a slip rate of its own" in why_not(Scenario(steady, 5.0), ["friction.top"], ["slip"])
+    light = Scenario(ss.Problem(replace(SLAB, contact_mass=0.0), Smooth(0.6, 1e-3), pull_rate=1e-2, initial_load=1e7), 5.0)
+    assert "starts at a slip rate of its own" in why_not(light, ["body.contact_mass"], ["slip"])
+    assert why_not(light, ["friction.top"], ["slip"]) == ""
 
 
 def test_a_disturbed_start_has_the_state_of_the_undisturbed_one() -> None:

@@ -59,7 +59,7 @@ def _of_law(scenario: Scenario, parameters: Sequence[str]) -> Iterator[str]:
         yield f"{name} is not made of plain numbers alone"
     if law.memory != "all":
         yield f"{name}: memory '{law.memory}' is not followed by a batch"
-    if problem.has_initial_rate:
+    if not law.sticks and (problem.body.has_inertia or "body.contact_mass" in parameters):
         yield f"{name}: a contact with mass that never sticks starts at a slip rate of its own"
     if folds_move(problem):
         yield f"{name}: branches of the contact equation move with slip"
