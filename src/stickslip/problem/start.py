@@ -9,9 +9,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief
@@ -21,8 +22,9 @@ if TYPE_CHECKING:
 
 FASTEST, SLOWEST = 1e3, 1e-300
 """Slip rates (m/s) between which load and friction must balance; a contact that would be slower starts at rate 0."""
-WIDER = 32.0
-"""Factor by which the bracket of the balance grows."""
+AT_ONCE, ROUNDS = 304, 8
+"""Number of slip rates that are tried together, first one in each decade, and how often they close in on the balance."""
+Floats = NDArray[np.float64]
 
 
 class Start(NamedTuple):
@@ -81,29 +83,27 @@ def _steady(problem: Problem, rate: float) -> Start:
                 f"Problem: needs initial_load and initial_state: {name} does not say in which state it slides steadily"
             )
         state = law.inner_state(float(sliding))
-    return Start(rate, math.copysign(_resistance(problem, state)(abs(rate)), rate), state)
+    return Start(rate, math.copysign(_resistance(problem, state)(abs(rate)).item(), rate), state)
 
 
-def _resistance(problem: Problem, state: float) -> Callable[[float], float]:
-    """Return the load (Pa or N) that a slip rate v >= 0 (m/s) takes: damping v + S mu."""
+def _resistance(problem: Problem, state: float) -> Callable[[Any], Floats]:
+    """Return the load (Pa or N) that slip rates v >= 0 (m/s) take: damping v + S mu."""
     law, slip, damping, normal = problem.friction, problem.law_slip, problem.body.damping, problem.normal
-    return lambda rate: damping * rate + normal * float(law.coefficient(slip, rate, state))
+    return lambda rate: np.asarray(damping * rate + normal * law.coefficient(slip, rate, state))
 
 
-def _balance(resistance: Callable[[float], float], load: float, problem: Problem) -> float:
-    """Return the slip rate (m/s, >= 0) at which the resistance is a load (>= 0), to rounding."""
-    low = high = min(problem.friction.rate_scales, default=1.0)
-    while low > SLOWEST and resistance(low) > load:
-        low, high = low / WIDER, low
-    if low <= SLOWEST or load == 0.0:
+def _balance(resistance: Callable[[Any], Floats], load: float, problem: Problem) -> float:
+    """Return the slowest slip rate (m/s, >= 0) at which the resistance is a load (>= 0), to rounding."""
+    rates = np.geomspace(SLOWEST, FASTEST, AT_ONCE)
+    beyond = resistance(rates) > load
+    if beyond[0]:
         return 0.0
-    while resistance(high) < load:
-        if high > FASTEST:
-            beyond = f"is more than the contact resists at any slip rate up to {FASTEST:g} m/s"
-            raise InputError(f"Problem: a load of {brief(load, problem.load_unit)} {beyond}: give initial_rate")
-        low, high = high, high * WIDER
-    while True:
-        middle = math.sqrt(low) * math.sqrt(high)  # slip rates span hundreds of decades
-        if not low < middle < high:
-            return low
-        low, high = (low, middle) if resistance(middle) > load else (middle, high)
+    if not beyond.any():
+        why = f"is more than the contact resists at any slip rate up to {FASTEST:g} m/s"
+        raise InputError(f"Problem: a load of {brief(load, problem.load_unit)} {why}: give initial_rate")
+    for _ in range(ROUNDS):
+        high = max(int(np.argmax(beyond)), 1)
+        rates = np.geomspace(float(rates[high - 1]), float(rates[high]), AT_ONCE)
+        beyond = resistance(rates) > load
+        beyond[-1] = True  # it was so a round ago, up to rounding
+    return float(rates[0])
