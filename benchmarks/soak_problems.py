@@ -230,7 +230,10 @@ class Drawing:
             given["initial_load"] = normal * float(rng.uniform(-1.0, 1.0))
             given["initial_state"] = self.time * self.log(-3, 3)
         rounds = float(rng.uniform(0.3, 6.0)) * (self.log(2, 5) if rng.random() < LONG else 1.0)
-        return Draw(kind, ss.Problem(body, law, **given), float(rounds * self.time), float(self.one_of(*RTOLS)))
+        rtol = float(self.one_of(*RTOLS))
+        if not law.sticks and body.has_inertia and rng.random() < 0.5:
+            given["initial_rate"] = float(self.one_of(0.0, 1.0, -1.0)) * self.rate * self.log(-8, -0.5)
+        return Draw(kind, ss.Problem(body, law, **given), float(rounds * self.time), rtol)
 
 
 def draw(seed: int, index: int, only: str | None = None) -> Draw:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -81,7 +82,8 @@ def test_inertia_raises_the_critical_stiffness(evolution: str) -> None:
         root = slowest_root(mass, stiffness, 0.0)
         period = 2.0 * np.pi / abs(root.imag)
         assert abs(slowest_root(mass, 2.0 * CRITICAL, 0.0).real) < 1e-6 * abs(root.imag)
-        runs[share] = ss.simulate(steady(ss.SpringBlock(mass, stiffness, NORMAL), law_of(evolution)), 60.0 * period, rtol=1e-8)
+        at_rest = replace(steady(ss.SpringBlock(mass, stiffness, NORMAL), law_of(evolution)), initial_rate=0.0)
+        runs[share] = ss.simulate(at_rest, 60.0 * period, rtol=1e-8)
     swings = {share: np.ptp(run.slip_rate(np.linspace(50.0, 60.0, 1000) * period)) / SPEED for share, run in runs.items()}
     assert swings[1.2] < 1e-3 < 0.2 < swings[0.9]
     assert growth(runs[1.2], 45.0 * period) == pytest.approx(root.real, rel=0.0, abs=1e-5 * abs(root.imag))
@@ -177,10 +179,10 @@ def test_both_directions_are_mirror_images(body: Any) -> None:
 
 
 def test_the_slip_rate_passes_through_zero() -> None:
-    """A light block overshoots its spring: it swings back and never sticks; energy balances to 1e-10 of the heat."""
+    """A light block, let go, overshoots its spring: it swings back and never sticks; energy balances to 1e-10 of the heat."""
     law = ss.friction.RateAndState(0.05, 0.01, 0.0, 1e-5, 1e-6)
     block = ss.SpringBlock(1e4, 1e10, 1e6)
-    run = ss.simulate(ss.Problem(block, law, initial_load=1e6, initial_state=1.0), 0.2)
+    run = ss.simulate(ss.Problem(block, law, initial_load=1e6, initial_state=1.0, initial_rate=0.0), 0.2)
     rate = run.slip_rate(np.linspace(0.0, 0.2, 2001))
     assert rate.min() < -1e-3 < 1e-3 < rate.max()
     energy = run.energy(np.linspace(0.0, 0.2, 20))

@@ -142,6 +142,24 @@ def test_exchange_of_the_start_keeps_the_load() -> None:
     assert setting.value("initial.excess") is None
 
 
+def test_a_start_in_motion_is_steady_sliding_or_the_same_load_and_state() -> None:
+    def shown(setting: Setting) -> dict[str, object]:
+        group = next(group for group in controls_of(setting) if group.table == "initial")
+        return {"kind": group.kind, "kinds": group.kinds} | {one.path: one.empty or one.value for one in group.controls}
+
+    steady = Setting.bundled("velocity-steps-block")
+    kinds = ("steady", "load")
+    assert shown(steady) == {"kind": "steady", "kinds": kinds, "initial.slip": "0", "initial.rate": "the pull rate"}
+    loaded = with_kind(steady, "initial", "load")
+    assert loaded.value("initial.load") == pytest.approx(30e3, rel=1e-15)
+    assert loaded.value("initial.state") == pytest.approx(10.0, rel=1e-15)
+    assert (shown(loaded)["kind"], shown(loaded)["initial.rate"]) == ("load", "load and friction balance")
+    assert loaded.scenario().problem.rate == pytest.approx(1e-6, rel=1e-12)
+    assert with_kind(loaded, "initial", "steady").document == steady.document
+    sticks = shown(with_kind(steady, "friction", "hyperbolic-rate"))
+    assert (sticks["kind"], "initial.rate" in sticks) == ("excess", False)
+
+
 def test_exchange_of_the_body_goes_to_the_equivalent_block_and_back() -> None:
     setting = Setting.bundled("fig6-slab")
     block = with_kind(setting, "body", "spring-block")

@@ -87,8 +87,9 @@ def test_traction_alone_leaves_out_the_start_from_rest_too() -> None:
 
 
 def test_a_figure_of_the_start_alone_shows_it() -> None:
-    """Within one period the block of the velocity steps still accelerates from 0: nothing is left out but 0 itself."""
-    solution = run("velocity-steps-block")
+    """Within one period a block that starts from rest still accelerates from 0: nothing is left out but 0 itself."""
+    at_rest = {"initial.load": "30 kN", "initial.state": "10 s", "initial.rate": 0.0}
+    solution = ss.simulate(ss.scenarios["velocity-steps-block"].with_values(at_rest))
     period = solution.problem.body.round_trip_time
     rates = drawn(panel(draw(solution, 0.0, period), "slip rate"))[:, 1]
     whole = drawn(panel(draw(solution), "slip rate"))[:, 1]

@@ -147,10 +147,10 @@ def driver_error(run: ss.Solution, wrong: float = 1.0) -> float:
     slab, problem, time = slab_of(run), run.problem, moments(run)
     size, at = scales(slab), run.field(slab.thickness, time)
     if math.isinf(slab.driver_impedance):
-        position = problem.initial_slip + problem.load / slab.stiffness + pulled(problem, time)
+        position = problem.initial_slip + problem.stress / slab.stiffness + pulled(problem, time)
         moved = np.abs(at.displacement - position) / size.displacement
         return float(np.maximum(moved, np.abs(at.velocity - problem.pull_rate_at(time)) / size.velocity).max())
-    stress = problem.load if problem.far_stress is None else problem.far_stress
+    stress = problem.stress if problem.far_stress is None else problem.far_stress
     far = (stress.at(time) if isinstance(stress, LoadingHistory) else stress) + problem.far_stress_rate * time
     by_driver = far + wrong * slab.driver_impedance * (problem.pull_rate_at(time) - at.velocity)
     return float(np.abs(at.stress - by_driver).max() / size.stress)
@@ -185,9 +185,10 @@ def test_the_field_starts_from_uniform_shear(run: ss.Solution) -> None:
     x = np.linspace(0.0, slab.thickness, 33)
     size = scales(slab)
     start = run.field(x, 0.0, side="left")
-    assert np.abs(start.stress - problem.load).max() < 1e-15 * size.stress
-    assert np.abs(start.velocity - problem.first_pull_rate * x / slab.thickness).max() < 1e-15 * size.velocity
-    sheared = problem.initial_slip + problem.load * x / slab.shear_modulus
+    initial_velocity = problem.rate + (problem.first_pull_rate - problem.rate) * x / slab.thickness
+    assert np.abs(start.stress - problem.stress).max() < 1e-15 * size.stress
+    assert np.abs(start.velocity - initial_velocity).max() < 1e-15 * size.velocity
+    sheared = problem.initial_slip + problem.stress * x / slab.shear_modulus
     assert np.abs(start.displacement - sheared).max() < 1e-14 * size.displacement
     for name in ("velocity", "stress"):
         inside = slice(1, -1)

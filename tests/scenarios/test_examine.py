@@ -181,6 +181,27 @@ def test_rate_and_state_is_judged_by_its_stiffness() -> None:
     assert not {fact.name for fact in slab.derived} & {"strength", "excess"}
 
 
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({}, "slides from the start, at 1e-06 m/s: steady sliding at the pull rate"),
+        ({"initial.rate": 1e-3}, "slides from the start, at 0.001 m/s: steady sliding"),
+        (
+            {"initial.load": 3e4, "initial.state": 10.0},
+            "slides from the start, at 1e-06 m/s: there the initial load and friction balance",
+        ),
+        (
+            {"initial.load": 3e4, "initial.state": 10.0, "initial.rate": -1e-3},
+            "slides from the start, at -0.001 m/s: as initial rate",
+        ),
+    ],
+)
+def test_examine_says_how_a_contact_starts_that_never_sticks(given: dict[str, float], words: str) -> None:
+    scenario = load_scenario("velocity-steps-block")
+    found = examine(scenario.with_values(given) if given else scenario)
+    assert found.start == words
+
+
 def test_only_what_a_body_and_a_law_can_feel_is_listed() -> None:
     def listed(scenario: Scenario) -> set[str]:
         return {fact.name for facts in examine(scenario).given.values() for fact in facts}

@@ -59,6 +59,8 @@ def _of_law(scenario: Scenario, parameters: Sequence[str]) -> Iterator[str]:
         yield f"{name} is not made of plain numbers alone"
     if law.memory != "all":
         yield f"{name}: memory '{law.memory}' is not followed by a batch"
+    if not law.sticks and (problem.body.has_inertia or "body.contact_mass" in parameters):
+        yield f"{name}: a contact with mass that never sticks starts at a slip rate of its own"
     if folds_move(problem):
         yield f"{name}: branches of the contact equation move with slip"
     chooses = is_algebraic(problem) or ("body.contact_mass" in parameters and law.depends_on_rate)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -103,6 +104,16 @@ EDGE = 1e-13
 """Distance from the edge of a row, as a share of it, within which a break lies on the edge."""
 
 
+def wave_before(problem: Problem) -> Any:
+    """Return the wave beta - 2 Z v, minus the reference strength (Pa), that leaves the contact of a slab just before the start."""
+    return problem.excess - 2.0 * problem.body.impedance * problem.rate
+
+
+def far_excess(problem: Problem) -> Any:
+    """Return the default far stress, that in the slab at the start, minus the reference strength (Pa)."""
+    return problem.excess - problem.body.impedance * problem.rate
+
+
 def steady_inflow(problem: Problem) -> tuple[float, float]:
     """Return the inflow of a loading that does not vary: its value at 0 s and its growth per second. Slab: Pa; block: N/s."""
     body = problem.body
@@ -112,7 +123,7 @@ def steady_inflow(problem: Problem) -> tuple[float, float]:
         return 2.0 * body.impedance * problem.first_pull_rate, 0.0
     gain, far = 1.0 + body.reflection, problem.far_stress
     assert not isinstance(far, LoadingHistory)
-    excess = problem.excess if far is None else far - problem.strength
+    excess = far_excess(problem) if far is None else far - problem.strength
     growth, delay = problem.far_stress_rate, 0.5 * body.round_trip_time
     return gain * body.driver_impedance * problem.first_pull_rate + gain * (excess - growth * delay), gain * growth
 
@@ -144,7 +155,7 @@ def _lossy(problem: Problem) -> tuple[list[Segment], Tone]:
         steady = gain * (body.driver_impedance * problem.first_pull_rate - problem.strength)
     else:
         segments, tone = _scaled(problem.pull_rate, gain * body.driver_impedance)
-        steady = gain * (problem.excess if far is None else far - problem.strength)
+        steady = gain * (far_excess(problem) if far is None else far - problem.strength)
     growth = gain * problem.far_stress_rate
     return [Segment(s.start, s.value + steady + growth * s.start, s.slope + growth) for s in segments], tone
 

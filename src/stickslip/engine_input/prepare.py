@@ -17,7 +17,7 @@ from stickslip.engine.state.layout import Counts, FirstLoad, Integers, LawPiece,
 from stickslip.engine.state.workspace import counts_in, lend_problem, memory_of, params_in
 from stickslip.engine_input.automatic import set_length, set_lumping
 from stickslip.engine_input.branch_table import folds_move, is_algebraic, table_of_branches
-from stickslip.engine_input.forcing import inflow_of, steady_inflow
+from stickslip.engine_input.forcing import inflow_of, steady_inflow, wave_before
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SelectionRule
@@ -115,13 +115,13 @@ def first_load(problem: Problem) -> at.Floats:
     body, excess, pull = problem.body, problem.excess, problem.first_pull_rate
     if not body.has_waves:
         return _pieces([0.0, problem.round_trip_time], [excess], [body.stiffness * pull])
-    slope = body.impedance * pull / (0.5 * body.round_trip_time)  # G V / h
+    slope = body.impedance * (pull - problem.rate) / (0.5 * body.round_trip_time)  # G (V - v0) / h
     if body.is_driven_rigidly:
         return _pieces([0.0, body.round_trip_time], [excess], [slope])
     r, half = body.reflection, 0.5 * body.round_trip_time
     steady, rate = steady_inflow(problem)
-    # for h/c <= t < R the waves of the initial state come back: w(t - R) = G V (R - t) / h - tau0
-    reflected = steady + rate * half + r * (slope * half - excess)
+    # for h/c <= t < R the waves of the initial state come back: w(t - R) = G (V - v0) (R - t) / h - (load - 2 Z v0)
+    reflected = steady + rate * half + r * (slope * half - wave_before(problem))
     before = excess + slope * half
     jump = abs(reflected - before) > 1e-12 * np.maximum(abs(problem.strength), abs(before))
     return _pieces([0.0, half, 2.0 * half], [excess, np.where(jump, reflected, before)], [slope, rate - r * slope], [0.0, jump])
@@ -136,8 +136,12 @@ def first_load_varying(problem: Problem) -> at.Floats:
     if not body.has_waves:
         return _parts(problem, _pieces([0.0, problem.round_trip_time], [excess], [0.0]))
     r, half = body.reflection, 0.5 * body.round_trip_time
-    slope = body.impedance * problem.first_pull_rate / half
-    before, back, comes = excess + slope * half, r * (slope * half - excess), float(inflow_of(problem).at(np.array(half)))
+    slope = body.impedance * (problem.first_pull_rate - problem.rate) / half
+    before, back, comes = (
+        excess + slope * half,
+        r * (slope * half - wave_before(problem)),
+        float(inflow_of(problem).at(np.array(half))),
+    )
     jump = abs(back + comes - before) > 1e-12 * max(abs(problem.strength), abs(before))
     return _parts(problem, _pieces([0.0, half, 2.0 * half], [excess, back], [slope, -r * slope], [0.0, jump]))
 
@@ -235,7 +239,8 @@ def functions_of(formulas: Sequence[CompiledFormula], problem: Problem) -> at.In
 def start_of(problem: Problem) -> tuple[State, Counts]:
     """Return the state and counts at t = 0, before the first piece of load: the contact is at rest.
 
-    Under a law that never sticks its mode is slip in the direction of the load, for there is no rest.
+    Under a law that never sticks there is no rest. The contact slips at its initial rate if it has a mass, and otherwise in the
+    direction of the load.
     """
     state, count = State(np.zeros(State.total)), Counts(np.zeros(Counts.total, np.int64))
     state.last_step = math.inf
@@ -247,7 +252,8 @@ def start_of(problem: Problem) -> tuple[State, Counts]:
     count.has_state, count.sticks = problem.friction.state is not None, problem.friction.sticks
     state.state_now = problem.state
     if not problem.friction.sticks:
-        count.mode = 1 if problem.load >= 0.0 else -1
+        state.rate_now = problem.rate
+        count.mode = 1 if (problem.rate or problem.load) >= 0.0 else -1
     count.pause_at = count.lumped_since = count.lump_above = at.NEVER
     count.folds_move = folds_move(problem)
     count.disc = FIRST_DISC

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from stickslip.foundation.brief_repr import brief_repr
 from stickslip.foundation.errors import InputError
@@ -156,6 +156,13 @@ class LawContract(ABC):
     def outer_state(self, w: NDArray[np.float64]) -> NDArray[np.float64]:
         """Convert values of w, the state that the formulas use, to the state that users see."""
         return w
+
+    def steady_state(self, v: ArrayLike) -> NDArray[np.float64] | None:
+        """Return the state, as users see it, of steady sliding at slip rates v > 0 (m/s); None if the law does not say.
+
+        Under a law that never sticks, a contact with mass starts there by default.
+        """
+        return None
 
     # ---------------------------------------------------------------------------------------------------------------------------
 

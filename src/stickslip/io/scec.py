@@ -108,6 +108,8 @@ def _about(run: Readings, series: Series, problem: str, station: str, meanings: 
     yield f"friction={to_table(run.problem.friction)}"
     yield from (f"{name}={text}" for name, text in run.problem.loading_texts.items())
     yield f"initial_load={run.problem.load!r} {run.problem.load_unit}"
+    if run.problem.has_initial_rate:
+        yield f"initial_rate={run.problem.rate!r} m/s"
     yield f"selection_rule={run.problem.rule}"
     yield f"rtol={solution.rtol:g}"  # type: ignore[attr-defined]
     if isinstance(run, Window):

@@ -75,7 +75,7 @@ class WaveInterval:
         """
         part = np.maximum(self._part(time, "right"), 0)
         before = np.minimum(time - self.first, 0.0)
-        start = -before * (0.5 * self.waves.slope * before + self.waves.excess)
+        start = -before * (0.5 * self.waves.slope * before + self.waves.before)
         return np.where(before < 0.0, start, self._sums[part] + _series(self._integral, part, self._xi(time, part)))
 
     def _part(self, time: Floats, side: Side) -> NDArray[np.intp]:

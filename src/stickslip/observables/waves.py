@@ -2,7 +2,8 @@
 
 Everything is written in terms of the wave that leaves the contact, w = 2 Z v - beta, plus the reference strength; this sum is
 small if the slab is near its strength. The load that arrives one round trip later is r w + inflow, so the past alone determines
-the present waves. Before t = 0, w(-y) = G V y / h - tau0 for 0 < y < h/c; the load is tau0 + G V t / h up to h/c.
+the present waves. With the load beta0 and the slip rate v0 at t = 0, w(-y) = G (V - v0) y / h - (beta0 - 2 Z v0) for 0 < y < h/c
+before then; the load is beta0 + G (V - v0) t / h up to h/c.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.bodies import ElasticSlab
-from stickslip.engine_input.forcing import inflow_of
+from stickslip.engine_input.forcing import inflow_of, wave_before
 from stickslip.foundation.errors import InputError
 from stickslip.observables.quadrature import NODES, WEIGHTS, over
 from stickslip.trajectory.history import START, Epoch, Floats, History, Positions
@@ -31,7 +32,8 @@ class Waves:
         self.history, self.body = history, body
         self.reference, self.excess = history.problem.strength, history.problem.excess
         self.round, self.half = body.two_way_time, 0.5 * body.two_way_time
-        self.slope = body.impedance * history.problem.first_pull_rate / self.half  # G V / h
+        self.slope = body.impedance * (history.problem.first_pull_rate - history.problem.rate) / self.half  # G (V - v0) / h
+        self.before: float = wave_before(history.problem)
         self.inflow = inflow_of(history.problem)
 
     def leaving(self, at: Positions) -> Floats:
@@ -51,7 +53,7 @@ class Waves:
 
     def left_before(self, time: Floats) -> Floats:
         """Return w plus the reference (Pa) that left the contact at times (s, negative) before the start of the run."""
-        return -self.slope * time - self.excess
+        return -self.slope * time - self.before
 
     def begun(self, now: Epoch) -> float:
         """Return the time since the start of the run, s; use it only where its rounding does not matter."""

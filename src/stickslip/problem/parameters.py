@@ -119,8 +119,11 @@ def _of_problem(problem: Problem) -> Iterator[Parameter]:
         if value is not None:
             put = _in_field(problem.body, name, lambda body: replace(problem, body=body))
             yield Parameter(f"body.{name}", value, declared, put)
-    slip = quantities_of(type(problem))["initial_slip"]
-    yield Parameter("initial.slip", problem.initial_slip, slip, lambda value: replace(problem, initial_slip=value))
+    for name in ("initial_slip", "initial_rate"):
+        if (value := getattr(problem, name)) is not None:
+            yield Parameter(
+                name.replace("_", "."), value, quantities_of(type(problem))[name], _in_field(problem, name, lambda p: p)
+            )
 
 
 def _of_law(law: Any, place: str, put: Callable[[Any], Problem]) -> Iterator[Parameter]:

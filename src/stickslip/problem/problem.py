@@ -24,6 +24,7 @@ from stickslip.loading import LoadingHistory
 from stickslip.loading.contract import SILENT, VARYING
 from stickslip.problem.parameters import Parameters
 from stickslip.problem.selection_rule import SelectionRule, checked, name_of
+from stickslip.problem.start import Start, check_rate, start_of
 
 MAY_VARY = ("pull_rate", "far_stress")
 """Fields of a problem that may be a loading history instead of a number."""
@@ -65,9 +66,14 @@ class Problem:
         the load is negative. A law that never sticks has no strength to exceed: give its initial load.
     initial_state
         Initial value of the state of a law that has one, in the unit of the law. The default for a law that sticks is 0, which is
-        healed; for any other law with a state the value must be given.
+        healed; for any other law with a state the value must be given, unless the contact starts in steady sliding.
+    initial_rate
+        Slip rate v0 at the start (m/s), of a contact with inertia under a law that never sticks. The default is the rate at which
+        the initial load and friction in the initial state balance. If neither load nor state is given, the contact starts in
+        steady sliding at this rate, by default at the pull rate.
     far_stress
-        Shear stress (Pa) far beyond a driver of finite impedance, or a loading history of it. The default is the initial load.
+        Shear stress (Pa) far beyond a driver of finite impedance, or a loading history of it. The default is the initial load,
+        less Z v0 if the contact starts at an initial rate.
     far_stress_rate
         Rate of change of the far stress (Pa/s).
     selection
@@ -84,8 +90,11 @@ class Problem:
     is 0 and slips at t = 0+ if the pull rate is positive. With an initial load above the strength the contact slips at once; the
     left limit at t = 0 is then the initial state at rest.
 
+    A contact with inertia that never sticks (`has_initial_rate`) starts at its initial rate; any other starts at rest, and a
+    contact without mass then slips at once at the rate that load and friction determine. `Problem.rate` is this rate.
+
     At most one of `pull_rate` and `far_stress` may be a loading history (`stickslip.loading`). The initial velocity in a slab is
-    linear in x, from rest at the contact to the pull rate at 0 s at the driver.
+    linear in x, from the initial rate, or rest, at the contact to the pull rate at 0 s at the driver.
     """
 
     body: Body
@@ -98,6 +107,9 @@ class Problem:
     initial_excess: OptionalNumber = quantity(LOAD, "initial load minus static strength, kept exactly", default=None)
     # not declared as a quantity, because the law determines its unit
     initial_state: OptionalNumber = field(default=None)  # type: ignore[arg-type] # the annotation is that of a converted value
+    initial_rate: OptionalNumber = quantity(
+        "m/s", "slip rate v0 at the start, of a contact with inertia that never sticks", default=None
+    )
     far_stress: Converted[float | LoadingHistory | None, float | str | WithUnit | LoadingHistory | None] = quantity(
         "Pa", "shear stress far beyond a driver of finite impedance", default=None
     )
@@ -113,10 +125,10 @@ class Problem:
         object.__setattr__(self, "friction", as_law("Problem: friction", self.friction))
         self._check_varying()
         check_fields(self, but=self._varying, units={LOAD: self.body.load_unit})
-        if (self.initial_load is None) == (self.initial_excess is None):
-            found = "neither" if self.initial_load is None else "both"
-            raise InputError(f"Problem: needs either initial_load or initial_excess (load minus static strength), got {found}")
+        self._check_load()
         self._check_state()
+        check_rate(self)
+        _ = self.rate  # refuses a start at which nothing balances
         object.__setattr__(self, "selection", checked(self.selection))
         self._check_far_side()
 
@@ -161,6 +173,12 @@ class Problem:
         for name in self._varying:
             getattr(self, name).check()
 
+    def _check_load(self) -> None:
+        steady = self.has_initial_rate and self.initial_state is None
+        if (self.initial_load is None) == (self.initial_excess is None) and not (steady and self.initial_load is None):
+            found = "neither" if self.initial_load is None else "both"
+            raise InputError(f"Problem: needs either initial_load or initial_excess (load minus static strength), got {found}")
+
     def _check_state(self) -> None:
         law, name = self.friction, type(self.friction).__name__
         if law.state is None:
@@ -171,6 +189,8 @@ class Problem:
             raise InputError(f"Problem: initial_excess: {name} has no static strength to exceed, give initial_load")
         declared = Quantity(law.state.unit, law.state.meaning, at_least=0.0, above=None if law.sticks else 0.0)
         value = 0.0 if self.initial_state is None and law.sticks else self.initial_state
+        if value is None and self.has_initial_rate and self.initial_load is None:
+            return
         if value is None:
             raise InputError(f"Problem: needs initial_state, the {law.state.meaning}, in {law.state.unit}")
         object.__setattr__(self, "initial_state", declared.check("Problem", "initial_state", value))
@@ -269,8 +289,29 @@ class Problem:
         return abs(self.initial_slip) if self.friction.counts == "path" else self.initial_slip
 
     @property
+    def has_initial_rate(self) -> bool:
+        """True if the contact starts at a slip rate of its own: it has inertia, so that the rate cannot jump, and never sticks."""
+        return not self.friction.sticks and self.body.has_inertia
+
+    @cached_property
+    def _start(self) -> Start:
+        return start_of(self)
+
+    @property
+    def rate(self) -> float:
+        """The slip rate v0 at t = 0 (m/s): 0 unless the contact `has_initial_rate`."""
+        return self._start.rate if self.has_initial_rate else 0.0
+
+    @property
+    def stress(self) -> float:
+        """The shear stress in a slab at t = 0 (Pa): the load, less Z v0, which leaves with the waves."""
+        return self.load - self.body.damping * self.rate
+
+    @property
     def state(self) -> float:
         """The initial state in the form that the formulas use (`FrictionLaw.inner_state`); 0 for a law without one."""
+        if self.has_initial_rate:
+            return self._start.state
         return 0.0 if self.initial_state is None else self.friction.inner_state(self.initial_state)
 
     @cached_property
@@ -290,17 +331,19 @@ class Problem:
         """
         if self.initial_excess is not None:
             return self.initial_excess
-        assert self.initial_load is not None
+        load = self.load
         rounding = 4 * np.spacing(self.strength)
         for edge in (self.strength, -self.strength):  # strengths against forward and against backward slip
-            if abs(self.initial_load - edge) <= rounding:
+            if abs(load - edge) <= rounding:
                 return edge - self.strength
-        return self.initial_load - self.strength
+        return load - self.strength
 
     @property
     def load(self) -> float:
         """The shear load on the contact at t = 0 (Pa or N)."""
-        return self.initial_load if self.initial_load is not None else self.strength + self.excess
+        if self.initial_load is not None:
+            return self.initial_load
+        return self._start.load if self.initial_excess is None else self.strength + self.initial_excess
 
 
 def check_problem(who: str, problem: Any, wanted: str = "a Problem") -> None:

@@ -143,6 +143,8 @@ def _derived(problem: Problem) -> list[Fact]:
     if problem.friction.sticks:
         start.insert(0, Fact("strength", problem.strength, unit, "static strength S mu at the start"))
         start.append(Fact("excess", problem.excess, unit, "load minus static strength"))
+    if problem.has_initial_rate:
+        start.append(Fact("v0", problem.rate, "m/s", "slip rate at the start"))
     start += _steady(problem)
     first = ", at first" if problem.varies else ""
     if not body.has_waves:

@@ -26,6 +26,8 @@ def loading_rate(problem: Problem) -> float:
 
 def start_of(problem: Problem) -> str:
     """Return a sentence on what the contact does at t = 0+ and, if it sticks, on when it will slip."""
+    if problem.has_initial_rate:
+        return f"slides from the start, at {problem.rate:.6g} m/s: {_why_it_slides(problem)}"
     if not problem.friction.sticks:
         return "creeps from the start, from rest: friction with a state of its own never sticks"
     excess, unit, pulled = problem.excess, problem.load_unit, problem.first_pull_rate > 0
@@ -46,6 +48,13 @@ def start_of(problem: Problem) -> str:
     wait = wait_of(problem)
     when = f"; loading reaches the strength after about {wait:.6g} s" if math.isfinite(wait) else ""
     return f"stuck: the load is {-excess:.6g} {unit} below the static strength{when}"
+
+
+def _why_it_slides(problem: Problem) -> str:
+    """Return where the initial rate of a contact comes from that has a mass and never sticks."""
+    if problem.initial_load is None and problem.initial_excess is None:
+        return "steady sliding" if problem.initial_rate is not None else "steady sliding at the pull rate"
+    return "as initial rate" if problem.initial_rate is not None else "there the initial load and friction balance"
 
 
 def wait_of(problem: Problem) -> float:

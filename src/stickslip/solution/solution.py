@@ -37,7 +37,7 @@ class Solution(Exports):
     """A finished run.
 
     Times are in s from the start of the run. Methods take scalars or arrays and return arrays of the same shape. `side` ("left"
-    or "right") picks the limit at a shock; the left limit at t = 0 is the initial state at rest. Times outside the run raise
+    or "right") picks the limit at a shock; the left limit at t = 0 is the initial state. Times outside the run raise
     InputError. Tables are built when they are first asked for.
     """
 

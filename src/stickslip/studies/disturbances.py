@@ -10,6 +10,7 @@ import numpy as np
 from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
+from stickslip.problem.start import written_out
 from stickslip.trajectory.history import Floats
 
 SMALLEST, LARGEST = 1e-15, 1e-2
@@ -20,14 +21,14 @@ MOST_MEMBERS = 1000
 
 def disturbed(problem: Problem, push: float) -> Problem:
     """Return the problem with `push` (Pa; block: N) added to its initial load, and with the same far stress."""
-    far = problem.load if problem.far_stress is None and is_lossy(problem) else problem.far_stress
+    far = problem.stress if problem.far_stress is None and is_lossy(problem) else problem.far_stress
     if not problem.friction.sticks:
-        return replace(problem, initial_load=problem.load + push, far_stress=far)
+        return replace(written_out(problem), initial_load=problem.load + push, far_stress=far)
     return replace(problem, initial_load=None, initial_excess=problem.excess + push, far_stress=far)
 
 
 def is_lossy(problem: Problem) -> bool:
-    """Return True if the slab has a driver of finite impedance; its far stress is the initial load by default."""
+    """Return True if the slab has a driver of finite impedance; its far stress follows from the initial load by default."""
     return not math.isinf(problem.body.driver_impedance)
 
 

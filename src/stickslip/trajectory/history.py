@@ -279,7 +279,8 @@ class History:
 
     def rate(self, at: Positions) -> Floats:
         """Return the slip rate, m/s."""
-        return np.where(at.before | at.at_rest, 0.0, horner(self.store.rate[at.piece], at.xi))
+        sliding = np.where(at.at_rest, 0.0, horner(self.store.rate[at.piece], at.xi))
+        return np.where(at.before, self.problem.rate, sliding)
 
     def mode(self, at: Positions) -> Integers:
         """Return the mode of the contact: 0 at rest, +1 in forward slip, -1 in backward slip."""
@@ -346,4 +347,4 @@ class History:
         law, mode = self.problem.friction, self.mode(at)
         coefficient = law.coefficient(self.law_slip(at), np.abs(rate), self.state(at))
         by_law = mode * self.problem.normal * coefficient - self.problem.strength
-        return np.where((mode == 0) | at.before, excess, by_law)
+        return np.where((mode == 0) | (at.before & (rate == 0.0)), excess, by_law)

@@ -94,9 +94,9 @@ class SlabPicture:
 class EnergyPicture:
     """Energies against time (s): each is a curve by its name, J/m^2 for a slab and J for a block.
 
-    The parts are elastic (above its smallest value), kinetic, heat, radiated and damped, and "total", which is their sum: what the
-    body had at the first of these times, and the work of the driver since then. Parts that are zero throughout are left out. The
-    times are those of the picture of the slab.
+    The parts are elastic (above its smallest value), kinetic, heat, radiated and damped, each calculated by itself. "total" is what
+    the body had at the first of these times, and the work of the driver since then: the sum of the parts, if the run balances.
+    Parts that are zero throughout are left out. The times are those of the picture of the slab.
     """
 
     time: Floats

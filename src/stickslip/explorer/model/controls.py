@@ -26,13 +26,14 @@ from stickslip.scenarios.values import typed_number
 ControlKind = Literal["number", "whole", "choice", "text", "points"]
 CONSTANT = "constant"
 """Kind of a pull rate that does not vary."""
-STARTS = ("excess", "load")
+STARTS, STARTS_IN_MOTION = ("excess", "load"), ("steady", "load")
 """How the load of the start is given, which takes the place of a kind: minus the static strength, or as it is."""
 RARE = ("run.rtol", "run.creep_rtol", "run.shortest_event", "body.p_wave_speed", "run.events", "loading.far_stress_rate")
 """Numbers that are seldom changed: a page may hide them at first."""
 TITLES: dict[str, str] = {"body": "Body", "friction": "Friction", "loading": "Loading", "initial": "Start", "run": "Run"}
 EMPTY = {
     "initial.state": "needed",
+    "initial.rate": "load and friction balance",
     "loading.far_stress": "the initial load",
     "run.creep_rtol": "automatic",
     "run.shortest_event": "automatic",
@@ -171,8 +172,9 @@ class _Tables:
         far = self.setting.value("loading.far_stress")
         if isinstance(far, Mapping):
             yield self.of("loading.far_stress", HISTORIES[far["kind"]], (), "Far stress that varies")
-        start = "load" if self.setting.value("initial.excess") is None else "excess"
-        yield replace(self.of("initial", type(body), (), state=law.state), kind=start, kinds=STARTS if law.sticks else ())
+        start = "steady" if self.starts_steadily else "load" if self.setting.value("initial.excess") is None else "excess"
+        kinds = STARTS if law.sticks else STARTS_IN_MOTION if self.problem.has_initial_rate else ()
+        yield replace(self.of("initial", type(body), (), state=law.state), kind=start, kinds=kinds)
         yield self.of_run()
 
     def of_law(self, table: str, kinds: tuple[str, ...]) -> Iterator[Group]:
@@ -207,11 +209,18 @@ class _Tables:
         events = Control("run.events", "slip events", "the run ends after so many", "whole", most, empty="no limit", rare=True)
         return Group("run", numbers.title, "", (), (*numbers.controls[:1], rules, *numbers.controls[1:], events))
 
+    @property
+    def starts_steadily(self) -> bool:
+        """True if the contact starts in steady sliding, because the scenario gives no load."""
+        return all(self.setting.value(f"initial.{name}") is None for name in ("load", "excess"))
+
     def applies(self, path: str) -> bool:
         """Return False for an entry that this problem cannot have, and for a number in place of which there is a table."""
         if path in ("loading.far_stress", "loading.far_stress_rate") and math.isinf(self.problem.body.driver_impedance):
             return False
-        if path == "initial.state" and self.problem.friction.state is None:
+        if path == "initial.state" and (self.problem.friction.state is None or self.starts_steadily):
+            return False
+        if path == "initial.rate" and not self.problem.has_initial_rate:
             return False
         if path in ("initial.load", "initial.excess"):
             return self.setting.value(path) is not None
@@ -245,6 +254,8 @@ class _Tables:
         return Control(path, label, describe(entry), kind, value, unit, size, slider, empty=empty, rare=rare, declared=entry)
 
     def _empty(self, path: str, default: Any, entry: Quantity) -> str:
+        if path == "initial.rate" and self.starts_steadily:
+            return "the pull rate"
         if default is None:
             return EMPTY.get(path, "none")
         return entry.word if math.isinf(default) else f"{default:g}"

@@ -10,13 +10,15 @@ from dataclasses import replace
 from typing import Any
 
 from stickslip.bodies import as_slab
-from stickslip.explorer.model.controls import CONSTANT
+from stickslip.explorer.model.controls import CONSTANT, STARTS_IN_MOTION
 from stickslip.explorer.model.runs import slab_of_figure
 from stickslip.explorer.model.setting import Setting
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, fields_of
 from stickslip.friction import FrictionLaw
 from stickslip.loading import HISTORIES
+from stickslip.problem.problem import Problem
+from stickslip.problem.start import written_out
 from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source, key_of, to_table
 from stickslip.scenarios.schema import KINDS, entries_in, kind_of, read_part
@@ -138,11 +140,23 @@ def _with_body(setting: Setting, kind: str) -> Setting:
 
 def _with_start(setting: Setting, kind: str) -> Setting:
     """Return a setting that gives the same initial load in another way."""
+    problem = setting.scenario().problem
+    if problem.has_initial_rate and kind in STARTS_IN_MOTION:
+        return _with_start_in_motion(setting, kind, problem)
     if kind not in ("load", "excess"):
         raise InputError(f"{setting.name}: [initial] takes load or excess, got {kind!r}")
-    problem = setting.scenario().problem
     value, other = (problem.load, "excess") if kind == "load" else (problem.excess, "load")
     return setting.with_value(f"initial.{other}", None).with_value(f"initial.{kind}", float(value))
+
+
+def _with_start_in_motion(setting: Setting, kind: str, problem: Problem) -> Setting:
+    """Return a setting that starts in steady sliding, or from the load and the state that it has now."""
+    initial = {key: value for key, value in setting.value("initial").items() if key not in ("load", "excess", "state")}
+    if kind == "load":
+        start = written_out(problem)
+        given = {"load": start.initial_load, "excess": start.initial_excess, "state": start.initial_state}
+        initial |= {key: value for key, value in given.items() if value is not None}
+    return setting.with_value("initial", initial)
 
 
 def _with_pull(setting: Setting, kind: str) -> Setting:

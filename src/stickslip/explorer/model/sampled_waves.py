@@ -123,9 +123,20 @@ class SampledWaves:
         half = self.waves.half
         away = half * (np.arange(places) + 0.5) / places
         both = np.mean(self.coming.at(time[:, None] + away) * self.leaving.at(time[:, None] - away), axis=1)
+        return np.asarray((self._squares(time) + 2.0 * half * both) / (8.0 * self.body.impedance))
+
+    def stored(self, time: Floats) -> Floats:
+        """Return the elastic and kinetic energy in the slab (J/m^2, up to a constant) at times, from both waves."""
+        half = self.waves.half
+        come = self.coming.total(time + half) - self.coming.total(time)
+        left = self.leaving.total(time) - self.leaving.total(time - half)
+        return (self._squares(time) + 2.0 * self.waves.reference * (come - left)) / (4.0 * self.body.impedance)
+
+    def _squares(self, time: Floats) -> Floats:
+        """Return the integral of the squares of both waves over the slab at times, Pa^2 s."""
+        half = self.waves.half
         come = self.coming.squared(time + half) - self.coming.squared(time)
-        left = self.leaving.squared(time) - self.leaving.squared(time - half)
-        return np.asarray((come + left + 2.0 * half * both) / (8.0 * self.body.impedance))
+        return come + self.leaving.squared(time) - self.leaving.squared(time - half)
 
     def work(self, time: Floats) -> Floats:
         """Return the work of the driver up to times (J/m^2, up to a constant), net of what is radiated."""

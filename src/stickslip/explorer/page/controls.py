@@ -24,7 +24,7 @@ SYMBOL = re.compile(r"\$\\?(?P<letter>\w+?)(_\{(?P<index>\w+)\})?\$")
 """A symbol in mathtext, such as "$\\mu_{S}$"."""
 SCENARIO, KIND = "scenario", "kind:"
 """The path of the list of scenarios, and what the paths of lists of kinds begin with, before their table."""
-STARTS = {"excess": "excess over the static strength", "load": "load"}
+STARTS = {"excess": "excess over the static strength", "load": "load", "steady": "steady sliding"}
 """Names of the ways to give the load of the start."""
 HELD = ("text", "value", "range")
 """The parts of a row that change with its value."""

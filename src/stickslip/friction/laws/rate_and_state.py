@@ -84,6 +84,7 @@ class RateAndState(FrictionLaw):
         """The direct effect a: the change of friction at once when the slip rate changes by a factor e (no unit)."""
         return self.a
 
+    @override
     def steady_state(self, v: ArrayLike) -> NDArray[np.float64]:
         """Return the state theta (s) of steady sliding at slip rates v > 0 (m/s): distance / v, and twice that for the PRZ law."""
         return (2.0 if self.evolution == "prz" else 1.0) * self.distance / np.asarray(v, float)
