@@ -20,6 +20,7 @@ Floats = NDArray[np.float64]
 Side = Literal["left", "right"]
 
 
+@np.errstate(under="ignore")  # the last coefficients of a short step vanish
 def horner(coefficients: Floats, x: Floats) -> Floats:
     """Evaluate polynomials (one per row, ascending coefficients) at x (one value per row)."""
     value = coefficients[:, -1].copy()
@@ -286,6 +287,7 @@ class History:
         """Return the mode of the contact: 0 at rest, +1 in forward slip, -1 in backward slip."""
         return np.where(at.at_rest, 0, self.store.mode[at.piece])
 
+    @np.errstate(under="ignore")
     def grown(self, at: Positions) -> Floats:
         """Return the slip since the start of the piece, m: the integral of the rate over dtheta = (speed + 2 bend xi) dxi."""
         rate = self.store.rate[at.piece]

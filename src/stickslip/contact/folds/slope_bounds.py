@@ -72,7 +72,7 @@ class Cells:
         """Cut each cell into parts of equal width, or of equal ratio if its upper end exceeds 4 times its lower one."""
         share = np.arange(parts + 1) / parts
         low, high = self.low[:, None], self.high[:, None]
-        with np.errstate(divide="ignore", invalid="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore", under="ignore"):
             ratios = np.exp(np.log(low) + share * (np.log(high) - np.log(low)))
         edges = np.where((low > 0.0) & (high > 4.0 * low), ratios, low + share * (high - low))
         edges = np.clip(edges, low, high)
@@ -120,7 +120,7 @@ class Bounds(ABC):
         first, second = self(joined([cells, cells.at(cells.low), cells.at(cells.high), cells.at(middle)]))
         whole, at_low, at_high, at_middle = np.split(first, 4, axis=1)
         second = second[:, : len(cells)]
-        with np.errstate(invalid="ignore", over="ignore"):
+        with np.errstate(invalid="ignore", over="ignore", under="ignore"):
             half = np.maximum(cells.high - middle, middle - cells.low) * _JUST_ABOVE_ONE
             reach = np.nextafter(np.max(np.abs(second), axis=0) * half, np.inf)
             least = np.fmax(whole[0], np.nextafter(at_middle[0] - reach, -np.inf))
@@ -171,6 +171,6 @@ class SlopeBounds(Bounds):
 
 def stress(friction: Floats, normal: float | Floats, added: float | Floats | None = None) -> Floats:
     """Return bounds of the normal stress times a derivative of friction, with bounds (2, n), plus `added`."""
-    with np.errstate(invalid="ignore", over="ignore"):
+    with np.errstate(invalid="ignore", over="ignore", under="ignore"):
         product = iv.multiply(iv.exact(normal), iv.interval(*friction))
         return np.stack(iv.ends(product if added is None else iv.add(iv.exact(added), product)))

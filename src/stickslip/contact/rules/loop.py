@@ -5,12 +5,11 @@ Source: Campillo et al. 1996, Fig. 4: the paths ODABE and EBCDO of perfect delay
 
 from __future__ import annotations
 
+import math
 import sys
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import ClassVar, Literal
-
-import numpy as np
 
 from stickslip.contact.branches import Branch, rate_on
 from stickslip.contact.equation import Resistance, resistance
@@ -64,13 +63,13 @@ def jumps_of(g: Resistance, stable: tuple[Branch, ...], table: SelectionTable) -
     """
     found: list[Jump] = []
     for i in range(-1, len(stable)):
-        low, high = (-np.inf, table.stick_to) if i < 0 else (table.keep_from[i], table.keep_to[i])
+        low, high = (-math.inf, table.stick_to) if i < 0 else (table.keep_from[i], table.keep_to[i])
         if low > high:
             continue
-        if high < np.inf:
-            found.append(_jump(g, stable, (i, table.climb(i, float(np.nextafter(high, np.inf)))), high))
-        if low > -np.inf:
-            found.append(_jump(g, stable, (i, table.descend(i, float(np.nextafter(low, -np.inf)))), low))
+        if high < math.inf:
+            found.append(_jump(g, stable, (i, table.climb(i, math.nextafter(high, math.inf))), high))
+        if low > -math.inf:
+            found.append(_jump(g, stable, (i, table.descend(i, math.nextafter(low, -math.inf))), low))
     return tuple(jump for jump in found if jump.rate_before != jump.rate_after)
 
 
@@ -97,10 +96,10 @@ def loop_of(g: Resistance, stable: tuple[Branch, ...], table: SelectionTable) ->
     walked, levels = [-1], []
     while walked[-1] < len(stable) - 1:
         levels.append(table.stick_to if walked[-1] < 0 else table.keep_to[walked[-1]])
-        walked.append(table.climb(walked[-1], float(np.nextafter(levels[-1], np.inf))))
+        walked.append(table.climb(walked[-1], math.nextafter(levels[-1], math.inf)))
     while walked[-1] >= 0:
         levels.append(table.keep_from[walked[-1]])
-        walked.append(table.descend(walked[-1], float(np.nextafter(levels[-1], -np.inf))))
+        walked.append(table.descend(walked[-1], math.nextafter(levels[-1], -math.inf)))
     jumps = [_jump(g, stable, way, level) for way, level in zip(pairwise(walked), levels, strict=True)]
     enclosed = sum(_against(g, jump, level) for jump, level in zip(jumps, levels, strict=True))
     return Loop(tuple(walked), tuple(jump for jump in jumps if jump.rate_before != jump.rate_after), enclosed)

@@ -61,9 +61,10 @@ LOST = 1e-6
 
 @inlined
 def moved_on_disc(c: Floats, powers: Floats, first: int) -> float:
-    """Return the sum of |c_n| r^n for n >= `first`, from the powers of r: how far the rest of a series can be from zero on a
-    disc.""" a, b = abs(c[first]) * powers[first], abs(c[first + 1]) * powers[first + 1] d, e = abs(c[first + 2]) * powers[first +
-    2], abs(c[first + 3]) * powers[first + 3] for n in range(first + 4, TERMS - 3, 4):
+    """Return the sum of |c_n| r^n for n >= `first`, from the powers of r: how far a series can be from its start on a disc."""
+    a, b = abs(c[first]) * powers[first], abs(c[first + 1]) * powers[first + 1]
+    d, e = abs(c[first + 2]) * powers[first + 2], abs(c[first + 3]) * powers[first + 3]
+    for n in range(first + 4, TERMS - 3, 4):
         a, b = a + abs(c[n]) * powers[n], b + abs(c[n + 1]) * powers[n + 1]
         d, e = d + abs(c[n + 2]) * powers[n + 2], e + abs(c[n + 3]) * powers[n + 3]
     for n in range(TERMS - (TERMS - first) % 4, TERMS):

@@ -46,7 +46,7 @@ def difference(
     found = {SLIP: _Node(slip, du, slip + du, 0.0), RATE: _Node(0.0, v, v, 1.0), STATE: _Node(0.0, 0.0, 0.0, 0.0)}
     nodes = nodes_of(tree)
     limited = {node for node in harmless_overflows(nodes) if node.operation in ("exp", "expm1")}
-    with np.errstate(divide="ignore", over="ignore"):
+    with np.errstate(divide="ignore", over="ignore", under="ignore"):
         for node in nodes:
             if node in limited:
                 found[node] = _RULES[node.operation](_at_most(found[node.arguments[0]], LARGEST_EXPONENT))
