@@ -35,7 +35,7 @@ FUNCTIONS: dict[str, Callable[[Any], Any]] = {
     "length": lambda c: length_at(c, 1e-9, 0.5),
 }
 
-WITH_MASS = ("cos", "exp", "arcsinh", "product", "log1p")
+WITH_MASS = ("cos", "exp", "expm1", "arcsinh", "product", "log1p")
 """Formulas of which the series of a contact with mass is tried, of the others that of one without."""
 
 

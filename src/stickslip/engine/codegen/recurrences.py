@@ -174,10 +174,10 @@ class Recurrences:
             a = node.arguments[0]
             near = f"{self.reference(node)}, e{self.index[node]}, {self.difference(a)}"
             return f"exp_value({near}, {self.coefficient(a, 0)}, {self.largest_exponent(node)})"
-        if node.operation in ("expm1", "log1p"):
-            near = f"{self.reference(node)}, e{self.index[node]}, {self.coefficient(node.arguments[0], 0)}"
-            limit = f", {self.largest_exponent(node)}" if node.operation == "expm1" else ""
-            return f"{node.operation}_value({near}{limit})"
+        if node.operation == "expm1":
+            return f"expm1(min({self.coefficient(node.arguments[0], 0)}, {self.largest_exponent(node)}))"
+        if node.operation == "log1p":
+            return f"log1p({self.coefficient(node.arguments[0], 0)})"
         if node.operation == "sqrt":
             return f"sqrt({self.coefficient(node.arguments[0], 0)})"
         if node.operation == "pow":

@@ -53,7 +53,7 @@ from math import asinh, cos, exp, expm1, log, log1p, sin, sqrt, tanh
 from numba import types
 
 from stickslip.engine.codegen.cache import sealed_cfunc
-from stickslip.engine.series.{functions} import arcsinh_difference, exp_difference, exp_value, expm1_value, log1p_value
+from stickslip.engine.series.{functions} import arcsinh_difference, exp_difference, exp_value
 from stickslip.engine.series.{functions} import log_difference, power_difference, power_value, tanh_difference
 from stickslip.engine.series.sine import sine, versine
 {lanes}

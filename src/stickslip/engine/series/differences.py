@@ -65,18 +65,6 @@ def exp_value(reference: float, difference: float, step: float, argument: float,
 
 
 @njit(error_model="numpy")
-def expm1_value(reference: float, difference: float, argument: float, largest: float) -> float:
-    """Return exp(argument) - 1 to its last digits, which reference + difference loses where it is much smaller than both."""
-    return reference + difference if abs(difference) < 0.5 * abs(reference) else maths.expm1(min(argument, largest))
-
-
-@njit(error_model="numpy")
-def log1p_value(reference: float, difference: float, argument: float) -> float:
-    """Return log(1 + argument) to its last digits, which reference + difference loses where it is much smaller than both."""
-    return reference + difference if abs(difference) < 0.5 * abs(reference) else maths.log1p(argument)
-
-
-@njit(error_model="numpy")
 def power_value(reference: float, difference: float, base: float, exponent: float) -> float:
     """Return base**exponent. Far from the reference nothing of it may be left in reference + difference."""
     return reference + difference if abs(difference) < 0.5 * abs(reference) else base**exponent
