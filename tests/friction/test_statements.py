@@ -81,6 +81,14 @@ LIES: dict[str, tuple[dict[str, Any], str]] = {
         {"static_excess": property(lambda law: 0.1)},
         "range() says that mu is at most 0.8, but at rest it is 0.9 at slip rate 0 m/s",
     ),
+    "range at rest of a constant": (
+        {
+            "formula": staticmethod(lambda law, u, v: law.dynamic + 0.0 * v),
+            "static_excess": property(lambda law: 0.6),
+            "bends_one_way": property(lambda law: True),
+        },
+        "range() says that mu is at most 0.8, but at rest it is 0.9 at slip rate 0 m/s",
+    ),
     "negative step at rest": (
         {"static_excess": property(lambda law: -0.1)},
         "static_excess must be a number of at least 0, got -0.1",

@@ -119,8 +119,8 @@ class _Samples:
 
     def check_range(self, name: str, low: float, high: float, step: float, can_be_negative: bool) -> None:
         """Compare all samples, and the coefficient at rest, with the bounds of `range`."""
-        value = np.where(np.isfinite(self.coefficient), self.coefficient, low)
-        value[:, 0] += np.where(value[:, 0] > low, step, 0.0)
+        at_rest = np.where(self.rate == 0.0, step, 0.0)
+        value = np.where(np.isfinite(self.coefficient), self.coefficient + at_rest, low)
         allowed = SLACK * max(1e-3, float(np.max(np.abs(value[value <= max(2.0 * high, 1.0)]), initial=0.0)))
         least = np.where(value < 0.0, max(low, 0.0), value) if can_be_negative and low <= 0.0 else value
         for found, bound, word in ((least, low, "at least"), (-value, -high, "at most")):
