@@ -35,7 +35,7 @@ LAYERS = (
 """Folders of the package from the bottom up; those of one layer do not know each other. `engine` never imports a `Problem`."""
 ROOMS = {
     "friction": (
-        ("formula", "contract", "noise"),
+        ("formula", "contract", "noise", "statements"),
         ("law",),
         ("families", "composite", "piecewise"),
         ("laws", "custom"),
@@ -139,6 +139,7 @@ FILES = [path for path in sorted(PACKAGE.rglob("*.py")) if parts(path)[0] not in
 UPWARD_FOR_TYPES: dict[str, set[str]] = {
     "batch/kernels/runs.py": {"batch.setups", "batch.workspace"},
     "creep/stepper.py": {"run"},
+    "friction/statements.py": {"friction.law"},
     "problem/selection_rule.py": {"contact"},
     "scenarios/scenario.py": {"solution"},
     "sweeps/execution/cluster.py": {"sweeps.sweep"},

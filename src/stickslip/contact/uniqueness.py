@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.contact.branches import Branch, branches_of, rates_at
 from stickslip.contact.critical import critical_normal_stress
+from stickslip.contact.declared_critical import check_critical
 from stickslip.contact.enclosed_folds import Fold, enclosure, sentence
 from stickslip.contact.equation import Plateau, Resistance, resistance
 from stickslip.contact.folds.certified import Certificate, Verdict, certificate
@@ -231,6 +232,8 @@ def _determined(problem: Problem, slip: float | None) -> Uniqueness:
     proof = _proof(g)
     stable = branches_of(g, proof)
     table, folds = table_of(problem, g, stable), _folds(g, stable, proof)
+    between = critical_stress_between(g)
+    check_critical(problem, g.impedance, between)
     window, critical = _window(stable), _critical(problem, g)
     jumps = jumps_of(g, stable, table) if window else ()
     return Uniqueness(
@@ -240,7 +243,7 @@ def _determined(problem: Problem, slip: float | None) -> Uniqueness:
         critical_parameter=critical[0] if critical else None,
         critical_value=critical[1] if critical else None,
         critical_unit=problem.parameters[critical[0]].unit if critical else "",
-        critical_stress_between=critical_stress_between(g),
+        critical_stress_between=between,
         certificate=proof.verdict,
         undecided=proof.undecided,
         folds=folds,

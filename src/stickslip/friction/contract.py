@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.foundation.brief_repr import brief_repr
-from stickslip.foundation.errors import InputError
 from stickslip.foundation.field_docs import document_fields
 from stickslip.foundation.quantities import check_fields
 
@@ -175,6 +174,3 @@ class LawContract(ABC):
     def __post_init__(self) -> None:
         check_fields(self)
         self.check()
-        low, _ = self.range()
-        if low < 0:
-            raise InputError(f"{type(self).__name__}: friction must not be negative anywhere it slips, its minimum here is {low:g}")

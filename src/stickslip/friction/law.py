@@ -11,9 +11,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from typing_extensions import override
 
+from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, Series, fields_of, quantities_of
 from stickslip.friction.contract import Formula, LawContract
 from stickslip.friction.formula.expression import RATE, SLIP, STATE, Expression, Parameter, as_expression, depends_on
+from stickslip.friction.statements import check_statements, is_known, stated_range
 
 Literals = tuple[tuple[str, float], ...]
 """Names and values of the parameters that enter a formula as plain numbers."""
@@ -40,6 +42,14 @@ class FrictionLaw(LawContract):
 
     Subclass this to add a law. What a law states about itself is in `stickslip.friction.contract`.
     """
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        low, _ = stated_range(self)
+        if low < 0:
+            raise InputError(f"{type(self).__name__}: friction must not be negative anywhere it slips, its minimum here is {low:g}")
+        if not is_known(self):
+            check_statements(self)
 
     # ---- the numbers in the formulas ----------------------------------------------------------------------------------------
 

@@ -1,0 +1,218 @@
+"""Check by samples what the class of a law states about it: its range, its curvature, its knots, its step at rest.
+
+Runs, proofs and searches for folds believe these statements. The laws of the package are tested for theirs; those of a law that a
+user has written as a class are compared with its formula when the law is made.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.quantities import Quantity, Series, fields_of
+
+if TYPE_CHECKING:
+    from stickslip.friction.law import FrictionLaw
+
+Floats = NDArray[np.float64]
+
+RATES = np.append(0.0, np.geomspace(1e-9, 1e3, 73))
+"""Slip rates (m/s) at which every law is sampled, beside multiples of its own scales."""
+SLIPS = np.append(0.0, np.geomspace(1e-6, 1e2, 73))
+"""Slips (m) at which a law of slip is sampled, beside multiples of its own scales."""
+SOME = 12
+"""Every such slip is sampled at all slip rates, and every such slip rate at all slips."""
+MULTIPLES = np.array([0.01, 0.03, 0.1, 0.2, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 5.0, 10.0, 30.0])
+"""Multiples of the scales of a law at which it is sampled."""
+SLACK = 1e-7
+"""Relative difference between a statement and the formula that counts as rounding."""
+TINY_STEP = 1e-100
+"""Imaginary step (m/s) of the slip rate, by which an analytic formula gives its slope without cancellation."""
+
+
+def is_known(law: FrictionLaw) -> bool:
+    """Return True for a law of the package, which is tested there."""
+    return type(law).__module__.partition(".")[0] == "stickslip"
+
+
+def check_statements(law: FrictionLaw) -> None:
+    """Raise InputError, in one line, if a law contradicts its own formula at one of many slips, slip rates and states."""
+    name = type(law).__name__
+    low, high = stated_range(law)
+    _check_knots(law)
+    step = _number(law.static_excess)
+    if not (step >= 0.0 and math.isfinite(step)):
+        raise InputError(f"{name}: static_excess must be a number of at least 0, got {law.static_excess!r}")
+    try:
+        slips, rates = _slips(law), _rates(law)
+        along_rate = _Samples.of(law, slips[::SOME], rates)
+        along_slip = _Samples.of(law, slips, rates[::SOME]) if len(slips) > 1 else along_rate
+    except (TypeError, ValueError, AttributeError, ArithmeticError):
+        return  # a formula that cannot be evaluated like this has its own message where it is traced
+    for samples in (along_rate, along_slip):
+        samples.check_range(name, low, high, step, law.can_be_negative)
+    if law.bends_one_way and len(along_rate.slope):
+        along_rate.check_bends(name)
+        along_rate.check_rate_at_slope(law)
+
+
+def _number(value: Any) -> float:
+    """Return a statement as a number; NaN if it is none."""
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        return math.nan
+
+
+def stated_range(law: FrictionLaw) -> tuple[float, float]:
+    """Return the bounds of a law's friction coefficient, as it states them. Raises InputError if they are not two numbers."""
+    given: Any = law.range()
+    if not (isinstance(given, tuple | list) and len(given) == 2 and _number(given[0]) <= _number(given[1])):
+        raise InputError(
+            f"{type(law).__name__}: range() must return two numbers, a lower and an upper bound of mu, got {str(given)[:60]}"
+        )
+    return _number(given[0]), _number(given[1])
+
+
+def _check_knots(law: FrictionLaw) -> None:
+    name, knots, pieces = type(law).__name__, np.asarray(law.knots, float), len(law.pieces)
+    if knots.ndim != 1 or len(knots) != pieces - 1:
+        raise InputError(f"{name}: knots must be one fewer than pieces, got {knots.size} knots and {pieces} pieces")
+    if not np.all(np.isfinite(knots)) or np.any(np.diff(knots) <= 0.0):
+        raise InputError(f"{name}: knots must be finite and ascending, got {', '.join(f'{one:g}' for one in knots[:8])}")
+    if law.knot_variable == "rate" and len(knots) and knots[0] < 0.0:
+        raise InputError(f"{name}: knots in slip rate must be at least 0 m/s, got {knots[0]:g}")
+
+
+@dataclass(frozen=True)
+class _Samples:
+    """Friction coefficients and their slopes by the slip rate (s/m), at slips and states (rows) and at slip rates (columns)."""
+
+    slip: Floats  # (rows,), m
+    state: Floats  # (rows,)
+    rate: Floats  # (columns,), ascending, m/s
+    coefficient: Floats
+    slope: Floats
+    law: FrictionLaw
+
+    @classmethod
+    def of(cls, law: FrictionLaw, slips: Floats, rate: Floats) -> _Samples:
+        """Sample a law at all pairs of some slips and slip rates, and at several states."""
+        states = _states(law)
+        slip, state = np.repeat(slips, len(states)), np.tile(states, len(slips))
+        with np.errstate(all="ignore"):
+            value = law.coefficient(slip[:, None], rate, state[:, None])
+            slope = _slopes(law, slip[:, None], rate, state[:, None]) if len(rate) > SOME else np.zeros((0, 1))
+        return cls(slip, state, rate, value, slope, law)
+
+    def place(self, row: int, column: int) -> str:
+        """Return where a sample was taken, in words."""
+        where = [f"slip {self.slip[row]:.4g} m"] if self.law.depends_on_slip else []
+        where += [f"slip rate {self.rate[column]:.4g} m/s"] if len(self.rate) > 1 or not where else []
+        where += [f"state {self.state[row]:.4g}"] if self.law.state is not None else []
+        return " and ".join(where)
+
+    def check_range(self, name: str, low: float, high: float, step: float, can_be_negative: bool) -> None:
+        """Compare all samples, and the coefficient at rest, with the bounds of `range`."""
+        at_rest = np.where(self.rate == 0.0, step, 0.0)
+        value = np.where(np.isfinite(self.coefficient), self.coefficient + at_rest, low)
+        allowed = SLACK * max(1e-3, float(np.max(np.abs(value[value <= max(2.0 * high, 1.0)]), initial=0.0)))
+        least = np.where(value < 0.0, max(low, 0.0), value) if can_be_negative and low <= 0.0 else value
+        for found, bound, word in ((least, low, "at least"), (-value, -high, "at most")):
+            row, column = np.unravel_index(int(np.argmin(found)), found.shape)
+            if found[row, column] < bound - allowed:
+                rest = " at rest" if column == 0 and step else ""
+                raise InputError(
+                    f"{name}: range() says that mu is {word} {abs(bound):.6g}, but{rest} it is {value[row, column]:.6g} at"
+                    f" {self.place(int(row), int(column))}; the bounds must hold at all slips and slip rates"
+                )
+
+    def check_bends(self, name: str) -> None:
+        """Compare the slopes with the statement that they only rise, or only fall, with the slip rate."""
+        for row, slope in enumerate(self.slope):
+            known = np.flatnonzero(np.isfinite(slope))
+            change = np.diff(slope[known])
+            size = np.abs(slope[known])
+            rounding = SLACK * (size[1:] + size[:-1]) + 1e-12 * np.max(size, initial=0.0)
+            rises, falls = change > rounding, change < -rounding
+            if rises.any() and falls.any():
+                turn = int(max(np.argmax(rises), np.argmax(falls)))
+                raise InputError(
+                    f"{name}: bends_one_way says that mu is convex, or concave, over all slip rates, but dmu/dv"
+                    f" {'falls' if rises[:turn].any() else 'rises'} again near {self.place(row, int(known[turn]))}; return False"
+                )
+
+    def check_rate_at_slope(self, law: FrictionLaw) -> None:
+        """Compare the slope at the rate that the law returns for the slope of a sample."""
+        slope = self.slope[0]
+        size = np.max(np.abs(slope[np.isfinite(slope)]), initial=0.0)
+        strict = np.isfinite(slope[1:-1]) & (np.abs(np.diff(slope))[:-1] > 1e-3 * size) & (np.abs(np.diff(slope))[1:] > 1e-3 * size)
+        for k in 1 + np.flatnonzero(strict)[:3]:
+            with np.errstate(all="ignore"):
+                rate = law.rate_at_slope(float(slope[k]))
+                if rate is None:
+                    return
+                there = _slopes(law, self.slip[:1], np.maximum(_number(rate), 0.0), self.state[:1])[0]
+            if not abs(there - slope[k]) <= 1e-5 * size:
+                raise InputError(
+                    f"{type(law).__name__}: rate_at_slope({slope[k]:.6g}) must be the slip rate with this dmu/dv,"
+                    f" {self.rate[k]:.6g} m/s, got {_number(rate):.6g} m/s; return None without a closed form"
+                )
+
+
+def _slopes(law: FrictionLaw, slip: Floats, rate: Floats | float, state: Floats) -> Floats:
+    """Return dmu/dv (s/m), by a complex step of the formula of the piece at each place."""
+    slip, rate, state = np.broadcast_arrays(slip, np.asarray(rate, float), state)
+    piece, slope = law.piece_at(slip, rate), np.empty(slip.shape)
+    for i in np.unique(piece).tolist():
+        chosen = piece == i
+        there = law.piece_coefficient(i, slip[chosen], rate[chosen] + 1j * TINY_STEP, state[chosen])
+        slope[chosen] = np.imag(there) / TINY_STEP
+    return slope
+
+
+def _beside(law: FrictionLaw, variable: str) -> Floats:
+    """Return places at the knots of a law, and just below them, if the knots are in the given variable."""
+    knots = np.asarray(law.knots if law.knot_variable == variable else (), float)
+    return np.concatenate((knots, np.nextafter(knots, -np.inf)[knots > 0.0]))
+
+
+def _rates(law: FrictionLaw) -> Floats:
+    """Return the slip rates (m/s) at which a law is sampled, ascending from 0."""
+    if not law.depends_on_rate and law.state is None:
+        return np.zeros(1)
+    return np.unique(np.concatenate((RATES, np.outer(law.rate_scales, MULTIPLES).ravel(), _beside(law, "rate"))))
+
+
+def _slips(law: FrictionLaw) -> Floats:
+    """Return the slips (m) at which a law is sampled; negative ones, too, if it counts net slip."""
+    if not law.depends_on_slip:
+        return np.zeros(1)
+    scales = [size if unit == "m" else 1.0 / size for unit, size in _sizes(law) if unit in ("m", "1/m")]
+    slips = np.unique(np.concatenate((SLIPS, np.outer(scales, MULTIPLES).ravel(), _beside(law, "slip"))))
+    return np.concatenate((slips, -slips[slips > 0.0])) if law.counts == "net" else slips[slips >= 0.0]
+
+
+def _sizes(law: FrictionLaw) -> list[tuple[str, float]]:
+    """Return the unit and the magnitude of each number of a law that is not 0."""
+    found = []
+    for name, (declared, _) in fields_of(type(law)).items():
+        item = declared.item if isinstance(declared, Series) else declared
+        if isinstance(item, Quantity):
+            value = getattr(law, name)
+            values = value if isinstance(value, tuple) else (value,)
+            found += [(item.unit, abs(one)) for one in values if isinstance(one, float | int) and one]
+    return found
+
+
+def _states(law: FrictionLaw) -> Floats:
+    """Return the states at which a law is sampled, as its formulas use them: 0, and that of its example, if that is a number."""
+    given = law.start.get("state")
+    if law.state is None or not isinstance(given, int | float):
+        return np.zeros(1)
+    return np.unique([0.0, law.inner_state(float(given))])

@@ -1,0 +1,230 @@
+"""What a user's class states about its law is compared with its formula: lies are one line, honest laws are never refused."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import stickslip as ss
+from stickslip.foundation.quantities import quantity
+from stickslip.friction import LAWS, FrictionLaw
+from stickslip.friction.formula.expression import exp
+from stickslip.friction.statements import check_statements
+from stickslip.scenarios.scenario import read_scenario
+from stickslip.scenarios.templates import template
+
+F = ss.friction
+
+
+@dataclass(frozen=True)
+class Own(FrictionLaw):
+    """mu = dynamic + (static - dynamic) / (1 + v / rate), as a user writes it; every statement of it is true."""
+
+    kind = "own-hyperbolic"
+    static: float = quantity("1", "at rest", default=0.8)
+    dynamic: float = quantity("1", "fast", default=0.3)
+    rate: float = quantity("m/s", "scale", above=0, default=0.1)
+
+    @staticmethod
+    def formula(law: Any, u: Any, v: Any) -> Any:
+        return law.dynamic + (law.static - law.dynamic) / (1.0 + v / law.rate)
+
+    def range(self) -> Any:
+        return min(self.static, self.dynamic), max(self.static, self.dynamic)
+
+    @property
+    def bends_one_way(self) -> bool:
+        return True
+
+    def rate_at_slope(self, slope: Any) -> Any:
+        return self.rate * (np.sqrt(np.maximum((self.dynamic - self.static) / (self.rate * slope), 0.0)) - 1.0)
+
+    def critical_value(self, impedance: float, normal: float) -> tuple[str, float] | None:
+        fall = normal * (self.static - self.dynamic)
+        return ("rate", fall / impedance) if fall > 0.0 else None
+
+
+def lying(**statements: Any) -> type[Own]:
+    """Return the class with other statements, and with the name Lying."""
+    return dataclass(frozen=True)(type("Lying", (Own,), {"__module__": __name__, "__doc__": "A law that lies.", **statements}))
+
+
+@dataclass(frozen=True)
+class Bell(Own):
+    """mu falls around a slip, and knows its range."""
+
+    @staticmethod
+    def formula(law: Any, u: Any, v: Any) -> Any:
+        return law.static - (law.static - law.dynamic) * exp(-(((u - 0.3) / 0.05) ** 2)) + 0.0 * v
+
+    def rate_at_slope(self, slope: Any) -> Any:
+        return None
+
+
+LIES: dict[str, tuple[dict[str, Any], str]] = {
+    "range too low": ({"range": lambda law: (0.3, 0.7)}, "range() says that mu is at most 0.7, but it is 0.8 at slip rate 0 m/s;"),
+    "range too high": ({"range": lambda law: (0.4, 0.8)}, "range() says that mu is at least 0.4, but it is 0.3"),
+    "range turned round": (
+        {"range": lambda law: (0.8, 0.3)},
+        "range() must return two numbers, a lower and an upper bound of mu, got",
+    ),
+    "range of one number": ({"range": lambda law: (0.3,)}, "range() must return two numbers"),
+    "range that is no number": ({"range": lambda law: (0.3, math.nan)}, "range() must return two numbers"),
+    "range that is none": ({"range": lambda law: None}, "range() must return two numbers"),
+    "range at rest": (
+        {"static_excess": property(lambda law: 0.1)},
+        "range() says that mu is at most 0.8, but at rest it is 0.9 at slip rate 0 m/s",
+    ),
+    "range at rest of a constant": (
+        {
+            "formula": staticmethod(lambda law, u, v: law.dynamic + 0.0 * v),
+            "static_excess": property(lambda law: 0.6),
+            "bends_one_way": property(lambda law: True),
+        },
+        "range() says that mu is at most 0.8, but at rest it is 0.9 at slip rate 0 m/s",
+    ),
+    "negative step at rest": (
+        {"static_excess": property(lambda law: -0.1)},
+        "static_excess must be a number of at least 0, got -0.1",
+    ),
+    "friction below zero": (
+        {
+            "formula": staticmethod(lambda law, u, v: law.static - law.static * v / (v + law.rate) - 0.1 * v / (v + 1.0)),
+            "range": lambda law: (0.0, 0.8),
+        },
+        "range() says that mu is at least 0, but it is -0.0998201 at slip rate 1000 m/s;",
+    ),
+    "bends both ways": (
+        {"formula": staticmethod(lambda law, u, v: law.dynamic + (law.static - law.dynamic) * exp(-((v / law.rate) ** 2)))},
+        "bends_one_way says that mu is convex, or concave, over all slip rates, but dmu/dv rises again near slip rate",
+    ),
+    "wrong rate at slope": ({"rate_at_slope": lambda law, slope: 2.0 * law.rate}, "rate_at_slope(-"),
+    "too many knots": ({"knots": property(lambda law: (1.0,))}, "knots must be one fewer than pieces, got 1 knots and 1 pieces"),
+    "knots that descend": (
+        {
+            "pieces": property(lambda law: (Own.formula,) * 3),
+            "knots": property(lambda law: (2.0, 1.0)),
+            "knot_variable": "rate",
+        },
+        "knots must be finite and ascending, got 2, 1",
+    ),
+}
+
+
+@pytest.mark.parametrize("lie", LIES)
+def test_a_statement_that_the_formula_contradicts_is_one_line(lie: str) -> None:
+    statements, message = LIES[lie]
+    with pytest.raises(ss.InputError) as found:
+        lying(**statements)()
+    assert str(found.value).startswith(f"Lying: {message}")
+    assert "\n" not in str(found.value)
+
+
+def test_a_range_is_compared_at_slips_too() -> None:
+    narrow = type("Narrow", (Bell,), {"__module__": __name__, "__doc__": "Lies.", "range": lambda law: (0.5, 0.8)})
+    with pytest.raises(ss.InputError, match=r"^Narrow: range\(\) says that mu is at least 0.5, but it is 0\.3\d* at slip 0\.\d+ m"):
+        dataclass(frozen=True)(narrow)()
+
+
+def test_friction_below_zero_is_allowed_where_the_law_says_so() -> None:
+    falls = staticmethod(lambda law, u, v: law.static - law.static * v / (v + law.rate) - 0.1 * v / (v + 1.0))
+    law = lying(
+        formula=falls,
+        range=lambda law: (0.0, 0.8),
+        can_be_negative=property(lambda law: True),
+        bends_one_way=property(lambda law: False),
+    )()
+    assert float(law.coefficient(0.0, 1e3)) < 0.0
+
+
+@given(
+    static=st.floats(0.01, 2.0),
+    dynamic=st.floats(0.0, 2.0),
+    rate=st.floats(-12.0, 4.0).map(lambda power: 10.0**power),
+)
+@settings(max_examples=300, deadline=None)
+def test_an_honest_class_is_never_refused(static: float, dynamic: float, rate: float) -> None:
+    law = Own(static, dynamic, rate)
+    Bell(static, dynamic, rate)
+    ss.Problem(ss.ElasticSlab(2800, 3500, 1e4, 1e8), law, initial_excess=0.0)
+
+
+positive = st.floats(-6.0, 4.0).map(lambda power: 10.0**power)
+level = st.floats(0.0, 2.0)
+viscosity = st.one_of(st.just(0.0), positive)
+KNOWN = st.one_of(
+    st.builds(F.HyperbolicRate, static=level, dynamic=level, alpha=positive),
+    st.builds(
+        F.ExponentialStribeck, static=level, dynamic=level, rate=positive, exponent=st.sampled_from([1, 2, 5]), viscosity=viscosity
+    ),
+    st.builds(
+        F.PowerStribeck, static=level, dynamic=level, rate=positive, exponent=st.sampled_from([1, 2, 5]), viscosity=viscosity
+    ),
+    st.builds(
+        lambda mean, share, wavenumber: F.SinusoidalSlip(mean, share * mean, wavenumber), level, st.floats(0.0, 1.0), positive
+    ),
+    st.builds(F.LinearSlipWeakening, static=level, dynamic=level, distance=positive),
+    st.builds(F.ExponentialSlipWeakening, static=level, dynamic=level, distance=positive),
+    st.builds(
+        lambda places, values, along: F.FromTable(friction=values, **{along: np.cumsum(places).tolist()}),
+        st.lists(positive, min_size=4, max_size=4),
+        st.lists(level, min_size=4, max_size=4),
+        st.sampled_from(["slip", "rate"]),
+    ),
+)
+
+
+@pytest.mark.filterwarnings("ignore::stickslip.foundation.errors.InputWarning")
+@given(law=KNOWN)
+@settings(max_examples=300, deadline=None)
+def test_the_statements_of_the_laws_of_the_package_hold(law: FrictionLaw) -> None:
+    check_statements(law)
+
+
+@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize("body", ["slab", "block"])
+def test_the_example_of_every_law_is_honest(name: str, body: str) -> None:
+    check_statements(read_scenario(template(body, name), "example").problem.friction)
+
+
+SLAB = ss.ElasticSlab(2800, 3500, 1e4, 1e8)
+
+
+@pytest.mark.parametrize("rate", [1e-4, 1.0, 5.0, 6.0, 1e3])
+def test_a_true_critical_value_is_believed(rate: float) -> None:
+    """Z v + S mu(v) first falls where rate = S (static - dynamic) / Z = 5.1 m/s."""
+    found = ss.uniqueness(ss.Problem(SLAB, Own(rate=rate), initial_excess=0.0))
+    assert found.critical_value == pytest.approx(0.5 * 1e8 / 9.8e6, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        (lambda law, Z, S: ("rate", 2.0 * S * 0.5 / Z), "critical_value contradicts the proof: "),
+        (lambda law, Z, S: ("rate", 0.999 * S * 0.5 / Z), "critical_value contradicts the proof: "),
+        (lambda law, Z, S: ("normal_stress", 2e9 * law.rate), "critical_value contradicts the proof: "),
+        (lambda law, Z, S: ("speed", 1.0), "critical_value: parameter 'speed' is unknown; "),
+        (lambda law, Z, S: 3.0, "critical_value must return a name and a number, or None, got 3.0"),
+        (lambda law, Z, S: ("rate", math.nan), "critical_value must return a name and a number, or None, got"),
+    ],
+)
+def test_a_critical_value_that_a_proof_contradicts_is_one_line(wrong: Any, message: str) -> None:
+    law = lying(critical_value=wrong)()
+    with pytest.raises(ss.InputError) as found:
+        ss.uniqueness(ss.Problem(SLAB, law, initial_excess=0.0))
+    assert str(found.value).startswith(f"Lying: {message}")
+
+
+def test_laws_of_the_package_pay_nothing() -> None:
+    """The check is that of the class, so that a subclass that a user writes is checked again."""
+    assert replace(F.HyperbolicRate(0.8, 0.3, 1.0), alpha=2.0).alpha == 2.0
+    with pytest.raises(ss.InputError, match=r"^Sub: range"):
+        dataclass(frozen=True)(type("Sub", (F.HyperbolicRate,), {"__doc__": "Lies.", "range": lambda law: (0.3, 0.4)}))(
+            0.8, 0.3, 1.0
+        )
