@@ -7,7 +7,7 @@ static double exp_above(double x) {
 }
 
 static double exp_radius(double argument, double value, double radius) {
-    return fmin(exp_above(argument + radius), 0.5 * value * radius * (1.0 + exp_above(radius)));
+    return fmin(exp_above(argument + radius), 0.5 * (value + 1e-300) * radius * (1.0 + exp_above(radius)));
 }
 
 static double sine_radius(double own, double other, double radius) {
@@ -22,5 +22,5 @@ static double log_radius(double size, double radius) {
 
 static double power_radius(double size, double exponent, double logarithm) {
     double growth = exponent * logarithm;
-    return 0.5 * size * growth * (1.0 + exp_above(growth));
+    return 0.5 * (size + 1e-300) * growth * (1.0 + exp_above(growth));
 }

@@ -19,7 +19,10 @@ from stickslip.friction.formula import expression as e
 Complexes = NDArray[np.complex128]
 LEAVES = (e.SLIP, e.RATE, e.STATE)
 EXACT = SimpleNamespace(
-    **{name: getattr(mpmath, name) for name in ("sin", "cos", "exp", "log", "sqrt", "tanh")}, arcsinh=mpmath.asinh
+    **{name: getattr(mpmath, name) for name in ("sin", "cos", "exp", "log", "sqrt", "tanh")},
+    arcsinh=mpmath.asinh,
+    expm1=mpmath.expm1,
+    log1p=mpmath.log1p,
 )
 ROUNDING = 1e-14
 """Absolute error of a value at the centre (1): some nodes are known as a difference from a reference of order one."""

@@ -23,7 +23,7 @@ TO_TWO = 1.0 / math.log(2.0)
 LARGEST = 1000.0
 """Exponent of 2 (1) above which `exp_above` is infinite."""
 TINIEST = 1e-300
-"""Number that replaces zero where a disc reaches a singularity."""
+"""Number that replaces zero where a disc reaches a singularity, or where a value underflows."""
 MARGIN = 1.005
 """Factor (1) by which the parabola for 2^x on [0, 1] is raised to lie above it; it is accurate to 0.3 %."""
 
@@ -41,8 +41,11 @@ def exp_above(x: float) -> float:
 
 @njit(error_model="numpy")
 def exp_radius(argument: float, value: float, radius: float) -> float:
-    """Return the radius of exp: exp(a) (exp(r) - 1) <= min(exp(a + r), exp(a) r (1 + exp(r)) / 2), for tanh(y) <= y."""
-    return min(exp_above(argument + radius), 0.5 * value * radius * (1.0 + exp_above(radius)))
+    """Return the radius of exp: exp(a) (exp(r) - 1) <= min(exp(a + r), exp(a) r (1 + exp(r)) / 2), for tanh(y) <= y.
+
+    A value that underflows is replaced by TINIEST, which is larger.
+    """
+    return min(exp_above(argument + radius), 0.5 * (value + TINIEST) * radius * (1.0 + exp_above(radius)))
 
 
 @njit(error_model="numpy")
@@ -66,7 +69,7 @@ def log_radius(size: float, radius: float) -> float:
 def power_radius(size: float, exponent: float, logarithm: float) -> float:
     """Return the radius of a power, |value| (exp(|p| l) - 1), with l >= |log(base / centre of the base)|."""
     growth = exponent * logarithm
-    return 0.5 * size * growth * (1.0 + exp_above(growth))
+    return 0.5 * (size + TINIEST) * growth * (1.0 + exp_above(growth))
 
 
 @njit(error_model="numpy")
