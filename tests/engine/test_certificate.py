@@ -212,3 +212,12 @@ def test_the_contact_equation_is_met_where_the_last_coefficients_are_next_to_not
     solution = ss.simulate(ss.Problem(SLAB, law, initial_slip=start, initial_excess=1e7), 2.0)
     assert solution.status.ok
     assert off_the_law(solution, np.linspace(0.0, 2.0, 2001)) < 1e-10
+
+
+@pytest.mark.xfail(strict=True, reason="radii of a formula too long for the room after a series are taken around slip zero")
+def test_bounds_hold_for_a_long_formula() -> None:
+    """Seven wide bumps beside a narrow one: `radii` works out the values at the centre itself. The narrow one was jumped over."""
+    wide = "".join(f"+0.001*exp(-((u-{centre})/0.5)**2)" for centre in range(3, 10))
+    problem = ss.Problem(SLAB, F.FromExpression(f"0.6+0.05*exp(-((u-1)/1e-3)**2){wide}"), initial_excess=1.2e7)
+    real, bound = shortfall(ss.simulate(problem, 3.0).history, coefficient(problem))
+    assert (real <= bound).all()

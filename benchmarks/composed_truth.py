@@ -1,0 +1,175 @@
+"""Independent answers for composed laws whose steps cannot jump: enclosures of friction over every stretch of the way.
+
+A slab under a law of slip, Z v + S mu(u) = load: time is the integral of Z du / (load - S mu(u)), on pieces that are halved until v
+is enclosed to RATIO of itself on each, and slip ends at the first root of load - S mu, where pieces are as short as rounding
+allows. A block is integrated by DOP853, whose steps are halved until friction is enclosed to NARROW along them.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.integrate import DOP853
+from scipy.optimize import brentq
+
+from benchmarks.composed_laws import BLOCK, SLAB, Composed
+from benchmarks.enclosures import Floats, Interval, Law
+
+RATIO = 0.05
+NARROW = 0.01
+SHORTEST = 3e-15
+"""Length of a piece (m) that is not halved any more."""
+MOST_PIECES, MOST_STEPS = 40_000, 1500
+DISTURBANCE, DECIDED = 1e-12, 1e-8
+"""An answer is left out where a load changed by DISTURBANCE of the normal load changes it by more than DECIDED of itself."""
+POINTS, WEIGHTS = np.polynomial.legendre.leggauss(16)
+
+
+class UndecidedError(RuntimeError):
+    """The truth is out of reach, or rounding decides it."""
+
+
+class Answer(NamedTuple):
+    """Slip (m) at the end of the run or at the first arrest, and when that is (s; None: not before the end of the run)."""
+
+    slip: float
+    arrest: float | None
+
+
+def truth_of(one: Composed) -> Answer:
+    """The answer. Raises UndecidedError if there is none that rounding leaves alone."""
+    find = _of_slab if one.kind == "slab, u" else _of_block
+    found, other = find(one, one.excess), find(one, one.excess + DISTURBANCE * one.normal)
+    if not found.slip > 0.0 or (found.arrest is None) != (other.arrest is None):
+        raise UndecidedError("grazing")
+    pairs = [(found.slip, other.slip), *([(found.arrest, other.arrest)] if found.arrest and other.arrest else [])]
+    if any(abs(a - b) > DECIDED * abs(a) for a, b in pairs):
+        raise UndecidedError("rounding decides")
+    return found
+
+
+# ---- a slab under a law of slip ---------------------------------------------------------------------------------------------
+
+
+def _rate(law: Law, load: float, u: Floats) -> Floats:
+    return (load - SLAB.normal_stress * np.broadcast_to(law(u, 0.0), u.shape)) / SLAB.impedance
+
+
+def _of_slab(one: Composed, excess: float) -> Answer:
+    law, normal = one.law, SLAB.normal_stress
+    load = normal * float(law(0.0, 0.0)) + excess
+    edges = np.linspace(0.0, 0.02, 9)
+    left, time = 0.0, 0.0
+    while True:  # stretch by stretch, so that nothing is looked at beyond the end
+        low, high = _resolved(law, load, edges)
+        spent = _times(law, load, low, high) if len(low) else np.empty(0)
+        until = time + np.cumsum(spent)
+        over = np.flatnonzero(until >= one.duration)
+        if len(over):
+            n = int(over[0])
+            return Answer(_slip_at(law, load, (low[n], high[n]), one.duration - (until[n] - spent[n])), None)
+        end = float(high[-1]) if len(high) else left
+        if end < edges[-1] * (1.0 - 1e-14):
+            return Answer(end, None)  # the slip that the contact approaches for ever
+        left, time = float(edges[-1]), float(until[-1])
+        width = min(
+            2.0 * (edges[-1] - edges[0]), max((one.duration - time) * 1.5 * float(_rate(law, load, np.array([left]))[0]), 1e-6)
+        )
+        edges = left + np.linspace(0.0, width, 9)
+        if left > 10.0 or not np.isfinite(time):
+            raise UndecidedError("no end")
+
+
+def _resolved(law: Law, load: float, edges: Floats) -> tuple[Floats, Floats]:
+    """Pieces in order, on each of which the slip rate is enclosed to RATIO of itself; they end where it may vanish."""
+    low, high = edges[:-1], edges[1:]
+    done_low, done_high, stop = [], [], np.inf
+    while len(low):
+        mu = law.over(Interval(low, high), Interval(np.zeros_like(low), np.zeros_like(low)))
+        least = (load - SLAB.normal_stress * mu.high) / SLAB.impedance
+        most = (load - SLAB.normal_stress * mu.low) / SLAB.impedance
+        good = (least > 0.0) & (most - least <= RATIO * most)
+        tiny = high - low <= SHORTEST * np.maximum(high, 1.0)
+        never = most < 0.0  # friction exceeds the load on the whole piece: slip ends before it
+        ended = never | (tiny & ~good)
+        if ended.any():
+            stop = min(stop, float(low[ended].min()))
+        done_low.append(low[good])
+        done_high.append(high[good])
+        kept = ~good & ~ended & (low < stop)
+        low, high = low[kept], high[kept]
+        middle = 0.5 * (low + high)
+        low, high = np.concatenate((low, middle)), np.concatenate((middle, high))
+        if len(low) + sum(map(len, done_low)) > MOST_PIECES:
+            raise UndecidedError("too many pieces")
+    lows, highs = np.concatenate(done_low), np.concatenate(done_high)
+    order = np.argsort(lows)
+    lows, highs = lows[order], highs[order]
+    inside = lows < stop
+    return lows[inside], highs[inside]
+
+
+def _times(law: Law, load: float, low: Floats, high: Floats) -> Floats:
+    """Duration of each piece, s, by Gauss's rule on both halves."""
+    quarter = 0.25 * (high - low)
+    total = np.zeros_like(low)
+    for middle in (low + quarter, high - quarter):
+        u = middle[:, None] + quarter[:, None] * POINTS
+        total += (quarter[:, None] * WEIGHTS / _rate(law, load, u)).sum(axis=1)
+    return total
+
+
+def _slip_at(law: Law, load: float, piece: tuple[float, float], time: float) -> float:
+    """The slip in a piece at which a time has passed since its start."""
+    begin, end = piece
+
+    def late(u: float) -> float:
+        return float(_times(law, load, np.array([begin]), np.array([u]))[0]) - time
+
+    return float(brentq(late, begin, end, xtol=1e-15 * max(end, 1e-3), rtol=1e-14)) if late(end) > 0.0 else end
+
+
+# ---- a block ----------------------------------------------------------------------------------------------------------------
+
+
+def _of_block(one: Composed, excess: float) -> Answer:
+    """Up to the first arrest, or the end of the run."""
+    law, normal = one.law, BLOCK.normal_force
+    rest = float(law(0.0, 0.0))
+
+    def right(t: float, y: Floats) -> list[float]:
+        return [y[1], (excess - BLOCK.stiffness * y[0] - normal * (float(law(y[0], y[1])) - rest)) / BLOCK.mass]
+
+    y = np.zeros(2)
+    t = 0.0
+    solver = DOP853(right, t, y, one.duration, rtol=1e-12, atol=1e-15, first_step=1e-9)
+    for _ in range(MOST_STEPS):
+        solver.step()
+        if solver.status == "failed":
+            raise UndecidedError("stiff")
+        dense = solver.dense_output()
+        times = np.linspace(t, solver.t, 9)
+        if not _is_narrow(law, dense(times)):
+            if solver.t - t < 1e-13:
+                raise UndecidedError("steep")
+            solver = DOP853(right, t, y, one.duration, rtol=1e-12, atol=1e-15, first_step=0.4 * (solver.t - t))
+            continue
+        if solver.y[1] <= 0.0 and t > 0.0:
+            end = float(brentq(lambda x, d=dense: float(d(x)[1]), t, solver.t, xtol=1e-16, rtol=1e-15))  # type: ignore[misc]
+            return Answer(float(dense(end)[0]), end)
+        t, y = float(solver.t), solver.y.copy()
+        if solver.status == "finished":
+            return Answer(float(y[0]), None)
+    raise UndecidedError("too many steps")
+
+
+def _is_narrow(law: Law, path: Floats) -> bool:
+    """Return True if friction is enclosed to NARROW in eight boxes around a step; `path` has a row of slips and one of rates."""
+    boxes = []
+    for row in path:
+        low, high = np.minimum(row[:-1], row[1:]), np.maximum(row[:-1], row[1:])
+        spare = 0.1 * (high - low)
+        boxes.append(Interval(np.maximum(low - spare, 0.0), np.maximum(high + spare, 0.0)))
+    mu = law.over(boxes[0], boxes[1])
+    return bool(((mu.high - mu.low) <= NARROW).all())
