@@ -134,15 +134,16 @@ def test_no_step_lacks_more_than_its_bound(make: Callable[[int], ss.Problem]) ->
         run = ss.simulate(problem, duration(problem), rtol)
         assert run.status.ok
         real, bound = shortfall(run.history, coefficient(problem))
-        assert np.isfinite(bound).all()
-        assert (real <= bound).all(), f"seed {seed}, rtol {rtol}: pieces {np.flatnonzero(real > bound)}"
-        shares.append(np.max(real / np.maximum(bound, 1e-300), initial=0.0))
+        known = np.isfinite(bound)
+        assert np.count_nonzero(~known) == run.proven.unproven
+        assert (real <= bound)[known].all(), f"seed {seed}, rtol {rtol}: pieces {np.flatnonzero(real > bound)}"
+        shares.append(np.max((real / np.maximum(bound, 1e-300))[known], initial=0.0))
     assert max(shares) > 1e-6
 
 
 @pytest.mark.parametrize("make", RUNS)
 def test_a_step_that_is_bent_by_a_thousandth_exceeds_its_bound(make: Callable[[int], ss.Problem]) -> None:
-    """The test above would notice it: in more than half of the pieces of slip."""
+    """The test above would notice it: in more than half of the pieces in which slip is faster than its rounding."""
     problem = make(1)
     run = ss.simulate(problem, duration(problem), 1e-7)
     wrong = run.history.store._replace(pieces=run.history.store.pieces.copy())
@@ -150,7 +151,8 @@ def test_a_step_that_is_bent_by_a_thousandth_exceeds_its_bound(make: Callable[[i
     wrong.rate[:, 1] += 1e-3 * size
     wrong.rate[:, 2] -= 1e-3 * size
     real, bound = shortfall(replace(run.history, store=wrong), coefficient(problem))
-    assert (real > bound).mean() > 0.5
+    slips = size > 1e-6 * size.max()
+    assert (real > bound)[slips].mean() > 0.5
 
 
 # ---- what follows from it -------------------------------------------------------------------------------------------------
@@ -214,7 +216,6 @@ def test_the_contact_equation_is_met_where_the_last_coefficients_are_next_to_not
     assert off_the_law(solution, np.linspace(0.0, 2.0, 2001)) < 1e-10
 
 
-@pytest.mark.xfail(strict=True, reason="radii of a formula too long for the room after a series are taken around slip zero")
 def test_bounds_hold_for_a_long_formula() -> None:
     """Seven wide bumps beside a narrow one: `radii` works out the values at the centre itself. The narrow one was jumped over."""
     wide = "".join(f"+0.001*exp(-((u-{centre})/0.5)**2)" for centre in range(3, 10))

@@ -223,4 +223,4 @@ if UNCOMPILED:
 
     def power_of_two(n: Any) -> Any:
         """Return 2^n for a whole number n that is given as a float."""
-        return np.ldexp(1.0, int(n))
+        return np.ldexp(1.0, int(n)) if np.isfinite(n) else np.float64(n)

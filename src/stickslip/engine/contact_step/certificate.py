@@ -74,7 +74,7 @@ def moved_on_disc(c: Floats, powers: Floats, first: int) -> float:
 
 @inlined
 def put_discs(k: Series, jet: Floats, powers: Floats, ball: Ball) -> None:
-    """Put the radii of slip (m) and slip rate (m/s) on a disc into `ball`, from the powers of the disc's radius (in guesses).
+    """Put radii and centres of slip (m) and slip rate (m/s) on a disc into `ball`, from the powers of its radius (in guesses).
 
     With a bend, the integral of a term of order n >= 1 is at most a third of the term times the square of the radius.
     """
@@ -88,6 +88,7 @@ def put_discs(k: Series, jet: Floats, powers: Floats, ball: Ball) -> None:
     bent = abs(k.bend) * radius * (0.5 * start + (1.0 / 3.0) * rate)
     ball.slip = radius * (abs(k.speed) * (start + (p + q)) + bent)
     ball.state = 0.0 * rate
+    ball.at_slip, ball.at_rate, ball.at_state = k.slip, jet[0], 0.0 * rate  # for formulas that keep no centres beside the series
 
 
 @inlined
@@ -137,7 +138,8 @@ def share_on_disc(run: Run, length: float, disc: int) -> float:
         missed = length * (abs(run.k.speed) / run.k.inertia * force + slope_on_disc(run.jet, powers)) * SHRUNK_SLOPE[disc]
     else:
         missed = force / resistance(run) * SHRUNK[disc]
-    return missed / max(run.params.tolerance * size_of_rate(run.jet, length), SMALLEST)
+    share = missed / max(run.params.tolerance * size_of_rate(run.jet, length), SMALLEST)
+    return share if share < HOPELESS else HOPELESS  # also where it is no number
 
 
 @inlined
