@@ -74,7 +74,7 @@ def test_what_a_long_run_will_need_is_told(
 
 def test_a_large_limit_is_told_before_the_run(capsys: pytest.CaptureFixture[str]):
     Growth(PROBLEM, Path("run.nc"), 4_000_000, is_given=True).tell_limit()
-    assert capsys.readouterr().err.startswith("run.nc: up to 1.66 GB, 4 million pieces; --catalogue FILE instead")
+    assert capsys.readouterr().err.startswith("run.nc: up to 1.7 GB, 4 million pieces; --catalogue FILE instead")
     for growth in (Growth(PROBLEM, None, 4_000_000, True), Growth(PROBLEM, Path("a.nc"), 4_000_000, False)):
         growth.tell_limit()
     assert capsys.readouterr().err == ""

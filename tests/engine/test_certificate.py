@@ -151,7 +151,7 @@ def test_a_step_that_is_bent_by_a_thousandth_exceeds_its_bound(make: Callable[[i
     wrong.rate[:, 1] += 1e-3 * size
     wrong.rate[:, 2] -= 1e-3 * size
     real, bound = shortfall(replace(run.history, store=wrong), coefficient(problem))
-    slips = size > 1e-6 * size.max()
+    slips = (size > 1e-6 * size.max())[wrong.mode != 0]
     assert (real > bound)[slips].mean() > 0.5
 
 

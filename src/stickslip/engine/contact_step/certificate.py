@@ -139,7 +139,7 @@ def share_on_disc(run: Run, length: float, disc: int) -> float:
     else:
         missed = force / resistance(run) * SHRUNK[disc]
     share = missed / max(run.params.tolerance * size_of_rate(run.jet, length), SMALLEST)
-    return share if share < HOPELESS else HOPELESS  # also where it is no number
+    return min(HOPELESS, share)  # also where it is no number
 
 
 @inlined

@@ -179,7 +179,10 @@ def _function(name: str) -> Callable[[Any], Any]:
     numeric = getattr(np, name)
 
     def apply(argument: Any) -> Any:
-        return Expression(name, (argument,)) if isinstance(argument, Expression) else numeric(argument)
+        if isinstance(argument, Expression):
+            return Expression(name, (argument,))
+        with np.errstate(over="ignore"):  # an exponential may overflow on the way to a finite value, as in exp(-exp(z))
+            return numeric(argument)
 
     apply.__name__ = name
     apply.__doc__ = f"{name} of a number, an array or an expression."
@@ -241,16 +244,15 @@ def evaluate(tree: Expression, numbers: Mapping[str, Any], u: Any, v: Any) -> An
 def evaluate_nodes(tree: Expression, numbers: Mapping[str, Any], u: Any, v: Any) -> dict[Expression, Any]:
     """Return the values of all nodes of the formula, with the arguments of `evaluate`."""
     found: dict[Expression, Any] = {SLIP: u, RATE: v}
-    with np.errstate(over="ignore"):  # an exponential may overflow on the way to a finite value, as in exp(-exp(z))
-        for node in nodes_of(tree):
-            if node.operation == "parameter":
-                number = numbers[node.name]
-                # numpy's numbers give inf or nan on division by zero, where Python's raise an error
-                found[node] = np.float64(number) if isinstance(number, int | float) else number
-            elif node.operation == "constant":
-                found[node] = np.float64(node.value)
-            elif node.arguments:
-                found[node] = OPERATIONS[node.operation](*(found[argument] for argument in node.arguments))
+    for node in nodes_of(tree):
+        if node.operation == "parameter":
+            number = numbers[node.name]
+            # numpy's numbers give inf or nan on division by zero, where Python's raise an error
+            found[node] = np.float64(number) if isinstance(number, int | float) else number
+        elif node.operation == "constant":
+            found[node] = np.float64(node.value)
+        elif node.arguments:
+            found[node] = OPERATIONS[node.operation](*(found[argument] for argument in node.arguments))
     return found
 
 
