@@ -19,7 +19,8 @@ from stickslip.engine.series.polynomial import crossings
 from stickslip.engine.state.layout import TERMS
 from stickslip.trajectory.history import Epoch, History, Positions
 from stickslip.trajectory.phase_index import Phases, standing_behind
-from stickslip.trajectory.slip_events import SlipEvents, default_event_rate, highest, keeps_its_sign
+from stickslip.trajectory.slip_events import SlipEvents, default_event_rate, highest
+from stickslip.trajectory.turning_points import keeps_its_sign
 from tests.long_runs.problems import RUNS
 from tests.problems import SLAB, scaled_rate
 
@@ -78,14 +79,43 @@ def plain_events(history: History, threshold: float) -> list[PlainEvent]:
         for low, high in pairwise([0.0, *(roots(p - threshold) if mode else []), 1.0]):
             if mode == 0 or p(0.5 * (low + high)) <= threshold:
                 continue
-            if reached != (n - 1, mode) or low > 0.0:
+            if reached != (n - 1, mode) or low > 0.0 or store.rate[n, 0] == 0.0:
                 events.append(PlainEvent([], []))
             event = events[-1]
             event.stretches.append((n, low, high))
             event.points += [(float(p(x)), n, x) for x in (low, *(x for x in roots(p.deriv()) if low < x < high), high)]
             reached = (n, int(mode)) if high == 1.0 else (-1, 0)
             event.is_over = high < 1.0 or n + 1 < len(history)
+    if history.problem.friction.sticks:
+        for event in events:
+            first, last = event.stretches[0], event.stretches[-1]
+            before = straight_to_rest(history, first[:2], -1, threshold)
+            after = straight_to_rest(history, last[::2], 1, threshold) if event.is_over else []
+            event.stretches = [*before[::-1], *event.stretches, *after]
     return events
+
+
+def straight_to_rest(history: History, place: tuple[int, float], way: int, threshold: float) -> list[tuple[int, float, float]]:
+    """Stretches from a crossing of the threshold to the rest before it (way -1) or after it; none if |slip rate| turns between."""
+    store, (n, x), found, height, slack = history.store, place, [], threshold * (1.0 - 1e-6), threshold * 1e-6
+    while True:
+        p, edge = Polynomial(store.mode[n] * store.rate[n]), max(way, 0)
+        ahead = [y for y in roots(p.deriv())[::way] if way * (y - x) > 0.0]
+        for y in [*ahead, edge] if x != edge else []:
+            if p(y) > height + slack:
+                return []
+            height = min(height, float(p(y)))
+        found.append((n, min(x, edge), max(x, edge)))
+        behind = n + edge
+        if behind == len(history):
+            return []
+        if behind == 0 or store.mode[behind] != store.mode[behind - 1] or store.rate[behind, 0] == 0.0:
+            return found
+        n, x = n + way, 1 - edge
+        entry = float(store.mode[n] * Polynomial(store.rate[n])(x))
+        if entry > height + slack:
+            return []
+        height = min(height, entry)
 
 
 def slip_of(history: History, event: PlainEvent) -> float:
@@ -120,17 +150,17 @@ def traction(history: History, when: Epoch, side: str) -> float:
     return history.problem.strength + float(local.friction(found)[0])
 
 
-def traction_before(history: History, event: PlainEvent, earlier: int) -> float:
-    """At rest or, if it is more, where the event begins; slip that began up to piece `earlier` belongs to the event before."""
+def traction_before(history: History, event: PlainEvent) -> float:
+    """Just before the event begins; the load where slip turns round, or begins again, in an instant of rest."""
     (first, low, _), store = event.stretches[0], history.store
-    moving = traction(history, place(history, first, low), "left")
-    while first > 0 and store.mode[first - 1] == store.mode[first] and not history.rests[first - 1]:
-        first -= 1
-    if not history.problem.friction.sticks or first <= earlier:
-        return moving
-    local = history.seen_from(place(history, first, 0.0))
+    when = place(history, first, low)
+    sliding = traction(history, when, "left")
+    goes_on = first > 0 and store.mode[first - 1] == store.mode[first] and store.rate[first, 0] != 0.0
+    if not history.problem.friction.sticks or low > 0.0 or goes_on:
+        return sliding
+    local = history.seen_from(when)
     at_rest = history.problem.strength + float(local.excess(local.find(np.zeros(1), "left"))[0])
-    return max(moving, at_rest) if store.mode[first] > 0 else min(moving, at_rest)
+    return max(sliding, at_rest) if store.mode[first] > 0 else min(sliding, at_rest)
 
 
 def traction_after(history: History, n: int, xi: float) -> float:
@@ -146,11 +176,11 @@ def traction_after(history: History, n: int, xi: float) -> float:
     return history.problem.strength + float(history.friction(Positions.inside(n, xi))[0])
 
 
-def plain_row(history: History, event: PlainEvent, earlier: int) -> dict[str, float]:
+def plain_row(history: History, event: PlainEvent) -> dict[str, float]:
     (first, low, _), (last, _, high) = event.stretches[0], event.stretches[-1]
     top, peak_piece, peak_xi = max(event.points, key=lambda point: point[0])
     start, end, peak = place(history, first, low), place(history, last, high), place(history, peak_piece, peak_xi)
-    before, after = traction_before(history, event, earlier), traction_after(history, last, high)
+    before, after = traction_before(history, event), traction_after(history, last, high)
     row, slip = history.round_trip_time, slip_of(history, event)
     lasts = (end.trip - start.trip) * row + (end.offset - start.offset)
     return {
@@ -182,8 +212,7 @@ def test_every_column_of_every_event_agrees_with_a_plain_walk(run: ss.Solution, 
     history, threshold = run.history, rate(run)
     table, events = run.catalogue(threshold), plain_events(run.history, threshold)
     assert len(table) == len(events) > 0
-    ends = [-1, *(event.stretches[-1][0] for event in events)]
-    rows = [plain_row(history, event, earlier) for event, earlier in zip(events, ends, strict=False)]
+    rows = [plain_row(history, event) for event in events]
     width = history.store.speed.max() + history.store.bend.max()
     strength = abs(run.problem.strength)
     slack = {"start": 1e-9 * width, "peak_time": 1e-7 * width, "peak_after": 1e-7 * width}

@@ -138,7 +138,7 @@ def test_slab_rate_law_just_above_critical() -> None:
 def test_block_slip_law(wavenumber: float, stiffness: float, start: str, peak: str, peak_time: str, stop: str, slip: str) -> None:
     problem = slip_law_block(wavenumber, stiffness)
     run = ss.simulate(problem, 20.0)
-    event = run.catalogue(0.0).iloc[0]
+    event = run.events.iloc[0]
     assert close(problem.initial_slip, start)
     assert close(event.peak_rate, peak)
     assert close(event.peak_time, peak_time)
@@ -151,7 +151,7 @@ def test_block_slip_law(wavenumber: float, stiffness: float, start: str, peak: s
 def test_block_rate_law() -> None:
     block = ss.SpringBlock(DENSITY * 1e9, MODULUS * 1e3, 1e14)
     run = ss.simulate(ss.Problem(block, RATE_LAW, pull_rate=PULL, initial_excess=0.0), 20.0)
-    event = run.catalogue(0.0).iloc[0]
+    event = run.events.iloc[0]
     assert close(event.peak_rate, "3.511221")
     assert close(event.peak_time, "1.839772")
     assert close(event.end, "2.226453818")

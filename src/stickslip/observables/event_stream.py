@@ -53,8 +53,11 @@ class EventStream:
     """True if the rows also hold the energies of the events."""
 
     def needed(self, store: Store) -> int:
-        """Return the first piece of the history that is needed for new events and for the energy of the waves under way."""
-        return int(np.searchsorted(store.trip, store.trip[self.first] - WAVES_OF))
+        """Return the first piece of the history that is needed for new events and for the energy of the waves under way.
+
+        The piece before the one in which the last event began tells whether slip began there from rest.
+        """
+        return max(min(int(np.searchsorted(store.trip, store.trip[self.first] - WAVES_OF)), self.first - 1), 0)
 
     def look(self, store: Store, length: int) -> Look:
         """Return the new events in the first `length` pieces of a history."""

@@ -8,119 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.engine.codegen.compiler import kernel
-from stickslip.engine.series.polynomial import clearly_positive, crossings, evaluate, total
-from stickslip.engine.state.layout import TERMS, Floats, Integers
+from stickslip.engine.series.polynomial import evaluate
+from stickslip.engine.state.layout import Floats, Integers
 from stickslip.engine.state.workspace import pieces_in
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.history import History, Positions
+from stickslip.trajectory.turning_points import MAXIMA_PER_PIECE, Turns, extend_to_rest, new_turns, turning_points
 
-MAXIMA_PER_PIECE = 32
-"""Largest number of extrema of the slip rate, or of crossings of the threshold, in one piece."""
-SAME = 1e-12
-"""Relative distance of a slip rate from the threshold below which rounding may decide on which side it is."""
 NOT_YET = -1
 """Marks an event whose aftermath is not known within the history."""
-
-
-class Turns(NamedTuple):
-    """Hold points along |slip rate|: where it begins, ends, turns, or crosses a threshold. Arrays may be longer than needed."""
-
-    piece: Integers  # piece of the history
-    xi: Floats  # place in the piece, from 0 to 1
-    rate: Floats  # m/s
-    kind: Integers  # +1 if the rate rises above the threshold there, -1 if it falls to it, 0 above it
-
-
-def new_turns(capacity: int) -> Turns:
-    """Return uninitialised arrays for `capacity` points."""
-    return Turns(np.empty(capacity, np.int64), np.empty(capacity), np.empty(capacity), np.empty(capacity, np.int64))
-
-
-@kernel
-def turning_points(table: Integers, begin: int, length: int, threshold: float, turns: Turns) -> int:
-    """Walk along |slip rate| from piece `begin` on and record its starts, ends, extrema and crossings of the threshold.
-
-    `table` is that of a history (`Store.pieces`) with `length` pieces. Returns the number of points, or -1 if there is no room for
-    all of them.
-    """
-    found, pieces = 0, pieces_in(table)
-    p, slope, places = np.empty(TERMS), np.zeros(TERMS), np.empty(MAXIMA_PER_PIECE)
-    above = False
-    for n in range(begin, length):
-        if found + 3 * MAXIMA_PER_PIECE > len(turns.piece):
-            return -1
-        mode, its_rate = pieces[n].mode, pieces[n].rate
-        sign = 1.0 if mode >= 0 else -1.0
-        for k in range(TERMS):
-            p[k] = sign * its_rate[k]
-        contiguous = n > begin and mode == pieces[n - 1].mode
-        begins = mode != 0 and (p[0] > threshold or (p[0] == threshold and _rises(p)))
-        if above and not (begins and contiguous):
-            found = _note(turns, found, (n - 1, 1.0), 0.0, -1)
-            above = False
-        if mode == 0:
-            continue
-        if begins:
-            found = _note(turns, found, (n, 0.0), p[0], 0 if above else 1)
-            above = True
-        monotone, last = is_monotone(p, slope), total(p)
-        p[0] -= threshold
-        stays = monotone and p[0] * (last - threshold) > 0.0 and abs(last - threshold) > SAME * last
-        crossed = 0 if stays or keeps_its_sign(p) else crossings(p, places)
-        for i in range(crossed):
-            above = not above
-            found = _note(turns, found, (n, places[i]), threshold, 1 if above else -1)
-        p[0] += threshold
-        for i in range(0 if monotone else crossings(slope, places)):
-            height = evaluate(p, places[i])
-            if height > threshold:
-                found = _note(turns, found, (n, places[i]), height, 0)
-        if above:
-            found = _note(turns, found, (n, 1.0), last, 0)
-    return found
-
-
-@kernel
-def is_monotone(p: Floats, slope: Floats) -> bool:
-    """Return True if bounds show at once that p only rises or only falls on (0, 1].
-
-    `slope` receives the derivative of p, with the sign that makes it start at or above zero.
-    """
-    way = 1.0 if p[1] >= 0.0 else -1.0
-    for k in range(TERMS - 1):
-        slope[k] = way * (k + 1) * p[k + 1]
-    return keeps_its_sign(slope) or (slope[0] > 0.0 and clearly_positive(slope))
-
-
-@kernel
-def keeps_its_sign(c: Floats) -> bool:
-    """Return True if bounds show at once that the polynomial does not change sign on (0, 1].
-
-    The bounds come from Horner's rule in interval arithmetic, after leading zeros are divided out.
-    """
-    low = high = 0.0
-    lead = 0
-    while lead < TERMS - 1 and c[lead] == 0.0:
-        lead += 1
-    for k in range(TERMS - 1, lead - 1, -1):
-        low, high = c[k] + min(low, 0.0), c[k] + max(high, 0.0)
-    return low > 0.0 or high < 0.0
-
-
-@kernel
-def _rises(p: Floats) -> bool:
-    for k in range(1, len(p)):
-        if p[k] != 0.0:
-            return p[k] > 0.0
-    return False
-
-
-@kernel
-def _note(turns: Turns, n: int, place: tuple[int, float], rate: float, kind: int) -> int:
-    """Write point n, at a place (piece, xi), and return the number of points."""
-    turns.piece[n], turns.xi[n] = place
-    turns.rate[n], turns.kind[n] = rate, kind
-    return n + 1
 
 
 @kernel
@@ -177,7 +73,7 @@ def find_aftermath(table: Integers, piece: Integers, xi: Floats, by: Integers) -
 
 
 def walk(history: History, threshold: float, begin: int = 0) -> Turns:
-    """Return the points of `turning_points` in order of time, with arrays that are large enough for all of them."""
+    """Return the points of `turning_points` in order of time; events begin and end at rest where `extend_to_rest` allows it."""
     room = 8 * (len(history) - begin) + 4 * MAXIMA_PER_PIECE
     while True:
         turns = new_turns(room)
@@ -185,7 +81,10 @@ def walk(history: History, threshold: float, begin: int = 0) -> Turns:
         if found >= 0:
             piece, xi, rate, kind = turns.piece[:found], turns.xi[:found], turns.rate[:found], turns.kind[:found]
             order = np.lexsort((-kind * (xi < 1.0), xi, piece))
-            return Turns(piece[order], xi[order], rate[order], kind[order])
+            turns = Turns(piece[order], xi[order], rate[order], kind[order])
+            if history.problem.friction.sticks:
+                extend_to_rest(history.store.pieces, (begin, len(history)), threshold, turns, found)
+            return turns
         room *= 2
 
 

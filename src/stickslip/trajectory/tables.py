@@ -87,32 +87,22 @@ def event_columns(history: History, events: SlipEvents) -> Columns:
 
 
 def friction_before(history: History, events: SlipEvents) -> Floats:
-    """Return the traction minus the reference strength before events: what friction had reached when it gave way.
+    """Return the traction minus the reference strength just before events begin.
 
-    This is friction just before the slip rate passes the threshold, or at rest before the slip in which the event begins,
-    whichever resists that slip more. A block, or a contact with mass, moves for a while before its slip rate counts as an event,
-    and friction that falls at once has its sliding value by then. Rest counts only if it ends after the event before. Where slip
-    reverses its direction without rest, the traction at rest is the load.
+    Where slip turns round or begins again in the instant in which it ends, the contact rests for that instant, under the load,
+    unless friction resists the new slip more: an echo may turn the slip of a massless contact round at once.
     """
-    begin = events.begin
-    reached = _friction_at(history, begin)
-    if not history.problem.friction.sticks:
-        return reached
-    mode = history.store.mode
-    begins = np.append(True, (np.diff(mode) != 0) | history.rests[:-1])[: len(mode)]
-    first = np.maximum.accumulate(np.where(begins, np.arange(len(mode)), 0))[begin.piece]
-    at_rest = history.excess(history.just_before(first))
-    is_new = first > np.append(-1, events.piece[2])[: len(first)]
-    return np.where(is_new & (history.mode(begin) * (at_rest - reached) > 0.0), at_rest, reached)
-
-
-def _friction_at(history: History, begin: Positions) -> Floats:
-    """Return the traction minus the reference strength where events begin (left limit)."""
+    begin, store = events.begin, history.store
     at_once = begin.xi == 0.0
-    friction = np.empty(len(at_once))
-    friction[at_once] = history.friction(history.just_before(begin.piece[at_once]))
-    friction[~at_once] = history.friction(Positions.inside(begin.piece[~at_once], begin.xi[~at_once]))
-    return friction
+    before = np.empty(len(at_once))
+    before[~at_once] = history.friction(Positions.inside(begin.piece[~at_once], begin.xi[~at_once]))
+    piece = begin.piece[at_once]
+    last = history.just_before(piece)
+    sliding, at_rest, mode = history.friction(last), history.excess(last), store.mode[piece]
+    rests = (mode != store.mode[last.last]) | (store.rate[piece, 0] == 0.0)
+    gave_way = rests & history.problem.friction.sticks & (mode * (at_rest - sliding) > 0.0)
+    before[at_once] = np.where(gave_way, at_rest, sliding)
+    return before
 
 
 def friction_after(history: History, events: SlipEvents) -> Floats:

@@ -1,4 +1,4 @@
-"""Find the slip events of a run from the turning points of its slip rate (`trajectory.slip_events.turning_points`)."""
+"""Find the slip events of a run from the turning points of its slip rate (`trajectory.turning_points`)."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ import numpy as np
 
 from stickslip.engine.codegen.compiler import kernel
 from stickslip.engine.state.layout import Integers
-from stickslip.trajectory.slip_events import NOT_YET, Turns, count_pulses, highest, new_turns, turning_points
+from stickslip.trajectory.slip_events import NOT_YET, count_pulses, highest
+from stickslip.trajectory.turning_points import Turns, extend_to_rest, new_turns, turning_points
 
 POINTS_PER_PIECE = 8
 """Number of turning points for which there is room at first, for each piece of history."""
@@ -58,15 +59,18 @@ def move(turns: Turns, source: int, target: int) -> None:
 
 
 @kernel
-def find_events(table: Integers, length: int, threshold: float, points: Points) -> int:
+def find_events(table: Integers, length: int, threshold: float, sticks: bool, points: Points) -> int:
     """Find slip events, which are faster than `threshold` (m/s), in a history's table of `length` pieces; return their number.
 
-    The points of each event are written into `points`. Returns NOT_YET if there is no room for all turning points.
+    `sticks` is True if the law knows rest. The points of each event are written into `points`. Returns NOT_YET if there is no room
+    for all turning points.
     """
     found = turning_points(table, 0, length, threshold, points.turns)
     if found < 0:
         return NOT_YET
     put_in_order(points.turns, found)
+    if sticks:
+        extend_to_rest(table, (0, length), threshold, points.turns, found)
     events = 0
     for n in range(found):
         if points.turns.kind[n] == 1:

@@ -19,6 +19,7 @@ from stickslip.engine.state.layout import Floats, HistoryPiece, Integers, Stop
 from stickslip.engine.state.workspace import Run, pieces_in
 from stickslip.trajectory.history import ROUNDING
 from stickslip.trajectory.slip_events import rises_over
+from stickslip.trajectory.turning_points import starts_from_rest
 
 
 class Reduced(Record):
@@ -146,15 +147,13 @@ def friction_before(run: Run, piece: int, xi: float, excess: float) -> float:
 
     The event begins at a place; the contact is under the initial `excess` before the run.
     """
-    history = run.history
-    reached = friction_just_before(run, piece, excess) if xi == 0.0 else friction_in(run, piece, xi)
-    if run.counts.sticks == 0:
-        return reached
-    first, mode = piece, history[piece].mode
-    while first > 0 and history[first - 1].mode == mode and not rests_before(history, run.params.round_trip_time, first):
-        first -= 1
-    at_rest = load_just_before(run, first, excess)
-    return at_rest if mode * (at_rest - reached) > 0.0 else reached
+    if xi > 0.0:
+        return friction_in(run, piece, xi)
+    sliding = friction_just_before(run, piece, excess)
+    if run.counts.sticks == 0 or not starts_from_rest(run.history, piece):
+        return sliding
+    at_rest = load_just_before(run, piece, excess)
+    return at_rest if run.history[piece].mode * (at_rest - sliding) > 0.0 else sliding
 
 
 @kernel

@@ -193,7 +193,7 @@ def fold_member(run: Run, group: Group, work: Workspace, lane: int, out: Reduced
     """Reduce the run in a lane, which has ended, to the numbers in `out`; return False if points lack room."""
     setups, n, length = group.setups, work.member[lane], run.counts.length
     if group.wants_events:
-        events = find_events(work.store.pieces[lane], length, setups.threshold[n], work.points)
+        events = find_events(work.store.pieces[lane], length, setups.threshold[n], run.counts.sticks == 1, work.points)
         if events == NOT_YET:
             return False
         fold_events(run, work.points, events, out)

@@ -28,6 +28,7 @@ COMPILED_FILES = (
     "trajectory/phase_index.py",
     "trajectory/slip_events.py",
     "trajectory/status.py",
+    "trajectory/turning_points.py",
 )
 """Other files that hold compiled functions, or constants that compiled functions use; tests/test_layers.py checks the list."""
 VERSIONS = f"{numba.__version__} {sys.version}"

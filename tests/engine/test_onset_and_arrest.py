@@ -1,0 +1,208 @@
+"""Slip events begin at the onset of slip and end at its arrest, whatever slip rate defines them: closed forms, near rounding."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import stickslip as ss
+from stickslip.batch import run_members
+from stickslip.engine.state.layout import TERMS
+from stickslip.run import catalogue as module
+from stickslip.scenarios.scenario import Scenario
+from stickslip.trajectory.slip_events import default_event_rate
+from stickslip.trajectory.turning_points import TURNS, descend
+from tests.batch.cases import CASES as MEMBERS
+from tests.long_runs.problems import RUNS
+from tests.problems import IMPEDANCE, NORMAL, ROUND, SLAB
+
+F = ss.friction
+BLOCK = ss.SpringBlock(2.0, 50.0, 10.0)
+RATES = {"every slip": 0.0, "default": None, "fast": 0.03}
+CLOSE = {"rel": 0.0, "abs": 1e-12}
+"""s, m, N, or MPa: rounding of a run of a minute at rtol 1e-13."""
+
+
+@dataclass(frozen=True)
+class Known:
+    """A problem, and its first events in closed form, in s, m and Pa (block: N)."""
+
+    problem: ss.Problem
+    start: np.ndarray
+    end: np.ndarray
+    slip: float
+    before: float
+    after: float
+
+    def mirrored(self) -> Known:
+        """The same in the other direction."""
+        problem, far = self.problem, self.problem.far_stress
+        opposite = None if far is None else replace(far, values=tuple(-value for value in far.values))
+        turned = replace(problem, pull_rate=-problem.pull_rate, initial_load=-problem.initial_load, far_stress=opposite)
+        return replace(self, problem=turned, before=-self.before, after=-self.after)
+
+
+def known_block(static: float = 0.6, dynamic: float = 0.5, wait: float = 0.5, pull: float = 0.01, count: int = 4) -> Known:
+    """Coulomb friction on a block pulled at V: v = (A w / K) sin(w t) + V (1 - cos(w t)), with A its drop, until v = 0."""
+    mass, stiffness, normal = BLOCK.mass, BLOCK.stiffness, BLOCK.normal_force
+    w, drop = math.sqrt(stiffness / mass), (static - dynamic) * normal
+    angle = 2.0 * (math.pi - math.atan(drop * w / (stiffness * pull)))
+    lasts = angle / w
+    slip = drop / stiffness * (1.0 - math.cos(angle)) + pull * (lasts - math.sin(angle) / w)
+    strength = static * normal
+    problem = ss.Problem(BLOCK, F.Coulomb(static, dynamic), pull_rate=pull, initial_load=strength - stiffness * pull * wait)
+    start = wait + slip / pull * np.arange(count)
+    return Known(problem, start, start + lasts, slip, strength, strength + stiffness * (pull * lasts - slip))
+
+
+def known_slab(static: float = 0.6, wait: float = 0.5, rises: float = 0.8) -> Known:
+    """A slab without echoes that weakens with slip, under a far stress that rises by g and then falls by 3 g a second.
+
+    From rest v' = v / s + g / Z for `rises` s, then v' = v / s - 3 g / Z. So v = G (exp(t) - 1) up to a peak, then falls to
+    zero in log(3 G / (3 G - peak)), with G = g s / Z and times in s. The stress takes a travel time to the contact.
+    """
+    travel, gain = 0.5 * ROUND, 5e5
+    since = math.log(3.0 / (3.0 - math.expm1(rises)))
+    strength = static * NORMAL
+    after = strength + gain * (rises - 3.0 * since)
+    peak = wait + rises
+    stress = (strength - gain * wait, strength + gain * rises, strength + gain * (rises - 30.0))
+    far = ss.loading.PiecewiseLinear((0.0, peak, peak + 10.0), stress)
+    law = F.LinearSlipWeakening(static, static - 0.3, 0.3 * NORMAL / IMPEDANCE)
+    matched = replace(SLAB, driver_impedance=IMPEDANCE)
+    problem = ss.Problem(matched, law, initial_load=stress[0], far_stress=far)
+    start = np.array([travel + wait])
+    return Known(problem, start, start + rises + since, (strength - after) / IMPEDANCE, strength, after)
+
+
+def known_echo(excess: float = 4e5, growth: float = 1.2) -> Known:
+    """A slab that begins with a shock under a load beyond its strength: v = v0 exp(k t), and growth = k R.
+
+    Behind a rigid driver the load falls by 2 Z v of a round trip ago: v = exp(x) v0 (exp(k R) - 2 - 2 x), with x = k (t - R).
+    """
+    x = 0.5 * (math.exp(growth) - 2.0)
+    after = 0.6 * NORMAL + excess - 2.0 * excess * math.exp(x)
+    weakening = growth / ROUND * IMPEDANCE
+    problem = ss.Problem(SLAB, F.LinearSlipWeakening(0.6, 0.3, 0.3 * NORMAL / weakening), initial_load=0.6 * NORMAL + excess)
+    slip, start = (0.6 * NORMAL - after) / weakening, np.zeros(1)
+    return Known(problem, start, start + ROUND * (1.0 + x / growth), slip, problem.initial_load, after)
+
+
+KNOWN = {"block": known_block(), "slab": known_slab(), "slab that begins with a shock": known_echo()}
+
+
+def matches(table: pd.DataFrame, known: Known) -> None:
+    first = table.iloc[: len(known.start)]
+    unit = 1e6 if isinstance(known.problem.body, ss.ElasticSlab) else 1.0
+    assert first.start.to_numpy() == pytest.approx(known.start, **CLOSE)
+    assert first.end.to_numpy() == pytest.approx(known.end, **CLOSE)
+    assert first.duration.to_numpy() == pytest.approx(known.end - known.start, **CLOSE)
+    assert first.slip.to_numpy() == pytest.approx(known.slip, **CLOSE)
+    assert first.traction_before.to_numpy() / unit == pytest.approx(known.before / unit, **CLOSE)
+    assert first.traction_after.to_numpy() / unit == pytest.approx(known.after / unit, **CLOSE)
+    assert first.traction_drop.to_numpy() / unit == pytest.approx((known.before - known.after) / unit, **CLOSE)
+
+
+def duration_of(known: Known) -> float:
+    return float(known.end[-1]) + 0.4
+
+
+@pytest.mark.parametrize("rate", RATES.values(), ids=RATES)
+@pytest.mark.parametrize("backwards", [False, True])
+@pytest.mark.parametrize("name", KNOWN)
+def test_events_begin_at_the_onset_and_end_at_the_arrest(name: str, backwards: bool, rate: float | None, tmp_path: Path) -> None:
+    known = KNOWN[name].mirrored() if backwards else KNOWN[name]
+    duration = duration_of(known)
+    run = ss.simulate(known.problem, duration, 1e-13)
+    matches(run.catalogue(rate), known)
+    ss.catalogue(known.problem, 0.9 * duration, tmp_path / "events.csv", rtol=1e-13, event_rate=rate)
+    resumed = ss.resume(tmp_path / "events.checkpoint.nc", duration)
+    matches(resumed, known)
+    pd.testing.assert_frame_equal(resumed, run.catalogue(rate), check_exact=True)
+
+
+def test_a_thousand_events_keep_their_onsets_while_their_history_is_forgotten(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where the rest before an event is all that is left of the time before it."""
+    monkeypatch.setattr(module, "CAPACITY", 64)
+    known = known_block(count=1000)
+    table = ss.catalogue(known.problem, duration_of(known), rtol=1e-13)
+    assert table.start[:1000].to_numpy() == pytest.approx(known.start, rel=1e-14, abs=0.0)
+    assert table.end[:1000].to_numpy() == pytest.approx(known.end, rel=1e-14, abs=0.0)
+    assert table.traction_drop[:1000].to_numpy() == pytest.approx(known.before - known.after, **CLOSE)
+
+
+def test_members_of_a_batch_begin_and_end_so_too() -> None:
+    blocks = [known_block(static=one) for one in (0.6, 0.65, 0.7)]
+    slabs = [known_echo(excess=one) for one in (4e5, 3e5, 5e5)]
+    wanted = ("first_start", "first_end", "first_duration", "first_slip", "first_traction_drop")
+    for all_known, varied in ((blocks, {"friction.static": np.array([0.6, 0.65, 0.7])}), (slabs, {})):
+        loads = np.array([known.problem.initial_load for known in all_known])
+        scenario = Scenario(all_known[0].problem, duration_of(all_known[0]), rtol=1e-13)
+        found = run_members(scenario, {"initial.load": loads, **varied}, wanted)
+        assert found.reason == {}
+        for n, known in enumerate(all_known):
+            drop = known.before - known.after
+            expected = [known.start[0], known.end[0], known.end[0] - known.start[0], known.slip, drop]
+            assert [found.results[quantity][n] for quantity in wanted] == pytest.approx(expected, rel=1e-13, abs=0.0)
+
+
+@pytest.mark.parametrize("name", ["block that heals", "slab that heals", "contact mass", "steps, slab", "tone, block"])
+def test_the_threshold_only_decides_what_counts(name: str) -> None:
+    """Events that pass the default rate are the same rows among all slips: also slips that begin as the one before ends."""
+    run = ss.simulate(*RUNS[name])
+    every = run.catalogue(0.0).set_index("start")
+    assert len(run.events) > 0
+    pd.testing.assert_frame_equal(
+        every.loc[run.events.start].drop(columns="recurrence"), run.events.set_index("start").drop(columns="recurrence")
+    )
+
+
+def test_slips_that_touch_are_events_of_their_own_at_every_rate() -> None:
+    """The rounding of the slip rate where it touches zero no longer decides whether two slips are one."""
+    run = ss.simulate(MEMBERS["parabolic"].scenario.problem, 60.0)
+    every, fast = run.catalogue(0.0), run.events
+    touching = int(
+        ((run.history.store.rate[1:, 0] == 0.0) & (np.diff(run.history.store.mode) == 0))[run.history.store.mode[1:] != 0].sum()
+    )
+    assert touching > 10
+    assert len(every) == len(fast)
+    assert every.start.to_numpy().tolist() == fast.start.to_numpy().tolist()
+
+
+def test_where_the_rate_turns_on_the_way_the_threshold_cuts() -> None:
+    """A damped block creeps over bumps and never rests: slip began long before, and the rate has turned since."""
+    law = F.SinusoidalSlip(0.5, 0.1, 2.0)
+    run = ss.simulate(ss.Problem(ss.SpringBlock(2.0, 1.0, 10.0, damping=4.0), law, pull_rate=0.01, initial_excess=0.0), 900.0)
+    cut = run.catalogue(0.2)
+    assert len(cut) == 3
+    for time in (cut.start, cut.end):
+        assert run.slip_rate(time.to_numpy()) == pytest.approx(0.2, rel=1e-12, abs=0.0)
+    assert cut.traction_before.to_numpy() == pytest.approx(run.traction(cut.start.to_numpy()), rel=1e-12, abs=0.0)
+    assert run.events.start[0] == 0.0
+
+
+@pytest.mark.parametrize("name", ["rate and state, block", "rate and state, slab"])
+def test_where_nothing_rests_the_threshold_cuts(name: str) -> None:
+    run = ss.simulate(*RUNS[name])
+    events, rate = run.events, default_event_rate(run.problem)
+    assert len(events) > 0
+    times = np.append(events.start[events.start > 0.0], events.end.dropna())
+    assert len(times) > 0
+    assert np.abs(run.slip_rate(times)) == pytest.approx(rate, rel=1e-6, abs=0.0)
+
+
+def test_a_rate_that_turns_is_noticed_and_rounding_is_not() -> None:
+    """v = 1 + 3 x - 2 x^2 rises to x = 3/4 and falls to 2 at x = 1."""
+    rate = np.zeros(TERMS)
+    rate[:3] = 1.0, 3.0, -2.0
+    assert descend(rate, 0.7, -1, 3.0, 1e-6) == 1.0
+    assert descend(rate, 1.0, -1, 2.0, 1e-6) == TURNS
+    assert descend(rate, 1.0, -1, 2.2, 0.0) == 1.0  # not above what the rate was before
+    assert descend(rate, 0.8, 1, 2.2, 1e-6) == pytest.approx(2.0, rel=1e-15)
+    assert descend(rate, 0.8, 1, 1.9, 0.2) == 1.9
+    assert descend(rate, 0.8, 1, 1.9, 0.05) == TURNS
