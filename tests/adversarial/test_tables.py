@@ -54,8 +54,9 @@ STEEP = {
 
 
 def value(formula: str, u: Any, v: Any = 0.0) -> Any:
-    """The formula by numpy."""
-    return eval(formula, {"u": u, "v": v, "pi": math.pi, **FUNCTIONS})
+    """The formula by numpy. An exponential inside another may overflow on the way to a finite value."""
+    with np.errstate(over="ignore"):
+        return eval(formula, {"u": u, "v": v, "pi": math.pi, **FUNCTIONS})
 
 
 def first_balance(barrier: Barrier, excess: float) -> float:

@@ -235,15 +235,20 @@ LOSSY = replace(SLAB, driver_impedance=5 * Z)
 def test_compiled_levels_agree_with_the_table(
     law: ss.friction.FrictionLaw, selection: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The same run with the levels of `contact.rules.selection`, worked out in Python in every step: shocks and slip to 1e-12."""
+    """The same run with the levels of `contact.rules.selection`, worked out in Python in every step: shocks and slip to 1e-12.
+
+    Where shocks follow each other at once the run ends, and the last of them is not compared.
+    """
     case = ss.Problem(LOSSY, law, pull_rate=0.3, far_stress_rate=3e6, initial_excess=1e6, selection=selection)
     ours = ss.simulate(case, 1.5 * ROUND)
     monkeypatch.setattr(branch_table, "COMPILED_RULES", {})
     theirs = ss.simulate(case, 1.5 * ROUND)
     assert ours.status.name == theirs.status.name
-    assert list(ours.shocks.cause) == list(theirs.shocks.cause)
-    assert ours.shocks.time.to_numpy() == pytest.approx(theirs.shocks.time.to_numpy(), rel=1e-12, abs=1e-15)
-    times = np.linspace(0.0, min(run.history.end[-1] for run in (ours, theirs)), 101)[:-1]
+    end = min(run.history.end[-1] for run in (ours, theirs))
+    shocks = [run.shocks[run.shocks.time < end * (1.0 - 1e-12)] for run in (ours, theirs)]
+    assert list(shocks[0].cause) == list(shocks[1].cause)
+    assert shocks[0].time.to_numpy() == pytest.approx(shocks[1].time.to_numpy(), rel=1e-12, abs=1e-15)
+    times = np.linspace(0.0, end, 101)[:-1]
     assert ours.slip(times) == pytest.approx(theirs.slip(times), rel=1e-12, abs=1e-15)
 
 

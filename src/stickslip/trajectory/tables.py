@@ -28,10 +28,7 @@ EVENT_COLUMNS = {
     "peak_rate": ("m s-1", "largest |v|"),
     "peak_time": ("s", "time of the largest |v|"),
     "peak_after": ("s", "peak_time - start, without the rounding of either"),
-    "traction_before": (
-        "load",
-        "what friction had reached when it gave way: at rest before, or just before |v| passes the threshold",
-    ),
+    "traction_before": ("load", "friction just before the event begins; at rest: the load that friction carried"),
     "traction_after": ("load", "friction at rest after"),
     "traction_drop": ("load", "traction_before - traction_after"),
     "static_drop": ("load", "stiffness (G/h, or K) times slip"),

@@ -178,9 +178,12 @@ def piece_next_to_rest(table: Integers, span: tuple[int, int], place: tuple[int,
 def starts_from_rest(pieces: HistoryPiece, n: int) -> bool:
     """Return True if slip in a piece begins from rest, or, at a piece at rest, if rest begins there.
 
-    Where slip turns round, or begins again as it ends, the contact rests for an instant, of which the history has no piece.
+    Where slip turns round, or begins again as it ends, the contact rests for an instant, of which the history has no piece. A
+    contact whose load balances friction to the last digit may also slide at a rate of zero: it rests all the same.
     """
-    return n == 0 or pieces[n].mode != pieces[n - 1].mode or pieces[n].rate[0] == 0.0
+    if n == 0 or pieces[n].mode != pieces[n - 1].mode or pieces[n].rate[0] == 0.0:
+        return True
+    return pieces[n - 1].rate[0] == 0.0 and total(pieces[n - 1].rate) == 0.0
 
 
 @kernel
