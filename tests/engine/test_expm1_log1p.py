@@ -15,9 +15,9 @@ from stickslip.engine.codegen.recurrences import Recurrences
 from stickslip.engine.codegen.taylor_series import ORDER
 from stickslip.engine.series import differences
 from stickslip.engine.series.sine import sine, versine
-from stickslip.friction.formula.enclosure import enclose
 from stickslip.friction.formula.expression import COMPOSED, RATE, SLIP, Expression, expm1, log1p
 from stickslip.friction.formula.parse import parse
+from tests.engine.enclosing import enclose
 
 HELPERS = {name: getattr(differences, name) for name in dir(differences) if name.endswith(("_difference", "_value", "_pull"))}
 MATHS = {name: getattr(math, name) for name in ("exp", "expm1", "log", "log1p", "sqrt", "sin", "cos", "tanh", "asinh")}

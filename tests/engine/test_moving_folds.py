@@ -11,9 +11,9 @@ import pytest
 from numpy.typing import NDArray
 
 import stickslip as ss
-from stickslip.contact.branches import search_grid
 from stickslip.contact.equation import resistance as contact_resistance
-from stickslip.engine.folds.branch_scan import branches_at, new_scan
+from stickslip.contact.folds import bounds_of
+from stickslip.engine.folds.moving_branches import branches_at, new_search
 from stickslip.engine.state.layout import Branch
 from stickslip.engine_input import branch_table
 from stickslip.run.options import RunOptions
@@ -254,13 +254,13 @@ def test_compiled_levels_agree_with_the_table(
 
 @pytest.mark.parametrize("law_slip", [0.0, 0.21, 0.9])
 @pytest.mark.parametrize("law", [WEAKENING, WAVY, PRODUCT, FREE, KINKED], ids=["weakening", "wavy", "product", "free", "kinked"])
-def test_a_scan_finds_the_branches_of_the_contact_equation(law: ss.friction.FrictionLaw, law_slip: float) -> None:
+def test_compiled_code_finds_the_branches_of_the_contact_equation(law: ss.friction.FrictionLaw, law_slip: float) -> None:
     """Ends and levels of the branches at a law slip, in compiled code and by `contact.branches`, to rounding of g."""
     case = ss.Problem(SLAB, law, initial_excess=1e6)
     run = Session.begin(case, RunOptions(1.0))
-    scan = new_scan(search_grid(contact_resistance(case)))
-    count = branches_at(run.memory, law_slip, int(law.piece_at(law_slip)), scan)
-    expected, found = Branch.of(branch_table.table_of_branches(case, law_slip)[0]), Branch.of(scan.found[:count])
+    search = new_search(bounds_of(contact_resistance(case)), case.law_slip)
+    count = branches_at(run.memory, law_slip, int(law.piece_at(law_slip)), search)
+    expected, found = Branch.of(branch_table.table_of_branches(case, law_slip)[0]), Branch.of(search.found[:count])
     assert count == len(expected.rate_from)
     for name in ("rate_from", "rate_to"):
         assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=1e-9, abs=1e-300)

@@ -11,6 +11,7 @@ from stickslip.batch.kernels.branch_search import MOST_BRANCHES, RULES, Found, R
 from stickslip.batch.kernels.constants import fill_constants
 from stickslip.batch.vectorised_problem import Values, member, shared, vectorised_problem
 from stickslip.engine.codegen.compiler import CompiledFormula, compile_formula
+from stickslip.engine.enclosure.formula import formulas_of
 from stickslip.engine.state.layout import Branch, Counts, Floats, Integers, LawPiece, Params, State
 from stickslip.engine_input.automatic import set_lumping, wait_for_creep
 from stickslip.engine_input.branch_table import is_algebraic, table_of_branches
@@ -198,7 +199,11 @@ def branches_of(problem: Problem, group: Alike, constants: Floats, count: int) -
         near = law.rate_at_slope(-impedance / normal)
     near = spread(np.nan if near is None else near, count)
     address = int(LawPiece(group.functions[0]).value_at)
-    contacts = Resistances(address, constants, impedance, normal, start, slowest, fastest, near)
+    numbers = np.array([spread(getattr(law, name), count) for name in law.parameters()]).reshape(-1, count).T
+    tree = one.friction.trees()[0]
+    formulas = formulas_of((tree,) * count, law.parameters(), numbers)
+    slip = spread(problem.law_slip, count)
+    contacts = Resistances(address, constants, impedance, normal, start, slowest, fastest, near, formulas, slip)
     found = Found(table, branches, irregular, stick_to)
     search_branches(contacts, *kind, np.empty(4), found)
     return found

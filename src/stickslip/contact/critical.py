@@ -12,13 +12,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Literal
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
-
-from stickslip.contact.branches import ABOVE, search_grid
 from stickslip.contact.equation import Resistance, resistance
-from stickslip.contact.folds.certified import Verdict
-from stickslip.contact.folds.lowest import bounded, lowest_slope, proven_regime
+from stickslip.contact.folds import Verdict, certificate, lowest_slope
 from stickslip.contact.roots import sign_change
 from stickslip.foundation.brief_repr import brief_repr
 from stickslip.foundation.errors import InputError
@@ -29,15 +24,8 @@ Regime = Literal["regular", "irregular"]
 
 _DECADES, _PER_DECADE = 9, 4
 """Decades that the search covers on either side of the present value, and its steps in each decade."""
-MISSED = 1e-6
-"""Share of Z by which the true minimum of g' must lie below that of the grid to be searched for.
-
-A smaller share would cost time at each point of a regime map.
-"""
 _STEPS = tuple(2.0**-k for k in range(50, 25, -4))
 """Relative distances from a critical value at which a proof of the regimes is tried, the smallest first."""
-_LOWEST = 5
-"""Number of local minima of g' on the grid, lowest first, that are refined; any of them may hold the true minimum."""
 
 
 @dataclass(frozen=True)
@@ -54,10 +42,10 @@ class Critical:
     regimes: tuple[Regime, ...]
     searched: tuple[float, float]
     """Smallest and largest value that the search has covered; nothing is known outside."""
-    certificate: Verdict = "searched"
+    certificate: Verdict = "not decided"
     """"proven": interval arithmetic shows that the regime differs between the two ends of each of `enclosures`, and that it is the
-    stated one at the present value. "not decided": interval arithmetic fails to show one of these. "searched": the law has no
-    guaranteed bounds. It is never proven that there are no further changes between the values that were examined."""
+    stated one at the present value. "not decided": interval arithmetic fails to show one of these. It is never proven that there
+    are no further changes between the values that were examined."""
     enclosures: tuple[tuple[float, float] | None, ...] = ()
     """For each of `values`, a number below it and one above it at which the regimes are proven to differ; None if that fails."""
 
@@ -70,66 +58,9 @@ class Critical:
 
 
 def steepest_fall(g: Resistance) -> tuple[float, float]:
-    """Return the slip rate (m/s) at which g' is smallest, and g' there (Pa s/m), to the rounding of g'.
-
-    For a law that bends one way it is at one of the two ends. Otherwise the minimum is searched on a grid. If guaranteed bounds of
-    g' show that the grid has missed a lower one, it is searched there.
-    """
-    if g.law.bends_one_way:
-        return _lower_end(g)
-    rate, slope = _searched_fall(g)
-    lowest = lowest_slope(g, MISSED)
-    if not lowest.at_most < slope - MISSED * g.impedance:
-        return rate, slope
-    width = lowest.rate_to - lowest.rate_from
-    slope, rate = _lowest_between(g, max(lowest.rate_from - width, 0.0), lowest.rate_to + width)
-    return rate, slope
-
-
-def _lower_end(g: Resistance) -> tuple[float, float]:
-    """Return the same as `steepest_fall` for a law whose g' only rises, or only falls."""
-    ends = np.array((0.0, ABOVE * max(g.scales)))
-    slopes = g.slope(ends)
-    k = int(np.argmin(slopes))
-    return float(ends[k]), float(slopes[k])
-
-
-def _searched_fall(g: Resistance) -> tuple[float, float]:
-    """Return the same as `steepest_fall`, from the grid alone."""
-    best = (math.inf, 0.0)
-    for slope, rate, low, high in local_minima(g):
-        best = min(best, (slope, rate), _lowest_between(g, low, high))
-    return best[1], best[0]
-
-
-def local_minima(g: Resistance) -> list[tuple[float, float, float, float]]:
-    """Return the lowest local minima of g' on the search grid, lowest first.
-
-    Each is g' (Pa s/m), its slip rate, and those of the grid points on both sides (m/s).
-    """
-    rates = search_grid(g)
-    slope = g.slope(rates)
-    lowest = np.flatnonzero((slope <= np.append(slope[1:], np.inf)) & (slope <= np.append(np.inf, slope[:-1])))
-    chosen = lowest[np.argsort(slope[lowest])][:_LOWEST]
-    sides = rates[np.maximum(chosen - 1, 0)], rates[np.minimum(chosen + 1, len(rates) - 1)]
-    return list(zip(slope[chosen].tolist(), rates[chosen].tolist(), *(side.tolist() for side in sides), strict=True))
-
-
-def _lowest_between(g: Resistance, low: float, high: float) -> tuple[float, float]:
-    """Return the smallest g' (Pa s/m) between two slip rates, to the rounding of g', and the rate (m/s) where it lies."""
-    while True:
-        rates = np.linspace(low, high, 33)
-        slope = g.slope(rates)
-        k = int(np.argmin(slope))
-        low, high = float(rates[max(k - 1, 0)]), float(rates[min(k + 1, 32)])
-        if same_to_rounding(slope[max(k - 1, 0) : k + 2], g.impedance, low, high):
-            return float(slope[k]), float(rates[k])
-
-
-def same_to_rounding(slopes: ArrayLike, impedance: ArrayLike, low: ArrayLike, high: ArrayLike) -> NDArray[np.bool_]:
-    """Return True if values of g' (last axis) differ only by rounding, or if two slip rates are neighbouring numbers."""
-    still = np.ptp(slopes, axis=-1) <= 4.0 * np.finfo(float).eps * np.asarray(impedance)
-    return np.asarray(still | (np.subtract(high, low) <= 4.0 * np.spacing(high)))
+    """Return the slip rate (m/s) at which g' is smallest, and g' there (Pa s/m), to the rounding of g'."""
+    lowest = lowest_slope(g)
+    return lowest.rate, lowest.slope
 
 
 def margin(problem: Problem, law_slip: float | None = None) -> float:
@@ -206,8 +137,7 @@ def critical_value(problem: Problem, name: str, law_slip: float | None = None) -
     enclosures = tuple(_proven_change(found, value, law_slip) for value in values)
     verdict: Verdict = "proven" if None not in enclosures else "not decided"
     if _proven(found, found.value, law_slip) != ("irregular" if here < 0.0 else "regular"):
-        enclosed = bounded(resistance(problem, law_slip))
-        verdict = "not decided" if enclosed else "searched"
+        verdict = "not decided"
     return Critical(found.name, found.unit, found.value, tuple(values), regimes, (points[0][0], points[-1][0]), verdict, enclosures)
 
 
@@ -219,7 +149,7 @@ def _proven(found: Parameter, value: float, law_slip: float | None) -> Regime | 
         return None
     if not g.law.depends_on_rate:
         return "regular"
-    return "irregular" if g.law.static_excess > 0.0 else proven_regime(g)
+    return "irregular" if g.law.static_excess > 0.0 else certificate(g).regime
 
 
 def _proven_change(found: Parameter, value: float, law_slip: float | None) -> tuple[float, float] | None:

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.contact.critical import check_no_contact_mass, margin
-from stickslip.contact.margins import margins
 from stickslip.contact.roots import sign_changes
 from stickslip.foundation.errors import InputError
 from stickslip.problem.parameters import Parameter
@@ -140,7 +139,7 @@ def regime_map(problem: Problem, x: Axis, y: Axis, progress: Callable[[int, int]
     def at(points: Sequence[tuple[float, float]]) -> Floats:
         problems = [put_both(names, point) for point in points]
         found = np.full(len(points), math.nan)
-        found[[problem is not None for problem in problems]] = margins([problem for problem in problems if problem is not None])
+        found[[problem is not None for problem in problems]] = [margin(problem) for problem in problems if problem is not None]
         return found
 
     points = [(x_value, y_value) for y_value in y.values.tolist() for x_value in x.values.tolist()]

@@ -16,10 +16,8 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip.contact.branches import Branch, branches_of, rates_at
 from stickslip.contact.critical import critical_normal_stress
 from stickslip.contact.declared_critical import check_critical
-from stickslip.contact.enclosed_folds import Fold, enclosure, sentence
 from stickslip.contact.equation import Plateau, Resistance, resistance
-from stickslip.contact.folds.certified import Certificate, Verdict, certificate
-from stickslip.contact.folds.lowest import critical_stress_between
+from stickslip.contact.folds import Certificate, Fold, Verdict, certificate, critical_stress_between, sentence
 from stickslip.contact.rules.loop import Jump, Loop, jumps_of, loop_of
 from stickslip.contact.rules.selection import table_of
 from stickslip.foundation.conversion import WithUnit
@@ -60,7 +58,7 @@ class Uniqueness:
     """Bounds between which the critical normal stress (Pa) is proven to lie; None if friction is not proven to fall anywhere."""
     certificate: Verdict = "proven"
     """"proven": `folds` is complete, by interval arithmetic or because the slip rate is a state. "not decided": it is complete
-    except for the slip rates in `undecided`, where a search on a grid is used. "searched": a search on a grid, without proof."""
+    except for the slip rates in `undecided`, of which only changes of sign of g' count as folds."""
     undecided: tuple[tuple[float, float], ...] = ()
     """Intervals of slip rates (m/s) in which rounding hides whether g turns or touches a slope of 0."""
     folds: tuple[Fold, ...] = ()
@@ -271,7 +269,7 @@ def _critical(problem: Problem, g: Resistance) -> tuple[str, float] | None:
 def _folds(g: Resistance, stable: tuple[Branch, ...], proof: Certificate) -> tuple[Fold, ...]:
     ends = {end: None for b in stable for end in ((b.rate_from, b.excess_from), (b.rate_to, b.excess_to))}
     moving = sorted((rate, excess) for rate, excess in ends if 0.0 < rate < np.inf)
-    return tuple(Fold(rate, g.strength + excess, enclosure(g, proof, rate)) for rate, excess in moving)
+    return tuple(Fold(rate, g.strength + excess, proof.enclosure(rate)) for rate, excess in moving)
 
 
 def _window(stable: tuple[Branch, ...]) -> tuple[float, float] | None:

@@ -16,15 +16,13 @@ from functools import cached_property
 
 import numpy as np
 
-from stickslip.contact.branches import scan_rates
 from stickslip.contact.equation import resistance
+from stickslip.contact.folds import bounds_of
 from stickslip.contact.rules.selection import selection_table
-from stickslip.engine.folds.branch_scan import Scan, new_scan
+from stickslip.engine.folds.moving_branches import Search, new_search
 from stickslip.engine.folds.moving_levels import (
     COMPILED_RULES,
     EXACT,
-    FIRST_PLACE,
-    LAST_PLACE,
     NEXT,
     ROUNDING,
     SHORTEST,
@@ -40,6 +38,8 @@ from stickslip.problem.problem import Problem
 
 AT_A_TIME = 100
 """Number of steps that are checked before the caller gets a chance to report progress."""
+PLACES = (0.5, 1.0)
+"""Places in a step, on [0, 1], at which a user's own rule is checked."""
 STORM_OF, STORM_IN = 30, 1e-6
 """An event storm: this many crossings within this share of a round trip."""
 
@@ -144,7 +144,7 @@ class Step:
     def crossing(self) -> float | None:
         """Return the place at which the load first leaves that interval, or None if it stays in it."""
         before, slack = 0.0, ROUNDING * self.problem.strength
-        for place in (FIRST_PLACE, LAST_PLACE):
+        for place in PLACES:
             if self.room(place) < -slack:
                 starts_outside = self.room(before) <= slack and self.room(before + NEXT * (place - before)) <= 0.0
                 return before if starts_outside else root_between(self.room, before, place, EXACT * self.problem.strength)
@@ -210,7 +210,7 @@ class RuleFollower:
     def set_levels(self, table: Integers) -> None:
         """Set the levels that `renewed` has left out, in the setup that the engine uses."""
         if has_levels_to_set(self.problem):
-            set_maxwell_levels(table, self._scan)
+            set_maxwell_levels(table, self._search)
 
     def _crossing(self, table: Integers, store: Store, length: int) -> float | None:
         """Return the place at which a slip step that has just been made crosses a level of the rule, or None."""
@@ -219,13 +219,13 @@ class RuleFollower:
             return None
         if self.problem.rule not in COMPILED_RULES:
             return Step(self.problem, store, length).crossing()
-        place = crossing_in(table, length, COMPILED_RULES[self.problem.rule], self._scan)
+        place = crossing_in(table, length, COMPILED_RULES[self.problem.rule], self._search)
         return place if place <= 1.0 else None
 
     @cached_property
-    def _scan(self) -> Scan:
-        """The memory with which compiled code looks for branches."""
-        return new_scan(scan_rates(resistance(self.problem)))
+    def _search(self) -> Search:
+        """What compiled code searches branches with."""
+        return new_search(bounds_of(resistance(self.problem)), self.problem.law_slip)
 
     def _storms(self) -> bool:
         """Record the time of a crossing, and return True if many have come with hardly any time between them."""

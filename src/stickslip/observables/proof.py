@@ -27,6 +27,9 @@ class Proof:
     """The same as a share (1) of the normal stress, or force."""
     unproven: int
     """Number of pieces of the history that are checked at places only: the law is not analytic where the slip rate passes zero."""
+    undecided: int
+    """Number of steps in which the selection rule is checked at places only: where folds move, it is not decided whether another
+    solution that the rule prefers comes and goes between them."""
     unit: str
     """Unit of the residual: Pa or N."""
 
@@ -38,18 +41,21 @@ class Proof:
         """One line on the bound."""
         share = f"{self.relative:.1g} of the normal {'stress' if self.unit == 'Pa' else 'force'}"
         found = f"the contact equation holds to {brief(self.residual, self.unit)} at every moment, {share}"
-        if not self.unproven:
-            return found
-        pieces = "1 piece" if self.unproven == 1 else f"{self.unproven} pieces"
-        return f"{found}, except in {pieces} next to a slip rate of zero, checked at places and not proven"
+        if self.unproven:
+            pieces = "1 piece" if self.unproven == 1 else f"{self.unproven} pieces"
+            found += f", except in {pieces} next to a slip rate of zero, checked at places and not proven"
+        if self.undecided:
+            steps = "1 step" if self.undecided == 1 else f"{self.undecided} steps"
+            found += f"; in {steps} the selection rule is checked at places only"
+        return found
 
 
-def proof_of(history: History) -> Proof:
-    """Return what is proven of a history."""
+def proof_of(history: History, undecided: int) -> Proof:
+    """Return what is proven of a history, with the number of steps in which the selection rule is not proven to hold."""
     residual = history.store.residual
-    return proof_from(history.problem, np.nanmax(residual, initial=0.0), int(np.count_nonzero(np.isnan(residual))))
+    return proof_from(history.problem, np.nanmax(residual, initial=0.0), int(np.count_nonzero(np.isnan(residual))), undecided)
 
 
-def proof_from(problem: Problem, residual: float, unproven: int) -> Proof:
-    """Return what is proven of a run, from its largest bound (Pa or N) and the number of pieces without one."""
-    return Proof(float(residual), float(residual / problem.normal), int(unproven), problem.load_unit)
+def proof_from(problem: Problem, residual: float, unproven: int, undecided: int) -> Proof:
+    """Return what is proven of a run, from its largest bound (Pa or N) and the numbers of pieces and steps without a proof."""
+    return Proof(float(residual), float(residual / problem.normal), int(unproven), int(undecided), problem.load_unit)

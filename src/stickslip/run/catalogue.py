@@ -227,7 +227,7 @@ class EventRows:
         solution = run.solution(code)
         known = is_followed(run.problem)
         prediction = predictability_of_events(self.rows.columns("start", "amplification"), run.options.rtol) if known else None
-        proven = proof_from(run.problem, run.state.largest_residual, run.count.unproven).text
+        proven = proof_from(run.problem, run.state.largest_residual, run.count.unproven, run.count.undecided).text
         self.rows.publish(origin(solution) | {"proven": proven} | attributes_of(prediction), run.problem.load_unit)
         self.save(run, code)
         self.rows.tidy()

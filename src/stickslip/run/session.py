@@ -133,6 +133,7 @@ class Session:
             description=options.description,
             lumping_note=self.lumping_note,
             rounding_note=self.rounding_note,
+            undecided=int(self.count.undecided),
         )
 
     def advance(self, last: tuple[int, float], budget: int) -> int:

@@ -58,6 +58,8 @@ class Solution(Exports):
     """One line on automatic lumping; empty if it did not begin."""
     rounding_note: str = ""
     """One line on steps in which rounding in the law's formula exceeds the tolerance; empty if there are none."""
+    undecided: int = 0
+    """Number of steps in which it is not decided whether the selection rule would have left the branch between two looks."""
     title: str = ""
     """Title of the scenario, which figures show; empty for a problem from Python."""
     description: str = ""
@@ -257,7 +259,7 @@ class Solution(Exports):
     @cached_property
     def proven(self) -> Proof:
         """How far, at most, the run is from obeying the contact equation at any moment: a bound that is proven, see `Proof`."""
-        return proof_of(self.history)
+        return proof_of(self.history, self.undecided)
 
     @cached_property
     def horizon_note(self) -> str:

@@ -1,7 +1,7 @@
 """Find the branches of many resistances g(s) = Z s + S mu(s): `contact.branches` and `contact.rules.selection` in compiled code.
 
 If mu is convex or concave, g has one fold at most, which is located to two neighbouring floating-point numbers. For any other law,
-folds are searched on the same grid of slip rates as in `contact.branches`, but without knots of the law.
+folds come from bounds of g', as in `contact.folds`.
 """
 
 from __future__ import annotations
@@ -12,22 +12,21 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stickslip.engine.codegen.compiler import ahead, bits_of, call_value, float_of, floats, kernel
+from stickslip.engine.enclosure.formula import Formulas
+from stickslip.engine.folds.turns import FASTEST, MOST_EVALUATIONS, Turns, find_turns, folds_of, new_cells, room_for_turns
+from stickslip.engine.folds.turns import Resistance as Bounded
 from stickslip.engine.state.layout import Branch, Floats, Integers, Rule
 from stickslip.engine.state.workspace import branches_in
 
 MOST_BRANCHES = 4
 """Largest number of branches for which tables have room."""
+ROOM = 64
+"""Largest number of turns of g, or of intervals in which these are not decided, that are told apart."""
 RULES = ("perfect-delay", "minimal", "maximal")
 """Selection rules that a batch supports, in the order of the codes of `Rule`."""
 
-POINTS_PER_DECADE = 64
-"""Density of the geometric part of the search grid, as in `contact.branches`."""
-EVEN_POINTS, EVEN_REACH = 2001, 10.0
-"""Number of points of the even part of the search grid, and its end as a multiple of the fastest scale."""
 BELOW, ABOVE = 1e-8, 1e4
-"""The search grid extends from this multiple of the slowest scale of the contact to this multiple of the fastest one."""
-ROUNDS, BETWEEN = 3, 17
-"""Number of times that the grid is refined where g' nearly touches zero, and number of rates put between the two neighbours."""
+"""Between these multiples of the slowest and of the fastest scale of a contact lies the fold of a law that bends one way."""
 NEVER_RISES, TOO_MANY = 0, -1
 """Results instead of a number of branches: g still falls at the fastest rate, or there are more branches than fit."""
 NEARBY = 1e-14
@@ -61,6 +60,8 @@ class Resistances(NamedTuple):
     slowest: Floats  # slowest and fastest scale of the contact, m/s
     fastest: Floats
     near: Floats  # m/s: slip rate at which the law says that the fold is, or NaN
+    formulas: Formulas  # the formula with the numbers of each member
+    slip: Floats  # m: law slip
 
 
 class Found(NamedTuple):
@@ -146,55 +147,25 @@ def turns_once(g: Resistance, slowest: float, fastest: float, near: float, ends:
 
 
 @kernel
-def search_grid(slowest: float, fastest: float) -> Floats:
-    """Return ascending slip rates (m/s): 0, a geometric progression over all scales, and an even one up to EVEN_REACH fastest."""
-    low, high = math.log10(slowest * BELOW), math.log10(fastest * ABOVE)
-    even = np.linspace(0.0, EVEN_REACH * fastest, EVEN_POINTS)
-    steep = 10.0 ** np.linspace(low, high, math.ceil((high - low) * POINTS_PER_DECADE))
-    return np.unique(np.concatenate((even, steep)))
-
-
-@kernel
-def refined(rates: Floats, slope: Floats) -> Floats:
-    """Return the slip rates with more of them where a parabola through three values of g' of one sign might reach zero."""
-    extra = [rates[0]]
-    for n in range(1, len(rates) - 1):
-        left, middle, right = slope[n - 1], slope[n], slope[n + 1]
-        bends = 4.0 * abs(middle) < np.sign(middle) * (left - 2.0 * middle + right)
-        if bends and left * middle > 0.0 and middle * right > 0.0:
-            extra.extend(np.linspace(rates[n - 1], rates[n + 1], BETWEEN))
-    return np.unique(np.concatenate((rates, np.array(extra)))) if len(extra) > 1 else rates
-
-
-@kernel
-def slopes_at(g: Resistance, rates: Floats) -> Floats:
-    """Return g' (Pa s/m) at many slip rates (m/s)."""
-    slope = np.empty(len(rates))
-    for n in range(len(rates)):
-        slope[n] = slope_at(g, rates[n])
-    return slope
-
-
-@kernel
-def turns(g: Resistance, slowest: float, fastest: float, ends: Floats) -> int:
-    """Write the ends of the branches of any resistance into `ends`; return the number of branches, NEVER_RISES or TOO_MANY."""
-    rates = search_grid(slowest, fastest)
-    for _ in range(ROUNDS):
-        rates = refined(rates, slopes_at(g, rates))
-    slope = slopes_at(g, rates)
-    if not slope[-1] > 0.0:
+def turns_of(of: Resistances, n: int, ends: Floats, table: Turns, cells: Floats) -> int:
+    """Write the ends of the branches (m/s) of member n into `ends`; return their number, NEVER_RISES or TOO_MANY."""
+    knots, pieces = np.zeros(0), np.full(1, n)
+    g = Bounded(of.formulas, knots, pieces, of.impedance[n], of.normal[n], of.slowest[n], of.fastest[n], cells)
+    found = find_turns(g, of.slip[n], FASTEST, MOST_EVALUATIONS, table)
+    if found.intervals >= 0 and found.at_end < 0:
         return NEVER_RISES
-    found, rises = 0, slope[0] > 0.0 or (slope[0] == 0.0 and slope[1] > 0.0)
-    if rises:
-        ends[0], found = 0.0, 1
-    for n in range(1, len(rates)):
-        if (slope[n] > 0.0) != rises:
-            if found + 2 > len(ends):
-                return TOO_MANY
-            ends[found] = turn_between(g, rates[n - 1], rates[n], slope[n - 1], slope[n])
-            found, rises = found + 1, not rises
-    ends[found] = math.inf
-    return (found + 1) // 2
+    folds = folds_of(table, found.intervals, ends[1:])
+    rises = folds % 2 == 0
+    if found.intervals < 0 or folds + 2 > len(ends):
+        return TOO_MANY
+    if not rises:
+        for k in range(folds):
+            ends[k] = ends[k + 1]
+    else:
+        ends[0] = 0.0
+    count = folds + 1 if rises else folds
+    ends[count] = math.inf
+    return (count + 1) // 2
 
 
 @kernel
@@ -225,7 +196,7 @@ def search_branches(of: Resistances, one_way: bool, rule: int, work: Floats, fou
     one_way: mu is convex or concave. rule: a code of `Rule`. work has room for what `value` returns and belongs to the caller,
     because an array made here would be freed as soon as its address is taken.
     """
-    ends = np.empty(2 * MOST_BRANCHES)
+    ends, table, cells = np.empty(2 * ROOM + 2), room_for_turns(ROOM), new_cells()
     out, size = floats(work.ctypes.data), of.constants.shape[1] * of.constants.shape[2] if len(of.constants) > 1 else 0
     for n in range(len(found.table)):
         c = ahead(floats(of.constants.ctypes.data), n * size)
@@ -233,7 +204,8 @@ def search_branches(of: Resistances, one_way: bool, rule: int, work: Floats, fou
         if one_way:
             count = turns_once(g, of.slowest[n], of.fastest[n], of.near[n], ends)
         else:
-            count = turns(g, of.slowest[n], of.fastest[n], ends)
+            count = turns_of(of, n, ends, table, cells)
+            count = TOO_MANY if count > MOST_BRANCHES else count
         found.branches[n], found.irregular[n], found.stick_to[n] = count, 0.0, 0.0
         if count <= 0:
             continue

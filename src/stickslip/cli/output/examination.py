@@ -10,7 +10,7 @@ from stickslip.cli.output.tables import print_words
 from stickslip.foundation.formatting import clean, with_unit
 
 if TYPE_CHECKING:
-    from stickslip.contact.enclosed_folds import Fold
+    from stickslip.contact.folds import Fold
     from stickslip.contact.uniqueness import Uniqueness
     from stickslip.scenarios.examine import Examination
     from stickslip.scenarios.scenario import Scenario

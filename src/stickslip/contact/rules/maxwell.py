@@ -8,24 +8,17 @@ which the areas between g and the load line are equal. Loads are excesses over t
 from __future__ import annotations
 
 import math
-from functools import cache
 from itertools import combinations, pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stickslip.contact.branches import Branch, rate_on
 from stickslip.contact.equation import Resistance
+from stickslip.contact.folds import bounds_of
 from stickslip.contact.roots import bracketed_newton
+from stickslip.engine.folds.panels import MOST_PANELS, NODES, WEIGHTS, panels_between
 
 _STICK = Branch(0.0, 0.0, -math.inf, 0.0)
-
-
-@cache
-def _gauss() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return nodes on [-1, 1] and weights; not when the module is loaded, because numpy's polynomials take a while to load."""
-    nodes, weights = np.polynomial.legendre.leggauss(16)
-    return nodes, weights
 
 
 def best_branches(g: Resistance, stable: tuple[Branch, ...]) -> dict[int, tuple[float, float]]:
@@ -77,19 +70,11 @@ def _rate(g: Resistance, branch: Branch, excess: float) -> float:
 
 
 def area(g: Resistance, start: float, end: float, excess: float) -> float:
-    """Return the integral of g - load from start to end (m/s), in Pa m/s.
-
-    Gauss-Legendre quadrature on panels that about double in width away from rate 0 and end at kinks of the law. It is accurate to
-    rounding for a law that is smooth in log s between its kinks.
-    """
+    """Return the integral of g - load from start to end (m/s), in Pa m/s: Gauss's rule on panels that resolve the law."""
     if end <= start:
         return 0.0
-    first = max(start, min(1e-3 * min(g.scales), end))
-    count = max(1, math.ceil(math.log2(end / first)))
-    inner = first * (end / first) ** (np.arange(count + 1) / count)
-    kinks = [knot for knot in g.rate_knots if start < knot < end]
-    edges = np.unique(np.concatenate(([start], inner, kinks)))
+    edges = np.empty(MOST_PANELS + 1)
+    edges = edges[: panels_between(bounds_of(g), g.law_slip, start, end, edges) + 1]
     half = 0.5 * np.diff(edges)
-    nodes, weights = _gauss()
-    rates = edges[:-1, None] + half[:, None] * (1.0 + nodes)
-    return float(np.sum(half * ((g.excess(rates) - excess) @ weights)))
+    rates = edges[:-1, None] + half[:, None] * (1.0 + NODES)
+    return float(np.sum(half * ((g.excess(rates) - excess) @ WEIGHTS)))

@@ -101,7 +101,7 @@ def call(handle: int, *arguments: Any) -> Any:
 
 
 MATHS = SimpleNamespace(
-    **{name: getattr(np, name) for name in ("sqrt", "log", "exp", "expm1", "log1p", "sin", "cos", "tanh", "sinh", "cosh")},
+    **{name: getattr(np, name) for name in ("sqrt", "log", "exp", "expm1", "log1p", "sin", "cos", "tanh", "sinh", "cosh", "hypot")},
     **{name: getattr(np, name) for name in ("isnan", "isfinite", "isinf", "floor", "ceil", "copysign", "fabs")},
     asinh=np.arcsinh,
     inf=np.float64(np.inf),

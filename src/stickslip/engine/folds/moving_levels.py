@@ -1,8 +1,9 @@
 """Levels of the built-in selection rules where folds move with slip, in compiled code: along a step, and for a choice.
 
-A level is a load at which a rule leaves a branch or rest. At a place in a step the branches are found by a scan (`branch_scan`);
-the distance of the load from the levels of its branch is the *room* that the rule leaves to it. The step crosses a level where
-the room falls below zero.
+A level is a load at which a rule leaves a branch or rest. At a place in a step the branches are found by `moving_branches`; the
+distance of the load from the levels of its branch is the *room* that the rule leaves to it. The step crosses a level where the room
+falls below zero. Between two places `rule_proof` shows that it does not; a slice of the step without this proof is halved, down to
+SHORTEST_SLICE, and what is still open then is noted.
 """
 
 from __future__ import annotations
@@ -12,8 +13,18 @@ from typing import NamedTuple
 
 from stickslip.engine.codegen.compiler import kernel
 from stickslip.engine.contact.contact_equation import towards
-from stickslip.engine.folds.branch_scan import Contact, Scan, area, branch_near, contact_of, find_branches, rate_at, strength_at
-from stickslip.engine.series.polynomial import NONE, evaluate, integral
+from stickslip.engine.folds.moving_branches import (
+    Contact,
+    Search,
+    area,
+    branch_near,
+    contact_of,
+    find_branches,
+    rate_at,
+    strength_at,
+)
+from stickslip.engine.folds.rule_proof import law_slip_in, rule_is_kept
+from stickslip.engine.series.polynomial import NONE, evaluate
 from stickslip.engine.state.layout import Integers, Rule
 from stickslip.engine.state.workspace import Run, borrow
 
@@ -25,19 +36,25 @@ ROUNDING = 1e-11
 EXACT, SHORTEST = 1e-14, 1e-15
 """Tolerances of a crossing (1): distance of the load from the level, relative to the reference strength, and width of the bracket
 in the step. Equal areas use the first, relative to the normal stress."""
-FIRST_PLACE, LAST_PLACE = 0.5, 1.0
-"""Places in a step, on [0, 1], at which the rule is checked."""
+SHORTEST_SLICE = 2.0**-20
+"""Length of a slice, as a share of a step (1), that is not halved any more."""
+SHORTEST_IN_WINDOW = 0.125
+"""The same under Maxwell's rule, for which there is no proof while several solutions exist: the ends of slices decide."""
+MOST_SLICES = 1000
+"""Largest number of slices of a step that are looked at one by one; after that only the end of the step is."""
+NOTED = 1e-3
+"""Share of a step (1) without a proof from which on this is noted."""
 NEXT = 1e-4
-"""Share of a step (1) after which a load that starts at a level is checked again: if it is outside there, it leaves at once."""
+"""Share of a slice (1) after which a load that starts at a level is checked again: if it is outside there, it leaves at once."""
 
 
 class View(NamedTuple):
-    """Hold a step of slip to which a rule is applied, with the slip rates to scan and the table for branches."""
+    """Hold a step of slip to which a rule is applied, and what its branches are searched with."""
 
     run: Run
     step: int  # its piece of the history
     rule: int  # a code of `Rule`, not PERFECT_DELAY
-    scan: Scan
+    search: Search
 
 
 @kernel
@@ -77,24 +94,16 @@ def maxwell_room(contact: Contact, rate: float, load: float, branches: int) -> f
 
 
 @kernel
-def law_slip_in(run: Run, n: int, xi: float) -> float:
-    """Return the law slip (m), minus its initial value, at the place `xi` in piece n of the history."""
-    piece = run.history[n]
-    grown = piece.speed * integral(piece.rate, xi, 1) + 2.0 * piece.bend * integral(piece.rate, xi, 2)
-    return piece.law_slip + (grown if run.params.counts_net == 1.0 else piece.mode * grown)
-
-
-@kernel
 def room_in(view: View, xi: float) -> float:
     """Return the distance (Pa) of the load from the ends of the interval in which the rule keeps the branch; negative outside."""
     run, n = view.run, view.step
     step, law_slip = run.history[n], law_slip_in(run, n, xi)
-    contact = contact_of(run, step.law_piece, law_slip, view.scan)
+    contact = contact_of(run, step.law_piece, law_slip, view.search)
     rate = abs(evaluate(step.rate, xi))
     load = towards(run, evaluate(step.load, xi), step.mode)
     branches = find_branches(contact, max(rate, fastest(run, load)) * (1.0 + 1e-9))
     if branches == 0:
-        return math.inf  # the branch is narrower than the spacing of the scan
+        return math.inf  # more turns than there is room for
     own = branch_near(contact, rate, branches)
     low, high = contact.found[own].excess_from, contact.found[own].excess_to
     if view.rule == Rule.MINIMAL:
@@ -135,19 +144,33 @@ def place_of_crossing(view: View, low: float, high: float) -> float:
 
 
 @kernel
-def crossing_in(places: Integers, step: int, rule: int, scan: Scan) -> float:
+def crossing_in(places: Integers, step: int, rule: int, search: Search) -> float:
     """Return the place in a step, on [0, 1], at which the load first leaves the interval in which the rule keeps the branch.
 
     NONE means that it stays inside. `places` comes from `workspace.lend`, `step` is a piece of the history.
     """
-    view = View(borrow(places), step, rule, scan)
-    before, slack = 0.0, ROUNDING * view.run.params.reference
-    for place in (FIRST_PLACE, LAST_PLACE):
-        if room_in(view, place) < -slack:
-            if room_in(view, before) <= slack and room_in(view, before + NEXT * (place - before)) <= 0.0:
-                return before
-            return place_of_crossing(view, before, place)
-        before = place
+    view = View(borrow(places), step, rule, search)
+    contact = contact_of(view.run, view.run.history[step].law_piece, 0.0, search)
+    slack, shortest = ROUNDING * view.run.params.reference, SHORTEST_IN_WINDOW if rule == Rule.MAXWELL else SHORTEST_SLICE
+    low, length, open_ = 0.0, 1.0, 0.0
+    for k in range(MOST_SLICES):
+        if low >= 1.0:
+            break
+        high = low + length if k < MOST_SLICES - 1 else 1.0
+        if not rule_is_kept(contact, rule, step, low, high):
+            if length > shortest and k < MOST_SLICES - 1:
+                length *= 0.5
+                continue
+            if room_in(view, high) < -slack:
+                if room_in(view, low) <= slack and room_in(view, low + NEXT * (high - low)) <= 0.0:
+                    return low
+                return place_of_crossing(view, low, high)
+            open_ += high - low
+        low = high
+        doubled = 2.0 * length
+        if doubled <= 1.0 and low / doubled == math.floor(low / doubled):
+            length = doubled
+    view.run.counts.undecided += 1 if open_ > NOTED else 0
     return NONE
 
 
@@ -208,13 +231,13 @@ def hand_over(contact: Contact, slow: int, fast: int, stick_to: float) -> float:
 
 
 @kernel
-def set_maxwell_levels(places: Integers, scan: Scan) -> None:
+def set_maxwell_levels(places: Integers, search: Search) -> None:
     """Write the levels of Maxwell's rule at the present slip into the setup, in which branches are still kept up to their ends.
 
     `places` is the memory that `workspace.lend` has filled; a branch that is never preferred gets an empty interval.
     """
     run = borrow(places)
-    contact = contact_of(run, run.counts.piece, run.state.law_slip, scan)
+    contact = contact_of(run, run.counts.piece, run.state.law_slip, search)
     for k in range(run.branches):
         known, found = run.branch_table[k], contact.found[k]
         found.rate_from, found.rate_to = known.rate_from, known.rate_to

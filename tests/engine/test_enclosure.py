@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from stickslip.friction.formula import interval as iv
-from stickslip.friction.formula.enclosure import NotEnclosedError, enclose
+from stickslip.engine.enclosure import intervals as iv
+from stickslip.foundation.errors import InputError
 from stickslip.friction.formula.expression import (
     FUNCTIONS,
     OPERATIONS,
@@ -20,9 +20,11 @@ from stickslip.friction.formula.expression import (
     Expression,
     Parameter,
     as_expression,
+    evaluate,
     exp,
     nodes_of,
 )
+from tests.engine.enclosing import enclose
 
 mpmath = pytest.importorskip("mpmath")
 mpmath.mp.dps = 50
@@ -112,19 +114,19 @@ def test_bounds_hold_the_exact_values_and_derivatives(width):
     assert outside == 0
 
 
-def test_without_outward_rounding_values_escape(monkeypatch):
-    """The test above has teeth: bounds that are rounded to nearest lose many values of single rates."""
-    monkeypatch.setattr(iv, "outward", lambda a: a)
-    monkeypatch.setattr(iv, "_widened", lambda a, error=0.0: a)
-    monkeypatch.setattr(iv, "WAVE_ERROR", 0.0)
-    outside, checked = escapes(seed=7, trees=200, width=0.0)
-    assert outside > 0.1 * checked
-
-
-def test_with_single_steps_of_rounding_left_out_values_escape(monkeypatch):
-    """Sums and products without outward rounding are noticed even though library functions are widened."""
-    monkeypatch.setattr(iv, "outward", lambda a: a)
-    assert escapes(seed=7, trees=200, width=0.0)[0] > 0
+def test_numbers_without_outward_rounding_escape():
+    """The test above has teeth: the middles of the intervals, rounded to nearest, are mostly not the exact values."""
+    rng, outside, checked = np.random.default_rng(7), 0, 0
+    for _ in range(200):
+        tree, rate = drawn(rng, 4), float(10.0 ** rng.uniform(-4.0, 2.0))
+        (least,), (most,) = enclose(tree, PARAMETERS, SLIP_HERE, rate, rate)[0]
+        try:
+            value = exact(tree, rate)
+        except (ValueError, ZeroDivisionError, OverflowError):
+            continue
+        outside += mpmath.mpf(0.5 * (least + most)) != value
+        checked += 1
+    assert outside > 0.9 * checked > 90
 
 
 def test_bounds_at_single_rates_are_tight():
@@ -136,11 +138,16 @@ def test_bounds_at_single_rates_are_tight():
         assert np.all(high - low <= 1e-14)
 
 
-CELL_FUNCTIONS: dict[str, tuple[Callable[[Any], Any], Callable[[Any], Any]]] = {
-    name: (getattr(iv, name), getattr(np, name)) for name in ("sin", "cos", "exp", "expm1", "tanh", "arcsinh", "square")
-} | {
-    "sech_squared": (iv.sech_squared, lambda x: np.cosh(x) ** -2),
-    "arcsinh_slope": (iv.arcsinh_slope, lambda x: 1.0 / np.hypot(1.0, x)),
+CELL_FUNCTIONS: dict[str, tuple[Callable[[float, float], Any], Callable[[Any], Any]]] = {
+    "sine": (iv.sine, np.sin),
+    "cosine": (iv.cosine, np.cos),
+    "exponential": (iv.exponential, np.exp),
+    "exponential less one": (iv.exponential_less_one, np.expm1),
+    "tangent": (iv.tangent, np.tanh),
+    "inverse sine": (iv.inverse_sine, np.arcsinh),
+    "square": (iv.square, np.square),
+    "slope of tanh": (iv.tangent_slope, lambda x: np.cosh(x) ** -2),
+    "slope of arcsinh": (iv.inverse_sine_slope, lambda x: 1.0 / np.hypot(1.0, x)),
     "logistic": (iv.logistic, lambda x: 1.0 / (1.0 + np.exp(x))),
 }
 
@@ -152,7 +159,7 @@ def test_functions_of_cells_are_the_hull_of_their_values(name):
     rng = np.random.default_rng(11)
     low = np.concatenate((rng.uniform(-20.0, 20.0, 300), 0.25 * np.pi * np.arange(-20, 20)))
     high = low + rng.exponential(2.0, low.shape)
-    least, most = iv.ends(function(iv.interval(low, high)))
+    least, most = np.array([function(*ends) for ends in zip(low.tolist(), high.tolist(), strict=True)]).T
     values = numeric(np.linspace(low, high, 2001))
     steepest = np.max(np.abs(np.diff(values, axis=0)), axis=0)
     size = 1e-14 * (1.0 + np.max(np.abs(values), axis=0))
@@ -186,31 +193,39 @@ def test_products_with_an_infinite_end_are_numbers():
     numbers = np.array([-np.inf, -1e300, -1.0, -5e-324, 0.0, 5e-324, 1.0, 1e300, np.inf])
     low, high = np.sort(rng.choice(numbers, size=(2, 400)), axis=0)
     keep = (low < np.inf) & (high > -np.inf)
-    a, b = iv.interval(low[keep], high[keep]), iv.interval(low[keep][::-1], high[keep][::-1])
-    with np.errstate(all="ignore"):
-        for found in (iv.add(a, b), iv.subtract(a, b), iv.multiply(a, b), iv.square(a), iv.reciprocal(a), iv.exp(a), iv.log(a)):
-            least, most = iv.ends(found)
-            assert not np.isnan(found).any()
-            assert np.all(least <= most)
-            assert np.all(least < np.inf)
-            assert np.all(most > -np.inf)
+    cells = list(zip(low[keep].tolist(), high[keep].tolist(), strict=True))
+    for one, other in zip(cells, cells[::-1], strict=True):
+        found = [operation(*one, *other) for operation in (iv.add, iv.subtract, iv.multiply)]
+        found += [function(*one) for function in (iv.square, iv.reciprocal, iv.exponential, iv.logarithm)]
+        for least, most in found:
+            assert least <= most
+            assert least < np.inf
+            assert most > -np.inf
 
 
-def test_many_cells_are_bounded_as_one_by_one():
-    tree = drawn(np.random.default_rng(5), 5) + Parameter("alpha") * RATE
-    low = np.geomspace(1e-3, 1e2, 40)
-    alphas = np.linspace(1.0, 2.0, 40)
-    together = enclose(tree, {"alpha": alphas}, SLIP_HERE, low, 1.1 * low)
-    for k in (0, 17, 39):
-        alone = enclose(tree, {"alpha": alphas[k]}, SLIP_HERE, low[k : k + 1], 1.1 * low[k : k + 1])
-        assert all(np.array_equal(one[:, k], other[:, 0]) for one, other in zip(together, alone, strict=True))
+def test_a_power_of_the_slip_rate_is_enclosed():
+    """(1 + v)**v, whose exponent depends on the slip rate; d/dv = value (log(1 + v) + v / (1 + v))."""
+    value, slope, _ = enclose(Expression("pow", (1.0 + RATE, RATE)), {}, 0.0, 1.0, 1.0)
+    assert value[0, 0] <= 2.0 <= value[1, 0] <= 2.0 * (1 + 1e-13)
+    assert slope[0, 0] <= 2.0 * (math.log(2.0) + 0.5) <= slope[1, 0]
 
 
-@pytest.mark.parametrize(
-    "tree",
-    [RATE * STATE, Expression("erf", (RATE,)), Expression("pow", (1.0 + RATE, RATE))],
-    ids=["state", "erf", "power of the rate"],
-)
-def test_what_has_no_sure_bounds_is_refused(tree):
-    with pytest.raises(NotEnclosedError):
-        enclose(tree, {}, 0.0, np.array([0.0]), np.array([1.0]))
+def test_boxes_of_slip_and_slip_rate_hold_the_values_in_them():
+    """At 100 places each of 100 boxes, to 1e-14 of the values."""
+    rng = np.random.default_rng(12)
+    for _ in range(100):
+        tree = drawn(rng, 4)
+        slip, rate = (np.sort(10.0 ** rng.uniform(-3.0, 1.0, 2)) for _ in range(2))
+        least, most = enclose(tree, PARAMETERS, (slip[0], slip[1]), rate[0], rate[1])[0, :, 0]
+        u, v = (ends[0] + (ends[1] - ends[0]) * rng.random(100) for ends in (slip, rate))
+        with np.errstate(all="ignore"):
+            values = np.broadcast_to(evaluate(tree, PARAMETERS, u, v), 100)
+        known = np.isfinite(values)
+        slack = 1e-14 * (1.0 + np.abs(values[known]))
+        assert np.all(values[known] >= least - slack)
+        assert np.all(values[known] <= most + slack)
+
+
+def test_a_formula_with_a_state_is_refused():
+    with pytest.raises(InputError, match="state of its own"):
+        enclose(RATE * STATE, {}, 0.0, 0.0, 1.0)

@@ -1,0 +1,176 @@
+"""Folds of the resistance g(v) = Z v + S mu(v), and its smallest slope, each with a proof by bounds of g' and g''.
+
+The proofs are those of `engine.folds.turns` and `engine.folds.lowest_slope`, in compiled code; here they meet a contact.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import ClassVar, Literal
+
+import numpy as np
+
+from stickslip.contact.equation import Resistance
+from stickslip.engine.enclosure.formula import formulas_of
+from stickslip.engine.folds import turns
+from stickslip.engine.folds.lowest_slope import find_lowest, polished
+from stickslip.engine.folds.turns import FASTEST, find_turns, folds_of, new_cells, room_for_turns
+from stickslip.foundation.brief_repr import brief_repr
+from stickslip.foundation.errors import InputError
+
+Verdict = Literal["proven", "not decided"]
+"""proven: by interval arithmetic. not decided: proven except on some intervals of slip rates."""
+Interval = tuple[float, float]
+
+_TOLERANCE, _NEAR = 1e-12, 1e3
+"""Distance of the two bounds of the smallest g', relative to the larger of Z and |g'|, at which the search ends, and the multiple
+of it by which rounding may keep them apart while the smallest g' still counts as proven."""
+_ROUNDING = 8.0 * float(np.finfo(float).eps)
+"""Relative rounding error allowed for three operations."""
+_MOST_SHOWN = 6
+"""Largest number of folds that a sentence names; more would make it unreadable."""
+
+
+@dataclass(frozen=True)
+class Fold:
+    """A slip rate (m/s) at which g changes between rising and falling, and the load (Pa) there."""
+
+    rate: float
+    load: float
+    enclosure: Interval | None = None
+    """Slip rates (m/s) between which g is proven to turn exactly once; None if that is not decided."""
+
+    units: ClassVar = {"rate": "m/s", "load": "Pa", "enclosure": "m/s"}
+    __repr__ = brief_repr
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """A proof of the turns of g at slip rates from 0 to 1e30 m/s, ascending; intervals are of slip rates (m/s)."""
+
+    verdict: Verdict
+    rates: tuple[float, ...] = ()
+    """Slip rates at which g turns: those proven, and those at which g' changes its sign within an undecided interval."""
+    turns: tuple[Interval, ...] = ()
+    """Intervals that hold exactly one change of sign of g' each; outside them and `undecided` there is none."""
+    undecided: tuple[Interval, ...] = ()
+    """Intervals in which neither a turn nor its absence is proven."""
+    rises_at_rest: bool | None = None
+    """True if g rises at 0+, None if that is not decided."""
+    evaluations: int = 0
+    """Number of cells and single rates at which g' was bounded."""
+
+    @property
+    def regime(self) -> Literal["regular", "irregular"] | None:
+        """The regime: regular if g is proven to rise at every slip rate, irregular if to fall at one; None if undecided."""
+        if self.turns or self.rises_at_rest is False:
+            return "irregular"
+        return "regular" if self.verdict == "proven" else None
+
+    def enclosure(self, rate: float) -> Interval | None:
+        """Return the interval around a fold in which g is proven to turn exactly once; None if there is none."""
+        return next((one for one in self.turns if one[0] <= rate <= one[1]), None)
+
+
+@dataclass(frozen=True)
+class Lowest:
+    """The smallest g' (Pa s/m) at slip rates up to 1e30 m/s: proven bounds, its value to rounding, and where it is (m/s).
+
+    The verdict is "not decided" if the lower bound could not be brought close to the upper one.
+    """
+
+    verdict: Verdict
+    at_least: float
+    at_most: float
+    slope: float
+    rate: float
+
+
+def bounds_of(g: Resistance) -> turns.Resistance:
+    """Return what compiled code needs for bounds of g' of a contact.
+
+    Raises InputError for a law with a state, under which the slip rate is no root of the contact equation.
+    """
+    knots = np.array(g.rate_knots)
+    pieces = np.atleast_1d(g.law.piece_at(g.law_slip, np.array([0.0, *g.rate_knots])))
+    values = np.array([g.law.piece_values(i) for i in range(len(g.trees))]).reshape(len(g.trees), -1)
+    formulas = formulas_of(g.trees, g.law.parameters(), values)
+    return turns.Resistance(
+        formulas, knots, pieces.astype(np.int64), g.impedance, g.normal, min(g.scales), max(g.scales), new_cells()
+    )
+
+
+@lru_cache(maxsize=64)
+def certificate(g: Resistance, budget: int = turns.MOST_EVALUATIONS) -> Certificate:
+    """Prove where g' changes its sign, with at most so many evaluations.
+
+    Raises InputError if friction falls at least as fast as Z v rises even at the fastest rate of the search.
+    """
+    bounds, room = bounds_of(g), 64
+    while True:
+        table = room_for_turns(room)
+        found = find_turns(bounds, g.law_slip, FASTEST, budget, table)
+        if found.intervals >= 0:
+            break
+        room *= 8
+    if found.at_end < 0:
+        raise InputError(f"{type(g.law).__name__}: friction still falls at least as fast as Z v rises at {FASTEST:.3g} m/s")
+    intervals = zip(*(column[: found.intervals].tolist() for column in (table.low, table.high, table.proven)), strict=True)
+    sure: list[Interval] = []
+    open_: list[Interval] = []
+    for low, high, proven in intervals:
+        (sure if proven == 1 else open_).append((low, high))
+    at_rest = None if found.at_rest == 0 else found.at_rest > 0
+    folds = np.empty(2 * room)
+    rates = tuple(folds[: folds_of(table, found.intervals, folds)].tolist())
+    return Certificate("not decided" if open_ else "proven", rates, tuple(sure), tuple(open_), at_rest, found.evaluations)
+
+
+@lru_cache(maxsize=64)
+def lowest_slope(g: Resistance, tolerance: float = _TOLERANCE) -> Lowest:
+    """Bound the smallest g' to a tolerance relative to the larger of Z and its own magnitude, and find it to rounding."""
+    bounds = bounds_of(g)
+    found = find_lowest(bounds, g.law_slip, tolerance, turns.MOST_EVALUATIONS)
+    rate, slope = polished(bounds, g.law_slip, found)
+    near = found.at_most - found.at_least <= _NEAR * tolerance * max(g.impedance, abs(found.at_most))
+    return Lowest("proven" if near else "not decided", found.at_least, found.at_most, slope, rate)
+
+
+def critical_stress_between(g: Resistance) -> Interval | None:
+    """Enclose the critical normal stress Z / max(-dmu/dv) (Pa) by the bounds of the smallest g'.
+
+    Returns None if friction is not proven to fall with the slip rate, if it steps down as slip begins, or without finite bounds.
+    """
+    if not g.law.depends_on_rate or g.law.static_excess > 0.0:
+        return None
+    lowest = lowest_slope(g)
+    steepest, at_least = ((g.impedance - bound) / g.normal for bound in (lowest.at_least, lowest.at_most))
+    if not (at_least > 0.0 and math.isfinite(steepest)):
+        return None
+    return g.impedance / steepest * (1.0 - _ROUNDING), g.impedance / at_least * (1.0 + _ROUNDING)
+
+
+def sentence(g: Resistance, proof: Certificate, folds: tuple[Fold, ...]) -> str:
+    """Return a sentence on what is proven of the folds, with a leading space; "" if friction does not depend on the slip rate."""
+    if not g.law.depends_on_rate:
+        return ""
+    if proof.verdict == "not decided":
+        places = _listed([f"between {low:.6g} and {high:.6g} m/s" for low, high in proof.undecided])
+        return f" Interval arithmetic does not decide whether g = Z v + S mu(v) turns {places}; elsewhere its turns are proven."
+    reach = f"up to {FASTEST:g} m/s"
+    if not proof.turns:
+        return f" Proven by interval arithmetic: g = Z v + S mu(v) rises at every slip rate above 0, {reach}."
+    places = _listed([_place(fold) for fold in folds])
+    return f" Proven by interval arithmetic: g = Z v + S mu(v) turns only at {places}, of all slip rates {reach}."
+
+
+def _place(fold: Fold) -> str:
+    low, high = fold.enclosure or (fold.rate, fold.rate)
+    return f"{fold.rate:.9g} m/s" + (f" (to within {high - low:.1g})" if high > low else "")
+
+
+def _listed(places: list[str]) -> str:
+    shown = places[:_MOST_SHOWN] + ([f"{len(places) - _MOST_SHOWN} more places"] if len(places) > _MOST_SHOWN else [])
+    return " and ".join(filter(None, (", ".join(shown[:-1]), shown[-1])))

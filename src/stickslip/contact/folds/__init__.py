@@ -1,1 +1,0 @@
-"""Proven folds and bounds of the slope of the resistance, by interval arithmetic."""
