@@ -9,7 +9,7 @@ PIP = $(BIN)/python -m pip --disable-pip-version-check --quiet
 # process of the tests, and five for each command that they start.
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: paper test browser lint bench site lock clean
+.PHONY: paper test browser lint bench site oldest newest lock clean
 
 paper: $(VENV)/.installed
 	$(BIN)/stickslip paper --out paper
@@ -55,6 +55,18 @@ $(VENV)/.installed-site: requirements/site.txt $(VENV)/.installed
 $(BIN)/python:
 	$(PYTHON) -m venv $(VENV)
 
+# The lowest and the newest versions of libraries that pyproject.toml allows, each in an environment of its own, with `doctor` and the
+# tests that depend on libraries most. Needs uv; run both before a release and when a bound changes.
+MATTER = tests/engine/test_verified_numbers.py tests/batch/test_members.py tests/figures/test_figures.py tests/sweeps/test_store.py \
+    tests/exports tests/scenarios tests/test_units.py tests/test_storage.py tests/cli/test_commands.py tests/explorer/test_page_build.py
+oldest: RESOLUTION = lowest-direct
+newest: RESOLUTION = highest
+oldest newest:
+	uv venv --quiet --clear --python 3.11 .venv-$@
+	VIRTUAL_ENV=.venv-$@ uv pip install --quiet --resolution $(RESOLUTION) --editable ".[test,explorer]"
+	.venv-$@/bin/stickslip doctor
+	OPENBLAS_NUM_THREADS=1 .venv-$@/bin/python -m pytest -q --numprocesses auto $(MATTER)
+
 # Needs uv; writes versions and hashes, no host.
 lock:
 	for extra in run test site; do \
@@ -63,4 +75,4 @@ lock:
 	done
 
 clean:
-	rm -rf $(VENV) paper build dist docs/_build docs/gallery
+	rm -rf $(VENV) .venv-oldest .venv-newest paper build dist docs/_build docs/gallery

@@ -5,6 +5,7 @@ The structure of a formula and its numbers are drawn apart: formulas that differ
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -70,6 +71,7 @@ class _Drawing:
     numbers: np.random.Generator
     variables: str
     features: list[tuple[str, float, float]] = field(default_factory=list)
+    given: dict[str, float] = field(default_factory=dict)
 
     def part(self, depth: int) -> str:
         """Text of a random part; most of the ways end at the full depth."""
@@ -85,8 +87,18 @@ class _Drawing:
         k, p, q = 10.0 ** self.numbers.uniform(-0.5, 1.2), self.numbers.uniform(0.3, 3.0), self.numbers.uniform(0.2, 0.8)
         if variable and "{w}" in template:
             self.features.append((variable, float(c) if "{c}" in template else 0.0, float(w)))
-        given = {name: f"{value:.12g}" for name, value in (("c", c), ("w", w), ("k", k), ("p", p), ("q", q))}
-        return template.format(x=variable, n=n, m=m, **given, **texts)
+        names = {
+            name: self._named(value)
+            for name, value in (("c", c), ("w", w), ("k", k), ("p", p), ("q", q))
+            if "{" + name + "}" in template
+        }
+        return template.format(x=variable, n=n, m=m, **names, **texts)
+
+    def _named(self, value: float) -> str:
+        """Name of a new number."""
+        name = f"n{len(self.given)}"
+        self.given[name] = float(f"{value:.12g}")
+        return name
 
 
 @dataclass(frozen=True)
@@ -94,9 +106,15 @@ class Composed:
     """A problem with a composed law."""
 
     kind: str
-    text: str
+    formula: str
+    numbers: dict[str, float]
     features: tuple[tuple[str, float, float], ...]
     """Variable, centre and width (m or m/s) of each feature."""
+
+    @property
+    def text(self) -> str:
+        """The formula with its numbers."""
+        return with_numbers(self.formula, self.numbers)
 
     @property
     def law(self) -> Law:
@@ -122,7 +140,7 @@ class Composed:
     def problem(self) -> ss.Problem:
         """The problem for the package. Raises InputError where the package refuses the law."""
         body: Any = SLAB if self.kind == "slab, u" else BLOCK
-        return ss.Problem(body, ss.friction.FromExpression(self.text), initial_excess=self.excess)
+        return ss.Problem(body, ss.friction.FromExpression(self.formula, self.numbers), initial_excess=self.excess)
 
 
 def places(features: tuple[tuple[str, float, float], ...], variable: str, top: float) -> np.ndarray:
@@ -140,9 +158,15 @@ def draw(seed: int, structure: int, variant: int) -> Composed:
     drawing = _Drawing(shape, np.random.default_rng([seed, structure, variant]), KINDS[kind])
     text = drawing.part(DEPTH)
     features = tuple(drawing.features)
-    spread, level = _seen(Law(text), features)
+    spread, level = _seen(Law(with_numbers(text, drawing.given)), features)
     size = drawing.numbers.uniform(0.05, 0.3) * float(drawing.numbers.choice([-1.0, 1.0])) / max(spread, 1e-3)
-    return Composed(kind, f"{MEAN}+{size:.12g}*(({text})-{level:.12g})", features)
+    formula = f"{MEAN}+size*(({text})-level)"
+    return Composed(kind, formula, {**drawing.given, "size": float(f"{size:.12g}"), "level": float(f"{level:.12g}")}, features)
+
+
+def with_numbers(formula: str, numbers: dict[str, float]) -> str:
+    """Put the numbers in the place of their names."""
+    return re.sub(r"\b(n\d+|size|level)\b", lambda name: f"({numbers[name[0]]!r})", formula)
 
 
 def _seen(law: Law, features: tuple[tuple[str, float, float], ...]) -> tuple[float, float]:

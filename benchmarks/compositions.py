@@ -26,7 +26,8 @@ from benchmarks.composed_laws import Composed, draw
 from benchmarks.composed_truth import Answer, UndecidedError, truth_of
 
 CLAIM = 1e-7
-PER_STRUCTURE = 5
+PER_STRUCTURE = 100
+"""Number of sets of numbers for each structure, which share its machine code."""
 LIMIT = 120.0
 """Seconds after which a worker has hung: it compiles a formula, the first one the engine, too."""
 MOST_PIECES = 200_000
@@ -139,10 +140,7 @@ class Tally:
         self.done += 1
         self.by[one.kind, outcome.name] += 1
         if outcome.name in ("wrong", "hung"):
-            say(
-                f"\n{outcome.name}: --seed {self.seed} --one {task[0]} {task[1]}: {one.kind}: {outcome.why}\n    {one.text}",
-                flush=True,
-            )
+            say(f"\n{outcome.name}: --seed {self.seed} --one {task[0]} {task[1]}: {one.kind}: {outcome.why}\n    {one.text}")
         elif outcome.why:
             self.why[outcome.name, outcome.why] += 1
 

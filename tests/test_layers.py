@@ -42,7 +42,7 @@ ROOMS = {
     ),
     "engine": (
         ("codegen",),
-        ("state",),
+        ("enclosure", "state"),
         ("series",),
         ("contact",),
         ("folds", "implicit_step"),

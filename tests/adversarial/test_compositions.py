@@ -34,7 +34,7 @@ def test_the_truth_of_a_slab_is_the_closed_form(steepness: float) -> None:
     """Friction 0.6 + a u: slip is E / (S a) (1 - exp(-S a t / Z)). To 1e-11."""
     pace = SLAB.normal_stress * steepness / SLAB.impedance
     slip = SLAB_EXCESS / (SLAB.normal_stress * steepness) * -math.expm1(-pace * SLAB_TIME)
-    found = truth_of(Composed("slab, u", f"0.6+{steepness}*u", ()))
+    found = truth_of(Composed("slab, u", f"0.6+{steepness}*u", {}, ()))
     assert found.slip == pytest.approx(slip, rel=1e-11, abs=0.0)
     assert found.arrest is None
 
@@ -45,7 +45,7 @@ def test_the_truth_of_a_block_is_the_closed_form() -> None:
     frequency = math.sqrt(stiffness - damping * damping)
     end = math.pi / frequency
     slip = BLOCK_EXCESS / stiffness * (1.0 + math.exp(-damping * end))
-    found = truth_of(Composed("block, v", "0.6+0.1*v", ()))
+    found = truth_of(Composed("block, v", "0.6+0.1*v", {}, ()))
     assert found.arrest == pytest.approx(end, rel=1e-9, abs=0.0)
     assert found.slip == pytest.approx(slip, rel=1e-9, abs=0.0)
 
@@ -70,6 +70,6 @@ def test_enclosures_contain_friction_and_shrink_with_the_box() -> None:
 
 def test_a_wrong_run_is_noticed() -> None:
     """A load that is wrong by 1e-5 of itself."""
-    one = Composed("slab, u", "0.6+0.3*(sin(pi*u)**2)**10", ())
+    one = Composed("slab, u", "0.6+0.3*(sin(pi*u)**2)**10", {}, ())
     run = ss.simulate(replace(one.problem, initial_excess=SLAB_EXCESS * (1.0 + 1e-5)), SLAB_TIME)
     assert error_of(run, truth_of(one), SLAB_TIME) > CLAIM

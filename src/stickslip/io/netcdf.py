@@ -248,8 +248,8 @@ def _checkpoint(checkpoint: Checkpoint) -> xr.Dataset:
 
 def _drawing(solution: Solution) -> xr.Dataset:
     end = float(solution.breaks[-1])
-    time, _ = solution.curve("slip_rate", 0.0, end, DRAWN_POINTS)
-    return _curves(solution, time, {name: solution.curve(name, 0.0, end, DRAWN_POINTS)[1] for name in solution.curves})
+    time, values = solution.curves_together(solution.curves, 0.0, end, DRAWN_POINTS)
+    return _curves(solution, time, dict(zip(solution.curves, values, strict=True)))
 
 
 def _tables(solution: Solution) -> xr.Dataset:

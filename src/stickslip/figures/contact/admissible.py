@@ -115,7 +115,7 @@ def data(problem: Problem, solution: Solution | None = None, *, title: str = "")
 def _path(solution: Solution | None, strength: float) -> dict[str, xr.Variable]:
     rate = load = slip = np.zeros(0)
     if solution is not None:
-        (time, rate), (_, load) = solution.curve("slip_rate"), solution.curve("load")
+        time, (rate, load) = solution.curves_together(("slip_rate", "load"))
         slip = solution.history.law_slip(solution.history.find(time, "right"))
     return {
         "path_slip_rate": quantity("path", rate, "slip rate of the run", "v", "m/s"),

@@ -26,8 +26,7 @@ CASE = "loop"
 
 def data(solution: Solution) -> xr.Dataset:
     """Return slip rate (m/s) and load (Pa) of a run, whose load must rise and then fall, and the set K that it follows."""
-    time, rate = solution.curve("slip_rate")
-    _, load = solution.curve("load")
+    time, (rate, load) = solution.curves_together(("slip_rate", "load"))
     turn = int(np.argmax(load))
     background = resistance.data({CASE: solution.problem}, float(rate.max()))
     run = {

@@ -119,7 +119,7 @@ def draw_stress(axes: Axes, readings: Readings, span: Span) -> None:
     """Draw traction and load against time, as changes from the problem's initial load if they hardly change."""
     units = readings.problem.load_unit
     names = [FORCES[name] if units == "N" else name for name in ("traction", "load")]
-    (time, load), (_, traction) = (readings.curve(name, *span) for name in ("load", "traction"))
+    time, (load, traction) = readings.curves_together(("load", "traction"), *span)
     change = nearly_flat(load, traction)
     offset = readings.problem.load if change else 0.0
     unit, size = unit_of(units, load - offset, traction - offset)
@@ -137,7 +137,7 @@ def draw_stress(axes: Axes, readings: Readings, span: Span) -> None:
 def draw_friction(axes: Axes, readings: Readings, span: Span, *, against_slip: bool = False) -> None:
     """Draw the friction coefficient and the load over the normal load, against time or against slip."""
     normal, slip = readings.problem.normal, readings.curves[0]
-    (time, load), (_, traction) = (readings.curve(name, *span) for name in ("load", "traction"))
+    time, (load, traction) = readings.curves_together(("load", "traction"), *span)
     across, settled = time / time_unit(span[1] - span[0])[1], after_start(readings, time, span)
     traction, load = (np.where(settled, values, np.nan) for values in (traction, load))
     if against_slip:

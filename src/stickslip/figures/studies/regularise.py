@@ -89,12 +89,12 @@ def _with_runs(dataset: xr.Dataset, study: Regularisation, drawn: list[int], win
     contents: dict[str, xr.Variable] = {}
     meaning = ("time after the jump", "t - t_J") if at else ("time", "t")
     for name, run in (("exact", study.exact[study.target]), *((f"run{i}", study.runs[i]) for i in drawn)):
-        (time, rate), (_, load), (slip_time, slip) = (run.curve(curve, *window, POINTS) for curve in ("slip_rate", "load", "slip"))
+        time, (rate, load, slip) = run.curves_together(("slip_rate", "load", "slip"), *window, POINTS)
         contents |= {
             f"{name}_time": quantity(f"{name}_time", time - at, *meaning, "s"),
             f"{name}_rate": curve_quantity(f"{name}_time", rate, "slip_rate"),
             f"{name}_load": curve_quantity(f"{name}_time", load, "load"),
-            f"{name}_slip_time": quantity(f"{name}_slip_time", slip_time - at, *meaning, "s"),
+            f"{name}_slip_time": quantity(f"{name}_slip_time", time - at, *meaning, "s"),
             f"{name}_slip": curve_quantity(f"{name}_slip_time", slip, "slip"),
         }
     return dataset.assign(contents).assign_attrs(drawn=drawn)

@@ -152,7 +152,7 @@ def stick_ends(case: Problem) -> float:
 def hysteresis(runs: Runs) -> Verdict:
     """Measure the jumps of a run whose load rises and falls, and its slip rates at the same load on both ways."""
     solution = runs.case("fig4-loop")
-    (time, load), (_, rate) = solution.curve("load"), solution.curve("slip_rate")
+    time, (load, rate) = solution.curves_together(("load", "slip_rate"))
     turn = int(np.argmax(load))
     middle = 0.5 * sum(fold_loads(uniqueness_of(solution.problem)))
     up, down = (rate_at_load(solution, middle, float(time[n]), float(time[turn])) for n in (0, -1))
