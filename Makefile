@@ -60,12 +60,13 @@ $(BIN)/python:
 MATTER = tests/engine/test_verified_numbers.py tests/batch/test_members.py tests/figures/test_figures.py tests/sweeps/test_store.py \
     tests/exports tests/scenarios tests/test_units.py tests/test_storage.py tests/cli/test_commands.py tests/explorer/test_page_build.py
 oldest: RESOLUTION = lowest-direct
+oldest: OLD_WARNINGS = -W ignore::DeprecationWarning
 newest: RESOLUTION = highest
 oldest newest:
 	uv venv --quiet --clear --python 3.11 .venv-$@
 	VIRTUAL_ENV=.venv-$@ uv pip install --quiet --resolution $(RESOLUTION) --editable ".[test,explorer]"
 	.venv-$@/bin/stickslip doctor
-	OPENBLAS_NUM_THREADS=1 .venv-$@/bin/python -m pytest -q --numprocesses auto $(MATTER)
+	OPENBLAS_NUM_THREADS=1 .venv-$@/bin/python -m pytest -q --numprocesses auto $(OLD_WARNINGS) $(MATTER)
 
 # Needs uv; writes versions and hashes, no host.
 lock:

@@ -62,7 +62,7 @@ def _of_slab(one: Composed, excess: float) -> Answer:
     edges = np.linspace(0.0, 0.02, 9)
     left, time = 0.0, 0.0
     while True:  # stretch by stretch, so that nothing is looked at beyond the end
-        low, high = _resolved(law, load, edges)
+        low, high = _resolved(law, load, _with_features(edges, one))
         spent = _times(law, load, low, high) if len(low) else np.empty(0)
         until = time + np.cumsum(spent)
         over = np.flatnonzero(until >= one.duration)
@@ -79,6 +79,14 @@ def _of_slab(one: Composed, excess: float) -> Answer:
         edges = left + np.linspace(0.0, width, 9)
         if left > 10.0 or not np.isfinite(time):
             raise UndecidedError("no end")
+
+
+def _with_features(edges: Floats, one: Composed) -> Floats:
+    """Edges with more of them around the features, so that no feature lies between the nodes of a piece that it hardly changes."""
+    near = np.concatenate((np.linspace(0.0, 4.0, 9), np.geomspace(5.0, 1e6, 30)))
+    more = [c + side * w * near for _, c, w in one.features for side in (-1.0, 1.0)]
+    found = np.unique(np.concatenate([edges, *more]))
+    return found[(found >= edges[0]) & (found <= edges[-1])]
 
 
 def _resolved(law: Law, load: float, edges: Floats) -> tuple[Floats, Floats]:

@@ -222,3 +222,16 @@ def test_bounds_hold_for_a_long_formula() -> None:
     problem = ss.Problem(SLAB, F.FromExpression(f"0.6+0.05*exp(-((u-1)/1e-3)**2){wide}"), initial_excess=1.2e7)
     real, bound = shortfall(ss.simulate(problem, 3.0).history, coefficient(problem))
     assert (real <= bound).all()
+
+
+def test_the_residual_bounds_the_error_of_slip() -> None:
+    """Under friction of the slip rate alone |e'| <= |g| / q, where q is the smallest Z + S dmu/dv on the way: 1.5e-19 m (10 %)."""
+    scenario = ss.load_scenario("fig6-slab")
+    problem, run = scenario.problem, ss.simulate(scenario.problem, scenario.duration)
+    event = run.events.iloc[0]
+    rates = run.slip_rate(np.linspace(0.0, event.end, 20_001)[:-1])
+    slopes = [problem.friction.slopes(0.0, rate)[1] for rate in np.unique(rates)]
+    q = problem.body.impedance + problem.normal * min(slopes)
+    assert q == pytest.approx(0.804 * problem.body.impedance, rel=0.01, abs=0.0)
+    assert run.proven.residual * event.duration / q == pytest.approx(1.5e-19, rel=0.1, abs=0.0)
+    assert event.slip == pytest.approx(23.44, rel=1e-3, abs=0.0)
