@@ -11,13 +11,14 @@ import numpy as np
 
 from stickslip.bodies.spring_block import SpringBlock
 from stickslip.foundation.brief_repr import brief_repr
+from stickslip.foundation.checked_arguments import CheckedArguments
 from stickslip.foundation.conversion import Number, OptionalNumber
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import check_fields, quantity
 
 
 @dataclass(frozen=True)
-class ElasticSlab:
+class ElasticSlab(CheckedArguments):
     """A slab of given thickness in antiplane or in-plane shear: rho u_tt = G u_xx, friction at x = 0, a driver at x = h.
 
     Parameters

@@ -9,12 +9,13 @@ from typing import ClassVar
 import numpy as np
 
 from stickslip.foundation.brief_repr import brief_repr
+from stickslip.foundation.checked_arguments import CheckedArguments
 from stickslip.foundation.conversion import Number
 from stickslip.foundation.quantities import check_fields, quantity
 
 
 @dataclass(frozen=True)
-class SpringBlock:
+class SpringBlock(CheckedArguments):
     """A rigid block pulled through a spring: m dv/dt + damping v + tau = K (D0 + V t - u). Loads and tractions are forces, in N.
 
     Parameters

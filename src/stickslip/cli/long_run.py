@@ -52,9 +52,10 @@ class Request:
         if self.resume is not None and any(option is not None for option in (self.changes, self.catalogue, *as_begun)):
             options = "--set, --rtol, --creep-rtol, --shortest-event, --selection and --catalogue"
             raise InputError(f"run: --resume goes on as the run began: leave {options} away")
-        if self.keeps_events_only and (self.out or self.pictures.wanted):
-            options = ", ".join([*["--out"] * (self.out is not None), *self.pictures.wanted])
-            raise InputError(f"run: a catalogue keeps slip events only, no history: leave {options} away")
+        if self.keeps_events_only:
+            if self.out is not None:
+                raise InputError("run: a catalogue keeps slip events only, no history: leave --out away")
+            self.pictures.check_events("run")
         if self.energy and self.catalogue is None:
             raise InputError("run: --energy belongs to --catalogue FILE")
         if self.catalogue is not None:

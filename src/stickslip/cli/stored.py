@@ -86,9 +86,7 @@ class StoredEvents(Stored):
 
     def check(self, pictures: Pictures) -> None:
         """Refuse pictures that these results do not have. Raises InputError."""
-        if pictures.wanted:
-            options = ", ".join(pictures.wanted)
-            raise InputError(f"{self.path}: a catalogue keeps slip events only, no history: leave {options} away")
+        pictures.check_events(str(self.path))
 
     def summarise(self) -> None:
         """Print the summary on standard output."""
@@ -97,18 +95,27 @@ class StoredEvents(Stored):
         show_events(self.path.stem, dict(self.table.items()), self.about)
         self.print_origin()
 
+    def draw(self, pictures: Pictures) -> None:
+        """Draw the pictures and say which files were written."""
+        announce(*pictures.draw_events(self.table, self.path.stem))
+
 
 @dataclass(frozen=True)
 class StoredSweep(Stored):
     """The results of a sweep."""
 
     dataset: xr.Dataset
+    quantity: str | None = None
 
     def check(self, pictures: Pictures) -> None:
         """Refuse pictures that these results do not have. Raises InputError."""
         others = [option for option in pictures.wanted if option != "--figure"]
         if others:
-            raise InputError(f"{self.path}: the results of a sweep have no {', '.join(others)}: --figure draws the first quantity")
+            raise InputError(f"{self.path}: the results of a sweep have no {', '.join(others)}: --figure draws a quantity")
+        if self.quantity is not None:
+            from stickslip.figures.sweeps.sweep import data
+
+            data(self.dataset, self.quantity)
 
     def summarise(self) -> None:
         """Print the summary on standard output."""
@@ -123,17 +130,22 @@ class StoredSweep(Stored):
             from stickslip.cli.output.files import drawing
             from stickslip.figures.sweeps.sweep import plot_sweep
 
-            drawing(partial(plot_sweep, self.dataset), pictures.look)(pictures.figure)
+            drawing(partial(plot_sweep, self.dataset, self.quantity), pictures.look)(pictures.figure)
         super().draw(pictures)
 
 
-def stored(path: Path) -> Stored:
-    """Read the results in a file or folder. Raises InputError if there are none that can be read."""
+def stored(path: Path, quantity: str | None = None) -> Stored:
+    """Read the results in a file or folder; `quantity` is the one of a sweep that is drawn.
+
+    Raises InputError if there are none that can be read, and for a quantity of what is no sweep.
+    """
+    if quantity is not None and not path.is_dir():
+        raise InputError(f"show: --quantity chooses what is drawn of a sweep, and {path} is none")
     if path.is_dir():
         from stickslip.sweeps.results.store import open_store
 
         dataset = open_store(path)
-        return StoredSweep(path, dataset.attrs, dataset)
+        return StoredSweep(path, dataset.attrs, dataset, quantity)
     suffix = path.suffix.lower()
     if suffix in (".csv", ".parquet"):
         from stickslip.io.catalogue_rows import read_table

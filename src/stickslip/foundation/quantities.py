@@ -73,7 +73,7 @@ class Quantity:
         try:
             number = value if type(value) is float else to_number(value, self.unit, ("inf", self.word) if self.infinite else ())
         except InputError as error:
-            raise InputError(f"{where} must be {self.allowed}, got {error}") from None
+            raise InputError(f"{where} must be {self.allowed}, got {error}{_without_percent(value)}") from None
         low, high = self._plain
         if low <= number <= high:
             return number
@@ -165,6 +165,14 @@ class Series:
                     cure = "sort the points" if following < one else "keep one point of each, or their mean"
                     raise InputError(f"{owner}: {name} must ascend, but [{i + 1}] = {following:g} follows {one:g}; {cure}")
         return found
+
+
+def _without_percent(value: Any) -> str:
+    """Return what to write in place of a text such as "80%", or nothing."""
+    try:
+        return f"; write {float(value[:-1]) / 100.0:g}" if isinstance(value, str) and value.endswith("%") else ""
+    except ValueError:
+        return ""
 
 
 def _is_list(value: Any) -> bool:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.foundation.brief_repr import brief_repr
+from stickslip.foundation.checked_arguments import CheckedArguments
 from stickslip.foundation.field_docs import document_fields
 from stickslip.foundation.quantities import check_fields
 
@@ -39,7 +40,7 @@ class StateVariable:
 
 
 @dataclass(frozen=True)
-class LawContract(ABC):
+class LawContract(CheckedArguments, ABC):
     """The statements of a friction law; subclass `stickslip.friction.FrictionLaw` to make one.
 
     A law declares its parameters as fields (`quantity` or `declare` of `foundation.quantities`), its formula once, and the class
@@ -99,7 +100,7 @@ class LawContract(ABC):
         """True if the friction coefficient is not known to stay above zero: the engine then watches it inside every step."""
         return False
 
-    def check(self) -> None:  # noqa: B027 - most laws have nothing to add
+    def check(self) -> None:
         """Check conditions that involve several fields. Raise InputError if one is violated."""
 
     @property

@@ -21,6 +21,7 @@ from stickslip.loading import LoadingHistory
 from stickslip.loading.contract import VARYING
 from stickslip.problem.problem import Problem
 from stickslip.reference.slab.pulse_period import PulseTrain
+from stickslip.scenarios.doubts import doubts
 from stickslip.scenarios.entries import key_of
 from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.schema import quantities_in
@@ -229,7 +230,8 @@ def _along_slip(problem: Problem, contact: Uniqueness) -> str:
 
 def warnings_of(scenario: Scenario, contact: Uniqueness) -> list[str]:
     """Return what a user should know before trusting a run of a scenario whose uniqueness is `contact`, one line each."""
-    problem, found = scenario.problem, _noise(scenario.problem.friction, contact)
+    problem = scenario.problem
+    found = doubts(problem) + _noise(problem.friction, contact)
     steady = math.isinf(problem.body.driver_impedance)
     held = problem.friction.sticks and -problem.strength <= problem.load and problem.excess <= 0
     if held and steady and not problem.varies and wait_of(problem) > scenario.duration:

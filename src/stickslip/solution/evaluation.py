@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.quantities import Quantity
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.history import History, Positions, Side
 from stickslip.trajectory.tables import shocks_table
@@ -23,8 +25,21 @@ Floats = NDArray[np.float64]
 Curve = Literal["slip", "slip_rate", "traction", "load", "state", "event_slip"]
 MANY = 100_000
 """Number of pieces from which on fewer values of each are looked at for a curve."""
+TIME = Quantity("s", "time")
 CURVES: tuple[Curve, ...] = ("slip", "slip_rate", "traction", "load")
 """Quantities that every run can draw against time."""
+
+
+def times_of(t: ArrayLike) -> Floats:
+    """Return times in s, given as numbers or as texts with a unit such as "3 ms". Raises InputError for anything else."""
+    if isinstance(t, str) or (isinstance(t, list | tuple) and any(isinstance(one, str) for one in t)):
+        texts = [t] if isinstance(t, str) else t
+        found = np.array([TIME.check("solution", "time", one) for one in texts])
+        return found[0] if isinstance(t, str) else found
+    try:
+        return np.asarray(t, float)
+    except (OverflowError, TypeError, ValueError):  # a whole number larger than any float, or no number at all
+        raise InputError(f"solution: times must be numbers in s or texts with a unit such as '3 ms', got {shown(t)}") from None
 
 
 class Readings:
@@ -61,10 +76,7 @@ class Readings:
         return self.history.span
 
     def _at(self, t: ArrayLike, side: Side) -> tuple[Positions, tuple[int, ...]]:
-        try:
-            time = np.asarray(t, float)
-        except OverflowError:  # a whole number larger than any float
-            raise InputError("times must be finite numbers in s") from None
+        time = times_of(t)
         return self.history.find(np.atleast_1d(time).ravel(), side), time.shape
 
     def slip(self, t: ArrayLike) -> Floats:
@@ -179,7 +191,7 @@ class Readings:
         self, names: Sequence[Curve], start: float | None = None, end: float | None = None, points: int = 2000
     ) -> tuple[Floats, list[Floats]]:
         """Return the times of `curve`, and the values of several quantities there: their times are looked for once."""
-        start, end = self.shown[0] if start is None else start, self.shown[1] if end is None else end
+        start, end = (limit if one is None else float(times_of(one)) for one, limit in zip((start, end), self.shown, strict=True))
         breaks = self.breaks[(self.breaks >= start) & (self.breaks <= end)]
         breaks = np.union1d(breaks, self.history.echo_edges(start, end, points - len(breaks)))
         many = len(breaks) > points

@@ -23,9 +23,10 @@ def rounding_note(steps: int, share: float) -> str:
     """Return one line on steps in which rounding in the law's formula exceeds the tolerance; empty if there are none."""
     if steps == 0:
         return ""
+    where = "in 1 step" if steps == 1 else f"in {steps} steps"
     return (
-        f"in {steps} steps rounding in the law's formula is larger than rtol allows, up to {share:.1g} of the slip rate: the"
-        " formula loses digits far from where slip began; double precision cannot resolve more"
+        f"{where} rounding in the law's formula is larger than rtol allows, up to {share:.1g} of the slip rate: the formula loses"
+        " digits far from where slip began; write it without differences of nearly equal numbers, or expect no more digits"
     )
 
 

@@ -118,6 +118,8 @@ def run(
     if request.keeps_events_only:
         chosen, found = list_events(request)
         show_catalogue(chosen, found)
+        if drawn.wanted:
+            announce(*drawn.draw_events(found.read(), chosen.title or chosen.name))
         _leave(found.status)
     chosen, solution = solve(request)
     show_solution(chosen, solution)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from stickslip.cli.names import complete_result
+from stickslip.cli.names import complete_quantity, complete_result
 from stickslip.cli.options import (
     Animation,
     CatalogueFigure,
@@ -21,6 +21,7 @@ from stickslip.cli.options import (
 )
 
 RESULT = "A file of `run --out`, a catalogue or its checkpoint, or the folder of a sweep."
+QUANTITY = "Of a sweep, draw this quantity: by default the one that was refined, or the first."
 SCENARIO_ONLY = "Print the scenario of the results instead, as TOML with every value in SI."
 
 
@@ -29,6 +30,7 @@ def show(
     *,
     scenario: Annotated[bool, typer.Option("--scenario", help=SCENARIO_ONLY)] = False,
     figure: RunFigure = None,
+    quantity: Annotated[str | None, typer.Option("--quantity", "-q", help=QUANTITY, autocompletion=complete_quantity)] = None,
     path: PathFigure = None,
     catalogue_figure: CatalogueFigure = None,
     energy_figure: EnergyFigure = None,
@@ -42,14 +44,15 @@ def show(
 
     The summary ends with the version of stickslip that made the file. Of a
     catalogue it shows the slip events; of a sweep, how its members ended and the
-    range of each quantity, and --figure draws the first one.
+    range of each quantity, and --figure draws one of them (--quantity).
 
     \b
       stickslip show mine.nc
       stickslip show mine.nc --figure mine.png --space-time waves.png
       stickslip show mine.nc --scenario > again.toml
       stickslip show events.csv
-      stickslip show map.zarr --figure map.png
+      stickslip show events.csv --catalogue-figure events.png
+      stickslip show map.zarr --figure map.png --quantity slip
 
     Exit code: 0 done, 2 unusable input.
     """
@@ -61,7 +64,7 @@ def show(
     pictures = Pictures(figure, path, catalogue_figure, energy_figure, friction_figure, space_time, animation, look)
     check_targets(*pictures.targets())
     pictures.check()
-    found = stored(result)
+    found = stored(result, quantity)
     if scenario:
         typer.echo(found.scenario(), nl=False)
         return

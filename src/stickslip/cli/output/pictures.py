@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,6 +11,8 @@ from stickslip.cli.output.files import PICTURES, Look, Target, drawing, write_fi
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from stickslip.problem.problem import Problem
     from stickslip.solution.solution import Solution
 
@@ -59,6 +62,21 @@ class Pictures:
             if uniqueness_of(problem).resistance is None:
                 what = "a slab without contact mass: with inertia the slip rate is a state, there is no set K"
                 raise InputError(f"{command}: --path needs {what}")
+
+    def check_events(self, where: str) -> None:
+        """Refuse, before the run, all figures but the one that a catalogue of slip events has. Raises InputError."""
+        others = [option for option in self.wanted if option != "--catalogue-figure"]
+        if others:
+            raise InputError(f"{where}: a catalogue keeps slip events only, no history: leave {', '.join(others)} away")
+
+    def draw_events(self, table: pd.DataFrame, title: str) -> list[Path]:
+        """Draw the figure of a catalogue if it is wanted and there is an event, and return its file."""
+        from stickslip.figures.runs import catalogue
+
+        if table.empty:
+            return []
+        found = partial(catalogue.draw, catalogue.data_of_events(table, title))
+        return write_files((self.catalogue_figure, drawing(found, self.look)))
 
     def draw(self, solution: Solution) -> list[Path]:
         """Draw all that are wanted, and return their files."""

@@ -12,6 +12,7 @@ from stickslip.cli.output.show import console, say, titled
 from stickslip.cli.output.tables import fits, print_numbers
 from stickslip.engine_input.creep_limits import creep_tolerance
 from stickslip.foundation.formatting import clean, number, with_unit
+from stickslip.scenarios.doubts import doubts
 from stickslip.scenarios.scenario import read_scenario
 
 if TYPE_CHECKING:
@@ -27,6 +28,8 @@ FIRST = 12
 """Number of table rows that are shown."""
 DIGITS = 8, 5
 """Numbers of significant digits that are tried until a table fits the terminal; if none does, the table is divided."""
+MANY_EVENTS = 100_000
+"""Number of events above which a catalogue is not read again for its statistics."""
 LATE = 1e4
 """Time (s) from which on times have a fixed number of decimals: significant digits alone would hide fractions of a second."""
 
@@ -60,6 +63,10 @@ def show_catalogue(scenario: Scenario, found: Catalogue) -> None:
     ):
         if name in found.notes:
             say(screen, f"{what}: {found.notes[name]}")
+    if found.events > MANY_EVENTS:
+        say(screen, "mean recurrence and slip: `stickslip show` on the catalogue works them out")
+    elif found.events > 2:
+        say(screen, *(line.rstrip() for line in statistics(dict(found.read().items()))))
     announce(*found.files)
 
 
@@ -85,12 +92,37 @@ def _print_events(screen: Console, events: Mapping[Any, Any], problem: Problem |
     units = {"start": "s", "duration": "s", "peak_after": "s", "slip": "m", "peak_rate": "m/s", "traction_drop": load}
     units |= {"static_drop": load} if problem is None or math.isinf(problem.body.driver_impedance) else {}
     units["pulses"] = ""
+    if problem is not None and _slides_throughout(events, problem):
+        say(screen, "the contact slides throughout: there are no separate slip events\n")
+        return
     _print(screen, "slip event", {name: events[name] for name in units}, list(units.values()))
+    say(screen, *statistics(events))
+
+
+def _slides_throughout(events: Mapping[Any, Any], problem: Problem) -> bool:
+    """Return True if the only event of a contact that never rests begins with the run and has no end."""
+    starts, ends = events["start"], events["end"]
+    return not problem.friction.sticks and len(starts) == 1 and float(starts[0]) == 0.0 and math.isnan(float(ends[0]))
+
+
+def statistics(events: Mapping[Any, Any]) -> list[str]:
+    """Return a line with the mean and the scatter of slips and recurrence times, if there are three of these or more."""
+    import numpy as np
+
+    lines = []
+    for name, unit in (("recurrence", "s"), ("slip", "m")):
+        values = np.asarray(events[name], float)
+        values = values[np.isfinite(values)]
+        if len(values) > 2:
+            mean, scatter = float(values.mean()), float(values.std(ddof=1))
+            lines.append(f"{name}: mean {with_unit(mean, unit)}, standard deviation {100.0 * scatter / mean:.2g} % of it")
+    return [f"{'; '.join(lines)}\n"] if lines else []
 
 
 def _say_how(screen: Console, scenario: Scenario, status: Status, creep: str, lumping: str) -> None:
     """Print what ended a run, its duration and tolerances, and requested or automatic leaps over creep and lumping of events."""
     say(screen, f"{status.name}: {status.message}", f"duration {with_unit(scenario.duration, 's')}, rtol {scenario.rtol:g}")
+    say(screen, *(f"warning: {one}" for one in doubts(scenario.problem)))
     if scenario.shortest_event:
         say(screen, f"events shorter than {with_unit(scenario.shortest_event, 's')} are lumped")
     if lumping:

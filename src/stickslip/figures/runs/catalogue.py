@@ -41,6 +41,7 @@ from stickslip.solution.place import Place
 from stickslip.solution.solution import Solution
 
 if TYPE_CHECKING:
+    import pandas as pd
     from matplotlib.figure import Figure
 
 CLOSE = 1e-3
@@ -83,8 +84,7 @@ def data(solution: Solution, event: int | None = None) -> xr.Dataset:
     window = solution.window(chosen)
     lasting = window.shown[1] / 1.1
     near = solution.window(chosen, before=0.25 * CLOSE * lasting, after=CLOSE * lasting)
-    about = {"start": ("start of the event", "s"), "slip": ("slip", "m"), "recurrence": ("recurrence time", "s")}
-    contents = {name: quantity("event", table[name].to_numpy(float), text, "", unit) for name, (text, unit) in about.items()}
+    contents = _events(table)
     for name, readings in (("run", solution), ("window", window), ("close", near)):
         time, slip = readings.curve("slip" if name == "run" else "event_slip")
         contents[f"{name}_time"] = curve_quantity(f"{name}_point", time, "time")
@@ -93,24 +93,41 @@ def data(solution: Solution, event: int | None = None) -> xr.Dataset:
     horizon = predictability(solution).horizon if is_followed(solution.problem) else math.inf
     contents["horizon"] = quantity((), horizon, "predictability horizon", "", "s")
     contents["chosen"] = xr.Variable((), chosen % len(table))
-    count = f"{len(table)} slip event{'s' if len(table) > 1 else ''}"
-    return xr.Dataset(contents, attrs={"title": f"{title_of(solution)}: {count}".removeprefix(": ")})
+    return xr.Dataset(contents, attrs={"title": _title(title_of(solution), table)})
+
+
+def data_of_events(table: pd.DataFrame, title: str = "") -> xr.Dataset:
+    """Return a catalogue without the run that made it, as `data` does but for the zooms. Raises InputError if it has no event."""
+    if table.empty:
+        raise InputError("catalogue figure: there is no slip event")
+    return xr.Dataset(_events(table), attrs={"title": _title(title, table)})
+
+
+def _events(table: pd.DataFrame) -> dict[str, xr.Variable]:
+    about = {"start": ("start of the event", "s"), "slip": ("slip", "m"), "recurrence": ("recurrence time", "s")}
+    return {name: quantity("event", table[name].to_numpy(float), text, "", unit) for name, (text, unit) in about.items()}
+
+
+def _title(title: str, table: pd.DataFrame) -> str:
+    return f"{title}: {len(table)} slip event{'s' if len(table) > 1 else ''}".removeprefix(": ")
 
 
 @styled
 def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw the time line, slip against time in three zooms, the distributions of slip and recurrence time, and the return map.
 
-    A run of one event has no distributions, one of two no return map.
+    A catalogue without its run has no zooms, one of one event no distributions, and one of two no return map.
     """
     slip, recurrence = dataset["slip"].values, dataset["recurrence"].values
     recurrence = recurrence[np.isfinite(recurrence)]
-    rows = ["AAAAAA", "BBCCDD", *(["EEEFFF"] if len(slip) == 2 else ["EEFFGG"] if len(slip) > 2 else [])]
+    zooms = ["BBCCDD"] if "run_time" in dataset else []
+    rows = ["AAAAAA", *zooms, *(["EEEFFF"] if len(slip) == 2 else ["EEFFGG"] if len(slip) > 2 else [])]
     figure = sheet((7.2, 2.3 * len(rows) + 0.6), **place)
     axes = figure.subplot_mosaic(";".join(rows))
     _draw_time_line(axes["A"], dataset)
-    _draw_zooms([axes[name] for name in "BCD"], dataset)
-    titles = ["slip events", *(title for title, *_ in ZOOMS.values()), "distribution of slips", "recurrence times", "return map"]
+    _draw_zooms([axes[name] for name in "BCD" if name in axes], dataset)
+    named = [title for title, *_ in ZOOMS.values()] if zooms else []
+    titles = ["slip events", *named, "distribution of slips", "recurrence times", "return map"]
     if "F" in axes:
         unit, size = time_unit(float(recurrence.max()))
         _draw_distribution(axes["E"], slip)
@@ -127,37 +144,41 @@ def _marks(dataset: xr.Dataset, drawn: Container[str]) -> list[Artist]:
     """Return the entries of the key for the panels that are drawn."""
     point: Any = {"linestyle": "none", "marker": "o"}
     marks: list[Artist] = [Line2D([], [], color=BLUE, markersize=3, label="(a) slip event", **point)]
-    ring = {"color": VERMILLION, "markersize": 6, "markerfacecolor": "none"}
-    marks.append(Line2D([], [], label="(a) event of (c), (d)", **point | ring))
-    marks.append(Line2D([], [], color=VERMILLION, linewidth=0.8, label="(b) its time"))
-    if float(dataset["horizon"]) < float(dataset["run_time"].values[-1]):
-        marks.append(Patch(color=GREY, alpha=0.15, linewidth=0.0, label="(a) beyond the predictability horizon"))
+    if "chosen" in dataset:
+        ring = {"color": VERMILLION, "markersize": 6, "markerfacecolor": "none"}
+        marks.append(Line2D([], [], label="(a) event of (c), (d)", **point | ring))
+        marks.append(Line2D([], [], color=VERMILLION, linewidth=0.8, label="(b) its time"))
+        if float(dataset["horizon"]) < float(dataset["run_time"].values[-1]):
+            marks.append(Patch(color=GREY, alpha=0.15, linewidth=0.0, label="(a) beyond the predictability horizon"))
+    mean, equal = ("(f)", "(g)") if "B" in drawn else ("(c)", "(d)")
     if "F" in drawn:
-        marks.append(Line2D([], [], color=VERMILLION, linewidth=1.0, linestyle="--", label="(f) mean"))
+        marks.append(Line2D([], [], color=VERMILLION, linewidth=1.0, linestyle="--", label=f"{mean} mean"))
     if "G" in drawn:
-        marks.append(Line2D([], [], color=GREY, linewidth=0.8, label="(g) equal times"))
+        marks.append(Line2D([], [], color=GREY, linewidth=0.8, label=f"{equal} equal times"))
     return marks
 
 
 def _draw_time_line(axes: Axes, dataset: xr.Dataset) -> None:
     slip, wide = dataset["slip"].values, spans_decades(dataset["slip"].values)
-    unit, size = time_unit(float(dataset["run_time"].values[-1]))
+    last = float(dataset["run_time"].values[-1]) if "run_time" in dataset else float(dataset["start"].values[-1])
+    unit, size = time_unit(last)
     length, metres = unit_of("m", slip, log=wide)
-    start, end = dataset["start"].values / size, float(dataset["run_time"].values[-1]) / size
+    start, end = dataset["start"].values / size, last / size
     low = 0.5 * slip.min() / metres if wide else 0.0
     axes.vlines(start, low, slip / metres, color=BLUE, linewidth=0.9)
     axes.plot(start, slip / metres, "o", color=BLUE, markersize=3)
-    chosen, horizon = int(dataset["chosen"]), float(dataset["horizon"]) / size
-    axes.plot(start[chosen], slip[chosen] / metres, "o", color=VERMILLION, markersize=6, markerfacecolor="none")
-    if horizon < end:
-        axes.axvspan(horizon, 1.02 * end, color=GREY, alpha=0.15, linewidth=0.0)
+    if "chosen" in dataset:
+        chosen, horizon = int(dataset["chosen"]), float(dataset["horizon"]) / size
+        axes.plot(start[chosen], slip[chosen] / metres, "o", color=VERMILLION, markersize=6, markerfacecolor="none")
+        if horizon < end:
+            axes.axvspan(horizon, 1.02 * end, color=GREY, alpha=0.15, linewidth=0.0)
     set_scale(axes, "y", wide)
     axes.set_ylim(bottom=low)
     axes.set(xlim=(-0.02 * end, 1.02 * end), xlabel=curve_label("time", unit), ylabel=f"slip ({length})")
 
 
 def _draw_zooms(panels: list[Axes], dataset: xr.Dataset) -> None:
-    for axes, (name, (_, curve, clock)) in zip(panels, ZOOMS.items(), strict=True):
+    for axes, (name, (_, curve, clock)) in zip(panels, ZOOMS.items(), strict=False):
         time, slip = dataset[f"{name}_time"].values, dataset[f"{name}_slip"].values
         (unit, size), (length, metres) = time_unit(float(np.ptp(time))), unit_of("m", np.ptp(slip))
         axes.plot(time / size, slip / metres, color=GREEN)

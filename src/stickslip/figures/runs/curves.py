@@ -24,7 +24,7 @@ from stickslip.figures.style import (
     time_unit,
     unit_of,
 )
-from stickslip.solution.evaluation import Curve, Readings
+from stickslip.solution.evaluation import Curve, Readings, times_of
 
 COLOURS: dict[str, str] = {
     "slip": BLUE,
@@ -46,7 +46,8 @@ Span = tuple[float, float]
 
 def interval(readings: Readings, start: float | None, end: float | None) -> Span:
     """Return the interval (s) that is asked for; the default is what the run or the window shows."""
-    return readings.shown[0] if start is None else start, readings.shown[1] if end is None else end
+    first, last = (limit if one is None else float(times_of(one)) for one, limit in zip((start, end), readings.shown, strict=True))
+    return first, last
 
 
 def set_time(axes: Axes, readings: Readings, span: Span) -> None:

@@ -5,6 +5,7 @@ The dataset of a grid has one dimension for each varied key; those of samples, l
 
 from __future__ import annotations
 
+import re
 import tomllib
 from functools import partial
 from pathlib import Path
@@ -23,7 +24,7 @@ from stickslip.foundation.errors import InputError, nearest
 from stickslip.solution.place import Place
 from stickslip.sweeps.design.design import MEMBER
 from stickslip.sweeps.execution.outcome import FIRST_FAILURE, NOT_RUN
-from stickslip.sweeps.results.refinement_spec import ATTRIBUTE
+from stickslip.sweeps.results.refinement_spec import ATTRIBUTE, RefinementSpec
 
 
 def plot_sweep(dataset: xr.Dataset, quantity: str | None = None, path: str | Path | None = None, **place: Unpack[Place]) -> Any:
@@ -70,7 +71,8 @@ def data(dataset: xr.Dataset, quantity: str | None = None) -> xr.Dataset:
     single value are dropped as dimensions. Raises InputError as `plot_sweep` does.
     """
     names = [str(name) for name in dataset.data_vars if _can_be_drawn(dataset, str(name))]
-    name = quantity or next(iter(names), "")
+    refined = RefinementSpec.read(dataset).quantity if ATTRIBUTE in dataset.attrs else ""
+    name = quantity or (refined if refined in names else next(iter(names), ""))
     if name not in names:
         raise InputError(f"plot_sweep: this sweep has no quantity {ascii(name)[:60]}; {nearest(name, names)}")
     values = dataset[name].load()
@@ -86,8 +88,10 @@ def data(dataset: xr.Dataset, quantity: str | None = None) -> xr.Dataset:
 
 
 def _title(dataset: xr.Dataset) -> str:
-    """Return the title of the scenario, "" if it has none."""
-    return str(tomllib.loads(dataset.attrs.get("scenario", "")).get("title", ""))
+    """Return the title of the scenario, "" if it has none, without phrases that give a number to what is varied here."""
+    title = str(tomllib.loads(dataset.attrs.get("scenario", "")).get("title", ""))
+    varied = {str(name).rsplit(".", 1)[-1] for name in dataset.coords}
+    return ", ".join(part for part in title.split(", ") if not any(re.search(rf"\b{name}\b *=", part) for name in varied))
 
 
 def _can_be_drawn(dataset: xr.Dataset, name: str) -> bool:
