@@ -42,7 +42,7 @@ def test_the_response_fills_its_axes(name: str) -> None:
     """Slip rate, friction against time and against slip: what happens after a thousandth of the run takes over half the height."""
     solution = run(name)
     figure, late = draw(solution), 1e-3 * solution.duration
-    (time, rate), (_, traction) = (solution.curve(curve) for curve in ("slip_rate", "traction"))
+    time, (rate, traction) = solution.curves_together(("slip_rate", "traction"))
     friction = traction[time > late] / solution.problem.normal
     expected = {"slip rate": np.abs(rate[time > late]), "friction": friction, "friction coefficient": friction}
     for text, values in expected.items():
@@ -71,7 +71,7 @@ def test_friction_after_velocity_steps_is_that_of_steady_sliding() -> None:
 def test_friction_is_traction_over_normal_load_at_its_slip(name: str) -> None:
     solution = run(name)
     axes = panel(draw(solution), "friction", "slip")
-    time, traction = solution.curve("traction")
+    time, (_, traction) = solution.curves_together(("load", "traction"))
     points = np.stack([solution.slip(time) / size_of(axes.get_xlabel()), traction / solution.problem.normal], axis=1)
     shown = drawn(axes)
     first = len(points) - len(shown)

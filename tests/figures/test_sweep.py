@@ -287,8 +287,9 @@ def test_a_refined_map_shows_its_cells(refined: xr.Dataset) -> None:
     assert [tuple(colour) == yes for colour in known.get_facecolor()] == (middle > 19.6).tolist()
 
 
-def test_the_title_is_that_of_the_scenario(refined: xr.Dataset) -> None:
-    assert ss.figures.plot_sweep(refined).axes[0].get_title(loc="left") == "Fig. 6, slab, rate law, alpha = 1"
+def test_the_title_is_that_of_the_scenario_without_what_is_varied(refined: xr.Dataset) -> None:
+    """The scenario is called "Fig. 6, slab, rate law, alpha = 1", and alpha is on an axis here."""
+    assert ss.figures.plot_sweep(refined).axes[0].get_title(loc="left") == "Fig. 6, slab, rate law"
     untitled = refined.assign_attrs(scenario="\n".join(refined.attrs["scenario"].splitlines()[2:]))
     assert not untitled.attrs["scenario"].startswith("title")
     assert ss.figures.plot_sweep(untitled).axes[0].get_title(loc="left") == ""
