@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from stickslip.friction.formula.expression import Expression, nodes_of
 
 LARGEST_EXPONENT = 150.0
@@ -11,7 +13,7 @@ SQUASH = ("exp", "expm1", "tanh")
 """Functions that no longer change when their argument grows beyond e^150, or are infinite there already."""
 
 
-def harmless_overflows(nodes: list[Expression]) -> set[Expression]:
+def harmless_overflows(nodes: Sequence[Expression]) -> set[Expression]:
     """Return the nodes whose every way into the formula leads to a denominator or into one of SQUASH.
 
     The way may lead through sums, differences, roots and products, but not through a product with a factor that may be as small as

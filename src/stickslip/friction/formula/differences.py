@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -45,7 +46,7 @@ def difference(
     du, v = np.broadcast_arrays(np.asarray(slip_step, float), np.asarray(rate, float))
     found = {SLIP: _Node(slip, du, slip + du, 0.0), RATE: _Node(0.0, v, v, 1.0), STATE: _Node(0.0, 0.0, 0.0, 0.0)}
     nodes = nodes_of(tree)
-    limited = {node for node in harmless_overflows(nodes) if node.operation in ("exp", "expm1")}
+    limited = _limited(tree)
     with np.errstate(divide="ignore", over="ignore", under="ignore"):
         for node in nodes:
             if node in limited:
@@ -57,6 +58,12 @@ def difference(
                 found[node] = _Node(number, 0.0, number, 0.0)
     result = found[tree]
     return np.broadcast_to(result.step, v.shape) + 0.0, np.broadcast_to(result.slope, v.shape) + 0.0
+
+
+@lru_cache(maxsize=256)
+def _limited(tree: Expression) -> frozenset[Expression]:
+    """Return the exponentials of a formula whose exponents are limited."""
+    return frozenset(node for node in harmless_overflows(nodes_of(tree)) if node.operation in ("exp", "expm1"))
 
 
 def _at_most(a: _Node, largest: float) -> _Node:

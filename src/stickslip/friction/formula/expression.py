@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, NoReturn
 
 import numpy as np
@@ -261,7 +262,8 @@ def depends_on(node: Expression, variable: Expression) -> bool:
     return variable in nodes_of(node)
 
 
-def nodes_of(root: Expression) -> list[Expression]:
+@lru_cache(maxsize=1024)
+def nodes_of(root: Expression) -> tuple[Expression, ...]:
     """Return every distinct node of the tree, arguments before the nodes that use them, and `root` last."""
     found: dict[Expression, None] = {}
 
@@ -272,4 +274,4 @@ def nodes_of(root: Expression) -> list[Expression]:
             found[node] = None
 
     visit(root)
-    return list(found)
+    return tuple(found)
