@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
@@ -124,6 +125,7 @@ def rates_at(g: Resistance, stable: tuple[Branch, ...], excess: float) -> tuple[
     return rates, np.array([found[rate] for rate in rates.tolist()], bool)
 
 
+@lru_cache(maxsize=256)  # jumps and loops ask for the same places
 def _root(g: Resistance, low: float, high: float, excess: float) -> float:
     """Return the rate (m/s) between low and high at which g passes an excess (Pa); g must be monotone there."""
 
