@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import hashlib
 import os
 import subprocess
 import sys
@@ -15,6 +16,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from stickslip.cli.stored import stored
 from stickslip.engine.state.layout import Counts, State
 from stickslip.foundation import atomic_write, netcdf_file
 from stickslip.foundation.atomic_write import DRAFT, STALE, held, write_atomically
@@ -193,3 +195,27 @@ def test_a_lock_on_a_name_is_exclusive_and_released(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
     with held(path, "taken"):
         pass
+
+
+def test_a_checkpoint_never_cuts_a_file_that_is_no_catalogue(tmp_path: Path) -> None:
+    """A checkpoint that counts no rows, made by hand, beside somebody's own table."""
+    ss.catalogue(PROBLEM, 20 * ss.YEAR, tmp_path / "events.csv")
+    crafted = tmp_path / "mine.checkpoint.nc"
+    crafted.write_bytes((tmp_path / "events.checkpoint.nc").read_bytes())
+    mine = tmp_path / "mine.csv"
+    mine.write_text("a,b\n1,2\n")
+    refused(lambda: ss.resume(crafted, 40 * ss.YEAR), "not the checkpoint of events.csv")
+
+    def name_it(file: h5py.File) -> None:
+        file.attrs.update({"catalogue": "mine.csv", "bytes": 0, "told": 0, "digest": hashlib.sha256().hexdigest()})
+
+    resealed(crafted, name_it)
+    refused(lambda: ss.resume(crafted, 40 * ss.YEAR), "mine.csv")
+    assert mine.read_text() == "a,b\n1,2\n"
+
+
+@POSIX
+@pytest.mark.parametrize("name", ["run.nc", "events.csv"])
+def test_a_pipe_in_place_of_a_result_is_refused_at_once(name: str, tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / name)
+    refused(lambda: stored(tmp_path / name), name, "not an ordinary file")

@@ -32,6 +32,12 @@ def is_number(value: Any) -> bool:
     return isinstance(value, Real) and not isinstance(value, bool | np.timedelta64)
 
 
+def check_ordinary(path: Path) -> None:
+    """Raise InputError for a pipe, a device or a socket, which may never end. What is not there is left to the reader."""
+    if path.exists() and not path.is_file() and not path.is_dir():
+        raise InputError(f"{path}: not an ordinary file")
+
+
 def shown(value: Any) -> str:
     """Return what was given, for a message: a number or a text itself, of anything else the name of its type."""
     if isinstance(value, type):

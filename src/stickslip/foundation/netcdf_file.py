@@ -13,6 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from stickslip.foundation.arguments import check_ordinary
 from stickslip.foundation.atomic_write import FULL, Sink, write_atomically
 from stickslip.foundation.errors import InputError
 
@@ -93,6 +94,7 @@ def seal(path: Path) -> None:
 
 def check(path: Path, what: str = "a file") -> None:
     """Raise InputError unless a file is as this package wrote it; `what` names in the message what the file should be."""
+    check_ordinary(path)
     try:
         with path.open("rb") as file:
             size = os.fstat(file.fileno()).st_size

@@ -13,16 +13,20 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stickslip.foundation import netcdf_file
+from stickslip.foundation.arguments import check_ordinary
 from stickslip.foundation.atomic_write import sync, write_atomically
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.netcdf_file import cannot_be_written, digest_of, write_with
 from stickslip.io.netcdf import column_unit
+from stickslip.trajectory.tables import EVENT_COLUMNS
 
 if TYPE_CHECKING:
     import pandas as pd
 
 SUFFIXES = (".csv", ".parquet", ".nc")
 """File suffixes of the formats in which a catalogue can be stored."""
+LONGEST_HEADER = 10_000
+"""Largest length, in bytes, of the first line of a catalogue."""
 AT_A_TIME = 50_000
 """Number of rows converted from one format to another at a time, which bounds the memory."""
 
@@ -84,20 +88,29 @@ class Rows:
     def take_up(self, rows: int, size: int, digest: str) -> None:
         """Go back to the first `rows` rows, which filled `size` bytes with this digest.
 
-        The growing file holds them. If the run had ended, the file is written again from the finished table, atomically: a process
-        that dies here leaves either no growing file or a complete one. Raises InputError if rows are missing or differ.
+        The growing file holds them; a file with other columns than a catalogue's is not touched. If the run had ended, the file is
+        written again from the finished table, atomically: a process that dies here leaves either no growing file or a complete one.
+        Raises InputError if rows are missing or differ.
         """
         ended = self.growing != self.path and self.path.exists() and not self._has(size, digest)
         if ended:  # `tidy` deleted the growing file when the run ended
             table = read_table(self.path).iloc[:rows]
             text = ",".join(table.columns) + "\n" + "".join(lines_of(table))
             write_atomically(self.growing, lambda draft: draft.write_text(text, encoding="utf-8", newline=""))
+        if self.size and not self._is_catalogue():
+            raise InputError(f"{self.growing}: not a catalogue of slip events, so that no catalogue can be resumed in it")
         if not self._has(size, digest):
             lost = self.size < size
             what = "has lost rows that the checkpoint counts on" if lost else "has other rows than the checkpoint counts on"
             raise InputError(f"{self.growing}: {what}; run it again from the start")
         if self.growing.exists():
             os.truncate(self.growing, size)
+
+    def _is_catalogue(self) -> bool:
+        """Return True if the growing file begins with the names of the columns of slip events."""
+        with self.growing.open("rb") as file:
+            names = file.readline(LONGEST_HEADER).decode("utf-8", errors="replace").strip().split(",")
+        return set(EVENT_COLUMNS) <= set(names)
 
     def _has(self, size: int, digest: str) -> bool:
         return self.size >= size and self.digest(size) == digest
@@ -176,6 +189,7 @@ def read_table(path: Path) -> pd.DataFrame:
     """Read a finished catalogue. Raises InputError for a file that is missing, is not a catalogue, or is visibly damaged."""
     import pandas as pd
 
+    check_ordinary(path)
     suffix = path.suffix.lower()
     if suffix == ".nc":
         return netcdf_file.read(path, "a catalogue").to_dataframe().reset_index(drop=True)

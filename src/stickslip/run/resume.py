@@ -14,7 +14,7 @@ from stickslip.io.catalogue_rows import Rows, check_catalogue
 from stickslip.io.netcdf import CATALOGUE, is_catalogue, open_solution, read, to_solution
 from stickslip.io.soundness import check_checkpoint, check_place
 from stickslip.observables.event_stream import Place
-from stickslip.run.catalogue import Catalogue, alone_with, follow
+from stickslip.run.catalogue import Catalogue, alone_with, checkpoint_of, follow
 from stickslip.run.monitor import run_to_end, stream_of
 from stickslip.run.options import CHECKPOINT_EVERY, RunOptions
 from stickslip.run.progress import Progress
@@ -113,8 +113,13 @@ class PausedCatalogue:
 
     @property
     def rows(self) -> Rows:
-        """The rows, which are in the folder of the checkpoint. Raises InputError if a file of theirs is a symbolic link."""
+        """The rows, in a file beside the checkpoint whose name follows from that of the checkpoint.
+
+        Raises InputError if it would be that of another file, or a symbolic link.
+        """
         found = Rows(self.path.parent / self.about["catalogue"])
+        if checkpoint_of(found).name != self.path.name:
+            raise InputError(f"{self.path}: not the checkpoint of {found.path.name}, whose name is {checkpoint_of(found).name}")
         for path in {found.path, found.growing}:
             if path.is_symlink():
                 raise InputError(f"{path}: is a link: a catalogue is resumed in the file itself")
