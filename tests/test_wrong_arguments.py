@@ -193,3 +193,33 @@ def test_studies_of_one_run_are_checked() -> None:
     refused(lambda: ss.studies.predictability("run.nc"), "predictability: needs a Solution, got 'run.nc'")  # type: ignore[arg-type]
     refused(lambda: ss.studies.catalogue_statistics(PROBLEM), "catalogue_statistics: table must be a table of slip events")  # type: ignore[arg-type]
     refused(lambda: ss.studies.compare("fig6-slab", 3), "load_scenario: path_or_name must be the name of a file or of a bundled")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (
+            lambda: ss.ElasticSlab(2800, wavespeed=3500, thickness=1e4, normal_stress=1e8),  # type: ignore[call-arg]
+            "ElasticSlab: unknown argument 'wavespeed'; did you mean 'wave_speed'?",
+        ),
+        (lambda: ss.ElasticSlab(2800, 3500), "ElasticSlab: thickness, normal_stress must be given"),  # type: ignore[call-arg]
+        (lambda: ss.SpringBlock(*range(1, 9)), "SpringBlock: takes at most"),  # type: ignore[arg-type]
+        (
+            lambda: ss.friction.Coulomb(statik=0.8, dynamic=0.3),  # type: ignore[call-arg]
+            "Coulomb: unknown argument 'statik'; did you mean 'static'?",
+        ),
+        (lambda: ss.Problem(SLAB, LAW, pullrate=1.0), "Problem: unknown argument 'pullrate'; did you mean"),  # type: ignore[call-arg]
+        (lambda: ss.loading.Steps(time=(0.0,)), "Steps: unknown argument 'time'; did you mean 'times'?"),  # type: ignore[call-arg]
+        (lambda: ss.friction.Coulomb("80%", 0.3), "Coulomb: static must be a number, got '80%'; write 0.8"),  # type: ignore[arg-type]
+    ],
+)
+def test_arguments_that_a_class_does_not_have_are_refused(call: Callable[[], Any], message: str) -> None:
+    refused(call, message)
+
+
+def test_times_may_have_units() -> None:
+    run = ss.simulate(PROBLEM, 1.0)
+    assert float(run.slip("500 ms")) == float(run.slip(0.5))
+    assert run.slip(["0.1 s", 0.2]).tolist() == run.slip([0.1, 0.2]).tolist()
+    refused(lambda: run.slip("three"), "solution: time must be a number in s or a text with a unit such as \"10 s\", got 'three'")
+    refused(lambda: run.slip([1, [2, 3]]), "solution: times must be numbers in s")  # type: ignore[list-item]

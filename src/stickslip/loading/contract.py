@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.foundation.brief_repr import brief_repr
+from stickslip.foundation.checked_arguments import CheckedArguments
 from stickslip.foundation.conversion import unit_among
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.field_docs import document_fields
@@ -67,7 +68,7 @@ SILENT = Tone(0.0, 1.0, 0.0)
 """The tone of a history without oscillation; its frequency of 1 rad/s has no effect, but a frequency must be positive."""
 
 
-class LoadingHistory(ABC):
+class LoadingHistory(CheckedArguments, ABC):
     """A pull rate (m/s) or far stress (Pa) as a function of time (s) since the start of the run.
 
     Before the start of the run the value equals that at the start. A run meets the breaking points of the history exactly.
