@@ -20,6 +20,8 @@ RATIO = 0.05
 NARROW = 0.01
 SHORTEST = 3e-15
 """Length of a piece (m) that is not halved any more."""
+FINEST = 1e-9
+"""Length of a piece (m) that is not halved any more for the sake of its integral: rounding of v decides there."""
 MOST_PIECES, MOST_STEPS = 40_000, 1500
 DISTURBANCE, DECIDED = 1e-12, 1e-8
 """An answer is left out where a load changed by DISTURBANCE of the normal load changes it by more than DECIDED of itself."""
@@ -123,7 +125,7 @@ def _settled(law: Law, load: float, low: Floats, high: Floats) -> tuple[Floats, 
     for _ in range(40):
         middle = 0.5 * (low + high)
         halves, whole = _times(law, load, low, high), _times(law, load, low, middle) + _times(law, load, middle, high)
-        rough = np.abs(halves - whole) > 1e-12 * np.abs(whole).sum() / max(len(low), 1)
+        rough = (np.abs(halves - whole) > 1e-12 * np.abs(whole).sum()) & (high - low > FINEST)
         if not rough.any():
             return low, high
         low, high = np.concatenate((low, middle[rough])), np.concatenate((np.where(rough, middle, high), high[rough]))

@@ -38,7 +38,9 @@ def times_of(t: ArrayLike) -> Floats:
         return found[0] if isinstance(t, str) else found
     try:
         return np.asarray(t, float)
-    except (OverflowError, TypeError, ValueError):  # a whole number larger than any float, or no number at all
+    except OverflowError:  # a whole number larger than any float
+        raise InputError("solution: times must be finite numbers in s") from None
+    except (TypeError, ValueError):
         raise InputError(f"solution: times must be numbers in s or texts with a unit such as '3 ms', got {shown(t)}") from None
 
 
