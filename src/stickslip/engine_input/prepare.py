@@ -75,7 +75,7 @@ def parameters_of(problem: Problem) -> Params:
     params.counts_net = 1.0 if law.counts == "net" else 0.0
     params.static_excess = law.static_excess
     params.state_scale = law.state.scale if law.state else 0.0
-    params.rate_floor = SMALLEST if law.sticks else SLOWEST * min(law.rate_scales)
+    params.rate_floor = SMALLEST if law.sticks else SLOWEST * min(law.rate_scales, default=1.0)
     params.healed_piece = int(law.piece_at(problem.law_slip)) if law.memory == "since-arrest" else -1
     params.can_be_negative = 1.0 if law.can_be_negative else 0.0
     lowest, _ = law.range()
@@ -250,10 +250,13 @@ def start_of(problem: Problem) -> tuple[State, Counts]:
     count.has_inertia = problem.body.has_inertia
     count.is_algebraic = is_algebraic(problem)
     count.has_state, count.sticks = problem.friction.state is not None, problem.friction.sticks
+    count.reverses = problem.friction.state is not None and problem.friction.state.reverses
     state.state_now = problem.state
     if not problem.friction.sticks:
         state.rate_now = problem.rate
         count.mode = 1 if (problem.rate or problem.load) >= 0.0 else -1
+    if count.reverses and count.mode < 0:
+        state.state_now = -problem.state
     count.pause_at = count.lumped_since = count.lump_above = at.NEVER
     count.folds_move = folds_move(problem)
     count.disc = FIRST_DISC

@@ -19,6 +19,7 @@ from stickslip.friction.laws.exponential_stribeck import ExponentialStribeck
 from stickslip.friction.laws.hyperbolic_rate import HyperbolicRate
 from stickslip.friction.laws.lagged import LaggedFriction
 from stickslip.friction.laws.linear_slip_weakening import LinearSlipWeakening
+from stickslip.friction.laws.lugre import LuGre
 from stickslip.friction.laws.parabolic_slip_weakening import ParabolicSlipWeakening
 from stickslip.friction.laws.piecewise_linear_rate import PiecewiseLinearRate
 from stickslip.friction.laws.piecewise_linear_slip import PiecewiseLinearSlip
@@ -46,6 +47,7 @@ LAWS: dict[str, type[FrictionLaw]] = {
         VelocityStrengthening,
         RateAndState,
         LaggedFriction,
+        LuGre,
         SlipPlusRate,
         SlipTimesRate,
         FromExpression,
@@ -56,6 +58,6 @@ LAWS: dict[str, type[FrictionLaw]] = {
 
 __all__ = ["LAWS", "FrictionLaw", "FromExpression", "FromFunction", "FromTable"]
 __all__ += ["Fit", "Points", "Smooth", "fit", "fit_each", "smooth"]
-__all__ += ["Coulomb", "HyperbolicRate", "LaggedFriction", "PiecewiseLinearRate", "RateAndState", "VelocityStrengthening"]
+__all__ += ["Coulomb", "HyperbolicRate", "LaggedFriction", "LuGre", "PiecewiseLinearRate", "RateAndState", "VelocityStrengthening"]
 __all__ += ["ExponentialCohesiveZone", "ExponentialSlipWeakening", "LinearSlipWeakening", "ParabolicSlipWeakening"]
 __all__ += ["ExponentialStribeck", "PiecewiseLinearSlip", "PowerStribeck", "SinusoidalSlip", "SlipPlusRate", "SlipTimesRate"]

@@ -37,6 +37,14 @@ class StateVariable:
 
     With 0 the error is relative to the state itself.
     """
+    reverses: bool = False
+    """True if the state has a direction, as the bending of bristles has, and changes its sign where slip reverses.
+
+    Formulas see it in the direction of slip. Friction then passes smoothly through v = 0 at any state, and may drive slip for a
+    while: the bristles spring back. Users give and see it in the forward direction.
+    """
+    signed: bool = False
+    """True if the state may be negative at the start. A state that reverses may in any case."""
 
 
 @dataclass(frozen=True)

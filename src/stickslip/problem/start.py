@@ -32,7 +32,7 @@ class Start(NamedTuple):
 
     rate: float
     load: float
-    state: float
+    state: float  # one that reverses: in the forward direction
 
 
 def check_rate(problem: Problem) -> None:
@@ -62,6 +62,8 @@ def start_of(problem: Problem) -> Start:
         return _steady(problem, problem.first_pull_rate if rate is None else rate)
     load = problem.strength + problem.initial_excess if problem.initial_load is None else problem.initial_load  # type: ignore[operator]
     state = 0.0 if problem.initial_state is None else problem.friction.inner_state(problem.initial_state)
+    if rate is None and problem.friction.state is not None and problem.friction.state.reverses:
+        rate = 0.0
     if rate is None:
         rate = math.copysign(_balance(_resistance(problem, state), abs(load), problem), load)
     return Start(rate, load, state)
@@ -83,7 +85,8 @@ def _steady(problem: Problem, rate: float) -> Start:
                 f"Problem: needs initial_load and initial_state: {name} does not say in which state it slides steadily"
             )
         state = law.inner_state(float(sliding))
-    return Start(rate, math.copysign(_resistance(problem, state)(abs(rate)).item(), rate), state)
+    load = math.copysign(_resistance(problem, state)(abs(rate)).item(), rate)
+    return Start(rate, load, math.copysign(state, rate) if law.state is not None and law.state.reverses else state)
 
 
 def _resistance(problem: Problem, state: float) -> Callable[[Any], Floats]:

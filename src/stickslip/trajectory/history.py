@@ -329,7 +329,7 @@ class History:
         return sums + (self.grown(end) - self.grown(begin))
 
     def state(self, at: Positions) -> Floats:
-        """Return the state of the friction law as its formulas see it; 0 for a law without a state."""
+        """Return the state of the friction law as its formulas see it in forward slip; 0 for a law without a state."""
         if self.problem.friction.state is None:
             return np.zeros(len(at.xi))
         return np.where(at.before, self.problem.state, horner(self.store.state[at.piece], at.xi))
@@ -347,6 +347,10 @@ class History:
         if not body.has_inertia:
             return excess - body.damping * rate
         law, mode = self.problem.friction, self.mode(at)
+        if law.state is not None and law.state.reverses:
+            towards = np.where(mode < 0, -1.0, 1.0)
+            coefficient = law.coefficient(self.law_slip(at), np.abs(rate), towards * self.state(at))
+            return towards * self.problem.normal * coefficient - self.problem.strength
         coefficient = law.coefficient(self.law_slip(at), np.abs(rate), self.state(at))
         by_law = mode * self.problem.normal * coefficient - self.problem.strength
         return np.where((mode == 0) | (at.before & (rate == 0.0)), excess, by_law)

@@ -17,7 +17,7 @@ from stickslip.engine.contact_step.keep_step import keep_step
 from stickslip.engine.contact_step.negative_friction import last_place_above_zero, place_below_zero
 from stickslip.engine.contact_step.step_events import Cut, cut_at_first_event, resolve, stretch
 from stickslip.engine.contact_step.taylor_step import note_shock
-from stickslip.engine.series.polynomial import NONE, copy, fill, scale, total
+from stickslip.engine.series.polynomial import NONE, copy, fill, scale, total, turn_over
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Floats, StepEvent, Stop, Task
 from stickslip.engine.state.workspace import Run
@@ -74,12 +74,16 @@ def keep_state(run: Run, length: float) -> None:
     if length != 1.0:
         scale(kept, length)
     run.state.state_now = total(kept)
+    if run.counts.reverses == 1 and run.counts.mode < 0:
+        turn_over(kept)
 
 
 @kernel
 def note_negative_friction(run: Run) -> None:
     """Note a breach if friction is below zero where the step ends, or where it starts if there is no solution from there."""
     rate, state = run.state.rate_now, run.state.state_now
+    if run.counts.reverses == 1:  # friction may drive slip
+        return
     if not math.isfinite(rate):
         rate, state = run.stage_rate[0], run.stage_state[0]
     contact_at(run, run.state.law_slip, abs(rate), state)

@@ -30,7 +30,7 @@ def arrive(run: Run) -> None:
     """Decide how the contact answers a new piece of load: whether it sticks or slips, in which direction, and on which branch."""
     load = run.load[0]
     if run.counts.sticks == 0:
-        if run.counts.has_inertia == 0 and load != -run.params.reference:
+        if run.counts.has_inertia == 0 and run.counts.reverses == 0 and load != -run.params.reference:
             run.counts.mode = 1 if load > -run.params.reference else -1
         return
     limit = rest_limit(run)
@@ -134,6 +134,8 @@ def come_to_rest(run: Run) -> None:
     run.state.rate_now = 0.0
     if run.counts.sticks == 0:
         run.counts.mode = -before
+        if run.counts.reverses == 1:
+            run.state.state_now = -run.state.state_now
         return
     run.counts.mode = 0
     if run.counts.has_inertia == 0:

@@ -47,6 +47,9 @@ def rate_at_load(run: Run, load: float, guess: float) -> float:
     """
     impedance, normal = run.params.impedance, run.params.normal
     low, high = 0.0, (load + run.params.reference) / impedance
+    if run.counts.reverses == 1:  # friction at rest is that of the state alone
+        contact_at(run, run.state.law_slip, 0.0, run.state.state_now)
+        high = (load - normal * run.value.mu) / impedance
     if high <= 0.0:
         return 0.0
     s = guess if low < guess < high else 0.5 * high

@@ -20,7 +20,7 @@ from stickslip.engine.implicit_step.radau_stages import (
     size_of_load,
     solve_stages,
 )
-from stickslip.engine.series.polynomial import evaluate, fill, first_descent, restrict
+from stickslip.engine.series.polynomial import evaluate, fill, first_descent, restrict, turn_over
 from stickslip.engine.series.radau_nodes import MIDDLE, POINTS, STAGES, TO_POWERS_SUM, interpolate, last_terms
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Floats
@@ -207,10 +207,18 @@ def turn_with_load(run: Run, left: float) -> float:
 
 
 @kernel
-def turn_over(c: Floats) -> None:
-    """Change the sign of a polynomial in place."""
-    for k in range(at.TERMS):
-        c[k] = -c[k]
+def turn_with_bristles(run: Run) -> None:
+    """Let a contact at a slip rate of zero, whose state changes its sign where slip reverses, slip the way the net force pulls it.
+
+    Friction is that of the state alone there. Where it balances the load, the change of the load decides.
+    """
+    contact_at(run, run.state.law_slip, 0.0, run.state.state_now)
+    load_ahead(run, 1.0)
+    force = run.load_along_slip[0] - run.params.normal * run.value.mu
+    if abs(force) <= LOAD_ROUNDING * (size_of_load(run) + run.params.normal * abs(run.value.mu)):
+        force = run.load_along_slip[1]
+    if force < 0.0:
+        run.counts.mode, run.state.state_now = -run.counts.mode, -run.state.state_now
 
 
 @kernel
@@ -248,7 +256,10 @@ def collocate(run: Run, left: float) -> float:
     attempts fail.
     """
     speed = abs(run.state.speed)
-    if run.counts.sticks == 0 and (run.counts.has_inertia == 0 or run.state.rate_now == 0.0):
+    if run.counts.reverses == 1:
+        if run.state.rate_now == 0.0:
+            turn_with_bristles(run)
+    elif run.counts.sticks == 0 and (run.counts.has_inertia == 0 or run.state.rate_now == 0.0):
         left = turn_with_load(run, left)
     guess = longest = first_length(run, left)
     before, in_vain, solution_over = math.inf, 0, 0.0
@@ -285,7 +296,7 @@ def collocate(run: Run, left: float) -> float:
 def begin_step(run: Run, guess: float) -> float:
     """Prepare the load and the start of an implicit step of length `guess` (in xi); return the force (Pa or N) that it ignores."""
     load_ahead(run, guess)
-    if run.counts.sticks == 0 and abs(run.load_along_slip[0] + run.params.reference) <= LOAD_ROUNDING * size_of_load(run):
+    if run.counts.sticks == 0 and run.counts.reverses == 0 and abs(run.load_along_slip[0] + run.params.reference) <= LOAD_ROUNDING * size_of_load(run):
         run.load_along_slip[0] = -run.params.reference  # The load passes through zero here: slip begins at rate zero.
     run.k.speed, run.k.bend = run.state.speed * guess, 0.0
     run.k.chi = run.counts.mode if run.params.counts_net == 1.0 else 1.0

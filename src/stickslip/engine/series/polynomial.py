@@ -125,6 +125,13 @@ def scale(c: Floats, width: float) -> None:
         power *= width
 
 
+@kernel
+def turn_over(c: Floats) -> None:
+    """Change the sign of a polynomial in place."""
+    for k in range(TERMS):
+        c[k] = -c[k]
+
+
 @inlined
 def magnitude(c: Floats, first: int = 1) -> float:
     """Return the sum of |c_k| for k >= `first`: with 1, a bound on |p - c_0| on [-1, 1]."""

@@ -117,6 +117,7 @@ class Counts(Record):
     is_algebraic: int  # 1 if the slip rate is a root of the contact equation: no mass, a law of slip rate, no state
     arriving: int  # cause of the jump with which the present piece of load begins, as a code of `Cause`; 0 without a jump
     has_state: int  # 1 if the law has a state variable
+    reverses: int  # 1 if this state changes its sign where slip reverses
     sticks: int  # 1 if the law knows rest
     stiff: int  # 1 while a contact with mass is stiff and takes implicit steps
     steps: int  # number of explicit steps since slip last began from rest

@@ -1,0 +1,84 @@
+"""Define friction of bristles that bend before they slip: hysteresis where motion reverses, and creep below the strength."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from typing_extensions import override
+
+from stickslip.foundation.conversion import Number
+from stickslip.foundation.quantities import quantity
+from stickslip.friction.contract import Formula, StateVariable
+from stickslip.friction.formula.expression import exp
+from stickslip.friction.law import FrictionLaw
+
+BENDING = StateVariable("z", "m", "mean bending z of the bristles, positive in forward slip", reverses=True)
+
+
+@dataclass(frozen=True)
+class LuGre(FrictionLaw):
+    """mu = stiffness z + damping dz/dt + viscosity v, with dz/dt = v - stiffness z v / g(v) for slip rates v >= 0.
+
+    g(v) = dynamic + (static - dynamic) exp(-(v / rate)^2) is friction in steady sliding, but for the viscosity. The bristles bend
+    with slip before they give way, within about static / stiffness, and spring back where motion reverses: z then changes its
+    sign in the direction of slip, and friction drives slip for a moment. The contact never sticks.
+
+    Damping must not be so large that friction at a given bending falls with slip rate on a contact without mass: such a run ends.
+    """
+
+    kind = "lugre"
+    source = (
+        "Canudas de Wit, Olsson, Astrom & Lischinsky 1995, IEEE Trans. Autom. Control 40, 419; Astrom & Canudas de Wit 2008, IEEE "
+        "Control Syst. Mag. 28, 101"
+    )
+    state = BENDING
+    sticks = False
+    start = {"coefficient": 0.0, "state": 0.0}
+    example = {"static": 0.15, "dynamic": 0.1, "rate": "1 mm/s", "stiffness": "1e4 1/m", "damping": "3 s/m", "viscosity": "0.04 s/m"}
+
+    static: float = quantity("1", "friction coefficient of very slow sliding", above=0)
+    dynamic: float = quantity("1", "friction coefficient of fast sliding, without the viscous term", above=0)
+    rate: Number = quantity("m/s", "slip rate over which friction falls (Stribeck)", above=0)
+    stiffness: Number = quantity("1/m", "stiffness of the bristles, over the normal load", above=0)
+    damping: Number = quantity("s/m", "damping of the bristles, over the normal load", at_least=0, default=0.0)
+    viscosity: Number = quantity("s/m", "increase of friction with slip rate", at_least=0, default=0.0)
+
+    @property
+    @override
+    def pieces(self) -> tuple[Formula, ...]:
+        return (_friction,)
+
+    @property
+    @override
+    def state_rate(self) -> Formula:
+        return _bending
+
+    @override
+    def range(self) -> tuple[float, float]:
+        return 0.0, np.inf
+
+    @property
+    @override
+    def variation(self) -> float:
+        """The larger of static and dynamic friction: bristles that spring back change it from one sign to the other (no unit)."""
+        return max(self.static, self.dynamic)
+
+    @override
+    def steady_state(self, v: ArrayLike) -> NDArray[np.float64]:
+        """Return the bending z (m) in steady forward sliding at slip rates v > 0 (m/s): g(v) / stiffness."""
+        return np.asarray(_steady(self, np.asarray(v, float)) / self.stiffness)
+
+
+def _steady(law: Any, v: Any) -> Any:
+    """Return g(v), the friction coefficient of steady sliding without viscosity."""
+    return law.dynamic + (law.static - law.dynamic) * exp(-((v / law.rate) ** 2))
+
+
+def _bending(law: Any, u: Any, v: Any, z: Any) -> Any:
+    """Return dz/dt (m/s)."""
+    return v - law.stiffness * v * z / _steady(law, v)
+
+
+def _friction(law: Any, u: Any, v: Any, z: Any) -> Any:
+    return law.stiffness * z + law.damping * _bending(law, u, v, z) + law.viscosity * v
