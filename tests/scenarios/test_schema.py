@@ -1,5 +1,6 @@
 """The schema is read from what laws and bodies declare: registering one is enough."""
 
+import json
 from dataclasses import MISSING, dataclass
 from typing import Any, ClassVar
 
@@ -27,7 +28,7 @@ def document(body: type, law: type) -> str:
     friction = (
         tomli_w.dumps({"friction": {"kind": law.kind} | example}) if example else f'[friction]\nkind = "{law.kind}"\n{values(law)}'
     )
-    state = f'state = "{law.start["state"]}"\n' if law.start else ""
+    state = f"state = {json.dumps(law.start['state'])}\n" if law.start else ""
     return f'[body]\nkind = "{body.kind}"\n{values(body)}{friction}[initial]\nload = 1.0\n{state}[run]\nduration = 2\n'
 
 

@@ -22,7 +22,7 @@ COMMON_UNITS = (
 )
 """Units among which the nearest one to an unknown name is looked for; every unit of the unit library is accepted."""
 
-_QUANTITY = re.compile(rf"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{{1,3}})?)\s*(?P<unit>{UNIT})\s*")
+_QUANTITY = re.compile(rf"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{{1,3}})?)(?:\s+1(?=/)|\s*)(?P<unit>{UNIT})\s*")
 
 
 def split_quantity(text: str) -> tuple[float, str] | None:

@@ -13,9 +13,11 @@ from stickslip.friction.custom.smooth import Smooth, smooth
 from stickslip.friction.custom.table import FromTable
 from stickslip.friction.law import FrictionLaw
 from stickslip.friction.laws.coulomb import Coulomb
+from stickslip.friction.laws.dahl import Dahl
 from stickslip.friction.laws.exponential_cohesive_zone import ExponentialCohesiveZone
 from stickslip.friction.laws.exponential_slip_weakening import ExponentialSlipWeakening
 from stickslip.friction.laws.exponential_stribeck import ExponentialStribeck
+from stickslip.friction.laws.flash_heating import FlashHeating
 from stickslip.friction.laws.hyperbolic_rate import HyperbolicRate
 from stickslip.friction.laws.lagged import LaggedFriction
 from stickslip.friction.laws.linear_slip_weakening import LinearSlipWeakening
@@ -48,6 +50,8 @@ LAWS: dict[str, type[FrictionLaw]] = {
         RateAndState,
         LaggedFriction,
         LuGre,
+        Dahl,
+        FlashHeating,
         SlipPlusRate,
         SlipTimesRate,
         FromExpression,
@@ -58,6 +62,7 @@ LAWS: dict[str, type[FrictionLaw]] = {
 
 __all__ = ["LAWS", "FrictionLaw", "FromExpression", "FromFunction", "FromTable"]
 __all__ += ["Fit", "Points", "Smooth", "fit", "fit_each", "smooth"]
-__all__ += ["Coulomb", "HyperbolicRate", "LaggedFriction", "LuGre", "PiecewiseLinearRate", "RateAndState", "VelocityStrengthening"]
+__all__ += ["Coulomb", "Dahl", "FlashHeating", "LuGre"]
+__all__ += ["HyperbolicRate", "LaggedFriction", "PiecewiseLinearRate", "RateAndState", "VelocityStrengthening"]
 __all__ += ["ExponentialCohesiveZone", "ExponentialSlipWeakening", "LinearSlipWeakening", "ParabolicSlipWeakening"]
 __all__ += ["ExponentialStribeck", "PiecewiseLinearSlip", "PowerStribeck", "SinusoidalSlip", "SlipPlusRate", "SlipTimesRate"]

@@ -172,6 +172,11 @@ class LawContract(CheckedArguments, ABC):
         """
         return None
 
+    @property
+    def healed_state(self) -> float:
+        """The state, as users see it, of a contact that has been at rest for ever: where a law that sticks starts by default."""
+        return 0.0
+
     # ---------------------------------------------------------------------------------------------------------------------------
 
     def __init_subclass__(cls, **options: Any) -> None:

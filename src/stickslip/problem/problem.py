@@ -188,11 +188,12 @@ class Problem(CheckedArguments):
             return
         if not law.sticks and self.initial_excess is not None:
             raise InputError(f"Problem: initial_excess: {name} has no static strength to exceed, give initial_load")
-        bounds = {} if law.state.signed or law.state.reverses else {"at_least": 0.0, "above": None if law.sticks else 0.0}
-        declared = Quantity(law.state.unit, law.state.meaning, **bounds)
+        signed = law.state.signed or law.state.reverses
+        above = None if law.sticks or signed else 0.0
+        declared = Quantity(law.state.unit, law.state.meaning, above=above, at_least=None if signed else 0.0)
         value = self.initial_state
         if value is None and (law.sticks or (law.state.reverses and self.initial_load is not None)):
-            value = 0.0
+            value = law.healed_state
         if value is None and self.has_initial_rate and self.initial_load is None:
             return
         if value is None:

@@ -92,7 +92,7 @@ def to_table(owner: Any) -> dict[str, Any]:
     table: dict[str, Any] = {"kind": owner.kind}
     for name, (entry, _) in fields_of(type(owner)).items():
         value = getattr(owner, name)
-        if value is not None and value != ():
+        if value not in (None, (), ""):
             table[key_of(name, entry)] = _written(value, entry)
     return table
 

@@ -142,7 +142,8 @@ def _written(example: dict[str, Any], about: str = "") -> str:
             lines += [f"# kind = {json.dumps(other.kind)}  # {_first_line(other)}" for other in LAWS.values() if other is not kind]
         if table == "loading":
             lines.append(f"# A pull rate that varies: `stickslip new slab --pull KIND`, KIND one of {', '.join(HISTORIES)}.")
-        lines += _table(table, kind, example[table], kinds["friction"].state)  # type: ignore[attr-defined] # registered
+        state: Any = getattr(kinds["friction"], "state", None)  # a typed state is not that of the class
+        lines += _table(table, kind, example[table], state if isinstance(state, StateVariable) else None)
         if table == "run":
             given = [f"{key} = {_toml(example[table][key])}" for key in ("events", "selection") if key in example[table]]
             lines += given or [f'# selection = "{SELECTION_RULES[0]}"  # or {", ".join(SELECTION_RULES[1:])}']

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from stickslip.engine.codegen.compiler import call_state_value, call_value, kernel
 from stickslip.engine.codegen.records import numbers_of
 from stickslip.engine.contact.contact_equation import constants_of
@@ -19,6 +21,8 @@ CHECKED = 16
 """Number of explicit steps (1) between two checks of the stiffness."""
 
 
+HANGING = 100.0
+"""Error (1) of the force of bristles, in local tolerances, that a swinging contact may be left with when it counts as hanging."""
 FORGOTTEN = 1e-18
 """Friction coefficient (1) below which what is left of the state at rest is dropped."""
 
@@ -75,10 +79,31 @@ def judge_stiffness(run: Run) -> None:
 
 
 @kernel
+def hanging_rate(run: Run) -> float:
+    """Return the slip rate (m/s) below which a contact with bristles hangs in them: 0 for all other laws.
+
+    An error of the bristles' force by HANGING local tolerances makes such a slip rate in a contact that rests on them. Its sign
+    means nothing.
+    """
+    if run.counts.reverses == 0:
+        return 0.0
+    contact_at(run, run.state.law_slip, 0.0, run.state.state_now)
+    params, value = run.params, run.value
+    mass = math.sqrt(params.inertia * params.normal * abs(value.by_state * value.change_by_rate))
+    return HANGING * params.tolerance * params.normal * abs(value.mu) / (params.impedance + mass)
+
+
+@kernel
 def forgotten(run: Run) -> bool:
-    """Return True if friction no longer notices what is left of the state at rest, and set the state to zero then."""
+    """Return True if friction no longer notices what is left of the state at rest, and set the state to zero then.
+
+    A state that does not stay at zero at rest is never forgotten: it heals to another value.
+    """
     contact_at(run, run.state.law_slip, 0.0, run.state.state_now)
     if abs(run.value.by_state * run.state.state_now) > FORGOTTEN:
+        return False
+    contact_at(run, run.state.law_slip, 0.0, 0.0)
+    if run.value.change != 0.0:
         return False
     run.state.state_now = 0.0
     return True

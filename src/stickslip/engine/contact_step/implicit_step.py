@@ -17,7 +17,7 @@ from stickslip.engine.contact_step.keep_step import keep_step
 from stickslip.engine.contact_step.negative_friction import last_place_above_zero, place_below_zero
 from stickslip.engine.contact_step.step_events import Cut, cut_at_first_event, resolve, stretch
 from stickslip.engine.contact_step.taylor_step import note_shock
-from stickslip.engine.series.polynomial import NONE, copy, fill, scale, total, turn_over
+from stickslip.engine.series.polynomial import NONE, copy, fill, magnitude, scale, total, turn_over
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Floats, StepEvent, Stop, Task
 from stickslip.engine.state.workspace import Run
@@ -38,12 +38,18 @@ def slip_implicitly(run: Run, xi_to: float) -> None:
     reached = guess >= xi_to - run.state.xi
     if run.counts.has_state == 0 and is_no_longer_stiff(run):
         run.counts.stiff = 0
-    cut = cut_at_first_event(run, rate, 1.0)
+    cut = Cut(StepEvent.NONE, 0, 1.0) if is_settled(run, rate) else cut_at_first_event(run, rate, 1.0)
     cut = end_above_zero(run, rate, cut)
     keep_state(run, cut.end)
     keep_step(run, rate, cut.end, xi_to if reached and cut.end == 1.0 else run.state.xi + cut.end * guess)
     note_negative_friction(run)
     resolve(run, cut)
+
+
+@kernel
+def is_settled(run: Run, rate: Floats) -> bool:
+    """Return True if a contact with bristles hangs in them over the whole step, whose slip rate is `rate` (m/s)."""
+    return run.counts.reverses == 1 and abs(rate[0]) + magnitude(rate) <= run.state.hanging
 
 
 @kernel
@@ -94,7 +100,7 @@ def note_negative_friction(run: Run) -> None:
 @kernel
 def evolves_at_rest(run: Run) -> bool:
     """Return True if the law has a state that still changes the strength of a contact at rest."""
-    return run.counts.has_state == 1 and run.state.state_now != 0.0 and not forgotten(run)
+    return run.counts.has_state == 1 and not forgotten(run)
 
 
 @kernel

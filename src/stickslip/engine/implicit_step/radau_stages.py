@@ -163,7 +163,7 @@ def correct(run: Run, size: int, rounding: float) -> float:
     none.
     """
     v, w, m = run.stage_rate, run.stage_state, run.matrix
-    fastest, farthest, moved, evolved = 1e-300, run.params.state_scale + 1e-300, 0.0, 0.0
+    fastest, farthest, moved, evolved = run.state.hanging + 1e-300, run.params.state_scale + 1e-300, 0.0, 0.0
     for i in range(1, POINTS):
         step = m[TERMS * (i - 1) + size]
         v[i] += step

@@ -9,7 +9,7 @@ import math
 
 from stickslip.engine.codegen.compiler import kernel
 from stickslip.engine.contact.contact_equation import TIE, load_ahead
-from stickslip.engine.contact.stiffness import contact_at
+from stickslip.engine.contact.stiffness import contact_at, hanging_rate
 from stickslip.engine.implicit_step.proof import passes_zero, prove_step
 from stickslip.engine.implicit_step.radau_stages import (
     defects,
@@ -22,8 +22,7 @@ from stickslip.engine.implicit_step.radau_stages import (
 )
 from stickslip.engine.series.polynomial import evaluate, fill, first_descent, restrict, turn_over
 from stickslip.engine.series.radau_nodes import MIDDLE, POINTS, STAGES, TO_POWERS_SUM, interpolate, last_terms
-from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Floats
+from stickslip.engine.state.layout import Stop
 from stickslip.engine.state.workspace import Run
 
 ATTEMPTS = 80
@@ -91,6 +90,9 @@ def start_of_step(run: Run) -> float:
             run.stage_rate[0] = 0.0
     elif run.counts.has_inertia == 0:
         run.stage_rate[0] = rate_at_load(run, run.load_along_slip[0], abs(state.rate_now))
+        contact_at(run, state.law_slip, run.stage_rate[0], state.state_now)
+        if run.params.impedance + run.params.normal * run.value.by_rate <= 0.0:
+            run.counts.breach = Stop.OFF_THE_LAW  # several slip rates may balance the load, and nothing selects one
     return force
 
 
@@ -125,7 +127,7 @@ def error_of(run: Run, force: float, lost: float, lost_state: float) -> float:
     state) are known to be lost by rounding in the law itself.
     """
     params, value, h = run.params, run.value, run.k.speed
-    fastest, farthest = params.rate_floor, params.state_scale + 1e-300
+    fastest, farthest = max(params.rate_floor, run.state.hanging), params.state_scale + 1e-300
     for i in range(POINTS):
         fastest, farthest = max(fastest, abs(run.stage_rate[i])), max(farthest, abs(run.stage_state[i]))
     # run.value is from the latest evaluation, at or near the end of the step.
@@ -169,6 +171,8 @@ def settle_start(run: Run) -> bool:
     fastest = 0.0
     for i in range(1, POINTS):
         fastest = max(fastest, abs(run.stage_rate[i]))
+    if fastest <= run.state.hanging:
+        return True
     for k in range(1, POINTS):
         if run.jet[k] >= 0.0:
             return True
@@ -208,14 +212,18 @@ def turn_with_load(run: Run, left: float) -> float:
 
 @kernel
 def turn_with_bristles(run: Run) -> None:
-    """Let a contact at a slip rate of zero, whose state changes its sign where slip reverses, slip the way the net force pulls it.
+    """Let a contact whose state changes its sign where slip reverses slip the way the net force would pull it from rest.
 
-    Friction is that of the state alone there. Where it balances the load, the change of the load decides.
+    Friction is that of the state alone there. Where it balances the load, the change of the load decides. The slip rate of a
+    contact without mass has this direction at every moment; one with mass is turned where its slip rate is zero.
     """
     contact_at(run, run.state.law_slip, 0.0, run.state.state_now)
     load_ahead(run, 1.0)
     force = run.load_along_slip[0] - run.params.normal * run.value.mu
-    if abs(force) <= LOAD_ROUNDING * (size_of_load(run) + run.params.normal * abs(run.value.mu)):
+    rounding = LOAD_ROUNDING * size_of_load(run)
+    if run.counts.has_inertia == 1:
+        rounding += run.params.tolerance * run.params.normal * abs(run.value.mu)
+    if abs(force) <= rounding:
         force = run.load_along_slip[1]
     if force < 0.0:
         run.counts.mode, run.state.state_now = -run.counts.mode, -run.state.state_now
@@ -256,11 +264,12 @@ def collocate(run: Run, left: float) -> float:
     attempts fail.
     """
     speed = abs(run.state.speed)
-    if run.counts.reverses == 1:
-        if run.state.rate_now == 0.0:
+    run.state.hanging = hanging_rate(run)
+    if run.counts.sticks == 0 and (run.counts.has_inertia == 0 or run.state.rate_now == 0.0):
+        if run.counts.reverses == 1:
             turn_with_bristles(run)
-    elif run.counts.sticks == 0 and (run.counts.has_inertia == 0 or run.state.rate_now == 0.0):
-        left = turn_with_load(run, left)
+        else:
+            left = turn_with_load(run, left)
     guess = longest = first_length(run, left)
     before, in_vain, solution_over = math.inf, 0, 0.0
     for _ in range(ATTEMPTS):
@@ -296,7 +305,8 @@ def collocate(run: Run, left: float) -> float:
 def begin_step(run: Run, guess: float) -> float:
     """Prepare the load and the start of an implicit step of length `guess` (in xi); return the force (Pa or N) that it ignores."""
     load_ahead(run, guess)
-    if run.counts.sticks == 0 and run.counts.reverses == 0 and abs(run.load_along_slip[0] + run.params.reference) <= LOAD_ROUNDING * size_of_load(run):
+    is_odd = run.counts.sticks == 0 and run.counts.reverses == 0
+    if is_odd and abs(run.load_along_slip[0] + run.params.reference) <= LOAD_ROUNDING * size_of_load(run):
         run.load_along_slip[0] = -run.params.reference  # The load passes through zero here: slip begins at rate zero.
     run.k.speed, run.k.bend = run.state.speed * guess, 0.0
     run.k.chi = run.counts.mode if run.params.counts_net == 1.0 else 1.0

@@ -85,6 +85,7 @@ class State(Record):
     largest_residual: float  # Pa or N: largest such bound of any step so far
     roughest: float  # 1: largest share of the slip rate that rounding in the law has taken in any rough step (`Counts.rough`)
     exit: float  # 1: xi at which an algebraic contact leaves its branch; inf if not on this piece, NaN if not known yet
+    hanging: float  # m/s: slip rate below which a contact with bristles hangs in them; 0 under any other law
 
 
 SAVED = State.places["taken"].first

@@ -5,16 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
+from functools import cached_property, partial
 from typing import ClassVar, Literal
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from typing_extensions import override
 
 from stickslip.foundation.conversion import Converted, WithUnit
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import Choice, Named, NamedNumbers, Text, declare, quantity
-from stickslip.friction.contract import Formula
+from stickslip.foundation.units import si_base
+from stickslip.friction.contract import Formula, StateVariable
 from stickslip.friction.custom.sampled import check_samples
+from stickslip.friction.custom.typed_state import STATES, read_evolution, steady
 from stickslip.friction.families import RemembersSlip
 from stickslip.friction.formula.bounds import bounds
 from stickslip.friction.formula.dimensions import check_dimensions
@@ -39,6 +43,11 @@ class FromExpression(RemembersSlip):
 
     The expression must not be negative and must have all derivatives, also where slip begins, at v = 0. Both are checked on
     samples up to 10 m and 10 m/s. Units are checked if at least one value has a unit; a value without one is then a pure number.
+
+    A law may have a state of its own, whose rate of change `evolution` gives: `FromExpression("mu_0 + a*log(1 + v/v_0) + z",
+    {"mu_0": 0.6, "a": 0.01, "v_0": "1 um/s", "b": 0.02, "tau": "1 s", "d": "10 um"}, evolution="dz/dt = (b - z)/tau - v*z/d")`.
+    The state changes at rest, too, where v = 0. Friction must be finite at state 0. If it is zero at v = 0 in every state, or if
+    the state changes its sign at reversal, the contact never sticks.
     """
 
     kind = "expression"
@@ -54,19 +63,21 @@ class FromExpression(RemembersSlip):
     )
     _: KW_ONLY
     static: float | None = quantity("1", "friction coefficient at rest, if above that at v = 0+", at_least=0, default=None)
+    evolution: str = declare(Text("rate of change of a state, such as dz/dt = (1 - z)/tau, in u, v, z and parameters", LONGEST), "")
+    state_unit: str = declare(Text("unit of the state; without it the state is a pure number", LONGEST_NAME), "")
+    at_reversal: Literal["keeps-sign", "changes-sign"] = declare(
+        Choice("what the state does where slip reverses", ("keeps-sign", "changes-sign")), "keeps-sign"
+    )
     counts: Literal["net", "path"] = declare(Choice("slip that u denotes", ("net", "path")), "net")  # type: ignore[misc] # here a choice of the user
 
     @override
     def check(self) -> None:
         self._check_names()
-        units = {value.name: value.unit for value in self.values}
-        try:
-            if any(units.values()):
-                check_dimensions(self.tree, units)
-            self._check_exponents()
-            check_samples(self.tree, self.numbers(), backwards=self.counts == "net")
-        except InputError as error:
-            raise InputError(f"FromExpression: expression: {error}") from None
+        self._check_state()
+        self._check_formula("expression")
+        if self.evolution:
+            self._check_formula("evolution")
+            self._check_at_zero()
         if self.static is not None:
             self._check_static(self.static)
 
@@ -79,17 +90,47 @@ class FromExpression(RemembersSlip):
                 raise InputError(f"FromExpression: parameters: {ascii(name)[:60]} is not a name: letters, digits and _, up to 40")
             if name in RESERVED or names.count(name) > 1:
                 raise InputError(f"FromExpression: parameters: the name {name} is reserved or used twice")
-        used = {node.name for node in nodes_of(self.tree) if node.operation == "parameter"}
+        trees = (self.tree, self._change) if self.evolution else (self.tree,)
+        used = {node.name for tree in trees for node in nodes_of(tree) if node.operation == "parameter"}
         for name in names:
             if name not in used:
                 hint = nearest(name, used) if used else "the expression has no parameters"
                 raise InputError(f"FromExpression: parameters: {name} does not occur in the expression; {hint}")
 
-    def _check_exponents(self) -> None:
-        for node in nodes_of(self.tree):
+    def _check_state(self) -> None:
+        """Check what a law with a state needs, and what only such a law may have."""
+        needless = "state_unit" if self.state_unit else "at_reversal" if self.at_reversal != "keeps-sign" else ""
+        if needless and not self.evolution:
+            raise InputError(f"FromExpression: {needless}: the law has no state: give its rate of change as evolution")
+        if self.evolution and self.static is not None:
+            raise InputError("FromExpression: static: a law with a state has the static coefficient of its expression at v = 0")
+
+    def _check_formula(self, which: Literal["expression", "evolution"]) -> None:
+        """Check units, exponents and samples of a formula, in which the state is a parameter like any other."""
+        state, is_change = self._state_name, which == "evolution"
+        units = {value.name: value.unit for value in self.values} | ({state: self._unit} if state else {})
+        text = self._equation[1] if is_change else self.expression
+        try:
+            tree = parse(text, (*self.parameters(), state) if state else self.parameters())
+            if any(units.values()):
+                check_dimensions(tree, units, self._unit if is_change else None)
+            self._check_exponents(tree)
+            check_samples(tree, self.numbers(), self.counts == "net", state, is_change)
+        except InputError as error:
+            raise InputError(f"FromExpression: {which}: {error}") from None
+
+    def _check_at_zero(self) -> None:
+        """Check that friction at rest in state 0 is a number: loads are kept as differences from it."""
+        value = float(evaluate(self.tree, self.numbers(), 0.0, 0.0, 0.0))
+        if not math.isfinite(value):
+            where = f"at u = 0, v = 0 and {self._state_name} = 0"
+            raise InputError(f"FromExpression: expression: {where} friction must be a finite number, but it is {value:g}")
+
+    def _check_exponents(self, tree: Expression) -> None:
+        for node in nodes_of(tree):
             if node.operation == "pow":
                 with np.errstate(all="ignore"):
-                    exponent = float(evaluate(node.arguments[1], self.numbers(), 0.0, 0.0))
+                    exponent = float(evaluate(node.arguments[1], self.numbers() | {self._state_name: 0.0}, 0.0, 0.0))
                 if not abs(exponent) <= LARGEST_EXPONENT:
                     raise InputError(f"an exponent is {exponent:g}, it must be within {LARGEST_EXPONENT:g}")
 
@@ -103,16 +144,99 @@ class FromExpression(RemembersSlip):
     @property
     def tree(self) -> Expression:
         """The formula as an expression tree."""
+        name = self._state_name
         try:
-            return parse(self.expression, tuple(value.name for value in self.values))
+            return parse(self.expression, self.parameters(), name)
         except InputError as error:
             raise InputError(f"FromExpression: expression: {error}") from None
 
     @property
     @override
     def pieces(self) -> tuple[Formula, ...]:
-        tree, names = self.tree, self.parameters()
-        return (lambda law, u, v: evaluate(tree, {name: getattr(law, name) for name in names}, u, v),)
+        return (self._formula(self.tree),)
+
+    def _formula(self, tree: Expression) -> Formula:
+        names = self.parameters()
+        return lambda law, u, v, w=0.0: evaluate(tree, {name: getattr(law, name) for name in names}, u, v, w)
+
+    # ---- the state ------------------------------------------------------------------------------------------------------------
+
+    @property
+    def _state_name(self) -> str:
+        """The name of the state, or an empty text."""
+        return self._equation[0] if self.evolution else ""
+
+    @property
+    def _equation(self) -> tuple[str, str]:
+        """The name of the state and the text of its rate of change."""
+        try:
+            return read_evolution(self.evolution, self.parameters())
+        except InputError as error:
+            raise InputError(f"FromExpression: {error}") from None
+
+    @property
+    def _change(self) -> Expression:
+        """The rate of change of the state as an expression tree."""
+        name, text = self._equation
+        try:
+            return parse(text, self.parameters(), name)
+        except InputError as error:
+            raise InputError(f"FromExpression: evolution: {error}") from None
+
+    @property
+    def _unit(self) -> str:
+        """The unit of the state in powers of m, kg and s."""
+        if not self.state_unit:
+            return ""
+        try:
+            number, unit = si_base(f"1 {self.state_unit}")
+        except InputError as error:
+            raise InputError(f"FromExpression: state_unit: {error}") from None
+        if number != 1.0:
+            wanted = f"must be a unit of the SI without a prefix; write {unit}"
+            raise InputError(f"FromExpression: state_unit: {self.state_unit} {wanted}")
+        return unit
+
+    @cached_property
+    def state(self) -> StateVariable | None:  # type: ignore[override] # of the instance here
+        """The state variable, if `evolution` is given."""
+        if not self.evolution:
+            return None
+        name, reverses = self._state_name, self.at_reversal == "changes-sign"
+        return StateVariable(name, self.state_unit or "1", f"state {name}", reverses=reverses, signed=True)
+
+    @cached_property
+    def sticks(self) -> bool:  # type: ignore[override] # of the instance here
+        """False for a law with a state under which friction passes smoothly through v = 0."""
+        if not self.evolution:
+            return True
+        with np.errstate(all="ignore"):
+            at_rest = np.asarray(evaluate(self.tree, self.numbers(), 0.0, 0.0, STATES))
+        return self.at_reversal == "keeps-sign" and bool(np.any(at_rest[np.isfinite(at_rest)] != 0.0))
+
+    @property
+    @override
+    def state_rate(self) -> Formula:
+        return self._formula(self._change) if self.evolution else super().state_rate
+
+    @override
+    def steady_state(self, v: ArrayLike) -> NDArray[np.float64] | None:
+        """Return the state of steady sliding at slip rates v >= 0 (m/s) and slip 0; None where none is found.
+
+        It is the state nearest 0 to which the state returns after a disturbance, between 1e-18 and 1e18 in magnitude.
+        """
+        if not self.evolution:
+            return None
+        found = [steady(partial(evaluate, self._change, self.numbers(), 0.0, rate)) for rate in np.ravel(v)]
+        return None if None in found else np.reshape(np.array(found, float), np.shape(v))
+
+    @property
+    @override
+    def healed_state(self) -> float:
+        found = self.steady_state(0.0) if self.evolution else None
+        return 0.0 if found is None else float(found)
+
+    # ---------------------------------------------------------------------------------------------------------------------------
 
     @override
     def parameters(self) -> tuple[str, ...]:
@@ -139,7 +263,7 @@ class FromExpression(RemembersSlip):
     @property
     @override
     def can_be_negative(self) -> bool:
-        return not self._bounds()[0] >= 0.0
+        return self.at_reversal == "keeps-sign" and not self._bounds()[0] >= 0.0
 
     def _bounds(self) -> tuple[float, float]:
         slip = (0.0 if self.counts == "path" else -math.inf, math.inf)
@@ -155,9 +279,19 @@ class FromExpression(RemembersSlip):
         low, high = self.range()
         if math.isfinite(high):
             return high - low
+        if self.evolution:
+            return self._steady_variation()
         slip, rate = np.linspace(0.0, 10.0, 201)[:, None], np.append(0.0, np.geomspace(1e-9, 10.0, 200))
         values = self.coefficient(slip, rate)
         return max(float(np.ptp(values)), self.static_excess)
+
+    def _steady_variation(self) -> float:
+        """Return the change of friction between steady sliding at slip rates up to 10 m/s, and state 0 at rest; 0.1 if unknown."""
+        rates = np.geomspace(1e-9, 10.0, 41)
+        states = self.steady_state(rates)
+        with np.errstate(all="ignore"):
+            values = self.coefficient(0.0, np.append(rates, 0.0), 0.0 if states is None else np.append(states, 0.0))
+        return float(np.ptp(values[np.isfinite(values)])) or 0.1
 
     @property
     @override

@@ -18,7 +18,7 @@ from stickslip.friction.formula.text import to_text
 
 VARIABLES = {"u": SLIP, "v": RATE}
 """Symbols of the arguments of which friction may be a function."""
-OPTIONS = ("static", "counts", "memory")
+OPTIONS = ("static", "counts", "memory", "state", "state_unit", "at_reversal")
 """Options of the law itself, given together with the values of the function's parameters."""
 NUMPY = "sin, cos, exp, log, sqrt, tanh, arcsinh, expm1, log1p"
 """The functions of numpy that a message names."""
@@ -34,6 +34,9 @@ def FromFunction(
     static: float | str | None = None,
     counts: Literal["net", "path"] = "net",
     memory: Literal["all", "since-arrest"] = "all",
+    state: str = "",
+    state_unit: str = "",
+    at_reversal: Literal["keeps-sign", "changes-sign"] = "keeps-sign",
     **parameters: float | str | WithUnit,
 ) -> FromExpression: ...
 @overload
@@ -44,6 +47,9 @@ def FromFunction(
     static: float | str | None = None,
     counts: Literal["net", "path"] = "net",
     memory: Literal["all", "since-arrest"] = "all",
+    state: str = "",
+    state_unit: str = "",
+    at_reversal: Literal["keeps-sign", "changes-sign"] = "keeps-sign",
     **parameters: float | str | WithUnit,
 ) -> Callable[[Callable[..., Any]], FromExpression]: ...
 def FromFunction(function: Callable[..., Any] | None = None, /, **given: Any) -> Any:  # noqa: N802 - reads as the law it makes
@@ -57,6 +63,10 @@ def FromFunction(function: Callable[..., Any] | None = None, /, **given: Any) ->
         def law(v, mu_s=0.8, mu_d=0.3, v_c="0.1 m/s"):
             return mu_d + (mu_s - mu_d) * np.exp(-v / v_c)
 
+        @ss.friction.FromFunction(state="z")
+        def healing(v, z, mu_0=0.6, b=0.02, tau="1 s", d="10 um"):
+            return mu_0 + z, (b - z) / tau - v * z / d
+
     Parameters
     ----------
     function
@@ -65,7 +75,9 @@ def FromFunction(function: Callable[..., Any] | None = None, /, **given: Any) ->
         decorator with values.
     **given
         Values of the function's parameters: numbers in SI, or texts with a unit. The others have their defaults. `static`,
-        `counts` and `memory` are options of the law (see `FromExpression`), unless the function has a parameter of that name.
+        `counts`, `memory`, `state_unit` and `at_reversal` are options of the law (see `FromExpression`), unless the function has a
+        parameter of that name. `state` names the argument that is a state of the law; the function then returns two numbers, the
+        friction coefficient and the rate of change of the state (its unit over s).
 
     Returns
     -------
@@ -90,11 +102,14 @@ def FromFunction(function: Callable[..., Any] | None = None, /, **given: Any) ->
         return lambda decorated: FromFunction(decorated, **given)
     try:
         signature = _signature(function)
-        values = _values(signature, given)
-        options = {name: value for name, value in given.items() if name in OPTIONS and name not in values}
-        tree = _traced(function, signature)
-        used = {node.name for node in nodes_of(tree) if node.operation == "parameter"}
-        return FromExpression(to_text(tree), {name: value for name, value in values.items() if name in used}, **options)
+        state = _state(signature, given)
+        values = _values(signature, given, state)
+        options = {name: value for name, value in given.items() if name in OPTIONS and name not in values and name != "state"}
+        trees = _traced(function, signature, state)
+        if state:
+            options["evolution"] = f"d{state}/dt = {to_text(trees[1])}"
+        used = {node.name for tree in trees for node in nodes_of(tree) if node.operation == "parameter"}
+        return FromExpression(to_text(trees[0]), {name: value for name, value in values.items() if name in used}, **options)
     except InputError as error:
         fault = str(error).removeprefix("formula: ").removeprefix("FromExpression: ").removeprefix("expression: ")
         raise InputError(f"FromFunction: {_name(function)}: {fault}") from None
@@ -118,9 +133,21 @@ def _signature(function: Callable[..., Any]) -> inspect.Signature:
     return signature
 
 
-def _values(signature: inspect.Signature, given: dict[str, Any]) -> dict[str, Any]:
-    """Return the values of the function's parameters other than u and v, from its defaults and the given values."""
-    parameters = [one for one in signature.parameters.values() if one.name not in VARIABLES]
+def _state(signature: inspect.Signature, given: dict[str, Any]) -> str:
+    """Return the name of the argument that is the state of the law, or an empty text."""
+    if "state" in signature.parameters:
+        return ""
+    state = given.get("state", "")
+    if state and state not in signature.parameters:
+        arguments = [name for name in signature.parameters if name not in VARIABLES]
+        hint = nearest(str(state), arguments)
+        raise InputError(f"state names the argument that is the state; it has none called {shown(state)}; {hint}")
+    return str(state)
+
+
+def _values(signature: inspect.Signature, given: dict[str, Any], state: str) -> dict[str, Any]:
+    """Return the values of the function's parameters other than u, v and the state, from its defaults and the given values."""
+    parameters = [one for one in signature.parameters.values() if one.name not in (*VARIABLES, state)]
     names = [one.name for one in parameters]
     for extra in given:
         if extra in VARIABLES:
@@ -134,8 +161,11 @@ def _values(signature: inspect.Signature, given: dict[str, Any]) -> dict[str, An
     return values
 
 
-def _traced(function: Callable[..., Any], signature: inspect.Signature) -> Expression:
-    """Return the formula that the function records when it is called with symbols."""
+def _traced(function: Callable[..., Any], signature: inspect.Signature, state: str) -> tuple[Expression, ...]:
+    """Return the formula that the function records when it is called with symbols, and that of the state's change if it has one.
+
+    The state is a symbol with its own name, as a parameter is: the formulas are written out as text.
+    """
     symbols = {name: VARIABLES[name] if name in VARIABLES else Parameter(name) for name in signature.parameters}
     call = inspect.BoundArguments(signature, symbols)
     try:
@@ -147,7 +177,11 @@ def _traced(function: Callable[..., Any], signature: inspect.Signature) -> Expre
         raise InputError(
             f"it cannot be traced ({type(error).__name__}: {said}); use + - * / ** and numpy's {NUMPY}; points make a FromTable"
         ) from None
-    return _formula(value)
+    if not state:
+        return (_formula(value),)
+    if not (isinstance(value, tuple | list) and len(value) == 2):
+        raise InputError(f"with a state it must return two numbers, the friction coefficient and d{state}/dt")
+    return tuple(_formula(one) for one in value)
 
 
 def _formula(value: Any) -> Expression:
@@ -158,6 +192,9 @@ def _formula(value: Any) -> Expression:
         return as_expression(value)
     if value is None:
         raise InputError("it returns nothing: end it with return and the friction coefficient")
+    if isinstance(value, tuple):
+        cure = 'name the argument that is a state of the law, as in FromFunction(f, state="z")'
+        raise InputError(f"it returns several numbers: {cure}")
     what = "an array" if isinstance(value, np.ndarray) else shown(value) if isinstance(value, str | bool) else type(value).__name__
     raise InputError(f"it must return one number, the friction coefficient, and returns {what}: it is called with one u and one v")
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.foundation.errors import InputError
-from stickslip.friction.formula.expression import RATE, SLIP, Expression, depends_on, evaluate_nodes
+from stickslip.friction.formula.expression import RATE, SLIP, Expression, Parameter, depends_on, evaluate_nodes
 from stickslip.friction.formula.text import quoted
 
 LARGEST_SLIP, LARGEST_RATE = 10.0, 10.0
@@ -18,10 +18,11 @@ TOLERANCE = 1e-12
 """Size of a negative friction coefficient that still counts as rounding of zero (no unit)."""
 
 
-def check_samples(tree: Expression, numbers: Mapping[str, float], backwards: bool) -> None:
+def check_samples(tree: Expression, numbers: Mapping[str, float], backwards: bool, state: str = "", negative: bool = False) -> None:
     """Raise InputError if the formula is negative, is not finite or has no derivative at a sample.
 
-    The message names the slip (m) and slip rate (m/s). `backwards` adds negative slips, for laws of net slip.
+    The message names the slip (m) and slip rate (m/s). `backwards` adds negative slips, for laws of net slip. Parts that contain a
+    state, a parameter of that name, are left to the run. `negative` allows negative values.
     """
     slip = samples(LARGEST_SLIP) if depends_on(tree, SLIP) else np.zeros(1)
     if backwards:
@@ -29,9 +30,12 @@ def check_samples(tree: Expression, numbers: Mapping[str, float], backwards: boo
     rate = samples(LARGEST_RATE) if depends_on(tree, RATE) else np.zeros(1)
     u, v = (grid.ravel() for grid in np.meshgrid(slip, rate, indexing="ij"))
     with np.errstate(all="ignore"):
-        found = evaluate_nodes(tree, numbers, u, v)
+        found = evaluate_nodes(tree, {**numbers, state: 0.0}, u, v)
         _check_constants(found)
-        values = np.broadcast_to(found[tree], u.shape)
+        found = {node: value for node, value in found.items() if not (state and depends_on(node, Parameter(state)))}
+        values = np.broadcast_to(found.get(tree, 0.0), u.shape)
+        if negative:
+            values = np.abs(values)
         finite = np.isfinite(values)
         worst = int(np.argmin(values)) if finite.all() else int(np.argmin(finite))
         if not values[worst] >= -TOLERANCE or not finite[worst]:

@@ -27,10 +27,10 @@ def unit_text(powers: Dimension) -> str:
     return " ".join(base if power == 1 else f"{base}^{power}" for base, power in powers.items() if power)
 
 
-def check_dimensions(tree: Expression, units: Mapping[str, str]) -> None:
+def check_dimensions(tree: Expression, units: Mapping[str, str], state: str | None = None) -> None:
     """Raise InputError that names the part with a wrong unit, unless the formula is a pure number.
 
-    A parameter without a unit is a pure number.
+    A parameter without a unit is a pure number. If the formula is the rate of change of a state, `state` is the unit of the state.
     """
     found: dict[Expression, Dimension] = {SLIP: dimension("m"), RATE: dimension("m s^-1")}
     for node in nodes_of(tree):
@@ -38,7 +38,14 @@ def check_dimensions(tree: Expression, units: Mapping[str, str]) -> None:
             found[node] = dimension(units.get(node.name, ""))
         elif node not in found:
             found[node] = _of(node, [found[argument] for argument in node.arguments])
-    if found[tree]:
+    if state is not None:
+        wanted = _clean({**dimension(state), "s": dimension(state).get("s", Fraction(0)) - 1})
+        zero = tree.operation == "constant" and tree.value == 0.0
+        if found[tree] != wanted and not zero:
+            is_in = unit_text(found[tree]) or "a pure number"
+            must = f"it must be in {unit_text(wanted)}, the unit of the state over s"
+            raise InputError(f"{must}, but {quoted(tree)} is {is_in}; {_HINT}")
+    elif found[tree]:
         raise InputError(
             f"the friction coefficient must be a pure number, but {quoted(tree)} is in {unit_text(found[tree])}; {_HINT}"
         )

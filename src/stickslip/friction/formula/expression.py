@@ -234,17 +234,17 @@ _UFUNCS: dict[str, Callable[..., Any]] = (
 """Rules that turn numpy functions of expressions into expressions, by the name of the numpy function."""
 
 
-def evaluate(tree: Expression, numbers: Mapping[str, Any], u: Any, v: Any) -> Any:
-    """Return the formula at slip u (m) and slip rate v (m/s), with the parameters' values by name.
+def evaluate(tree: Expression, numbers: Mapping[str, Any], u: Any, v: Any, w: Any = 0.0) -> Any:
+    """Return the formula at slip u (m), slip rate v (m/s) and state w, with the parameters' values by name.
 
     Numbers, arrays and expressions are allowed.
     """
-    return evaluate_nodes(tree, numbers, u, v)[tree]
+    return evaluate_nodes(tree, numbers, u, v, w)[tree]
 
 
-def evaluate_nodes(tree: Expression, numbers: Mapping[str, Any], u: Any, v: Any) -> dict[Expression, Any]:
+def evaluate_nodes(tree: Expression, numbers: Mapping[str, Any], u: Any, v: Any, w: Any = 0.0) -> dict[Expression, Any]:
     """Return the values of all nodes of the formula, with the arguments of `evaluate`."""
-    found: dict[Expression, Any] = {SLIP: u, RATE: v}
+    found: dict[Expression, Any] = {SLIP: u, RATE: v, STATE: w}
     for node in nodes_of(tree):
         if node.operation == "parameter":
             number = numbers[node.name]

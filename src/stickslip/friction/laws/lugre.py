@@ -1,7 +1,8 @@
 """Define friction of bristles that bend before they slip: hysteresis where motion reverses, and creep below the strength."""
 
+import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -34,8 +35,11 @@ class LuGre(FrictionLaw):
     )
     state = BENDING
     sticks = False
-    start = {"coefficient": 0.0, "state": 0.0}
-    example = {"static": 0.15, "dynamic": 0.1, "rate": "1 mm/s", "stiffness": "1e4 1/m", "damping": "3 s/m", "viscosity": "0.04 s/m"}
+    start: ClassVar = {"coefficient": 0.0, "state": 0.0}
+    example: ClassVar = {
+        **{"static": 0.15, "dynamic": 0.1, "rate": "1 mm/s"},
+        **{"stiffness": "1e4 1/m", "damping": "3 s/m", "viscosity": "0.04 s/m"},
+    }
 
     static: float = quantity("1", "friction coefficient of very slow sliding", above=0)
     dynamic: float = quantity("1", "friction coefficient of fast sliding, without the viscous term", above=0)
@@ -56,7 +60,7 @@ class LuGre(FrictionLaw):
 
     @override
     def range(self) -> tuple[float, float]:
-        return 0.0, np.inf
+        return 0.0, math.inf
 
     @property
     @override

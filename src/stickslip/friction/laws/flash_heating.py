@@ -1,0 +1,103 @@
+"""Define rate-and-state friction that falls sharply at the slip rates of earthquakes, as flash heating of asperities makes it."""
+
+import math
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from typing_extensions import override
+
+from stickslip.foundation.conversion import Number
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.quantities import quantity
+from stickslip.friction.contract import Formula, StateVariable
+from stickslip.friction.formula.expression import arcsinh, exp, log, sqrt
+from stickslip.friction.law import FrictionLaw
+from stickslip.friction.laws.rate_and_state import FARTHEST_STATE, LARGEST_EXPONENT, SLOWEST
+
+
+@dataclass(frozen=True)
+class FlashHeating(FrictionLaw):
+    """mu(v, psi) = a arcsinh(v / (2 rate) exp(psi / a)), with dpsi/dt = -(v / distance) (psi - psi_ss(v)).
+
+    psi_ss = a ln(2 rate / v sinh(mu_ss / a)) is the state of steady sliding, whose friction is
+    mu_ss = weakened + (mu_low - weakened) / (1 + (v / weakening_rate)^8)^(1/8), with mu_low = reference - (b - a) ln(v / rate).
+
+    Below `weakening_rate` this is rate-and-state friction with the slip law; far above it friction falls to `weakened`. The contact
+    never sticks.
+    """
+
+    kind = "flash-heating"
+    source = (
+        "Rice 2006, J. Geophys. Res. 111, B05311 (flash heating); Dunham, Belanger, Cong & Kozdon 2011, Bull. Seismol. Soc. Am. "
+        "101, 2296; SCEC/USGS rupture code verification, TPV103 and TPV104 (this form)"
+    )
+    state = StateVariable("psi", "1", "state psi, a friction coefficient")
+    sticks = False
+    start: ClassVar = {"coefficient": 0.6, "state": 0.6}
+    example: ClassVar = {
+        **{"reference": 0.6, "a": 0.01, "b": 0.014, "distance": "0.4 m", "rate": "1e-6 m/s"},
+        **{"weakened": 0.2, "weakening_rate": "0.1 m/s"},
+    }
+
+    reference: float = quantity("1", "friction coefficient of steady sliding at `rate`, far below the weakening rate", above=0)
+    a: float = quantity("1", "direct effect a: immediate increase of friction per factor e of slip rate", above=0)
+    b: float = quantity("1", "evolution effect b: decrease of friction as slip renews the contact, per factor e", at_least=0)
+    distance: Number = quantity("m", "slip over which the state renews itself (L)", above=0)
+    weakened: float = quantity("1", "friction coefficient of steady sliding far above the weakening rate", above=0)
+    weakening_rate: Number = quantity("m/s", "slip rate above which asperities melt", above=0)
+    rate: Number = quantity("m/s", "reference slip rate", above=0, default=1e-6)
+
+    @override
+    def check(self) -> None:
+        largest = (self.reference + FARTHEST_STATE * self.b) / self.a
+        if largest > LARGEST_EXPONENT:
+            least = (self.reference + FARTHEST_STATE * self.b) / LARGEST_EXPONENT
+            raise InputError(f"FlashHeating: a must be at least {least:.3g} with this reference and b, got {self.a:g}")
+
+    @property
+    @override
+    def pieces(self) -> tuple[Formula, ...]:
+        return (_friction,)
+
+    @property
+    @override
+    def state_rate(self) -> Formula:
+        return _renewal
+
+    @override
+    def range(self) -> tuple[float, float]:
+        return 0.0, math.inf
+
+    @property
+    def variation(self) -> float:
+        """The direct effect a: the change of friction at once when the slip rate changes by a factor e (no unit)."""
+        return self.a
+
+    def steady_coefficient(self, v: ArrayLike) -> NDArray[np.float64]:
+        """Return the friction coefficient mu_ss (no unit) of steady sliding at slip rates v > 0 (m/s)."""
+        rate = np.asarray(v, float)
+        low = self.reference - (self.b - self.a) * np.log(rate / self.rate)
+        return np.asarray(self.weakened + (low - self.weakened) / (1.0 + (rate / self.weakening_rate) ** 8) ** 0.125)
+
+    @override
+    def steady_state(self, v: ArrayLike) -> NDArray[np.float64]:
+        """Return the state psi (no unit) of steady sliding at slip rates v > 0 (m/s)."""
+        x = self.steady_coefficient(v) / self.a
+        return np.asarray(self.a * (x + np.log1p(-np.exp(-2.0 * x)) - np.log(np.asarray(v, float) / self.rate)))
+
+
+def _friction(law: Any, u: Any, v: Any, psi: Any) -> Any:
+    return law.a * arcsinh(v / (2.0 * law.rate) * exp(psi / law.a))
+
+
+def _renewal(law: Any, u: Any, v: Any, psi: Any) -> Any:
+    """Return dpsi/dt (1/s); the logarithm of the slip rate is finite at rest, where it is multiplied by zero."""
+    y = v / law.rate
+    logarithm = 0.5 * log(y * y + SLOWEST)
+    low = law.reference - (law.b - law.a) * logarithm
+    fast = (v / law.weakening_rate) ** 8
+    x = (law.weakened + (low - law.weakened) / sqrt(sqrt(sqrt(1.0 + fast)))) / law.a
+    steady = law.a * (x + log(1.0 - exp(-2.0 * x)) - logarithm)
+    return -(v / law.distance) * (psi - steady)
