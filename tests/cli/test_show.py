@@ -76,6 +76,15 @@ def test_the_figure_of_a_catalogue_in_one_column_says_nothing_else(command: Comm
         assert "written: events.png" in drawn.out
 
 
+def test_a_figure_that_is_too_small_for_its_panels_is_told_in_one_line(command: Command):
+    for option in ("--catalogue-figure", "--figure"):
+        drawn = command("run", "cycles-block", option, "a.png", "--size", "2.1 x 2.1 cm")
+        assert drawn.code == 0
+        assert drawn.err == (
+            "stickslip: note: a.png: the panels and labels of this figure do not fit into its size: give a larger --size\n"
+        )
+
+
 def test_without_slip_events_the_missing_figure_of_the_catalogue_is_explained(command: Command, tmp_path: Path):
     still = ["fig6-slab", "--set", "initial.excess=-1e6", "--duration", "2 s", "--catalogue-figure", "events.png"]
     for arguments in (["run", *still, "--out", "run.nc"], ["run", *still, "--catalogue", "events.csv"]):
