@@ -68,6 +68,36 @@ def test_figures_are_drawn_from_the_file(command: Command, tmp_path: Path, monke
     assert {path.name for path in tmp_path.iterdir()} == {"run.nc", "a.svg", "b.svg", "c.svg", "d.svg"}
 
 
+def test_the_figure_of_a_catalogue_in_one_column_says_nothing_else(command: Command):
+    command("run", "cycles-block", "--duration", "20 years", "--catalogue", "events.csv")
+    for arguments in (["show", "events.csv"], ["run", "cycles-block"], ["run", "fig6-slab", "--catalogue", "one.csv"]):
+        drawn = command(*arguments, "--catalogue-figure", "events.png", "--size", "single column")
+        assert (drawn.code, drawn.err) == (0, "")
+        assert "written: events.png" in drawn.out
+
+
+def test_a_figure_that_is_too_small_for_its_panels_is_told_in_one_line(command: Command):
+    for option in ("--catalogue-figure", "--figure"):
+        drawn = command("run", "cycles-block", option, "a.png", "--size", "2.1 x 2.1 cm")
+        assert drawn.code == 0
+        assert drawn.err == (
+            "stickslip: note: a.png: the panels and labels of this figure do not fit into its size: give a larger --size\n"
+        )
+
+
+def test_without_slip_events_the_missing_figure_of_the_catalogue_is_explained(command: Command, tmp_path: Path):
+    still = ["fig6-slab", "--set", "initial.excess=-1e6", "--duration", "2 s", "--catalogue-figure", "events.png"]
+    for arguments in (["run", *still, "--out", "run.nc"], ["run", *still, "--catalogue", "events.csv"]):
+        ran = command(*arguments)
+        assert (ran.code, ran.err) == (0, "")
+        assert "not written: events.png (there is no slip event)" in ran.out
+    for name in ("run.nc", "events.csv"):
+        shown = command("show", name, "--catalogue-figure", "events.png")
+        assert (shown.code, shown.err) == (0, "")
+        assert "not written: events.png (there is no slip event)" in shown.out
+    assert not (tmp_path / "events.png").exists()
+
+
 @pytest.mark.parametrize("suffix", [".csv", ".nc", ".parquet"])
 def test_show_lists_the_events_of_a_catalogue(command: Command, suffix: str):
     if suffix == ".parquet":

@@ -7,6 +7,7 @@ Conventions of the pages (README.md and docs/*.md):
 - ```toml blocks that begin with `# NAME.toml` are put into that folder under this name.
 - ```console blocks: lines `$ stickslip ...` are run; the lines shown below one appear in what it says, in this order ("..." stands
   for anything). A shown line that begins with "stickslip: " is an error: exit code 2; otherwise the exit code is 0.
+- Files beside the pages that a page offers (links to .csv and .toml) lie in that folder, as if the reader had downloaded them.
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ ROOT = Path(__file__).parents[2]
 MADE = {"_build", "gallery"}
 """Folders of docs/ that hold what `make site` has made."""
 PAGES = [ROOT / "README.md", *sorted(page for page in (ROOT / "docs").glob("**/*.md") if not MADE & set(page.parts))]
+LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 _FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
@@ -68,6 +70,12 @@ def blocks_of(page: Path) -> list[Block]:
             found.append(Block(language, content, text.count("\n", 0, match.start()) + 2))
         previous_end = match.end()
     return found
+
+
+def downloads_of(page: Path) -> list[Path]:
+    """The files that a page offers to download."""
+    links = LINK.findall(page.read_text(encoding="utf-8"))
+    return [page.parent / link for link in links if "://" not in link and link.endswith((".csv", ".toml"))]
 
 
 def commands_of(block: Block) -> Iterator[Command]:

@@ -20,9 +20,19 @@ import pytest
 import stickslip
 from stickslip.problem.selection_rule import registered
 from stickslip.scenarios.library import names
-from tests.docs.pages import PAGES, ROOT, Block, blocks_of, commands_of, comments_of, missing_lines, run_command, wrong_numbers
-
-LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
+from tests.docs.pages import (
+    LINK,
+    PAGES,
+    ROOT,
+    Block,
+    blocks_of,
+    commands_of,
+    comments_of,
+    downloads_of,
+    missing_lines,
+    run_command,
+    wrong_numbers,
+)
 
 
 def page_name(page: Path) -> str:
@@ -42,6 +52,8 @@ def test_every_example_does_what_its_page_shows(page: Path, tmp_path: Path, monk
     mpl.use("agg")
     module = types.ModuleType(f"page_{page.stem.replace('-', '_')}")
     monkeypatch.setitem(sys.modules, module.__name__, module)
+    for download in downloads_of(page):
+        shutil.copy(download, tmp_path)
     for block in blocks_of(page):
         where = f"{page.name}, line {block.line}"
         if block.language == "python":

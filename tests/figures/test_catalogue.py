@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
+import warnings
 
 import matplotlib as mpl
 import numpy as np
+import pandas as pd
 import pytest
 from matplotlib.figure import Figure
 
@@ -13,6 +15,7 @@ import stickslip as ss
 from stickslip.figures.runs import catalogue
 from stickslip.figures.runs.run import draw
 from stickslip.figures.style import time_unit
+from tests.figures.legible import illegible
 from tests.problems import SLAB, rate_law_slab
 
 mpl.use("Agg")
@@ -105,3 +108,72 @@ def test_a_window_is_drawn_in_local_time() -> None:
 )
 def test_time_is_shown_in_a_unit_that_can_be_read(span: float, unit: str) -> None:
     assert time_unit(span)[0] == unit
+
+
+# ---- sizes, and catalogues of all kinds ------------------------------------------------------------------------------------------
+
+
+def table(starts: object, slips: object) -> pd.DataFrame:
+    """Return a catalogue of events at these times (s) with these slips (m)."""
+    times = np.asarray(starts, float)
+    return pd.DataFrame({"start": times, "slip": np.asarray(slips, float), "recurrence": np.diff(times, prepend=np.nan)})
+
+
+CATALOGUES = {
+    "one event at the start": table([0.0], [1.0]),
+    "one event": table([3e7], [1.0]),
+    "two events": table([0.0, 5.0], [1.0, 2.0]),
+    "the same again and again": table(1e8 * np.arange(9), np.full(9, 0.16)),
+    "events without slip": table([0.0, 1.0, 2.0], [0.0, 0.0, 0.0]),
+    "two events at one time": table([5.0, 5.0, 5.0], [1.0, 1.0, 1.0]),
+    "many decades": table(np.cumsum(np.geomspace(1e-3, 1e9, 60)), np.geomspace(1e-9, 10.0, 60)),
+    "thousands": table(3e7 * np.arange(3000), 1.0 + np.arange(3000) % 7),
+}
+SIZES = [None, "single column", "3.4 x 3 in", "16 x 10 cm"]
+
+
+@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("kind", CATALOGUES)
+def test_a_catalogue_without_its_run_is_legible_in_any_size(kind: str, size: str | None) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        figure = catalogue.draw(catalogue.data_of_events(CATALOGUES[kind], kind), size=size)
+        assert illegible(figure) == []
+
+
+@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("scenario", ["cycles-block", "fig6-slab", "second-event-maximal", "second-event-minimal"])
+def test_a_catalogue_with_its_run_is_legible_in_any_size(scenario: str, size: str | None) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        figure = catalogue.draw(catalogue.data(ss.simulate(scenario)), size=size)
+        assert illegible(figure) == []
+
+
+@pytest.mark.parametrize(
+    ("size", "titles"),
+    [
+        ("7.2 x 8 in", ["slip events", "slip in the run", "one event", "its start", "slips", "recurrence times", "return map"]),
+        ("7.2 x 3.5 in", ["slip events", "slips", "recurrence times", "return map"]),
+        ("3.5 x 8 in", ["slip events", "slip in the run", "one event", "its start", "slips", "recurrence times", "return map"]),
+        ("3.5 x 4.2 in", ["slip events", "slip in the run", "slips", "recurrence times", "return map"]),
+        ("3.5 x 3 in", ["slip events", "slips", "recurrence times"]),
+        ("3.5 x 1.7 in", ["slip events"]),
+    ],
+)
+def test_a_low_figure_leaves_out_zooms_first(size: str, titles: list[str], cycles: ss.Solution) -> None:
+    figure = catalogue.draw(catalogue.data(cycles), size=size)
+    found = [" ".join(axes.get_title(loc="left").split()) for axes in figure.axes]
+    marks = [f"({letter}) " for letter in "abcdefg"[: len(titles)]] if len(titles) > 1 else [""]
+    assert sorted(found) == [mark + title for mark, title in zip(marks, titles, strict=True)]
+    key = [re.findall(r"\((\w)\)", text.get_text()) for text in figure.legends[0].get_texts()]
+    assert {letter for letters in key for letter in letters} <= set("abcdefg"[: len(titles)])
+
+
+def test_illegible_texts_are_noticed(cycles: ss.Solution) -> None:
+    figure = catalogue.draw(catalogue.data(cycles))
+    assert illegible(figure) == []
+    figure.axes[1].set_title("a title that is far too long for a panel beside two others", loc="left")
+    figure.axes[0].set_xticks([1.0, 1.1], ["1.0", "1.1"])
+    assert any("'1.0' and '1.1' cover each other" in line for line in illegible(figure))
+    assert any("a title" in line for line in illegible(figure))

@@ -153,6 +153,18 @@ def _sides_in(text: str) -> tuple[float, ...]:
         return ()
 
 
+def size_of(usual: tuple[float, float], **place: Unpack[Place]) -> tuple[float, float]:
+    """Return the width and height (inches) that `sheet` will give a figure, so that its panels can be chosen by its room."""
+    check_place(**place)
+    size, figure = place.get("size"), place.get("figure")
+    if size is not None:
+        return read_size(size, usual)
+    if figure is None or (isinstance(figure, StickslipFigure) and not figure.axes):
+        return usual
+    dpi = figure.get_figure(root=True).dpi
+    return figure.bbox.width / dpi, figure.bbox.height / dpi
+
+
 def sheet(usual: tuple[float, float], **place: Unpack[Place]) -> Figure:
     """Return the figure to draw several panels in, of the `usual` size (inches) unless the user says otherwise.
 

@@ -36,6 +36,12 @@ class CoulombBlock:
         Friction coefficients muS at rest and muD while slipping.
     pull_rate : float
         Pull rate V (m/s); 0 means the limit 0+.
+
+    Notes
+    -----
+    The block is released at its static strength. Its initial load, its slip and the path that it has slipped count from there.
+
+    Source: Campillo et al. 1996, eqs (4)-(6), with the limit alpha -> infinity of the rate law (15).
     """
 
     body: SpringBlock
@@ -106,6 +112,12 @@ class LinearBlock:
     ------
     InputError
         If the spring is at least as stiff as the law weakens (there is no growth then), or if nothing sets the block in motion.
+
+    Notes
+    -----
+    The slip grows exponentially until it reaches the weakening distance, and oscillates harmonically after that.
+
+    Source: Campillo et al. 1996, eqs (4)-(6); the law is that of Ida 1972, J. Geophys. Res. 77, 3796.
     """
 
     body: SpringBlock

@@ -41,7 +41,15 @@ class Piece:
 
 @dataclass(frozen=True)
 class StepsSolution:
-    """The adjoining pieces of a run; values at a joint are right limits."""
+    """A run by the method of steps, in adjoining pieces; values at a joint are right limits.
+
+    Attributes
+    ----------
+    problem : Problem
+        What was run.
+    pieces : list of Piece
+        The motion between breaking points, in the order of time.
+    """
 
     problem: Problem
     pieces: list[Piece]
@@ -81,7 +89,7 @@ def method_of_steps(problem: Problem, duration: float, rtol: float = 1e-10) -> S
     Returns
     -------
     StepsSolution
-        Slip, slip rate and load as functions of time.
+        Slip, slip rate and load as functions of time (s), from 0 to `duration`.
 
     Raises
     ------
@@ -90,6 +98,14 @@ def method_of_steps(problem: Problem, duration: float, rtol: float = 1e-10) -> S
         the contact has no mass and the law depends on the slip rate but is neither eq. (15) nor Coulomb's.
     RuntimeError
         If events accumulate at a point in time.
+
+    Notes
+    -----
+    The integrator shares no code with the engine or with the analysis of the contact: scipy's DOP853 solves the motion between
+    breaking points (shocks, kinks of the law, echoes), and its dense output is the history from which echoes come. The time that
+    it takes grows with the square of the number of round trips: it suits seconds or minutes of sliding, not years.
+
+    Source: Campillo et al. 1996, eqs (4)-(6) for the block, (12)-(13) for the slab.
     """
     if problem.selection != "perfect-delay":
         raise InputError(f"method_of_steps: knows perfect-delay only, got '{problem.selection}'")

@@ -35,6 +35,9 @@ class SteadySliding:
     Notes
     -----
     Masses, dampings and stiffnesses below are those of a block (kg, N s/m, N/m), or all per unit area like the normal load.
+
+    Source: Rice & Ruina 1983, J. Appl. Mech. 50, 343, for the block; for the slab the same linearised friction meets the waves of
+    Campillo et al. 1996, eqs (7)-(13).
     """
 
     normal: float
@@ -49,8 +52,9 @@ class SteadySliding:
         return self.distance / self.rate
 
     def critical_stiffness(self, mass: float = 0.0, damping: float = 0.0) -> float:
-        """Return the stiffness below which steady sliding of a block is unstable; negative if it is stable at any stiffness.
+        """Return the stiffness (N/m) below which steady sliding of a block is unstable; negative if it is stable at any stiffness.
 
+        `mass` is in kg and `damping` in N s/m.
         The result is (S (b - a) / V - damping) (1 / T + m / (A T^2)) with A = damping + S a / V: Routh's condition on the cubic of
         `block_growth`. Without damping it is S (b - a) / Dc (1 + m V^2 / (S a Dc)), without mass
         S (b - a) / Dc - damping V / Dc, and without both S (b - a) / Dc.
@@ -62,7 +66,7 @@ class SteadySliding:
     def block_growth(self, stiffness: float, mass: float, damping: float = 0.0) -> complex:
         """Return the complex growth rate (1/s) of the fastest growing disturbance of a block.
 
-        Its imaginary part is not negative.
+        `stiffness` is in N/m, `mass` in kg and `damping` in N s/m. The imaginary part is not negative.
         """
         time, viscous = self.time, damping + self.normal * self.a / self.rate
         fall = self.normal * self.b / self.rate

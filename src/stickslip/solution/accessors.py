@@ -173,6 +173,9 @@ class SolutionPlots(Plots["Solution"]):
     def catalogue(self, event: int | None = None, **place: Unpack[Place]) -> Figure:
         """Draw the slip events, one of them in ever closer zooms, and their distributions.
 
+        A figure of one journal column has two panels in a row instead of three. Panels for which a figure is too low are left out,
+        the zooms first.
+
         Parameters
         ----------
         event : int, optional

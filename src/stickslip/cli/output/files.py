@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +13,7 @@ from typing import Any, NamedTuple
 import typer
 
 from stickslip.foundation.atomic_write import write_atomically
-from stickslip.foundation.errors import InputError
+from stickslip.foundation.errors import InputError, warn
 
 CATALOGUES = (".csv", ".parquet", ".nc")
 """File suffixes of catalogues, those of `io.catalogue_rows`, which takes long to import."""
@@ -20,6 +21,8 @@ LARGE = 10_000_000
 """Size (bytes) from which a file is large enough for its size to be told."""
 DPI = 200.0
 """Dots per inch of figures if the user does not say."""
+CROWDED = "constrained_layout not applied"
+"""How matplotlib begins to say that the panels of a figure have no room beside their labels."""
 PICTURES = (".png", ".pdf", ".svg")
 """File suffixes of figures."""
 
@@ -140,7 +143,14 @@ def drawing(draw: Callable[..., object], look: Look) -> Callable[[Path], Path]:
 
         figure = StickslipFigure()
         draw(figure=figure, **look.place)
-        return write_atomically(path, lambda draft: styled(figure.savefig)(draft, dpi=look.dots))
+        with warnings.catch_warnings(record=True) as said:
+            warnings.filterwarnings("always", CROWDED)
+            write_atomically(path, lambda draft: styled(figure.savefig)(draft, dpi=look.dots))
+        for other in (one for one in said if not str(one.message).startswith(CROWDED)):
+            warnings.warn_explicit(other.message, other.category, other.filename, other.lineno)
+        if any(str(one.message).startswith(CROWDED) for one in said):
+            warn(f"{path}: the panels and labels of this figure do not fit into its size: give a larger --size")
+        return path
 
     return write
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import typer
 
 from stickslip.cli.output.files import PICTURES, Look, Target, drawing, write_files
 from stickslip.foundation.errors import InputError
@@ -73,22 +74,29 @@ class Pictures:
         """Draw the figure of a catalogue if it is wanted and there is an event, and return its file."""
         from stickslip.figures.runs import catalogue
 
-        if table.empty:
-            return []
-        found = partial(catalogue.draw, catalogue.data_of_events(table, title))
-        return write_files((self.catalogue_figure, drawing(found, self.look)))
+        def draw(**place: Any) -> object:
+            return catalogue.draw(catalogue.data_of_events(table, title), **place)
+
+        return write_files((self._file_of_events(table), drawing(draw, self.look)))
 
     def draw(self, solution: Solution) -> list[Path]:
         """Draw all that are wanted, and return their files."""
         return write_files(
             (self.figure, drawing(solution.plot, self.look)),
             (self.path, drawing(solution.plot.path, self.look)),
-            (self.catalogue_figure, drawing(solution.plot.catalogue, self.look)),
+            (self._file_of_events(solution.events), drawing(solution.plot.catalogue, self.look)),
             (self.energy_figure, drawing(solution.plot.energy, self.look)),
             (self.friction_figure, drawing(solution.plot.friction, self.look)),
             (self.space_time, drawing(solution.plot.field, self.look)),
             (self.animation, lambda target: _animate(solution, target)),
         )
+
+    def _file_of_events(self, table: pd.DataFrame) -> Path | None:
+        """Return the file of the figure of slip events, None if it is not wanted; if there is no event, say so and return None."""
+        if self.catalogue_figure is not None and table.empty:
+            typer.echo(f"not written: {self.catalogue_figure} (there is no slip event)")
+            return None
+        return self.catalogue_figure
 
 
 def _animate(solution: Solution, target: Path) -> Path:

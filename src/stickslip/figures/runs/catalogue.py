@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Container
+import string
+import textwrap
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
@@ -16,7 +18,7 @@ from matplotlib.ticker import MaxNLocator
 
 from stickslip.figures.legends import add_legend
 from stickslip.figures.panels import count_ticks, letter_panels, set_scale, set_title, zero_line
-from stickslip.figures.sheet import sheet
+from stickslip.figures.sheet import sheet, size_of
 from stickslip.figures.style import (
     BLUE,
     GREEN,
@@ -52,6 +54,17 @@ ZOOMS = {
     "close": ("its start", "event_slip", "since its start"),
 }
 """Title, curve and name of the time axis of the three zooms, by the prefix of their variables."""
+TITLES = {"A": "slip events", **dict(zip("BCD", (title for title, *_ in ZOOMS.values()), strict=True))}
+TITLES |= {"E": "slips", "F": "recurrence times", "G": "return map"}
+"""Titles of the panels, by their names in the mosaic: the time line, the zooms, and the distributions."""
+WHOLE = 7.0
+"""Width (inches) of a figure below which it is narrow: letters are smaller, and labels have several lines."""
+THREE, TWO = 5.4, 3.0
+"""Widths (inches) of a figure from which three, or two, panels and their labels stand side by side."""
+ROW, KEY = 1.1, 0.75
+"""Heights (inches) of the lowest row of panels with its labels, and of title and key together."""
+LINE = 17
+"""Number of letters in a line of a title or a label of a panel in a narrow figure."""
 
 
 def data(solution: Solution, event: int | None = None) -> xr.Dataset:
@@ -116,49 +129,86 @@ def _title(title: str, table: pd.DataFrame) -> str:
 def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw the time line, slip against time in three zooms, the distributions of slip and recurrence time, and the return map.
 
-    A catalogue without its run has no zooms, one of one event no distributions, and one of two no return map.
+    A catalogue without its run has no zooms, one of one event no distributions, and one of two no return map. In a narrow figure
+    less than three panels stand side by side, and what a low one has no room for is left out, the zooms first.
     """
     slip, recurrence = dataset["slip"].values, dataset["recurrence"].values
     recurrence = recurrence[np.isfinite(recurrence)]
-    zooms = ["BBCCDD"] if "run_time" in dataset else []
-    rows = ["AAAAAA", *zooms, *(["EEEFFF"] if len(slip) == 2 else ["EEFFGG"] if len(slip) > 2 else [])]
-    figure = sheet((7.2, 2.3 * len(rows) + 0.6), **place)
-    axes = figure.subplot_mosaic(";".join(rows))
-    _draw_time_line(axes["A"], dataset)
-    _draw_zooms([axes[name] for name in "BCD" if name in axes], dataset)
-    named = [title for title, *_ in ZOOMS.values()] if zooms else []
-    titles = ["slip events", *named, "distribution of slips", "recurrence times", "return map"]
-    if "F" in axes:
-        unit, size = time_unit(float(recurrence.max()))
+    distributions = "EFG"[: 0 if len(slip) == 1 else len(slip)]
+    rows, usual = _rows("BCD" if "run_time" in dataset else "", distributions[:3], **place)
+    narrow = usual[0] < WHOLE
+    figure = sheet(usual, **place)
+    cells = math.lcm(*map(len, rows))
+    axes = figure.subplot_mosaic(";".join("".join(name * (cells // len(row)) for name in row) for row in rows))
+    letters = dict(zip(sorted(axes), string.ascii_lowercase, strict=False))
+    _draw_time_line(axes["A"], dataset, ring=bool({"C", "D"} & set(axes)))
+    _draw_zooms(axes, dataset)
+    unit, size = time_unit(float(recurrence.max())) if len(recurrence) else ("s", 1.0)
+    if "E" in axes:
         _draw_distribution(axes["E"], slip)
-        _draw_recurrence(axes["F"], recurrence / size, unit)
+    if "F" in axes:
+        _draw_recurrence(axes["F"], recurrence / size, unit, narrow=narrow)
     if "G" in axes:
         _draw_return_map(axes["G"], recurrence / size, unit)
-    letter_panels(axes.values(), titles[: len(axes)])
-    add_legend(axes["A"], _marks(dataset, axes))
+    letter_panels((axes[name] for name in letters), (TITLES[name] for name in letters))
+    for name in letters if narrow else ():
+        _make_small(axes[name], LINE if name != "A" else 2 * LINE)
+    add_legend(axes["A"], _marks(dataset, letters))
     set_title(figure, dataset.attrs["title"])
     return figure
 
 
-def _marks(dataset: xr.Dataset, drawn: Container[str]) -> list[Artist]:
-    """Return the entries of the key for the panels that are drawn."""
+def _rows(zooms: str, distributions: str, **place: Unpack[Place]) -> tuple[list[str], tuple[float, float]]:
+    """Return the panels of each row of a figure that has room for them, and the usual size (inches) of a figure of its width."""
+    width, _ = size_of((7.2, 1.0), **place)
+    side_by_side = 3 if width >= THREE else 2 if width >= TWO else 1
+
+    def arranged(panels: str) -> list[str]:
+        return [panels[k : k + side_by_side] for k in range(0, len(panels), side_by_side)]
+
+    def in_groups(panels: str) -> list[str]:
+        return [row for group in (zooms, distributions) if (row := "".join(name for name in group if name in panels))]
+
+    arrange = in_groups if side_by_side == 3 else arranged
+    usual = (width, (2.3 if side_by_side == 3 else 1.8) * (1 + len(arrange(zooms + distributions))) + 0.6)
+    room = max(int((size_of(usual, **place)[1] - KEY) / ROW) - 1, 0)
+    kept = distributions + zooms
+    while len(arrange("".join(sorted(kept)))) > room:
+        kept = kept[:-1]
+    return ["A", *arrange("".join(sorted(kept)))], usual
+
+
+def _make_small(axes: Axes, line: int) -> None:
+    """Give a panel of a narrow figure smaller letters, and titles and labels in lines of so many letters."""
+    axes.set_title(textwrap.fill(axes.get_title(loc="left"), line), loc="left", fontsize=8.5, pad=4)
+    axes.set_xlabel(textwrap.fill(axes.get_xlabel(), line), fontsize=8)
+    axes.set_ylabel(textwrap.fill(axes.get_ylabel(), LINE - 2), fontsize=8)
+    axes.tick_params(labelsize=7.5)
+    for text in axes.texts:
+        text.set_fontsize(7)
+
+
+def _marks(dataset: xr.Dataset, letters: Mapping[str, str]) -> list[Artist]:
+    """Return the entries of the key for the panels that are drawn, which have these letters."""
     point: Any = {"linestyle": "none", "marker": "o"}
-    marks: list[Artist] = [Line2D([], [], color=BLUE, markersize=3, label="(a) slip event", **point)]
-    if "chosen" in dataset:
+    event = "(a) slip event" if len(letters) > 1 else "slip event"  # one panel has no letter
+    marks: list[Artist] = [Line2D([], [], color=BLUE, markersize=3, label=event, **point)]
+    closer = ", ".join(f"({letters[name]})" for name in "CD" if name in letters)
+    if closer:
         ring = {"color": VERMILLION, "markersize": 6, "markerfacecolor": "none"}
-        marks.append(Line2D([], [], label="(a) event of (c), (d)", **point | ring))
-        marks.append(Line2D([], [], color=VERMILLION, linewidth=0.8, label="(b) its time"))
-        if float(dataset["horizon"]) < float(dataset["run_time"].values[-1]):
-            marks.append(Patch(color=GREY, alpha=0.15, linewidth=0.0, label="(a) beyond the predictability horizon"))
-    mean, equal = ("(f)", "(g)") if "B" in drawn else ("(c)", "(d)")
-    if "F" in drawn:
-        marks.append(Line2D([], [], color=VERMILLION, linewidth=1.0, linestyle="--", label=f"{mean} mean"))
-    if "G" in drawn:
-        marks.append(Line2D([], [], color=GREY, linewidth=0.8, label=f"{equal} equal times"))
+        marks.append(Line2D([], [], label=f"(a) event of {closer}", **point | ring))
+    if "B" in letters:
+        marks.append(Line2D([], [], color=VERMILLION, linewidth=0.8, label=f"({letters['B']}) its time"))
+    if "chosen" in dataset and float(dataset["horizon"]) < float(dataset["run_time"].values[-1]):
+        marks.append(Patch(color=GREY, alpha=0.15, linewidth=0.0, label="(a) beyond the predictability horizon"))
+    if "F" in letters:
+        marks.append(Line2D([], [], color=VERMILLION, linewidth=1.0, linestyle="--", label=f"({letters['F']}) mean"))
+    if "G" in letters:
+        marks.append(Line2D([], [], color=GREY, linewidth=0.8, label=f"({letters['G']}) equal times"))
     return marks
 
 
-def _draw_time_line(axes: Axes, dataset: xr.Dataset) -> None:
+def _draw_time_line(axes: Axes, dataset: xr.Dataset, *, ring: bool) -> None:
     slip, wide = dataset["slip"].values, spans_decades(dataset["slip"].values)
     last = float(dataset["run_time"].values[-1]) if "run_time" in dataset else float(dataset["start"].values[-1])
     unit, size = time_unit(last)
@@ -169,16 +219,23 @@ def _draw_time_line(axes: Axes, dataset: xr.Dataset) -> None:
     axes.plot(start, slip / metres, "o", color=BLUE, markersize=3)
     if "chosen" in dataset:
         chosen, horizon = int(dataset["chosen"]), float(dataset["horizon"]) / size
-        axes.plot(start[chosen], slip[chosen] / metres, "o", color=VERMILLION, markersize=6, markerfacecolor="none")
+        if ring:
+            axes.plot(start[chosen], slip[chosen] / metres, "o", color=VERMILLION, markersize=6, markerfacecolor="none")
         if horizon < end:
             axes.axvspan(horizon, 1.02 * end, color=GREY, alpha=0.15, linewidth=0.0)
     set_scale(axes, "y", wide)
+    axes.margins(y=0.12)  # no point is cut by the upper edge of a low panel
     axes.set_ylim(bottom=low)
-    axes.set(xlim=(-0.02 * end, 1.02 * end), xlabel=curve_label("time", unit), ylabel=f"slip ({length})")
+    if end > 0.0:  # else one event at 0 s is all there is
+        axes.set_xlim(-0.02 * end, 1.02 * end)
+    axes.set(xlabel=curve_label("time", unit), ylabel=f"slip ({length})")
 
 
-def _draw_zooms(panels: list[Axes], dataset: xr.Dataset) -> None:
-    for axes, (name, (_, curve, clock)) in zip(panels, ZOOMS.items(), strict=False):
+def _draw_zooms(panels: Mapping[str, Axes], dataset: xr.Dataset) -> None:
+    for panel, (name, (_, curve, clock)) in zip("BCD", ZOOMS.items(), strict=True):
+        if panel not in panels:
+            continue
+        axes = panels[panel]
         time, slip = dataset[f"{name}_time"].values, dataset[f"{name}_slip"].values
         (unit, size), (length, metres) = time_unit(float(np.ptp(time))), unit_of("m", np.ptp(slip))
         axes.plot(time / size, slip / metres, color=GREEN)
@@ -201,12 +258,12 @@ def _draw_distribution(axes: Axes, slip: Floats) -> None:
     if not many:
         axes.set_ylim(bottom=0.0)
         count_ticks(axes)
-    if not wide:
+    if not wide and ordered[-1] > 0.0:
         axes.set_xlim(0.0, 1.15 * ordered[-1])
     axes.set(xlabel=f"slip $x$ ({unit})", ylabel="events with slip ≥ $x$")
 
 
-def _draw_recurrence(axes: Axes, times: Floats, unit: str) -> None:
+def _draw_recurrence(axes: Axes, times: Floats, unit: str, *, narrow: bool) -> None:
     """Draw a histogram of recurrence times, given in `unit`, with their mean and their coefficient of variation."""
     bins = min(max(int(np.sqrt(4 * len(times))), 5), 60)
     wide = spans_decades(times)
@@ -214,25 +271,26 @@ def _draw_recurrence(axes: Axes, times: Floats, unit: str) -> None:
     counts, _ = np.histogram(times, edges)
     axes.stairs(counts, edges, fill=True, color=BLUE)
     if counts.max() > WIDE:
-        axes.set(yscale="log", ylim=(0.5, 10.0 * counts.max()))
+        axes.set(yscale="log", ylim=(0.5, (1000.0 if narrow else 10.0) * counts.max()))
     else:
-        axes.set_ylim(0.0, 1.3 * counts.max())
+        axes.set_ylim(0.0, (2.1 if narrow else 1.3) * counts.max())
         count_ticks(axes)
-    axes.axvline(float(times.mean()), ymax=0.82, color=VERMILLION, linewidth=1.0, linestyle="--")
+    axes.axvline(float(times.mean()), ymax=0.5 if narrow else 0.82, color=VERMILLION, linewidth=1.0, linestyle="--")
     set_scale(axes, "x", wide)
     axes.set(xlabel=f"recurrence time ({unit})", ylabel="number of events")
-    if len(times) > 1:
+    if len(times) > 1 and times.max() > 0.0:
         variation = times.std(ddof=1) / times.mean()
-        text = "< 0.001" if variation < 1e-3 else f"= {variation:.2g}"
-        axes.text(0.03, 0.97, f"std. deviation / mean {text}", transform=axes.transAxes, va="top", fontsize=8)
+        value = "< 0.001" if variation < 1e-3 else f"= {variation:.2g}"
+        text = ("std. deviation", f"/ mean {value}")
+        axes.text(0.03, 0.97, ("\n" if narrow else " ").join(text), transform=axes.transAxes, va="top", fontsize=8)
 
 
 def _draw_return_map(axes: Axes, times: Floats, unit: str) -> None:
     """Draw each recurrence time, given in `unit`, against the one before it."""
     axes.plot(times[:-1], times[1:], "o", color=INK, markersize=2.5, alpha=0.7)
     wide = spans_decades(times)
-    limits = (0.5 * times.min(), 2.0 * times.max()) if wide else (0.0, 1.15 * times.max())
+    limits = (0.5 * times.min(), 2.0 * times.max()) if wide else (0.0, 1.15 * (times.max() or 1.0))
     set_scale(axes, "xy", wide)
     axes.plot(limits, limits, color=GREY, linewidth=0.8, zorder=0)
-    axes.set(xlim=limits, ylim=limits, aspect="equal")
-    axes.set(xlabel=f"recurrence time ({unit})", ylabel=f"next recurrence time ({unit})")
+    axes.set(xlim=limits, ylim=limits, aspect="equal", anchor="W")
+    axes.set(xlabel=f"recurrence time ({unit})", ylabel=f"next one ({unit})")

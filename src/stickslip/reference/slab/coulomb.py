@@ -29,6 +29,12 @@ class CoulombSlab:
         Friction coefficients at rest and while slipping.
     pull_rate : float
         Pull rate V (m/s); 0 means the limit 0+.
+
+    Notes
+    -----
+    Nothing checks the two conditions above: outside them the slab slips on after the echo, and these formulas do not hold.
+
+    Source: Campillo et al. 1996, eqs (12)-(13), with the limit alpha -> infinity of the rate law (15).
     """
 
     body: ElasticSlab

@@ -41,6 +41,10 @@ class HyperbolicFolds:
     ------
     InputError
         If the contact is regular (alpha <= alpha_c), so that there are no folds.
+
+    Notes
+    -----
+    Source: Campillo et al. 1996, section 3 and Figs 3-4, from eqs (12) and (15).
     """
 
     impedance: float
@@ -118,5 +122,9 @@ def fold_delay(inertia: float, curvature: float, load_rate: float) -> float:
     -------
     float
         Delay (s).
+
+    Notes
+    -----
+    Source: Haberman 1979, SIAM J. Appl. Math. 37, 69.
     """
     return float(AIRY_ZERO * (inertia**2 / (0.5 * curvature * load_rate)) ** (1.0 / 3.0))

@@ -28,6 +28,12 @@ def growth_rate(slab: ElasticSlab, weakening: float) -> float:
     -------
     float
         Growth rate (1/s); 0 if the slab is stable.
+
+    Notes
+    -----
+    The growth rate lambda solves lambda coth(lambda h / c) = c alpha_w with alpha_w = S weakening / G.
+
+    Source: Campillo et al. 1996, section 2, from eqs (7)-(13).
     """
     from scipy.optimize import brentq  # here, because it takes a quarter of a second to import
 

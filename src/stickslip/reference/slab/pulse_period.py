@@ -38,6 +38,13 @@ class PulseTrain:
     ------
     InputError
         If beta does not exceed (mean + amplitude) S: slip would end at a strength that it cannot overcome.
+
+    Notes
+    -----
+    The load of a slab is constant for ever where the driver absorbs all waves, and under another driver, if it does not move, until
+    the first echo of the slip returns.
+
+    Source: Campillo et al. 1996, eqs (12) and (14).
     """
 
     impedance: float
@@ -96,5 +103,5 @@ class PulseTrain:
         return np.asarray((half + math.pi * (turns + turn)) * 2.0 / self.wavenumber)
 
     def slip_rate(self, t: ArrayLike) -> NDArray[np.float64]:
-        """Return the slip rate v(t) (m/s) at times t (s), from the governing equation at the exact slip."""
+        """Return the slip rate v(t) (m/s) at times t (s), of the shape of t, from the governing equation at the exact slip."""
         return (self.surplus - self.wave * np.sin(self.wavenumber * self.slip(t))) / self.impedance

@@ -33,6 +33,12 @@ class StuckSlab:
         Pull rate V (m/s).
     far_stress, far_stress_rate : float
         Far stress (Pa) and its rate (Pa/s); they have no effect under a rigid driver.
+
+    Notes
+    -----
+    Nothing checks that the load stays within the static strength, beyond which the contact would slip.
+
+    Source: Campillo et al. 1996, eq. (13), extended to a driver of finite impedance.
     """
 
     body: ElasticSlab

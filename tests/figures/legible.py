@@ -1,0 +1,49 @@
+"""Whether the texts of a figure can be read: none is cut by the edge, and none covers another."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+from typing import Any
+
+from matplotlib.figure import Figure
+
+SLACK = 1.5
+"""Points by which the boxes around two texts may overlap, and by which one may pass the edge: they are wider than the letters."""
+
+
+def texts_drawn(figure: Figure) -> Iterator[Any]:
+    """Yield the texts of a figure that has been drawn: titles, labels, numbers at ticks, other texts, and the key."""
+    for axes in figure.axes:
+        yield from (axes.title, axes._left_title, axes.xaxis.label, axes.yaxis.label, *axes.texts)
+        for axis in (axes.xaxis, axes.yaxis):
+            scale = axis.get_transform().transform  # logarithmic axes have ticks at powers of ten outside, too
+            low, high = sorted(scale(axis.get_view_interval()))
+            room = 1e-9 * (high - low)
+            ticks = zip(scale(axis.get_majorticklocs()), axis.get_major_ticks(), strict=False)
+            yield from (tick.label1 for place, tick in ticks if low - room <= place <= high + room)
+            yield axis.get_offset_text()
+    for legend in figure.legends:
+        yield from legend.get_texts()
+    if figure._suptitle is not None:
+        yield figure._suptitle
+
+
+def illegible(figure: Figure) -> list[str]:
+    """Return a line for each text that is cut by the edge of the figure, and for each two that cover each other."""
+    figure.draw_without_rendering()
+    slack = SLACK * figure.dpi / 72.0
+    boxes = [(text.get_text(), text.get_window_extent()) for text in texts_drawn(figure) if text.get_text() and text.get_visible()]
+    edge = figure.bbox
+    cut = [
+        f"{text!r} is cut"
+        for text, box in boxes
+        if min(box.x0 - edge.x0, box.y0 - edge.y0, edge.x1 - box.x1, edge.y1 - box.y1) < -slack
+    ]
+    covered = [
+        f"{one!r} and {other!r} cover each other"
+        for (one, first), (other, second) in combinations(boxes, 2)
+        if min(first.x1, second.x1) - max(first.x0, second.x0) > slack
+        and min(first.y1, second.y1) - max(first.y0, second.y0) > slack
+    ]
+    return cut + covered
