@@ -137,6 +137,24 @@ def test_an_event_of_a_long_run_has_a_time_of_its_own() -> None:
     assert view_of(answer("fig6-slab")).limits["near"] == view_of(answer("fig6-slab")).limits["time"]
 
 
+@pytest.mark.parametrize("name", ["velocity-steps-block", "rate-and-state-slab"])
+def test_under_a_law_with_a_state_the_panel_of_the_law_shows_the_path_of_the_run_beside_the_steady_state(name: str) -> None:
+    view, solution = view_of(answer(name)), answer(name).solution
+    law, path = solution.problem.friction, view.columns["visited"]
+    assert [key.text for key in view.keys["law"]] == ["steady state", "path of the run"]
+    time = answer(name).motions[0].time[1::20]
+    rate, state = solution.slip_rate(time), solution.state(time)
+    expected = law.reference + law.a * np.log(rate / law.rate) + law.b * np.log(law.rate * state / law.distance)
+    points = np.column_stack([path["x"], path["y"]])
+    points = points[np.isfinite(points).all(axis=1)]
+    away = np.abs(points - np.column_stack([np.log10(rate), expected])[:, None, :]) / np.ptp(points, axis=0)
+    assert away.max(axis=2).min(axis=1).max() < 0.02
+    steady = np.interp(points[:, 0], view.columns["law"]["x"], view.columns["law"]["y"])
+    assert np.abs(points[:, 1] - steady).max() > 0.02
+    assert (points >= [view.limits["law_x"][0], view.limits["law_y"][0]]).all()
+    assert (points <= [view.limits["law_x"][1], view.limits["law_y"][1]]).all()
+
+
 def test_a_companion_that_moves_much_further_does_not_flatten_the_body() -> None:
     found = answer("fig5-slab-reconstructed")
     slab, block = found.motions

@@ -13,6 +13,8 @@ from stickslip.scenarios.scenario import Scenario
 from stickslip.solution.solution import Solution
 
 Floats = NDArray[np.float64]
+CurveName = Literal["law", "steady state", "law at the state of the start"]
+"""What the curve of a friction law is, for its legend."""
 MarkKind = Literal["start", "pulse", "arrest", "jump", "fold", "echo"]
 
 
@@ -21,7 +23,9 @@ class LawPicture:
     """The friction law as a curve: the friction coefficient against slip (m) or slip rate (m/s).
 
     `along` says against which. A law of both is drawn against slip rate at the slip of the start. `visited` is the part of the
-    horizontal axis that the run passed through: its smallest and its largest value.
+    horizontal axis that the run passed through: its smallest and its largest value. Under a law with a state the run leaves the
+    curve: `path` is where it went, an array of shape (points, 2) with (slip rate, friction coefficient), and NaN between pieces
+    that a jump or a time at rest separates.
     """
 
     along: Literal["slip", "slip_rate"]
@@ -30,6 +34,8 @@ class LawPicture:
     visited: tuple[float, float]
     log: bool
     """True if the horizontal axis is better logarithmic, as for rate-and-state laws."""
+    name: CurveName = "law"
+    path: Floats | None = None
 
 
 @dataclass(frozen=True)
