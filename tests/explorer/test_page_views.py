@@ -14,6 +14,7 @@ from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.solve import solve
 from stickslip.explorer.page.heading import heading
 from stickslip.explorer.page.panels import view_of
+from stickslip.explorer.page.panels.motion import DRAWN
 from stickslip.explorer.page.view import Key, View, limits, round_step
 from stickslip.explorer.page.view_bytes import view_bytes
 
@@ -38,7 +39,7 @@ def test_columns_of_a_source_have_one_length(shown: tuple[Answer, View]) -> None
 def test_axes_hold_their_data(shown: tuple[Answer, View]) -> None:
     view = shown[1]
     for axis, source, column in (
-        *((name, "motion", name) for name in ("slip", "rate", "traction")),
+        *((name, "motion", column) for name, column in DRAWN.items()),
         ("time", "motion", "time"),
         ("law_y", "law", "y"),
         ("law_x", "motion", "law_x"),
@@ -153,6 +154,21 @@ def test_under_a_law_with_a_state_the_panel_of_the_law_shows_the_path_of_the_run
     assert np.abs(points[:, 1] - steady).max() > 0.02
     assert (points >= [view.limits["law_x"][0], view.limits["law_y"][0]]).all()
     assert (points <= [view.limits["law_x"][1], view.limits["law_y"][1]]).all()
+
+
+@pytest.mark.parametrize("name", ["velocity-steps-block", "slide-hold-slide-block"])
+def test_slip_rates_under_a_law_that_never_sticks_have_a_logarithmic_axis_and_friction_is_framed(name: str) -> None:
+    view, motion = view_of(answer(name)), answer(name).motions[0]
+    assert [axis in view.hidden for axis in ("axis:rate@rate", "axis:rate_powers")] == [True, False]
+    np.testing.assert_allclose(10.0 ** view.columns["motion"]["rate_at"], view.columns["motion"]["rate"], rtol=1e-12)
+    for axis, values in (("rate", np.log10(motion.slip_rate)), ("traction", view.columns["motion"]["traction"])):
+        assert np.ptp(view.limits[axis]) < 1.5 * np.ptp(values)
+
+
+def test_slip_rates_under_a_law_that_sticks_have_a_linear_axis() -> None:
+    view = view_of(answer("fig6-slab"))
+    assert [axis in view.hidden for axis in ("axis:rate@rate", "axis:rate_powers")] == [False, True]
+    np.testing.assert_array_equal(view.columns["motion"]["rate_at"], view.columns["motion"]["rate"])
 
 
 def test_a_companion_that_moves_much_further_does_not_flatten_the_body() -> None:

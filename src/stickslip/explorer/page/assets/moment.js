@@ -54,11 +54,11 @@ function showMoment(models, facts, t) {
   for (const name of TIME_PLOTS) models.set(`cursor:${name}`, { location: t });
   for (const name of NEAR_PLOTS) models.set(`cursor:${name}`, { location: near });
   const times = models.column("motion", "time"), values = {};
-  for (const name of ["slip", "rate", "traction", "load", "drive"]) {
+  for (const name of ["slip", "rate", "rate_at", "traction", "load", "drive"]) {
     const column = models.column("motion", name);
     if (column.length) values[name] = valueAt(times, column, t);
   }
-  models.put("now", { time: [t], slip: [values.slip], rate: [values.rate], traction: [values.traction] });
+  models.put("now", { time: [t], slip: [values.slip], rate_at: [values.rate_at], traction: [values.traction] });
   showLaw(models, t);
   showContact(models, facts, t);
   if (facts.shape?.kind === "slab") showSlab(models, facts, near);

@@ -5,20 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from bokeh.models import CustomJSTickFormatter, LinearAxis
 
 from stickslip.explorer.model.answer import Answer, LawPicture
 from stickslip.explorer.page.look import paint
-from stickslip.explorer.page.stage import Stage, dress
+from stickslip.explorer.page.stage import Stage
 from stickslip.explorer.page.view import Columns, Key, Units, View, axis_label, limits
 from stickslip.figures.style import unit_of
 
 TEXT = "Friction law: friction coefficient against slip or slip rate"
-POWER = """
-const raised = "⁰¹²³⁴⁵⁶⁷⁸⁹"
-return "10" + [...String(Math.round(tick))].map((one) => (one === "-" ? "⁻" : raised[Number(one)])).join("")
-"""
-"""Text of a tick of a logarithmic axis: the axis itself is linear in the power of ten, so that it can change from run to run."""
 
 
 def data_of(answer: Answer, units: Units) -> View:
@@ -72,11 +66,7 @@ def place(law: LawPicture, values: Any, unit: tuple[str, float]) -> Any:
 def plot(stage: Stage) -> Any:
     """Return the plot of the friction law."""
     drawn = stage.plot("law", "law_x", "law_y", TEXT)
-    powers = LinearAxis(formatter=CustomJSTickFormatter(code=POWER), visible=False)
-    powers.ticker.min_interval = 1.0
-    dress(powers)
-    drawn.add_layout(powers, "below")
-    stage.note("axis:law_powers", powers)
+    stage.powers(drawn, "law_powers", "below")
     pinned = drawn.line("x", "y", source=stage.source("pinned_law", "x", "y"), line_width=2, line_alpha=0.8)
     paint(pinned.glyph, line_color="pin")
     paint(drawn.line("x", "y", source=stage.source("law", "x", "y"), line_width=1.6).glyph, line_color="ink")
