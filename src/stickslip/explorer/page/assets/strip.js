@@ -25,7 +25,7 @@ export function render({ model }) {
     find(".said").textContent = find(".said").title = model.state.said ?? "";
     if (!chosen) return;
     low.value = chosen.low; high.value = chosen.high; log.checked = chosen.log;
-    find(".unit").textContent = chosen.unit === "1" ? "" : chosen.unit;
+    find(".unit").textContent = chosen.unit;
   };
   parameter.addEventListener("change", () => model.send_msg({ parameter: parameter.value }));
   for (const field of [low, high, log]) {
