@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import pairwise
 from typing import Any
 
@@ -22,11 +22,14 @@ TOOLS = """(names) => names.map((name) => {
 })"""
 """The boxes of buttons in the bar, by their names, and where their texts end below."""
 
+CURSOR = "window.Bokeh?.documents?.[0]?.get_model_by_name('cursor:slip')?.location"
+"""Where the cursor is, also before the page has its plots."""
+
 
 @pytest.fixture(scope="module")
 def page(chromium: Any, server: Served) -> Iterator[Any]:
     """A page with the slab of Fig. 6, whose sentence is among the longest."""
-    window = chromium.new_context(viewport={"width": 1280, "height": 800})
+    window = chromium.new_context(viewport={"width": 1280, "height": 800}, reduced_motion="reduce")
     watched = Watched(window.new_page(), server.origin)
     watched.page.goto(server.url)
     watched.page.locator(".sentence").filter(has_text="slip event").wait_for(timeout=PATIENCE)
@@ -61,3 +64,37 @@ def test_buttons_of_the_bar_have_one_height_one_baseline_and_room_between_them(p
     assert max(gaps) - min(gaps) < 1.0
     (switch,) = page.evaluate(TOOLS, ["Dark ground"])
     assert switch["bottom"] - switch["top"] == pytest.approx(boxes[0]["bottom"] - boxes[0]["top"], abs=1.0)
+
+
+@pytest.mark.parametrize(("width", "height"), SIZES)
+def test_first_words_in_the_bar_say_what_is_seen_and_what_to_move(page: Any, width: int, height: int) -> None:
+    page.set_viewport_size({"width": width, "height": height})
+    words, bar = page.locator(".first-words"), page.locator(".top").bounding_box()
+    assert "First move a slider" in words.inner_text()
+    box, title, tour = (
+        words.bounding_box(),
+        page.locator("h1").bounding_box(),
+        page.get_by_role("button", name="Tour").bounding_box(),
+    )
+    assert title["x"] + title["width"] < box["x"] < box["x"] + box["width"] < tour["x"]
+    assert bar["y"] <= box["y"] < box["y"] + box["height"] <= bar["y"] + bar["height"] <= 44.0
+
+
+def test_the_first_run_plays_once_until_something_is_touched(visit: Callable[..., Watched], server: Served) -> None:
+    watched = visit(server.url, server.origin, reduced_motion="no-preference")
+    watched.page.wait_for_function(f"() => {CURSOR} > 0")
+    watched.page.keyboard.press("Shift")
+    watched.until("model('cursor:slip').location === 0")
+    watched.page.get_by_role("button", name="Play", exact=True).wait_for()
+
+
+def test_nothing_plays_by_itself_where_less_motion_is_preferred_or_a_link_names_a_time(
+    visit: Callable[..., Watched], server: Served
+) -> None:
+    for url, motion, time in ((server.url, "reduce", 0.0), (f"{server.url}&t=3", "no-preference", 3.0)):
+        watched = visit(url, server.origin, reduced_motion=motion)
+        watched.page.locator(".sentence").filter(has_text="slip event").wait_for()
+        watched.page.wait_for_function(f"() => {CURSOR} === {time}")
+        watched.page.wait_for_timeout(100)
+        assert watched.page.evaluate(CURSOR) == time
+        assert watched.page.get_by_role("button", name="Play", exact=True).is_visible()

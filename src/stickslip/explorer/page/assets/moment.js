@@ -138,3 +138,14 @@ function showBlock(models, facts, values) {
 }
 
 function scaleBar(width, bar) { return [0.98 * width - bar, 0.98 * width]; }
+
+/** Digits after the point with which a time of a span can be told apart from its neighbours. */
+function digitsFor(span) { return Math.min(Math.max(3 - Math.floor(Math.log10(span || 1)), 0), 6); }
+
+/** A number in at most four digits, with a true minus. */
+function shortNumber(value) {
+  if (!Number.isFinite(value)) return "–";
+  const size = Math.abs(value);
+  const text = size !== 0 && (size < 1e-3 || size >= 1e5) ? value.toExponential(2) : value.toFixed(size >= 100 ? 1 : size >= 10 ? 2 : 3);
+  return text.replace("-", "−");
+}
