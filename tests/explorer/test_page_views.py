@@ -75,6 +75,10 @@ def test_a_slab_is_an_image_and_a_block_has_none() -> None:
     slab, block = view_of(answer("fig6-slab")), view_of(answer("fig6-block-reconstructed"))
     assert slab.columns["field"]["velocity"][0].dtype == np.float32
     assert slab.fastest == pytest.approx(float(np.abs(slab.columns["field"]["velocity"][0]).max()))
+    field, places = slab.columns["field"], len(slab.columns["field"]["velocity"][0])
+    middles = field["y"][0] + field["dh"][0] * (np.arange(places) + 0.5) / places
+    np.testing.assert_allclose(middles, answer("fig6-slab").slab.place / 1e3, atol=1e-12)
+    assert slab.limits["place"] == (0.0, 10.0)
     change = slab.columns["field"]["stress"][0]
     assert not change[:, 0].any()
     assert slab.facts["fields"]["stress"] == {

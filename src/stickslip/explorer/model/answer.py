@@ -83,9 +83,9 @@ class SlabPicture:
     """What happens inside the slab: arrays of shape (times, places), and the wave fronts that leave the contact.
 
     `time` (s since the start of the run) and `place` (m from the contact) are evenly spaced, from the first to the last shown;
-    `displacement` (m, since the first of these times), `velocity` (m/s) and `stress` (Pa) are values there. Each front is an array
-    of shape (corners, 2) with (time, place). Of a run over many round trips only the times around its last large slip event are
-    shown.
+    `displacement` (m, since the first of these times), `velocity` (m/s) and `stress` (Pa) are values there, the last two as means
+    over the time of a cell. Each front is an array of shape (corners, 2) with (time, place). Of a run over many round trips only
+    the times around its last large slip event are shown.
     """
 
     time: Floats

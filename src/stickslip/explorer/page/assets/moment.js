@@ -92,7 +92,7 @@ function showSlab(models, facts, t) {
   const left = Math.floor(at), right = Math.min(left + 1, columns - 1), share = at - left;
   const mean = (values, row) => values[row * columns + left] * (1 - share) + values[row * columns + right] * share;
   const u = [], y = [];
-  for (let row = 0; row < rows; row++) { u.push(scale * mean(displacement, row)); y.push((row + 0.5) / rows * height); }
+  for (let row = 0; row < rows; row++) { u.push(scale * mean(displacement, row)); y.push(row / (rows - 1) * height); }
   const first = 0.06 * width, step = 0.58 * width / (COLUMNS_DRAWN - 1);
   const lines = { x: [], y: [] }, particles = { x: [], y: [], velocity: [] };
   for (let column = 0; column < COLUMNS_DRAWN; column++) {
