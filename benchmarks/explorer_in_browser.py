@@ -56,7 +56,7 @@ def spent_by_moves(moves: int = MOVES) -> dict[str, Spent]:
         browser, served = launch(playwright), serve(folder=Path(folder))
         try:
             for name, control in CASES:
-                page = browser.new_page(viewport={"width": 1280, "height": 800})
+                page = browser.new_page(viewport={"width": 1280, "height": 800}, reduced_motion="reduce")
                 page.set_default_timeout(300_000)
                 page.goto(f"{served.url}&scenario={name}")
                 page.locator(".sentence").filter(has_text="slip event").wait_for()

@@ -61,6 +61,37 @@ def test_a_range_can_be_typed_with_units_and_a_wrong_one_is_refused_in_the_bar(e
         assert explorer.strip == good
 
 
+@pytest.mark.parametrize(
+    ("scenario", "parameter", "low", "high", "unit"),
+    [
+        ("fig6-slab", "body.thickness", "2", "50", "km"),
+        ("fig6-slab", "body.normal_stress", "20", "500", "MPa"),
+        ("velocity-steps-block", "body.stiffness", "20", "500", "kN/mm"),
+        ("fig6-slab", "initial.load", "0", "1", "Pa"),
+    ],
+)
+def test_the_range_of_a_strip_is_shown_and_read_in_the_unit_of_the_slider(
+    scenario: str, parameter: str, low: str, high: str, unit: str
+) -> None:
+    explorer = Explorer(Setting.bundled(scenario), DeskAtOnce(), solve)
+    view = StripView(explorer)
+    view.bar._handle_msg({"parameter": parameter})
+    chosen = view.bar.state["chosen"]
+    assert (chosen["low"], chosen["high"], chosen["unit"]) == (low, high, unit)
+    before = explorer.strip
+    view.bar._handle_msg({"parameter": parameter, "low": low, "high": high, "log": chosen["log"]})
+    assert explorer.strip == before
+
+
+def test_a_typed_number_and_the_axis_of_the_strip_are_in_the_unit_of_the_field(explorer: Explorer, view: StripView) -> None:
+    view.bar._handle_msg({"parameter": "body.thickness", "low": "1", "high": "20", "log": False})
+    assert explorer.strip == StripRange("body.thickness", 1e3, 2e4)
+    assert view._stage.named["axis:strip_x@strip_slip"].axis_label == "body.thickness (km)"
+    assert view._stage.named["here:strip_slip"].location == 10.0
+    view._tapped(SimpleNamespace(x=5.0))
+    assert explorer.setting.scenario().problem.body.thickness == pytest.approx(5e3, rel=0.01)
+
+
 @pytest.mark.parametrize("data", [None, 7, {}, {"parameter": 3}, {"parameter": "no.such"}, {"parameter": "run.selection"}])
 def test_a_message_that_makes_no_sense_changes_nothing(explorer: Explorer, view: StripView, data: Any) -> None:
     view.bar._handle_msg(data)

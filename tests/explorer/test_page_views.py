@@ -14,6 +14,7 @@ from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.solve import solve
 from stickslip.explorer.page.heading import heading
 from stickslip.explorer.page.panels import view_of
+from stickslip.explorer.page.panels.motion import DRAWN
 from stickslip.explorer.page.view import Key, View, limits, round_step
 from stickslip.explorer.page.view_bytes import view_bytes
 
@@ -38,7 +39,7 @@ def test_columns_of_a_source_have_one_length(shown: tuple[Answer, View]) -> None
 def test_axes_hold_their_data(shown: tuple[Answer, View]) -> None:
     view = shown[1]
     for axis, source, column in (
-        *((name, "motion", name) for name in ("slip", "rate", "traction")),
+        *((name, "motion", column) for name, column in DRAWN.items()),
         ("time", "motion", "time"),
         ("law_y", "law", "y"),
         ("law_x", "motion", "law_x"),
@@ -74,6 +75,10 @@ def test_a_slab_is_an_image_and_a_block_has_none() -> None:
     slab, block = view_of(answer("fig6-slab")), view_of(answer("fig6-block-reconstructed"))
     assert slab.columns["field"]["velocity"][0].dtype == np.float32
     assert slab.fastest == pytest.approx(float(np.abs(slab.columns["field"]["velocity"][0]).max()))
+    field, places = slab.columns["field"], len(slab.columns["field"]["velocity"][0])
+    middles = field["y"][0] + field["dh"][0] * (np.arange(places) + 0.5) / places
+    np.testing.assert_allclose(middles, answer("fig6-slab").slab.place / 1e3, atol=1e-12)
+    assert slab.limits["place"] == (0.0, 10.0)
     change = slab.columns["field"]["stress"][0]
     assert not change[:, 0].any()
     assert slab.facts["fields"]["stress"] == {
@@ -135,6 +140,39 @@ def test_an_event_of_a_long_run_has_a_time_of_its_own() -> None:
     assert view.columns["energy"]["time"][-1] * near["size"] + near["begin"] == pytest.approx(found.energy.time[-1])
     assert near["from"] - time["dw"][0] <= time["x"][0] <= time["x"][0] + time["dw"][0] <= near["to"] + time["dw"][0]
     assert view_of(answer("fig6-slab")).limits["near"] == view_of(answer("fig6-slab")).limits["time"]
+
+
+@pytest.mark.parametrize("name", ["velocity-steps-block", "rate-and-state-slab"])
+def test_under_a_law_with_a_state_the_panel_of_the_law_shows_the_path_of_the_run_beside_the_steady_state(name: str) -> None:
+    view, solution = view_of(answer(name)), answer(name).solution
+    law, path = solution.problem.friction, view.columns["visited"]
+    assert [key.text for key in view.keys["law"]] == ["steady state", "path of the run"]
+    time = answer(name).motions[0].time[1::20]
+    rate, state = solution.slip_rate(time), solution.state(time)
+    expected = law.reference + law.a * np.log(rate / law.rate) + law.b * np.log(law.rate * state / law.distance)
+    points = np.column_stack([path["x"], path["y"]])
+    points = points[np.isfinite(points).all(axis=1)]
+    away = np.abs(points - np.column_stack([np.log10(rate), expected])[:, None, :]) / np.ptp(points, axis=0)
+    assert away.max(axis=2).min(axis=1).max() < 0.02
+    steady = np.interp(points[:, 0], view.columns["law"]["x"], view.columns["law"]["y"])
+    assert np.abs(points[:, 1] - steady).max() > 0.02
+    assert (points >= [view.limits["law_x"][0], view.limits["law_y"][0]]).all()
+    assert (points <= [view.limits["law_x"][1], view.limits["law_y"][1]]).all()
+
+
+@pytest.mark.parametrize("name", ["velocity-steps-block", "slide-hold-slide-block"])
+def test_slip_rates_under_a_law_that_never_sticks_have_a_logarithmic_axis_and_friction_is_framed(name: str) -> None:
+    view, motion = view_of(answer(name)), answer(name).motions[0]
+    assert [axis in view.hidden for axis in ("axis:rate@rate", "axis:rate_powers")] == [True, False]
+    np.testing.assert_allclose(10.0 ** view.columns["motion"]["rate_at"], view.columns["motion"]["rate"], rtol=1e-12)
+    for axis, values in (("rate", np.log10(motion.slip_rate)), ("traction", view.columns["motion"]["traction"])):
+        assert np.ptp(view.limits[axis]) < 1.5 * np.ptp(values)
+
+
+def test_slip_rates_under_a_law_that_sticks_have_a_linear_axis() -> None:
+    view = view_of(answer("fig6-slab"))
+    assert [axis in view.hidden for axis in ("axis:rate@rate", "axis:rate_powers")] == [False, True]
+    np.testing.assert_array_equal(view.columns["motion"]["rate_at"], view.columns["motion"]["rate"])
 
 
 def test_a_companion_that_moves_much_further_does_not_flatten_the_body() -> None:

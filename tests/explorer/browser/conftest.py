@@ -37,7 +37,9 @@ def visit(chromium: Any) -> Iterator[Callable[..., Watched]]:
     opened: list[Watched] = []
 
     def open_page(url: str, origin: str, size: tuple[int, int] = (1280, 800), **context: Any) -> Watched:
-        window = chromium.new_context(viewport={"width": size[0], "height": size[1]}, accept_downloads=True, **context)
+        window = chromium.new_context(
+            viewport={"width": size[0], "height": size[1]}, accept_downloads=True, **{"reduced_motion": "reduce"} | context
+        )
         watched = Watched(window.new_page(), origin)
         opened.append(watched)
         watched.page.goto(url)

@@ -85,7 +85,9 @@ def begun(watched: Watched) -> Shown:
 @pytest.fixture(scope="module")
 def opened(chromium: Any, server: Served) -> Iterator[Shown]:
     """The page that most tests share."""
-    window = chromium.new_context(viewport={"width": 1280, "height": 800}, accept_downloads=True, color_scheme="light")
+    window = chromium.new_context(
+        viewport={"width": 1280, "height": 800}, accept_downloads=True, color_scheme="light", reduced_motion="reduce"
+    )
     watched = Watched(window.new_page(), server.origin)
     watched.page.goto(server.url)
     yield begun(watched)

@@ -13,6 +13,8 @@ from stickslip.scenarios.scenario import Scenario
 from stickslip.solution.solution import Solution
 
 Floats = NDArray[np.float64]
+CurveName = Literal["law", "steady state", "law at the state of the start"]
+"""What the curve of a friction law is, for its legend."""
 MarkKind = Literal["start", "pulse", "arrest", "jump", "fold", "echo"]
 
 
@@ -21,7 +23,9 @@ class LawPicture:
     """The friction law as a curve: the friction coefficient against slip (m) or slip rate (m/s).
 
     `along` says against which. A law of both is drawn against slip rate at the slip of the start. `visited` is the part of the
-    horizontal axis that the run passed through: its smallest and its largest value.
+    horizontal axis that the run passed through: its smallest and its largest value. Under a law with a state the run leaves the
+    curve: `path` is where it went, an array of shape (points, 2) with (slip rate, friction coefficient), and NaN between pieces
+    that a jump or a time at rest separates.
     """
 
     along: Literal["slip", "slip_rate"]
@@ -30,6 +34,8 @@ class LawPicture:
     visited: tuple[float, float]
     log: bool
     """True if the horizontal axis is better logarithmic, as for rate-and-state laws."""
+    name: CurveName = "law"
+    path: Floats | None = None
 
 
 @dataclass(frozen=True)
@@ -77,9 +83,9 @@ class SlabPicture:
     """What happens inside the slab: arrays of shape (times, places), and the wave fronts that leave the contact.
 
     `time` (s since the start of the run) and `place` (m from the contact) are evenly spaced, from the first to the last shown;
-    `displacement` (m, since the first of these times), `velocity` (m/s) and `stress` (Pa) are values there. Each front is an array
-    of shape (corners, 2) with (time, place). Of a run over many round trips only the times around its last large slip event are
-    shown.
+    `displacement` (m, since the first of these times), `velocity` (m/s) and `stress` (Pa) are values there, the last two as means
+    over the time of a cell. Each front is an array of shape (corners, 2) with (time, place). Of a run over many round trips only
+    the times around its last large slip event are shown.
     """
 
     time: Floats

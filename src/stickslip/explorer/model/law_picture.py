@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from stickslip.explorer.model.answer import Floats, LawPicture, Motion
+from stickslip.explorer.model.answer import CurveName, Floats, LawPicture, Motion
 from stickslip.friction import FrictionLaw, LaggedFriction, RateAndState
 from stickslip.problem.problem import Problem
 from stickslip.solution.solution import Solution
@@ -16,8 +18,13 @@ BEYOND = 0.15
 """Share of what the run passed through that is shown before and after it."""
 SCALES = 4.0
 """Number of characteristic slip rates of the law that are shown at least."""
-DECADES = 14
+DECADES = 20
 """Largest number of decades of slip rate that a logarithmic axis shows."""
+SEEN = 1e-3
+"""Jumps that change the slip rate by a smaller share of it are not seen: pieces of the history meet within a tolerance only."""
+PATH, INSIDE, CELLS = 20_000, 8, 500
+"""The path has `INSIDE` points in each piece of the history, or fewer if there were more than `PATH`. Of those that lie in one of
+`CELLS` times `CELLS` cells of the picture, one after the other, it keeps the first and the last."""
 
 
 def law_picture(solution: Solution, motion: Motion) -> LawPicture:
@@ -25,7 +32,8 @@ def law_picture(solution: Solution, motion: Motion) -> LawPicture:
     law = solution.problem.friction
     if law.depends_on_slip and not law.depends_on_rate:
         return _along_slip(solution)
-    return _along_rate(solution.problem, np.abs(motion.slip_rate))
+    picture = _along_rate(solution.problem, np.abs(motion.slip_rate))
+    return picture if law.state is None else replace(picture, path=_path(solution))
 
 
 def _along_slip(solution: Solution) -> LawPicture:
@@ -62,14 +70,45 @@ def _along_rate(problem: Problem, rates: Floats) -> LawPicture:
         top = max((1.0 + BEYOND) * visited[1], SCALES * min(scales, default=0.0)) or 1.0
         knots = [knot for knot in law.knots if 0.0 < knot < top and law.knot_variable == "rate"]
         rate = np.unique(np.concatenate([np.linspace(0.0, top, POINTS // 2), np.geomspace(1e-6 * top, top, POINTS // 2), knots]))
-    return LawPicture("slip_rate", rate, _coefficient(problem, rate), visited, log)
+    name, coefficient = _coefficient(problem, rate)
+    return LawPicture("slip_rate", rate, coefficient, visited, log, name)
 
 
-def _coefficient(problem: Problem, rate: Floats) -> Floats:
-    """Return the coefficient at slip rates, in steady sliding for a law with a state, at the slip of the start for one of slip."""
+def _path(solution: Solution) -> Floats:
+    """Return slip rate and friction coefficient along a run, with NaN at jumps and at rest.
+
+    The times are those of the pieces of its history, because an event of seconds may lie in a run of years.
+    """
+    breaks = solution.breaks
+    inside = min(max(PATH // len(breaks), 1), INSIDE)
+    right = np.append(np.linspace(breaks[:-1], breaks[1:], inside, endpoint=False).T.ravel(), breaks[-1])
+    order = np.argsort(np.concatenate([breaks, right]), kind="stable")  # the limits from the left first
+    rate, traction = (
+        np.concatenate([curve(breaks, side="left"), curve(right)])[order] for curve in (solution.slip_rate, solution.traction)
+    )
+    moves = np.where(rate == 0.0, np.nan, np.sign(rate))
+    path = np.column_stack([moves * rate, moves * traction / solution.problem.normal])
+    is_left = order < len(breaks)
+    jumps = np.flatnonzero(is_left[:-1] & (np.abs(np.diff(rate)) > SEEN * np.abs(rate[1:]))) + 1
+    return _thinned(np.insert(path, jumps, np.nan, axis=0))
+
+
+def _thinned(path: Floats) -> Floats:
+    """Return a path without points that a picture would show at the place of the one before."""
+    place = np.column_stack([np.log10(path[:, 0]), path[:, 1]])
+    low, high = np.nanmin(place, axis=0, initial=np.inf), np.nanmax(place, axis=0, initial=-np.inf)
+    cell = np.round(CELLS * (place - low) / np.where(high > low, high - low, 1.0))
+    moved = (cell[1:] != cell[:-1]).any(axis=1)
+    kept: Floats = path[np.append(True, moved) | np.append(moved, True)]
+    return kept
+
+
+def _coefficient(problem: Problem, rate: Floats) -> tuple[CurveName, Floats]:
+    """Return the coefficient at slip rates, at the slip of the start for a law of slip, in steady sliding for one with a state."""
     law = problem.friction
     if isinstance(law, RateAndState):
-        return law.steady_coefficient(rate)
+        return "steady state", law.steady_coefficient(rate)
     if isinstance(law, LaggedFriction):
-        return law.coefficient(problem.law_slip, rate, rate)
-    return law.coefficient(problem.law_slip, rate, problem.state)
+        return "steady state", law.coefficient(problem.law_slip, rate, rate)
+    name: CurveName = "law" if law.state is None else "law at the state of the start"
+    return name, law.coefficient(problem.law_slip, rate, problem.state)

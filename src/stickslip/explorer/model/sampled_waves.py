@@ -48,6 +48,10 @@ class Wave:
         """Return the integral of the wave up to times, Pa s."""
         return np.interp(time, self.time, self._sums)
 
+    def mean(self, begin: Floats, end: Floats) -> Floats:
+        """Return the mean of the wave between times."""
+        return (self.total(end) - self.total(begin)) / (end - begin)
+
     @cached_property
     def _squares(self) -> Floats:
         return summed(self.time, self.value**2)
@@ -101,15 +105,11 @@ class SampledWaves:
         order = np.argsort(time, kind="stable")
         return Wave(time[order], value[order])
 
-    def velocity(self, time: Floats, place: Floats) -> Floats:
-        """Return the velocity (m/s) at times and places (m from the contact) that broadcast."""
+    def velocity_and_stress(self, begin: Floats, end: Floats, place: Floats) -> tuple[Floats, Floats]:
+        """Return the means of velocity (m/s) and shear stress (Pa) between times, at places (m from the contact) that broadcast."""
         away = place / self.body.wave_speed
-        return (self.coming.at(time + away) + self.leaving.at(time - away)) / (2.0 * self.body.impedance)
-
-    def stress(self, time: Floats, place: Floats) -> Floats:
-        """Return the shear stress (Pa) at times and places (m from the contact) that broadcast."""
-        away = place / self.body.wave_speed
-        return self.waves.reference + 0.5 * (self.coming.at(time + away) - self.leaving.at(time - away))
+        coming, leaving = self.coming.mean(begin + away, end + away), self.leaving.mean(begin - away, end - away)
+        return (coming + leaving) / (2.0 * self.body.impedance), self.waves.reference + 0.5 * (coming - leaving)
 
     def displacement(self, time: Floats, place: Floats, at_contact: Floats) -> Floats:
         """Return the displacement (m) at times and places that broadcast, from that of the contact at these times."""

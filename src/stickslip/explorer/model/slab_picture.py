@@ -15,9 +15,15 @@ TIMES, PLACES = 240, 60
 
 
 def slab_picture(waves: SampledWaves) -> SlabPicture:
-    """Return the picture of a slab."""
+    """Return the picture of a slab.
+
+    Velocity and stress are means over the time of a cell: a cell that a wave front passes lies between the values before and after,
+    so that the edge follows the characteristic, and a pulse that is shorter than a cell is not passed over.
+    """
     shown, thickness = waves.shown, waves.body.thickness
     time, place = np.linspace(shown.start, shown.end, TIMES), np.linspace(0.0, thickness, PLACES)
+    edges = np.concatenate([time[:1], 0.5 * (time[1:] + time[:-1]), time[-1:]])[:, None]
+    velocity, stress = waves.velocity_and_stress(edges[:-1], edges[1:], place)
     displacement = waves.displacement(time[:, None], place, _slip(waves, time)[:, None])
     fronts = fronts_of(shown.readings, shown.start, shown.end)
     places = [np.where(np.arange(len(times)) % 2, thickness, 0.0) for times in fronts]
@@ -25,8 +31,8 @@ def slab_picture(waves: SampledWaves) -> SlabPicture:
         time + shown.begin,
         place,
         displacement - displacement[0],
-        waves.velocity(time[:, None], place),
-        waves.stress(time[:, None], place),
+        velocity,
+        stress,
         tuple(np.column_stack([times + shown.begin, x]) for times, x in zip(fronts, places, strict=True)),
     )
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from bokeh.models import ColumnDataSource, LinearColorMapper, Range1d, Span
+from bokeh.models import ColumnDataSource, CustomJSTickFormatter, LinearAxis, LinearColorMapper, Range1d, Span
 from bokeh.plotting import figure
 
 from stickslip.explorer.page.look import FONT, paint, palettes
@@ -12,6 +12,12 @@ from stickslip.explorer.page.view import View
 
 LEFT, NARROW, RIGHT = 62, 46, 14
 """Room (px) beside the frame of a plot, with and without a text along the vertical axis: frames that share an axis are aligned."""
+
+POWER = """
+const raised = "⁰¹²³⁴⁵⁶⁷⁸⁹"
+return "10" + [...String(Math.round(tick))].map((one) => (one === "-" ? "⁻" : raised[Number(one)])).join("")
+"""
+"""Text of a tick of a logarithmic axis: the axis itself is linear in the power of ten, so that it can change from run to run."""
 
 
 class Stage:
@@ -71,6 +77,14 @@ class Stage:
         drawn.tags = [*drawn.tags, {"text": text}]
         self.plots[name] = drawn
         return drawn
+
+    def powers(self, drawn: Any, name: str, side: str) -> None:
+        """Add to a plot an axis of powers of ten, hidden at first, for values of which the plot shows the logarithm."""
+        axis = LinearAxis(formatter=CustomJSTickFormatter(code=POWER), visible=False)
+        axis.ticker.min_interval = 1.0
+        dress(axis)
+        axis.ticker.desired_num_ticks = 3 if side == "left" else 5
+        drawn.add_layout(self.note(f"axis:{name}", axis), side)
 
     def cursor(self, name: str, dimension: str = "height") -> None:
         """Add to a plot the line of the cursor. It is drawn above all else, so that moving it repaints nothing else."""

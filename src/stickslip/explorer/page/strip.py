@@ -10,6 +10,8 @@ import panel as pn
 import param
 from panel.custom import JSComponent
 
+from stickslip.explorer.model.controls import controls_of
+from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.strip import (
     SHOWN,
     Strip,
@@ -31,8 +33,8 @@ from stickslip.explorer.page.view import Key, View, axis_label, limits
 from stickslip.figures.style import SPELLED, unit_of
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity
-from stickslip.scenarios.scenario import Scenario
-from stickslip.scenarios.values import read_typed
+from stickslip.scenarios.parameter_paths import ParameterPath
+from stickslip.scenarios.values import typed_number
 
 NAMES = {"pulses": "Pulses", "slip": "Slip", "first_end": "First arrest", "peak_rate": "Peak slip rate"}
 HEIGHT = 124
@@ -63,9 +65,9 @@ def _plot(stage: Stage, name: str) -> Any:
     return drawn
 
 
-def view_of_strip(strip: Strip) -> View:
-    """Return what the plots show of a strip."""
-    unit, size = unit_of(strip.unit, strip.values, log=strip.log)
+def view_of_strip(strip: Strip, shown_in: tuple[str, float] | None = None) -> View:
+    """Return what the plots show of a strip; its parameter is shown in a unit (name, size in SI), by default a readable one."""
+    unit, size = shown_in or unit_of(strip.unit, strip.values, log=strip.log)
     x = place_of(strip, strip.values, size)
     view = View(columns={"strip": {"x": x}, "strip_facts": {"log": [strip.log]}}, limits={"strip_x": (float(x[0]), float(x[-1]))})
     for name in SHOWN:
@@ -117,6 +119,7 @@ class StripView:
         self._explorer, self._stage = explorer, Stage()
         self.strip: Strip | None = None
         self._made_of: tuple[StripRange, Any] | None = None
+        self._unit = ("", 1.0)
         self.bar = StripBar(self._choose, sizing_mode="stretch_width", margin=0)
         found = plots(self._stage)
         for plot in found.values():
@@ -130,7 +133,7 @@ class StripView:
         self.plots = pn.GridBox(
             *panes, ncols=len(panes), sizing_mode="stretch_width", margin=0, visible=False, stylesheets=[asset("strip_plots.css")]
         )
-        self.view = pn.Column(self.bar, self.plots, sizing_mode="stretch_width", margin=0, css_classes=["strip"])
+        self.view = pn.Column(self.bar, self.plots, sizing_mode="stretch_width", margin=0)
         explorer.listen("answer", self._ask)
         explorer.listen("strip", self._ask)
         self._tell()
@@ -151,8 +154,8 @@ class StripView:
     def _entered(self, name: str, data: dict[str, Any]) -> StripRange:
         """Return the range that was typed. Raises InputError if it is none."""
         found = numeric(self._explorer.setting.scenario(), name)
-        assert isinstance(found.declared, Quantity)
-        low, high = (read_typed(str(data.get(end))[:100], found.declared, "strip", found.name) for end in ("low", "high"))
+        size = self._unit_of(usual_range(self._explorer.setting.scenario(), name))[1]
+        low, high = (_read(str(data.get(end))[:100], found, size) for end in ("low", "high"))
         chosen = StripRange(found.name, low, high, log=data.get("log") is True)
         chosen.values(2)
         return chosen
@@ -179,7 +182,8 @@ class StripView:
     def _show(self, strip: Strip, made_of: tuple[StripRange, Any]) -> None:
         self.strip, self._made_of = strip, made_of
         with pn.io.hold():
-            view = view_of_strip(strip)
+            self._unit = unit_shown(self._explorer.setting, made_of[0])
+            view = view_of_strip(strip, self._unit)
             self._stage.show(view)
             for name, pane in self._headings.items():
                 pane.object = heading(view.titles[f"strip_{name}"], view.keys.get(f"strip_{name}", ()))
@@ -191,9 +195,8 @@ class StripView:
     def _mark(self) -> None:
         """Mark the present value of the parameter."""
         assert self.strip is not None
-        _, size = unit_of(self.strip.unit, self.strip.values, log=self.strip.log)
         scenario = self._explorer.setting.scenario()
-        here = float(place_of(self.strip, present(scenario, numeric(scenario, self.strip.parameter)), size))
+        here = float(place_of(self.strip, present(scenario, numeric(scenario, self.strip.parameter)), self._unit[1]))
         for name in SHOWN:
             self._stage.named[f"here:strip_{name}"].location = here
 
@@ -201,25 +204,46 @@ class StripView:
         """Go to the run at the place of a click."""
         if self.strip is None or event.x is None:
             return
-        _, size = unit_of(self.strip.unit, self.strip.values, log=self.strip.log)
-        value = 10.0**event.x * size if self.strip.log else event.x * size
+        value = (10.0**event.x if self.strip.log else event.x) * self._unit[1]
         explorer = self._explorer
         nearest = float(self.strip.values[self.strip.nearest(value)])
         explorer.change(setting_at(explorer.setting, self.strip.parameter, nearest))
+
+    def _unit_of(self, where: StripRange) -> tuple[str, float]:
+        """Return the unit of a range: that of the strip that is shown, if it is one of the same parameter."""
+        is_shown = self.strip is not None and self.strip.parameter == where.parameter
+        return self._unit if is_shown else unit_shown(self._explorer.setting, where)
 
     def _tell(self, said: str = "") -> None:
         """Show in the bar what may be chosen, what is, and a line on it."""
         scenario, where = self._explorer.setting.scenario(), self._explorer.strip
         chosen = None
         if where is not None:
-            ends = {"low": f"{where.low:.6g}", "high": f"{where.high:.6g}"}
-            chosen = {"parameter": where.parameter, **ends, "log": where.log, "unit": unit_in(scenario, where.parameter)}
+            unit, size = self._unit_of(where)
+            ends = {"low": f"{where.low / size:.6g}", "high": f"{where.high / size:.6g}"}
+            chosen = {"parameter": where.parameter, **ends, "log": where.log, "unit": unit}
         self.bar.state = {"choices": choices(scenario), "chosen": chosen, "said": said}
 
 
-def unit_in(scenario: Scenario, name: str) -> str:
-    """Return the SI unit of a parameter; "" if the scenario has no such parameter, as before the first answer of a link."""
+def unit_shown(setting: Setting, where: StripRange) -> tuple[str, float]:
+    """Return the unit (name, size in SI) in which the controls show a parameter, or a readable one if it has no control.
+
+    It is that of a pure number if the scenario has no such parameter, as before the first answer of a link.
+    """
+    controls = (control for group in controls_of(setting) for control in group.controls)
+    found = next((control for control in controls if control.path == where.parameter), None)
+    if found is not None:
+        return SPELLED.get(found.unit, found.unit), found.size
     try:
-        return numeric(scenario, name).unit
+        unit, size = unit_of(numeric(setting.scenario(), where.parameter).unit, [where.low, where.high], log=where.log)
     except InputError:
-        return ""
+        return "", 1.0
+    return "" if unit == "1" else unit, size
+
+
+def _read(typed: str, parameter: ParameterPath, size: float) -> float:
+    """Return in SI what was typed: a text with a unit, or a number in a unit of the given size. Raises InputError."""
+    given = typed_number(typed)
+    value = float(f"{given * size:.12g}") if isinstance(given, float) else given
+    assert isinstance(parameter.declared, Quantity)
+    return parameter.declared.check("strip", parameter.name, value)

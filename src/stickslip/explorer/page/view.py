@@ -80,6 +80,8 @@ class Units:
     whole: bool
     slip: tuple[str, float]
     rate: tuple[str, float]
+    log: bool
+    """True if slip rate against time is drawn on a logarithmic axis."""
     stress: tuple[str, float]
     """That of traction and load against time."""
     offset: float

@@ -54,11 +54,11 @@ function showMoment(models, facts, t) {
   for (const name of TIME_PLOTS) models.set(`cursor:${name}`, { location: t });
   for (const name of NEAR_PLOTS) models.set(`cursor:${name}`, { location: near });
   const times = models.column("motion", "time"), values = {};
-  for (const name of ["slip", "rate", "traction", "load", "drive"]) {
+  for (const name of ["slip", "rate", "rate_at", "traction", "load", "drive"]) {
     const column = models.column("motion", name);
     if (column.length) values[name] = valueAt(times, column, t);
   }
-  models.put("now", { time: [t], slip: [values.slip], rate: [values.rate], traction: [values.traction] });
+  models.put("now", { time: [t], slip: [values.slip], rate_at: [values.rate_at], traction: [values.traction] });
   showLaw(models, t);
   showContact(models, facts, t);
   if (facts.shape?.kind === "slab") showSlab(models, facts, near);
@@ -92,7 +92,7 @@ function showSlab(models, facts, t) {
   const left = Math.floor(at), right = Math.min(left + 1, columns - 1), share = at - left;
   const mean = (values, row) => values[row * columns + left] * (1 - share) + values[row * columns + right] * share;
   const u = [], y = [];
-  for (let row = 0; row < rows; row++) { u.push(scale * mean(displacement, row)); y.push((row + 0.5) / rows * height); }
+  for (let row = 0; row < rows; row++) { u.push(scale * mean(displacement, row)); y.push(row / (rows - 1) * height); }
   const first = 0.06 * width, step = 0.58 * width / (COLUMNS_DRAWN - 1);
   const lines = { x: [], y: [] }, particles = { x: [], y: [], velocity: [] };
   for (let column = 0; column < COLUMNS_DRAWN; column++) {
@@ -138,3 +138,14 @@ function showBlock(models, facts, values) {
 }
 
 function scaleBar(width, bar) { return [0.98 * width - bar, 0.98 * width]; }
+
+/** Digits after the point with which a time of a span can be told apart from its neighbours. */
+function digitsFor(span) { return Math.min(Math.max(3 - Math.floor(Math.log10(span || 1)), 0), 6); }
+
+/** A number in at most four digits, with a true minus. */
+function shortNumber(value) {
+  if (!Number.isFinite(value)) return "–";
+  const size = Math.abs(value);
+  const text = size !== 0 && (size < 1e-3 || size >= 1e5) ? value.toExponential(2) : value.toFixed(size >= 100 ? 1 : size >= 10 ? 2 : 3);
+  return text.replace("-", "−");
+}

@@ -1,6 +1,7 @@
 // The time bar: play, pause, speed, a slider, and marks that can be clicked. It moves the cursor of all panels.
 
 const WHOLE = 12; // seconds in which a run is played at speed 1
+const FIRST = 3; // speed at which a page plays its first run by itself
 const GLYPHS = { start: "▸", pulse: "▲", arrest: "■", jump: "◆", fold: "○", echo: "│" };
 const RANKS = ["arrest", "pulse", "start", "jump", "fold", "echo"]; // of marks at one time, the first gives the sign
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4];
@@ -83,7 +84,10 @@ class Player {
   }
 
   /** Bring the cursor to a time in seconds. */
-  goSeconds(seconds) { if (this.facts.time) this.go(seconds / this.facts.time.size); }
+  goSeconds(seconds) {
+    this.rest?.();
+    if (this.facts.time) this.go(seconds / this.facts.time.size);
+  }
 
   go(t, report = false) {
     this.t = Math.min(Math.max(t, this.start), this.end);
@@ -108,18 +112,26 @@ class Player {
 
   toggle() { this.playing ? this.pause() : this.play(); }
 
-  play() {
+  /** Play the first run of a page once, so that something moves; whatever is touched ends that, and the cursor is at the start again. */
+  introduce() {
+    if (!document.querySelector("[data-plots]") || matchMedia("(prefers-reduced-motion: reduce)").matches) return;
+    this.rest = () => { this.rest = null; this.playing = false; this.showButton(); this.go(this.start); };
+    for (const kind of ["pointerdown", "keydown"]) document.addEventListener(kind, () => this.rest?.(), { capture: true, once: true });
+    this.play(FIRST);
+  }
+
+  play(speed = null) {
     if (this.t >= this.end) this.t = this.start;
     this.playing = true;
     this.showButton();
     let before = performance.now();
     const tick = (now) => {
       if (!this.playing || !this.root.isConnected) return;
-      const t = this.t + (now - before) / 1000 * Number(this.speed.value) * (this.end - this.start) / WHOLE;
+      const t = this.t + (now - before) / 1000 * Number(speed ?? this.speed.value) * (this.end - this.start) / WHOLE;
       before = now;
       this.t = Math.min(t, this.end);
       this.draw();
-      if (t >= this.end) this.pause(); else requestAnimationFrame(tick);
+      if (t >= this.end) (this.rest ?? (() => this.pause()))(); else requestAnimationFrame(tick);
     };
     requestAnimationFrame(tick);
   }
@@ -257,17 +269,6 @@ function together(marks, near) {
   return found;
 }
 
-/** Digits after the point with which a time of a span can be told apart from its neighbours. */
-function digitsFor(span) { return Math.min(Math.max(3 - Math.floor(Math.log10(span || 1)), 0), 6); }
-
-/** A number in at most four digits, with a true minus. */
-function shortNumber(value) {
-  if (!Number.isFinite(value)) return "–";
-  const size = Math.abs(value);
-  const text = size !== 0 && (size < 1e-3 || size >= 1e5) ? value.toExponential(2) : value.toFixed(size >= 100 ? 1 : size >= 10 ? 2 : 3);
-  return text.replace("-", "−");
-}
-
 /** Keep changes that are meant for the browser alone from Python. Bokeh's server does so; what Panel puts into a notebook does not. */
 function keepFromKernel(bokeh) {
   for (const manager of bokeh.roots().filter((root) => root.client_comm_id !== undefined)) {
@@ -282,11 +283,17 @@ export function render({ model, view, el }) {
   const root = document.createElement("div");
   root.className = "player";
   const player = new Player(view.model.document, root, model.look, (seconds) => model.send_msg({ cursor: seconds }));
-  const update = () => { if (model.shown.byteLength) player.update(readView(model.shown)); };
+  let met = false;
+  const update = () => {
+    if (!model.shown.byteLength) return;
+    player.update(readView(model.shown));
+    if (!met && !model.cursor.seconds) player.introduce();
+    met = true;
+  };
   model.on("shown", update);
   model.on("cursor", () => player.goSeconds(model.cursor.seconds));
   update();
-  player.goSeconds(model.cursor.seconds);
+  if (model.cursor.seconds) player.goSeconds(model.cursor.seconds);
   return root;
 }
 

@@ -1,7 +1,7 @@
 // The bar above a strip: which parameter moves, and how far. What is chosen goes to Python.
 
 const STRIP_BAR = `
-  <div class="strip-bar" role="group" aria-label="Strip: many runs of one parameter">
+  <div class="strip-row" role="group" aria-label="Strip: many runs of one parameter">
     <label>Strip of 200 runs over <select class="parameter" aria-label="Parameter of the strip"></select></label>
     <span class="range">
       <label>from <input class="low" type="text" inputmode="decimal" aria-label="Smallest value"></label>
@@ -25,7 +25,7 @@ export function render({ model }) {
     find(".said").textContent = find(".said").title = model.state.said ?? "";
     if (!chosen) return;
     low.value = chosen.low; high.value = chosen.high; log.checked = chosen.log;
-    find(".unit").textContent = chosen.unit === "1" ? "" : chosen.unit;
+    find(".unit").textContent = chosen.unit;
   };
   parameter.addEventListener("change", () => model.send_msg({ parameter: parameter.value }));
   for (const field of [low, high, log]) {

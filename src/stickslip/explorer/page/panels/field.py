@@ -31,8 +31,7 @@ def data_of(answer: Answer, units: Units) -> View:
     name, size = unit_of("m/s", slab.velocity)
     velocity = single(slab.velocity.T / size)
     largest = float(np.abs(velocity).max()) or 1.0
-    thickness = float(place[-1] + 0.5 * height)
-    shape = {"x": [float(time[0]) - 0.5 * step], "y": [0.0], "dw": [step * time.size], "dh": [thickness]}
+    shape = {"x": [float(time[0]) - 0.5 * step], "y": [-0.5 * height], "dw": [step * time.size], "dh": [height * place.size]}
     displacement, change = slab.displacement.T, (slab.stress - slab.stress[0]).T
     of_stress, pascal = unit_of("Pa", change)
     image = {"velocity": [velocity], "displacement": [single(displacement / units.slip[1])], "stress": [single(change / pascal)]}
@@ -49,7 +48,7 @@ def data_of(answer: Answer, units: Units) -> View:
                 "place": [front[:, 1] / units.place[1] for front in slab.fronts],
             },
         },
-        limits={"place": (0.0, thickness)},
+        limits={"place": (0.0, float(place[-1]))},
         fastest=largest,
         titles={"field": axis_label("Slab:", "x", units.place[0])},
         keys={"field": (Key(f"velocity {fields['velocity']['text']}", "signed", "scale"), Key("wave front", "front"))},

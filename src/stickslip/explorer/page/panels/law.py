@@ -5,47 +5,49 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from bokeh.models import CustomJSTickFormatter, LinearAxis
 
 from stickslip.explorer.model.answer import Answer, LawPicture
 from stickslip.explorer.page.look import paint
-from stickslip.explorer.page.stage import Stage, dress
-from stickslip.explorer.page.view import Key, Units, View, axis_label, limits
+from stickslip.explorer.page.stage import Stage
+from stickslip.explorer.page.view import Columns, Key, Units, View, axis_label, limits
 from stickslip.figures.style import unit_of
 
 TEXT = "Friction law: friction coefficient against slip or slip rate"
-POWER = """
-const raised = "⁰¹²³⁴⁵⁶⁷⁸⁹"
-return "10" + [...String(Math.round(tick))].map((one) => (one === "-" ? "⁻" : raised[Number(one)])).join("")
-"""
-"""Text of a tick of a logarithmic axis: the axis itself is linear in the power of ten, so that it can change from run to run."""
 
 
 def data_of(answer: Answer, units: Units) -> View:
-    """Return the curve, the visited part of it as a band, and the texts of the axes."""
+    """Return the curve, where the run went, and the texts of the axes."""
     law = answer.law
     name, symbol = ("slip", "u") if law.along == "slip" else ("slip rate", "v")
     unit = unit_along(law, units)
-    x, (low, high) = place(law, law.x, unit), place(law, law.visited, unit)
+    x = place(law, law.x, unit)
     least, most = float(np.nanmin(x)), float(np.nanmax(x))
-    inside = (x >= low) & (x <= high)
-    ends = [np.interp(end, x, law.coefficient) for end in (low, high)]
-    visited = np.concatenate([[low], x[inside], [high]]), np.concatenate([ends[:1], law.coefficient[inside], ends[1:]])
+    visited = _visited(law, x, unit)
     label, depends_on_slip = axis_label(name, symbol, unit[0]), answer.scenario.problem.friction.depends_on_slip
     main = answer.motions[0]
     along = main.slip if law.along == "slip" else np.abs(main.slip_rate)
     now = {
         "law_x": np.clip(place(law, along, unit), least, most),
-        "law_y": main.traction / answer.scenario.problem.body.normal_load,
+        "law_y": main.traction / main.normal_load,
     }
     return View(
-        columns={"law": {"x": x, "y": law.coefficient}, "visited": {"x": visited[0], "y": visited[1]}, "motion": now},
-        limits={"law_x": (least, most), "law_y": limits(law.coefficient)},
+        columns={"law": {"x": x, "y": law.coefficient}, "visited": visited, "motion": now},
+        limits={"law_x": (least, most), "law_y": limits(law.coefficient, visited["y"])},
         labels={"axis:law_x@law": label, "axis:law_powers": label, "axis:law_y@law": "friction μ"},
         titles={"law": "Friction law at the slip of the start"} if depends_on_slip and law.along == "slip_rate" else {},
-        keys={"law": (Key("law", "ink"), Key("visited by the run", "law"))},
+        keys={"law": (Key(law.name, "ink"), Key("visited by the run" if law.path is None else "path of the run", "law"))},
         hidden={"axis:law_x@law" if law.log else "axis:law_powers"},
     )
+
+
+def _visited(law: LawPicture, x: Any, unit: tuple[str, float]) -> Columns:
+    """Return the path of the run, or the part of the curve that the run passed through where that is its path."""
+    if law.path is not None:
+        return {"x": place(law, law.path[:, 0], unit), "y": law.path[:, 1]}
+    low, high = place(law, law.visited, unit)
+    inside = (x >= low) & (x <= high)
+    ends = [np.interp(end, x, law.coefficient) for end in (low, high)]
+    return {"x": np.concatenate([[low], x[inside], [high]]), "y": np.concatenate([ends[:1], law.coefficient[inside], ends[1:]])}
 
 
 def unit_along(law: LawPicture, units: Units) -> tuple[str, float]:
@@ -64,11 +66,7 @@ def place(law: LawPicture, values: Any, unit: tuple[str, float]) -> Any:
 def plot(stage: Stage) -> Any:
     """Return the plot of the friction law."""
     drawn = stage.plot("law", "law_x", "law_y", TEXT)
-    powers = LinearAxis(formatter=CustomJSTickFormatter(code=POWER), visible=False)
-    powers.ticker.min_interval = 1.0
-    dress(powers)
-    drawn.add_layout(powers, "below")
-    stage.note("axis:law_powers", powers)
+    stage.powers(drawn, "law_powers", "below")
     pinned = drawn.line("x", "y", source=stage.source("pinned_law", "x", "y"), line_width=2, line_alpha=0.8)
     paint(pinned.glyph, line_color="pin")
     paint(drawn.line("x", "y", source=stage.source("law", "x", "y"), line_width=1.6).glyph, line_color="ink")

@@ -12,13 +12,18 @@ from stickslip.explorer.page.look import paint
 from stickslip.explorer.page.panels.units import Curve, held, share_loads
 from stickslip.explorer.page.stage import NARROW, Stage
 from stickslip.explorer.page.view import Columns, Key, Units, View, axis_label, limits
+from stickslip.figures.runs.curves import after_start
 from stickslip.figures.style import CURVES, FORCES, unit_of
 
 TEXTS = {"slip": "Slip against time", "rate": "Slip rate against time", "traction": "Traction and load against time"}
 MANY = 30
 """More marks than this are not drawn as lines in the panels."""
+DRAWN = {"slip": "slip", "rate": "rate_at", "traction": "traction"}
+"""The column that each panel draws: `rate_at` is the place of the slip rate on an axis that may be logarithmic."""
 CURVE_OF: dict[str, Curve] = {"slip": "slip", "rate": "slip_rate", "traction": "traction"}
 """The curve of a motion by the name of its panel."""
+COLUMNS = ("time", "slip", "rate", "rate_at", "traction", "load")
+"""What is known of a body at each time."""
 LOADS = ("traction", "load")
 SYMBOLS = {"slip": "u", "rate": "v", "traction": "τ"}
 
@@ -43,7 +48,7 @@ def data_of(answer: Answer, units: Units) -> View:
         limits={
             "time": (float(time[0]), float(time[-1])),
             "slip": limits(*(columns_of(body, units)["slip"] for body in held(answer, "slip"))),
-            "rate": limits(*(columns_of(body, units)["rate"] for body in held(answer, "slip_rate"))),
+            "rate": _rate_limits(answer, units),
             "traction": limits(*(columns_of(body, units)[name] for body in held(answer, "traction") for name in LOADS)),
         },
         labels={
@@ -55,6 +60,7 @@ def data_of(answer: Answer, units: Units) -> View:
             "traction": axis_label(name.capitalize(), "τ", units.stress[0]),
         },
         keys=keys,
+        hidden={"axis:rate@rate" if units.log else "axis:rate_powers"},
         facts={
             "time": {"unit": units.time[0], "size": units.time[1], "from": float(time[0]), "to": float(time[-1])},
             "read": [
@@ -69,9 +75,17 @@ def data_of(answer: Answer, units: Units) -> View:
 def _beside(main: Motion, other: Sequence[Motion], units: Units) -> Columns:
     """Return the curves of the companion, if there is one; without loads that cannot share an axis with those of the body."""
     if not other:
-        return {name: [] for name in ("time", *CURVE_OF, "load")}
+        return {name: [] for name in COLUMNS}
     found = columns_of(other[0], units)
     return found if share_loads(main, other[0]) else found | {name: np.full(other[0].time.size, np.nan) for name in LOADS}
+
+
+def _rate_limits(answer: Answer, units: Units) -> tuple[float, float]:
+    """Return the ends of the axis of slip rate; the start from rest does not count where it is logarithmic."""
+    main, *others = held(answer, "slip_rate")
+    rate = columns_of(main, units)["rate_at"]
+    settled = after_start(answer.solution, main.time, (float(main.time[0]), float(main.time[-1])))
+    return limits(rate[settled], *(columns_of(body, units)["rate_at"] for body in others if not units.log))
 
 
 def _key(answer: Answer, name: str) -> tuple[Key, ...]:
@@ -88,10 +102,12 @@ def _key(answer: Answer, name: str) -> tuple[Key, ...]:
 
 def columns_of(motion: Motion, units: Units) -> Columns:
     """Return the curves of one body in the units shown."""
+    rate = motion.slip_rate / units.rate[1]
     return {
         "time": motion.time / units.time[1],
         "slip": motion.slip / units.slip[1],
-        "rate": motion.slip_rate / units.rate[1],
+        "rate": rate,
+        "rate_at": np.log10(np.where(rate == 0.0, np.nan, np.abs(rate))) if units.log else rate,
         "traction": (motion.traction - units.offset) / units.stress[1],
         "load": (motion.load - units.offset) / units.stress[1],
     }
@@ -104,17 +120,19 @@ def plots(stage: Stage) -> dict[str, Any]:
 
 def _plot(stage: Stage, name: str, *, bare: bool) -> Any:
     drawn = stage.plot(name, "time", name, TEXTS[name], left=NARROW, bare=bare)
-    columns = ("time", "slip", "rate", "traction", "load")
-    main, other = stage.source("motion", *columns), stage.source("companion", *columns)
-    pinned = drawn.line("time", name, source=stage.source("pinned", *columns), line_width=2, line_alpha=0.8)
+    if name == "rate":
+        stage.powers(drawn, "rate_powers", "left")
+    column, main, other = DRAWN[name], stage.source("motion", *COLUMNS), stage.source("companion", *COLUMNS)
+    pinned = drawn.line("time", column, source=stage.source("pinned", *COLUMNS), line_width=2, line_alpha=0.8)
     paint(pinned.glyph, line_color="pin")
     marks = drawn.vspan(x="time", source=stage.source("marks", "time"), line_width=1, line_dash="dotted")
     paint(marks.glyph, line_color="faint")
     if name == "traction":
+        drawn.yaxis[0].ticker.desired_num_ticks = 3  # it often lies within a part of 10, where two would come down to one
         paint(drawn.line("time", "load", source=main, line_width=1.2, line_dash="dotted").glyph, line_color="load")
-    paint(drawn.line("time", name, source=other, line_width=1.3, line_dash="dashed", line_alpha=0.65).glyph, line_color=name)
-    paint(drawn.line("time", name, source=main, line_width=2).glyph, line_color=name)
+    paint(drawn.line("time", column, source=other, line_width=1.3, line_dash="dashed", line_alpha=0.65).glyph, line_color=name)
+    paint(drawn.line("time", column, source=main, line_width=2).glyph, line_color=name)
     stage.cursor(name)
-    dot = drawn.scatter("time", name, source=stage.source("now", "time", "slip", "rate", "traction"), size=8, level="overlay")
+    dot = drawn.scatter("time", column, source=stage.source("now", "time", *DRAWN.values()), size=8, level="overlay")
     paint(dot.glyph, fill_color=name, line_color="card")
     return drawn

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from stickslip.explorer.model.answer import Answer
 from stickslip.explorer.page.panels.law import place, unit_along
-from stickslip.explorer.page.panels.motion import columns_of
+from stickslip.explorer.page.panels.motion import COLUMNS, DRAWN, columns_of
 from stickslip.explorer.page.panels.units import share_loads
 from stickslip.explorer.page.view import Columns, Key, Units, View, limits
 
 NOTHING: dict[str, Columns] = {
-    "pinned": {name: [] for name in ("time", "slip", "rate", "traction", "load")},
+    "pinned": {name: [] for name in COLUMNS},
     "pinned_law": {"x": [], "y": []},
     "pinned_contact": {"rate": [], "load": []},
 }
@@ -24,11 +24,10 @@ def add_pinned(view: View, kept: Answer | None, answer: Answer, units: Units) ->
         return
     curves = columns_of(kept.motions[0], units)
     shown = {"slip", "rate"} | ({"traction"} if share_loads(answer.motions[0], kept.motions[0]) else set())
-    view.columns["pinned"] = {
-        name: curves[name] if name in {*shown, "time"} else [float("nan")] * len(curves["time"]) for name in curves
-    }
+    known = {"time", "rate", *(DRAWN[name] for name in shown)}
+    view.columns["pinned"] = {name: curves[name] if name in known else [float("nan")] * len(curves["time"]) for name in curves}
     for name in shown:
-        _widen(view, name, curves[name])
+        _widen(view, name, curves[DRAWN[name]])
     if (kept.law.along, kept.law.log) == (answer.law.along, answer.law.log):
         x = place(kept.law, kept.law.x, unit_along(answer.law, units))
         view.columns["pinned_law"] = {"x": x, "y": kept.law.coefficient}

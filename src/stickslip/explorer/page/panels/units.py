@@ -26,6 +26,7 @@ def units_of(answer: Answer, kept: Answer | None = None) -> Units:
     offset = float(main.traction[0]) if nearly_flat(*stresses) else 0.0
     slips = [motion.slip for motion in (*held(answer, "slip"), *further)]
     rates = [motion.slip_rate for motion in (*held(answer, "slip_rate"), *further)]
+    log = not answer.solution.problem.friction.sticks  # slip rates are then never zero, and differ widely
     span, window = np.ptp(main.time), np.ptp(answer.energy.time)
     whole = window >= WHOLE * span
     return Units(
@@ -34,7 +35,8 @@ def units_of(answer: Answer, kept: Answer | None = None) -> Units:
         begin=0.0 if whole else float(answer.energy.time[0]),
         whole=bool(whole),
         slip=unit_of("m", *slips),
-        rate=unit_of("m/s", *rates),
+        rate=unit_of("m/s", *rates, log=log),
+        log=log,
         stress=unit_of(main.load_unit, *(curve - offset for curve in stresses)),
         offset=offset,
         load=unit_of(main.load_unit, contact.load if contact else main.load),
