@@ -17,11 +17,14 @@ from stickslip.engine.contact_step.keep_step import keep_step
 from stickslip.engine.contact_step.negative_friction import last_place_above_zero, place_below_zero
 from stickslip.engine.contact_step.step_events import Cut, cut_at_first_event, resolve, stretch
 from stickslip.engine.contact_step.taylor_step import note_shock
-from stickslip.engine.series.polynomial import NONE, copy, fill, magnitude, scale, total, turn_over
+from stickslip.engine.series.polynomial import NONE, copy, fill, scale, total, turn_over
+from stickslip.engine.series.radau_nodes import POINTS
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Floats, StepEvent, Stop, Task
 from stickslip.engine.state.workspace import Run
 
+STILL = 1e-3
+"""Share (1) of the slip rate below which a contact hangs in bristles, below which its slip rate is rounding."""
 TRIFLE = 2.0**-30
 """Share of a step (1) that is so short that nothing happens in it."""
 
@@ -32,13 +35,14 @@ def slip_implicitly(run: Run, xi_to: float) -> None:
     if run.counts.knots_in_rate == 1:
         settle_piece(run, abs(run.state.rate_now))
     guess = call_part(run.implicit_steps, run, Task.COLLOCATE, xi_to - run.state.xi)
+    hanging = hangs(run)
     note_shock(run)
     rate = run.history[run.counts.length].rate
     stretch(run, 1.0, rate)
     reached = guess >= xi_to - run.state.xi
     if run.counts.has_state == 0 and is_no_longer_stiff(run):
         run.counts.stiff = 0
-    cut = Cut(StepEvent.NONE, 0, 1.0) if is_settled(run, rate) else cut_at_first_event(run, rate, 1.0)
+    cut = Cut(StepEvent.NONE, 0, 1.0) if hanging else cut_at_first_event(run, rate, 1.0)
     cut = end_above_zero(run, rate, cut)
     keep_state(run, cut.end)
     keep_step(run, rate, cut.end, xi_to if reached and cut.end == 1.0 else run.state.xi + cut.end * guess)
@@ -47,9 +51,21 @@ def slip_implicitly(run: Run, xi_to: float) -> None:
 
 
 @kernel
-def is_settled(run: Run, rate: Floats) -> bool:
-    """Return True if a contact with bristles hangs in them over the whole step, whose slip rate is `rate` (m/s)."""
-    return run.counts.reverses == 1 and abs(rate[0]) + magnitude(rate) <= run.state.hanging
+def hangs(run: Run) -> bool:
+    """Return True if a contact with bristles hangs in them over the whole step: its slip rate is negligible at all points.
+
+    Where it is rounding, it is set to zero, so that a slab does not ring with it.
+    """
+    if run.counts.reverses == 0:
+        return False
+    fastest = 0.0
+    for i in range(POINTS):
+        fastest = max(fastest, abs(run.stage_rate[i]))
+    if run.counts.has_inertia == 0 and fastest <= STILL * run.state.hanging:
+        fill(run.jet, 0.0)
+        fill(run.state_jet, 0.0)
+        run.state_jet[0] = run.state.state_now
+    return fastest <= run.state.hanging
 
 
 @kernel

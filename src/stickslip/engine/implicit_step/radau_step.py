@@ -20,7 +20,7 @@ from stickslip.engine.implicit_step.radau_stages import (
     size_of_load,
     solve_stages,
 )
-from stickslip.engine.series.polynomial import evaluate, fill, first_descent, restrict, turn_over
+from stickslip.engine.series.polynomial import evaluate, fill, first_descent, restrict, total, turn_over
 from stickslip.engine.series.radau_nodes import MIDDLE, POINTS, STAGES, TO_POWERS_SUM, interpolate, last_terms
 from stickslip.engine.state.layout import Stop
 from stickslip.engine.state.workspace import Run
@@ -33,6 +33,8 @@ ROUNDING = 1e-15
 """Rounding of a number in double precision (1), relative to its terms."""
 LOAD_ROUNDING = 1e-14
 """Share (1) of the load's coefficients below which a load is zero: rounding where it passes through zero."""
+LITTLE = 2.0**-10
+"""Share (1) of the way to go after which the load is looked at where forces balance."""
 DEFECT_ROUNDING = 1e-14
 """Share (1) of the largest slip rate, or state, that rounding makes of the defect: derivatives of polynomials lose two digits."""
 ALLOWED = 0.1
@@ -211,21 +213,20 @@ def turn_with_load(run: Run, left: float) -> float:
 
 
 @kernel
-def turn_with_bristles(run: Run) -> None:
+def turn_with_bristles(run: Run, left: float) -> None:
     """Let a contact whose state changes its sign where slip reverses slip the way the net force would pull it from rest.
 
-    Friction is that of the state alone there. Where it balances the load, the change of the load decides. The slip rate of a
+    Friction is that of the state alone there. Where it balances the load, the load a little later decides. The slip rate of a
     contact without mass has this direction at every moment; one with mass is turned where its slip rate is zero.
     """
     contact_at(run, run.state.law_slip, 0.0, run.state.state_now)
-    load_ahead(run, 1.0)
-    force = run.load_along_slip[0] - run.params.normal * run.value.mu
-    rounding = LOAD_ROUNDING * size_of_load(run)
+    load_ahead(run, left * LITTLE)
+    held = run.params.normal * run.value.mu
+    force, later = run.load_along_slip[0] - held, total(run.load_along_slip) - held
+    rounding = LOAD_ROUNDING * size_of_load(run) + run.state.hanging * run.params.impedance
     if run.counts.has_inertia == 1:
-        rounding += run.params.tolerance * run.params.normal * abs(run.value.mu)
-    if abs(force) <= rounding:
-        force = run.load_along_slip[1]
-    if force < 0.0:
+        rounding = run.params.tolerance * abs(held)
+    if force < -rounding or (force <= rounding and later < -rounding):
         run.counts.mode, run.state.state_now = -run.counts.mode, -run.state.state_now
 
 
@@ -267,7 +268,7 @@ def collocate(run: Run, left: float) -> float:
     run.state.hanging = hanging_rate(run)
     if run.counts.sticks == 0 and (run.counts.has_inertia == 0 or run.state.rate_now == 0.0):
         if run.counts.reverses == 1:
-            turn_with_bristles(run)
+            turn_with_bristles(run, left)
         else:
             left = turn_with_load(run, left)
     guess = longest = first_length(run, left)
