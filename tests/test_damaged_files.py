@@ -188,6 +188,30 @@ def test_drafts_of_killed_writers_are_removed_and_no_others(tmp_path: Path) -> N
 
 
 @POSIX
+@pytest.mark.parametrize("folder", [False, True])
+def test_the_draft_of_a_slow_writer_is_left_alone(tmp_path: Path, folder: bool) -> None:
+    def slow(draft: Path) -> None:
+        (draft / "a" if folder else draft).write_text("whole")
+        os.utime(draft, (draft.stat().st_mtime - 2 * STALE,) * 2)
+        write_atomically(tmp_path / "other.txt", lambda other: other.write_text("y"))
+
+    path = write_atomically(tmp_path / "slow", slow, folder=folder)
+    assert (path / "a" if folder else path).read_text() == "whole"
+    assert {one.name for one in tmp_path.iterdir()} == {"slow", "other.txt"}
+
+
+def test_a_file_that_fails_in_a_draft_has_its_final_name_in_the_message(tmp_path: Path) -> None:
+    def full(draft: Path) -> None:
+        (draft / "data").mkdir()
+        raise OSError(errno.ENOSPC, "No space left on device", str(draft / "data" / "step-1.js"))
+
+    with pytest.raises(OSError, match="No space left") as told:
+        write_atomically(tmp_path / "tour", full, folder=True)
+    assert told.value.filename == str(tmp_path / "tour" / "data" / "step-1.js")
+    assert list(tmp_path.iterdir()) == []
+
+
+@POSIX
 def test_a_lock_on_a_name_is_exclusive_and_released(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     with held(path, "taken"):

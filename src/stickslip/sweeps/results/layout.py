@@ -36,8 +36,8 @@ COMPRESSED = (ZstdCodec(), Crc32cCodec())
 
 
 def lay_out(plan: Plan, place: Any) -> None:
-    """Create a store (a folder or a zarr store) with its attributes and coordinates, and with variables that are still empty."""
-    group = zarr.create_group(place, attributes=attributes(plan), overwrite=True)
+    """Create a store in an empty place, with its attributes and coordinates, and with variables that are still empty."""
+    group = zarr.create_group(place, attributes=attributes(plan))
     design, series = plan.design, plan.work.series
     for one, column in zip(design.parameters, design.columns, strict=True):
         about = {"long_name": one.declared.meaning, "log": int(one.name in design.logs)} | ({"units": one.unit} if one.unit else {})

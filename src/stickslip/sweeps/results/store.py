@@ -9,7 +9,6 @@ run again. Nothing in the store depends on when, in which order or by which proc
 from __future__ import annotations
 
 import errno
-import shutil
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
@@ -22,7 +21,7 @@ import xarray as xr
 import zarr
 from zarr.storage import MemoryStore
 
-from stickslip.foundation.atomic_write import draft_beside, held, sync_folder
+from stickslip.foundation.atomic_write import held, write_atomically
 from stickslip.foundation.errors import InputError
 from stickslip.sweeps.execution.chunk import ChunkResult
 from stickslip.sweeps.execution.outcome import NOT_RUN
@@ -181,16 +180,14 @@ def publish(path: Path, fill: Callable[[Path], object]) -> None:
 
     Raises InputError.
     """
-    draft = draft_beside(path)
-    try:
-        with writing(path):
-            fill(draft)
-            with warnings.catch_warnings():
-                # zarr warns that consolidated metadata is not part of its format, but xarray reads it.
-                warnings.simplefilter("ignore", category=UserWarning)
-                zarr.consolidate_metadata(draft)
-            vouch_for_layout(draft)
-            draft.replace(path)
-            sync_folder(path.parent)
-    finally:
-        shutil.rmtree(draft, ignore_errors=True)
+
+    def write(draft: Path) -> None:
+        fill(draft)
+        with warnings.catch_warnings():
+            # zarr warns that consolidated metadata is not part of its format, but xarray reads it.
+            warnings.simplefilter("ignore", category=UserWarning)
+            zarr.consolidate_metadata(draft)
+        vouch_for_layout(draft)
+
+    with writing(path):
+        write_atomically(path, write, folder=True)
