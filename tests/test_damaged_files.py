@@ -221,6 +221,17 @@ def test_a_lock_on_a_name_is_exclusive_and_released(tmp_path: Path) -> None:
         pass
 
 
+@pytest.mark.parametrize("name", ["k.nc", "k.rows.csv", "k.checkpoint.nc", ".k.checkpoint.nc.lock"])
+def test_a_folder_in_place_of_a_file_of_a_catalogue_is_named_before_anything_is_removed(tmp_path: Path, name: str) -> None:
+    for file in ("k.nc", "k.rows.csv", "k.checkpoint.nc"):
+        (tmp_path / file).write_text("mine")
+    (tmp_path / name).unlink(missing_ok=True)
+    (tmp_path / name / "inside").mkdir(parents=True)
+    before = sorted(tmp_path.rglob("*"))
+    refused(lambda: ss.catalogue(PROBLEM, 20 * ss.YEAR, tmp_path / "k.nc"), f"{tmp_path / name}: ")
+    assert sorted(tmp_path.rglob("*")) == before
+
+
 def test_a_checkpoint_never_cuts_a_file_that_is_no_catalogue(tmp_path: Path) -> None:
     """A checkpoint that counts no rows, made by hand, beside somebody's own table."""
     ss.catalogue(PROBLEM, 20 * ss.YEAR, tmp_path / "events.csv")

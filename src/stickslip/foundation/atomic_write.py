@@ -134,10 +134,13 @@ def held(path: Path, refusal: str) -> Iterator[None]:
 
     A folder is locked itself. For a file the lock is on the file `.NAME.lock` beside it, which is removed afterwards. The operating
     system releases the lock when the process ends, however it ends. Raises InputError with the text `refusal` if another process
-    holds the name. If the file system does not support locks, nothing is reserved.
+    holds the name, and if the file of the lock cannot be made. If the file system does not support locks, nothing is reserved.
     """
     beside = None if path.is_dir() else path.with_name(f".{path.name}.lock")
-    number = _locked(path, refusal) if beside is None else _locked_beside(beside, refusal)
+    try:
+        number = _locked(path, refusal) if beside is None else _locked_beside(beside, refusal)
+    except OSError as error:
+        raise InputError(f"{beside or path}: cannot be written: {error.strerror or error}") from None
     try:
         yield
     finally:
