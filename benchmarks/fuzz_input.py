@@ -185,8 +185,7 @@ def tally(what: str, count: int, seed: int, one: Callable[[random.Random], str])
         found[said] += 1
         first.setdefault(said, n)
     bad = {said: times for said, times in found.items() if said not in ("read", "refused")}
-    told = f"{found['read']} read, {found['refused']} refused, {sum(bad.values())} failed"
-    print(f"{what}: {count} tried, {told}")  # noqa: T201 - a script
+    print(f"| {what} | {count} | {found['read']} | {found['refused']} | {sum(bad.values())} |")  # noqa: T201 - a script
     for said, times in sorted(bad.items(), key=lambda pair: -pair[1])[:20]:
         print(f"  {times} x {said} (first: number {first[said]})")  # noqa: T201
     return sum(bad.values())
@@ -220,6 +219,7 @@ def main() -> int:
         head, _, rest = text("fig5-slab-printed").partition("[friction]")
         tail = rest[rest.index("\n[") :]
         (folder / "table.toml").write_text(f'{head}[friction]\nkind = "table"\nfile = "points.csv"\n{tail}')
+        print("| input | tried | read | refused | failed |\n| --- | --- | --- | --- | --- |")  # noqa: T201
         failed = tally("expressions", options.expressions, options.seed, _expression)
         failed += tally("scenarios", options.scenarios, options.seed, lambda rng: _scenario(rng, folder))
         failed += tally("tables", options.tables, options.seed, lambda rng: _table(rng, folder))

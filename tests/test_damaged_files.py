@@ -10,6 +10,7 @@ import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -130,6 +131,25 @@ def test_a_missing_table_is_refused_in_one_line(run: ss.Solution, tmp_path: Path
     path = run.to_netcdf(tmp_path / "run.nc")
     resealed(path, lambda file: file.__delitem__(name))
     refused(lambda: ss.open_solution(path), "run.nc: ")
+
+
+@pytest.mark.parametrize("value", ["", "x", np.inf, np.nan, [1, 2]])
+def test_an_attribute_that_is_no_count_is_refused_in_one_line(run: ss.Solution, tmp_path: Path, value: Any) -> None:
+    path = run.to_netcdf(tmp_path / "run.nc")
+    resealed(path, lambda file: file.attrs.__setitem__("undecided", value))
+    refused(lambda: ss.open_solution(path), "run.nc: not a file that stickslip has written: ")
+
+
+@pytest.mark.parametrize("name", ["status", "status_message", "lumping", "rounding"])
+def test_texts_of_a_result_cannot_change_the_terminal(
+    run: ss.Solution, tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = run.to_netcdf(tmp_path / "run.nc")
+    resealed(path, lambda file: file.attrs.__setitem__(name, "a\n\x1b[31mred\x07"))
+    stored(path).summarise()
+    shown = capsys.readouterr().out
+    assert r"a\n\x1b[31mred\x07" in "".join(shown.split())
+    assert "\x1b" not in shown
 
 
 FULL = """
