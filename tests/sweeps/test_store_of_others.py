@@ -114,6 +114,14 @@ def test_metadata_of_another_form_are_refused_in_one_line(store: Path, text: str
     shows(store, capsys)
 
 
+def test_a_store_whose_metadata_are_not_gathered_is_refused_in_one_line(store: Path) -> None:
+    about = json.loads((store / "zarr.json").read_text())
+    about.pop("consolidated_metadata")
+    (store / "zarr.json").write_text(json.dumps(about))
+    vouch_again(store)
+    refused(lambda: sweep(store), f"{store}: ")
+
+
 @pytest.mark.parametrize("unit", [5, "Pa\n\x1b[31m", None])
 def test_a_unit_that_is_no_text_is_not_shown(store: Path, unit: Any, capsys: pytest.CaptureFixture[str]) -> None:
     about = json.loads((store / "zarr.json").read_text())

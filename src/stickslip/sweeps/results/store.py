@@ -113,9 +113,10 @@ class ResultStore:
 
     def dataset(self) -> xr.Dataset:
         """Return the contents as a dataset, read lazily from a folder, or as arrays from a store in memory."""
-        found: xr.Dataset = xr.open_zarr(self.place, chunks=None, consolidated=isinstance(self.place, Path))
-        ordered = found[[*self.plan.work.names, STATUS, REASON]]
-        return ordered if isinstance(self.place, Path) else ordered.load()
+        with reading(self.place):
+            found: xr.Dataset = xr.open_zarr(self.place, chunks=None, consolidated=isinstance(self.place, Path))
+            ordered = found[[*self.plan.work.names, STATUS, REASON]]
+            return ordered if isinstance(self.place, Path) else ordered.load()
 
 
 @contextmanager
