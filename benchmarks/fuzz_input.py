@@ -20,7 +20,7 @@ from pathlib import Path
 
 from rich.progress import track
 
-from stickslip.foundation.errors import InputError
+from stickslip.foundation.errors import InputError, gathered
 from stickslip.friction import FromExpression
 from stickslip.scenarios import load_scenario
 from stickslip.scenarios.library import names, text
@@ -165,15 +165,21 @@ def refusal(read: Callable[[], object]) -> str:
     """Return "read", "refused", or what is wrong: another exception, a message that is not one short line, or too much time."""
     start = time.process_time()
     try:
-        read()
-        said = "read"
+        with gathered() as notes:
+            read()
+        said = next((f"no short line: {note[:80]!a}" for note in notes if not is_short_line(note)), "read")
     except InputError as error:
         line = str(error)
-        said = "refused" if 0 < len(line) <= LONGEST_LINE and line.isprintable() else f"no short line: {line[:80]!a}"
+        said = "refused" if is_short_line(line) else f"no short line: {line[:80]!a}"
     except Exception as error:  # whatever else it is, it is the finding
         said = f"{type(error).__name__}: {str(error)[:80]!a}"
     took = time.process_time() - start
     return said if took <= LIMIT else f"took {took:.1f} s"
+
+
+def is_short_line(text: str) -> bool:
+    """Return True for a message that can be read at a glance."""
+    return 0 < len(text) <= LONGEST_LINE and text.isprintable()
 
 
 def tally(what: str, count: int, seed: int, one: Callable[[random.Random], str]) -> int:
