@@ -1,10 +1,11 @@
 """Damage files at random and look at what reading them does: the same as before, one line, or something that must not be.
 
     python -m benchmarks.fuzz_files --checkpoints 5000 --results 2000 --catalogues 1000 --stores 1000 --seed 1
-    python -m benchmarks.fuzz_files --edited 1000           # contents changed by hand, with a checksum that fits
+    python -m benchmarks.fuzz_files --edited 1000 --metadata 1000     # contents changed by hand, with checksums that fit
 
-A damaged file must be refused in one line (`refused`) or give what it gave before (`same`). A silent change, a crash, a hang or a
-traceback is a failure, and the exit code is 1. Of an edited file the checksum fits, so that another result is no failure (`other`).
+A damaged file must be refused in one line (`refused`) or give what it gave before (`same`). A silent change, a crash, a hang, a
+traceback or a change of somebody else's file beside it is a failure, and the exit code is 1. Of an edited file, and of edited
+metadata of a store, the checksums fit, so that another result is no failure (`other`).
 """
 
 from __future__ import annotations
@@ -12,7 +13,6 @@ from __future__ import annotations
 import argparse
 import hashlib
 import multiprocessing
-import shutil
 import sys
 import tempfile
 import traceback
@@ -22,17 +22,19 @@ from collections.abc import Callable
 from multiprocessing.connection import Connection
 from pathlib import Path
 
-import h5py
 import numpy as np
 
 import stickslip as ss
-from stickslip.foundation import netcdf_file
+from benchmarks.damages import copied, damage, edit, edit_metadata
+from stickslip.cli.stored import StoredSweep, stored
 from stickslip.sweeps.results.store import open_store
 
 LIMIT = 60.0
 """Seconds after which a worker hangs."""
-BLOCK = 512
-FAILURES = ("silent change", "crash", "hang", "traceback")
+FAILURES = ("silent change", "crash", "hang", "traceback", "foreign change")
+FOREIGN = ("mine.txt", "x.partial/mine.txt", ".stickslip-draft-mine.txt", "map.zarr/x.partial/mine.txt")
+"""Files of somebody else, which nothing may change."""
+MINE = "not yours"
 SWEEP = {"friction.alpha": np.linspace(0.2, 2.0, 6)}
 
 
@@ -88,6 +90,15 @@ def read_store(folder: Path) -> str:
     return digest(sorted(values.items()), sorted(attributes.items()), found.attrs)
 
 
+def read_metadata(folder: Path) -> str:
+    """Read the store as the command line does, and call the sweep again."""
+    path = folder / "map.zarr"
+    sweep(path)
+    found = stored(path)
+    assert isinstance(found, StoredSweep)
+    return digest({str(name): variable.values.tolist() for name, variable in found.dataset.variables.items()}, found.about)
+
+
 READERS: dict[str, Callable[[Path], str]] = {
     "checkpoint": read_checkpoint,
     "result": read_result,
@@ -95,102 +106,48 @@ READERS: dict[str, Callable[[Path], str]] = {
     "nc": read_catalogue,
     "store": read_store,
     "edited": read_checkpoint,
+    "metadata": read_metadata,
 }
-
-
-# ---- damage -----------------------------------------------------------------------------------------------------------------
-
-
-def copied(kind: str, whole: Path, folder: Path) -> list[Path]:
-    """Copy the files of a kind; return those that are to be damaged."""
-    if kind == "store":
-        shutil.copytree(whole / "map.zarr", folder / "map.zarr")
-        return sorted(path for path in (folder / "map.zarr").rglob("*") if path.is_file())
-    if kind in ("csv", "nc"):
-        for path in (whole / kind).iterdir():
-            shutil.copy(path, folder / path.name)
-        return sorted(folder.iterdir())
-    shutil.copy(whole / "run.nc", folder / "run.nc")
-    return [folder / "run.nc"]
-
-
-def damage(path: Path, rng: np.random.Generator, *, may_vanish: bool) -> str:
-    """Change a file at random; return how."""
-    content = bytearray(path.read_bytes())
-    size = max(len(content), 1)
-    how = str(rng.choice(["flip", "flip", "flip", "flips", "cut", "longer", "block", "swap", *["gone"] * may_vanish]))
-    begin, other = (int(rng.integers(size)) for _ in range(2))
-    if how in ("flip", "flips"):
-        for place in rng.integers(size, size=1 if how == "flip" else 8) if content else []:
-            content[place] ^= 1 << int(rng.integers(8))
-    elif how == "cut":
-        del content[begin:]
-    elif how == "longer":
-        content += rng.bytes(BLOCK)
-    elif how == "block":
-        content[begin : begin + BLOCK] = rng.choice([bytes(BLOCK), rng.bytes(BLOCK)])[: len(content) - begin]
-    elif how == "swap":
-        width = min(BLOCK, size - max(begin, other), abs(begin - other))
-        content[begin : begin + width], content[other : other + width] = (
-            content[other : other + width],
-            content[begin : begin + width],
-        )
-    path.write_bytes(content)
-    if how == "gone":
-        path.unlink()
-    return how
-
-
-def edit(path: Path, rng: np.random.Generator) -> str:
-    """Change one number of one table, its shape, or an attribute, and give the file a checksum that fits."""
-    path.write_bytes(path.read_bytes()[: -netcdf_file.SEAL])
-    with h5py.File(path, "r+") as file:
-        names = [name for name in file if name.startswith(("engine_", "history_")) and isinstance(file[name], h5py.Dataset)]
-        name = str(rng.choice([name for name in names if file[name].dtype.kind in "if" and file[name].size]))
-        table = file[name]
-        how = str(rng.choice(["number", "number", "number", "longer", "gone", "attribute"]))
-        if how == "number":
-            place = tuple(int(rng.integers(length)) for length in table.shape)
-            odd = (
-                [-1, 0, 1, 2, 7, 10**6, 2**62, -(2**62)] if table.dtype.kind == "i" else [-1.0, 0.0, 1e300, np.inf, -np.inf, np.nan]
-            )
-            table[place] = odd[int(rng.integers(len(odd)))]
-        elif how == "attribute":
-            name = str(rng.choice(list(file.attrs)))
-            file.attrs[name] = [-1, np.nan, "x", 10**12, ""][int(rng.integers(5))]
-        else:
-            values = table[...]
-            del file[name]
-            if how == "longer":
-                file.create_dataset(name, data=np.concatenate([values, values]))
-    netcdf_file.seal(path)
-    return f"{how} of {name}"
 
 
 # ---- one after the other, in a process that may die -------------------------------------------------------------------------
 
 
 def outcome(kind: str, whole: Path, wanted: str, seed: int) -> tuple[str, str]:
-    """Damage a copy, read it, and say what came of it."""
+    """Damage a copy beside files of somebody else, read it, and say what came of it."""
     rng = np.random.default_rng([seed, sorted(READERS).index(kind)])
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         paths = copied(kind, whole, folder)
+        foreign = [folder / mine for mine in FOREIGN if (folder / mine.split("/")[0]).exists() or not mine.startswith("map")]
+        for mine in foreign:
+            mine.parent.mkdir(exist_ok=True)
+            mine.write_text(MINE)
         path = paths[int(rng.integers(len(paths)))]
         before = path.read_bytes()
-        how = edit(path, rng) if kind == "edited" else damage(path, rng, may_vanish=kind == "store")
+        if kind == "metadata":
+            how = edit_metadata(path, folder / "map.zarr", rng)
+        else:
+            how = edit(path, rng) if kind == "edited" else damage(path, rng, may_vanish=kind == "store")
         about = f"{how} in {path.relative_to(folder)}"
-        if path.exists() and path.read_bytes() == before:
+        if path.is_file() and path.read_bytes() == before:
             return "same", about
-        try:
-            found = READERS[kind](folder)
-        except ss.InputError as error:
-            return ("refused" if "\n" not in str(error) else "traceback"), about
-        except Exception:
-            return "traceback", about + "\n" + traceback.format_exc()
-        if found == wanted:
-            return "same", about
-        return ("other" if kind == "edited" else "silent change"), about
+        found = of_reading(kind, folder, wanted)
+        changed = [str(mine) for mine in foreign if not mine.is_file() or mine.read_text() != MINE]
+        return ("foreign change", f"{about}: {changed}") if changed else (found[0], about + found[1])
+
+
+def of_reading(kind: str, folder: Path, wanted: str) -> tuple[str, str]:
+    """Read what lies in a folder, and say what came of it, with the traceback if there was one."""
+    try:
+        found = READERS[kind](folder)
+    except ss.InputError as error:
+        return ("refused", "") if str(error).isprintable() else ("traceback", f": {error}")
+    except Exception:
+        return "traceback", "\n" + traceback.format_exc()
+    if found == wanted:
+        return "same", ""
+    return ("other" if kind in ("edited", "metadata") else "silent change"), ""
 
 
 def work(pipe: Connection, whole: Path, wanted: dict[str, str]) -> None:
@@ -242,20 +199,24 @@ def say(line: str) -> None:
 def main() -> int:
     """Run the cases, and print a table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    for name in ("checkpoints", "results", "catalogues", "stores", "edited"):
+    for name in ("checkpoints", "results", "catalogues", "stores", "edited", "metadata"):
         parser.add_argument(f"--{name}", type=int, default=0)
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
     half = options.catalogues // 2
     counts = {"checkpoint": options.checkpoints, "result": options.results, "csv": half, "nc": options.catalogues - half}
-    counts |= {"store": options.stores, "edited": options.edited}
+    counts |= {"store": options.stores, "edited": options.edited, "metadata": options.metadata}
     with tempfile.TemporaryDirectory() as name:
         whole = Path(name)
         prepare(whole)
         worker = Worker(whole, {kind: undamaged(kind, whole) for kind, count in counts.items() if count})
-        failures = sum(fails(worker, kind, count, options.seed) for kind, count in counts.items() if count)
+        counted = {kind: outcomes(worker, kind, count, options.seed) for kind, count in counts.items() if count}
         worker.pipe.send(None)
-        return int(failures > 0)
+    columns = ("same", "refused", "other", *FAILURES)
+    say(f"| kind | files | {' | '.join(columns)} |\n|{' --- |' * (len(columns) + 2)}")
+    for kind, found in counted.items():
+        say(f"| {kind} | {found.total()} | {' | '.join(str(found[what]) for what in columns)} |")
+    return int(any(found[what] for found in counted.values() for what in FAILURES))
 
 
 def undamaged(kind: str, whole: Path) -> str:
@@ -265,16 +226,15 @@ def undamaged(kind: str, whole: Path) -> str:
         return READERS[kind](Path(place))
 
 
-def fails(worker: Worker, kind: str, count: int, seed: int) -> bool:
-    """Run the cases of a kind, and print what came of them; return True if there was a failure."""
+def outcomes(worker: Worker, kind: str, count: int, seed: int) -> Counter[str]:
+    """Run the cases of a kind, print each failure, and return how many came to what."""
     found: Counter[str] = Counter()
     for n in range(count):
         what, about = worker.ask(kind, 1_000_000 * seed + n)
         found[what] += 1
         if what in FAILURES:
             say(f"{kind} {n}: {what}: {about}")
-    say(f"{kind:10s} {count:6d}: " + ", ".join(f"{what} {many}" for what, many in sorted(found.items())))
-    return any(what in FAILURES for what in found)
+    return found
 
 
 if __name__ == "__main__":

@@ -20,7 +20,7 @@ from pathlib import Path
 
 from rich.progress import track
 
-from stickslip.foundation.errors import InputError
+from stickslip.foundation.errors import InputError, gathered
 from stickslip.friction import FromExpression
 from stickslip.scenarios import load_scenario
 from stickslip.scenarios.library import names, text
@@ -165,15 +165,21 @@ def refusal(read: Callable[[], object]) -> str:
     """Return "read", "refused", or what is wrong: another exception, a message that is not one short line, or too much time."""
     start = time.process_time()
     try:
-        read()
-        said = "read"
+        with gathered() as notes:
+            read()
+        said = next((f"no short line: {note[:80]!a}" for note in notes if not is_short_line(note)), "read")
     except InputError as error:
         line = str(error)
-        said = "refused" if 0 < len(line) <= LONGEST_LINE and line.isprintable() else f"no short line: {line[:80]!a}"
+        said = "refused" if is_short_line(line) else f"no short line: {line[:80]!a}"
     except Exception as error:  # whatever else it is, it is the finding
         said = f"{type(error).__name__}: {str(error)[:80]!a}"
     took = time.process_time() - start
     return said if took <= LIMIT else f"took {took:.1f} s"
+
+
+def is_short_line(text: str) -> bool:
+    """Return True for a message that can be read at a glance."""
+    return 0 < len(text) <= LONGEST_LINE and text.isprintable()
 
 
 def tally(what: str, count: int, seed: int, one: Callable[[random.Random], str]) -> int:
@@ -185,8 +191,7 @@ def tally(what: str, count: int, seed: int, one: Callable[[random.Random], str])
         found[said] += 1
         first.setdefault(said, n)
     bad = {said: times for said, times in found.items() if said not in ("read", "refused")}
-    told = f"{found['read']} read, {found['refused']} refused, {sum(bad.values())} failed"
-    print(f"{what}: {count} tried, {told}")  # noqa: T201 - a script
+    print(f"| {what} | {count} | {found['read']} | {found['refused']} | {sum(bad.values())} |")  # noqa: T201 - a script
     for said, times in sorted(bad.items(), key=lambda pair: -pair[1])[:20]:
         print(f"  {times} x {said} (first: number {first[said]})")  # noqa: T201
     return sum(bad.values())
@@ -220,6 +225,7 @@ def main() -> int:
         head, _, rest = text("fig5-slab-printed").partition("[friction]")
         tail = rest[rest.index("\n[") :]
         (folder / "table.toml").write_text(f'{head}[friction]\nkind = "table"\nfile = "points.csv"\n{tail}')
+        print("| input | tried | read | refused | failed |\n| --- | --- | --- | --- | --- |")  # noqa: T201
         failed = tally("expressions", options.expressions, options.seed, _expression)
         failed += tally("scenarios", options.scenarios, options.seed, lambda rng: _scenario(rng, folder))
         failed += tally("tables", options.tables, options.seed, lambda rng: _table(rng, folder))

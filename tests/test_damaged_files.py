@@ -10,6 +10,7 @@ import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -132,6 +133,25 @@ def test_a_missing_table_is_refused_in_one_line(run: ss.Solution, tmp_path: Path
     refused(lambda: ss.open_solution(path), "run.nc: ")
 
 
+@pytest.mark.parametrize("value", ["", "x", np.inf, np.nan, [1, 2]])
+def test_an_attribute_that_is_no_count_is_refused_in_one_line(run: ss.Solution, tmp_path: Path, value: Any) -> None:
+    path = run.to_netcdf(tmp_path / "run.nc")
+    resealed(path, lambda file: file.attrs.__setitem__("undecided", value))
+    refused(lambda: ss.open_solution(path), "run.nc: not a file that stickslip has written: ")
+
+
+@pytest.mark.parametrize("name", ["status", "status_message", "lumping", "rounding"])
+def test_texts_of_a_result_cannot_change_the_terminal(
+    run: ss.Solution, tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = run.to_netcdf(tmp_path / "run.nc")
+    resealed(path, lambda file: file.attrs.__setitem__(name, "a\n\x1b[31mred\x07"))
+    stored(path).summarise()
+    shown = capsys.readouterr().out
+    assert r"a\n\x1b[31mred\x07" in "".join(shown.split())
+    assert "\x1b" not in shown
+
+
 FULL = """
 import resource, sys
 import stickslip as ss
@@ -188,6 +208,30 @@ def test_drafts_of_killed_writers_are_removed_and_no_others(tmp_path: Path) -> N
 
 
 @POSIX
+@pytest.mark.parametrize("folder", [False, True])
+def test_the_draft_of_a_slow_writer_is_left_alone(tmp_path: Path, folder: bool) -> None:
+    def slow(draft: Path) -> None:
+        (draft / "a" if folder else draft).write_text("whole")
+        os.utime(draft, (draft.stat().st_mtime - 2 * STALE,) * 2)
+        write_atomically(tmp_path / "other.txt", lambda other: other.write_text("y"))
+
+    path = write_atomically(tmp_path / "slow", slow, folder=folder)
+    assert (path / "a" if folder else path).read_text() == "whole"
+    assert {one.name for one in tmp_path.iterdir()} == {"slow", "other.txt"}
+
+
+def test_a_file_that_fails_in_a_draft_has_its_final_name_in_the_message(tmp_path: Path) -> None:
+    def full(draft: Path) -> None:
+        (draft / "data").mkdir()
+        raise OSError(errno.ENOSPC, "No space left on device", str(draft / "data" / "step-1.js"))
+
+    with pytest.raises(OSError, match="No space left") as told:
+        write_atomically(tmp_path / "tour", full, folder=True)
+    assert told.value.filename == str(tmp_path / "tour" / "data" / "step-1.js")
+    assert list(tmp_path.iterdir()) == []
+
+
+@POSIX
 def test_a_lock_on_a_name_is_exclusive_and_released(tmp_path: Path) -> None:
     path = tmp_path / "a.csv"
     with held(path, "taken"):
@@ -195,6 +239,17 @@ def test_a_lock_on_a_name_is_exclusive_and_released(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
     with held(path, "taken"):
         pass
+
+
+@pytest.mark.parametrize("name", ["k.nc", "k.rows.csv", "k.checkpoint.nc", ".k.checkpoint.nc.lock"])
+def test_a_folder_in_place_of_a_file_of_a_catalogue_is_named_before_anything_is_removed(tmp_path: Path, name: str) -> None:
+    for file in ("k.nc", "k.rows.csv", "k.checkpoint.nc"):
+        (tmp_path / file).write_text("mine")
+    (tmp_path / name).unlink(missing_ok=True)
+    (tmp_path / name / "inside").mkdir(parents=True)
+    before = sorted(tmp_path.rglob("*"))
+    refused(lambda: ss.catalogue(PROBLEM, 20 * ss.YEAR, tmp_path / "k.nc"), f"{tmp_path / name}: ")
+    assert sorted(tmp_path.rglob("*")) == before
 
 
 def test_a_checkpoint_never_cuts_a_file_that_is_no_catalogue(tmp_path: Path) -> None:

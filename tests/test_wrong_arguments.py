@@ -108,7 +108,7 @@ OPTIONS: list[tuple[str, Any, str]] = [
     ("shortest_event", math.nan, "must be finite, got nan"),
     ("shortest_event", "1 min", "must be 0 or at most 0.0571429 s (1 % of the two-way travel time), got 60 s"),
     *(("max_events", given, f"must be a whole number above 0, got {given!r}") for given in ("3", True, 0, -1, 2.0, math.nan)),
-    *(("max_pieces", given, f"must be a whole number above 0, got {given!r}") for given in ("3", True, 0, 1e6)),
+    *(("max_pieces", given, f"must be a whole number from 1 to 1000000000, got {given!r}") for given in ("3", True, 0, 1e6)),
     ("checkpoint_every", "often", 'must be a number in s or a text with a unit such as "10 s" (or "inf"), got \'often\''),
     ("checkpoint_every", -1, "must be at least 0 s, got -1"),
     ("checkpoint_every", math.nan, "must be finite, got nan"),

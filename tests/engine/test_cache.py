@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import os
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable
@@ -82,16 +84,19 @@ print(found.ctypes(21.0), found.cache_hits, CACHE)
 """
 
 
-def twice(root: Path, **variables: str) -> tuple[float, int, Path, str]:
+def twice(root: Path) -> tuple[float, int, Path, str]:
     """Compile or load a small function in another process: its value, its hits of the cache, the folder, what was said."""
-    environment = os.environ | {"STICKSLIP_CACHE_DIR": str(root)} | variables
+    environment = os.environ | {"STICKSLIP_CACHE_DIR": str(root)}
     done = subprocess.run([sys.executable, "-c", TWICE], capture_output=True, text=True, check=True, env=environment)
     value, hits, folder = done.stdout.split()
     return float(value), int(hits), Path(folder), done.stderr
 
 
+LATER = "later starts compile again; STICKSLIP_CACHE_DIR names another folder"
+
+
 def files_in(folder: Path) -> list[Path]:
-    return [path for path in folder.rglob("*") if path.suffix in (".py", ".nbi", ".nbc")]
+    return [path for path in folder.rglob("*") if path.suffix in (".nbi", ".nbc")]
 
 
 def flip(content: bytes) -> bytes:
@@ -111,7 +116,7 @@ DAMAGE: dict[str, Callable[[bytes], bytes]] = {
 def test_damaged_files_are_compiled_again(tmp_path: Path, damage: Callable[[bytes], bytes]) -> None:
     value, hits, folder, said = twice(tmp_path)
     assert (value, hits, said) == (42.0, 0, "")
-    assert {path.suffix for path in files_in(folder)} == {".py", ".nbi", ".nbc"}
+    assert {path.suffix for path in files_in(folder)} == {".nbi", ".nbc"}
     for path in files_in(folder):
         path.write_bytes(damage(path.read_bytes()))
     value, hits, _, said = twice(tmp_path)
@@ -130,14 +135,69 @@ def test_damaged_machine_code_is_detected_behind_an_intact_index(tmp_path: Path)
     assert twice(tmp_path)[1] == 1
 
 
-def test_without_a_cache_folder_code_is_compiled_in_a_temporary_one(tmp_path: Path) -> None:
+def test_without_a_cache_folder_each_process_compiles_for_itself(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    value, _, folder, said = twice(tmp_path / "file", TMPDIR=str(tmp_path))
-    assert value == 42.0
+    value, hits, folder, said = twice(tmp_path / "file")
+    assert (value, hits, folder) == (42.0, 0, Path("None"))
     assert said.startswith("stickslip: no cache for compiled code: ")
     assert said.count("\n") == 1
-    assert folder.parent == tmp_path
-    assert not folder.exists()
+    assert (tmp_path / "file").read_text() == ""
+
+
+def test_a_file_in_place_of_a_folder_of_the_cache_is_no_fault_but_one_line(tmp_path: Path) -> None:
+    folder = twice(tmp_path)[2]
+    (kept,) = (path for path in folder.iterdir() if path.name.startswith("formulas"))
+    shutil.rmtree(kept)
+    kept.touch()
+    (folder / "formulas").touch()
+    value, hits, _, said = twice(tmp_path)
+    assert (value, hits) == (42.0, 0)
+    assert said == f"stickslip: compiled code cannot be kept in {folder}: File exists; {LATER}\n"
+
+
+def test_a_full_disk_costs_the_cache_and_one_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    from stickslip.engine.codegen import cache
+    from stickslip.engine.codegen.compiler import compile_formula
+    from stickslip.friction.formula.parse import parse
+
+    def full(path: Path, write: Callable[[Path], object]) -> Path:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
+
+    monkeypatch.setattr(FunctionCache, "_load_overload", lambda *_: None)
+    monkeypatch.setattr(cache, "write_atomically", full)
+    cache.tell.cache_clear()
+    compile_formula.cache_clear()
+    assert compile_formula(parse("0.6 + 0.0123*u", ()), ()).address("value") != 0
+    assert f"cannot be kept in {cache.CACHE}: No space left on device; {LATER}\n" in capsys.readouterr().err
+
+
+def test_the_cache_keeps_the_functions_that_were_used_last(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from stickslip.engine.codegen import cache
+
+    monkeypatch.setenv("STICKSLIP_CACHE_DIR", str(tmp_path))
+    folder = tmp_path / "compiled-0" / "formulas_0"
+    folder.mkdir(parents=True)
+    for used, name in enumerate(["old", "older", "new"], 1000):
+        for file in (f"{name}_0.value-9.py311.nbi", f"{name}_0.value-9.py311.1.nbc"):
+            (folder / file).write_bytes(bytes(50))
+            os.utime(folder / file, (used, used))
+    os.utime(folder / "old_0.value-9.py311.nbi", (2000, 2000))  # read since
+    for file in (folder / "own.txt", tmp_path / "own.nbi"):
+        file.touch()
+    cache.make_room(250)
+    assert {path.name.split("_")[0] for path in folder.glob("*.nb[ic]")} == {"old", "new"}
+    cache.make_room(100)
+    assert [path.name.split("_")[0] for path in folder.glob("*.nb[ic]")] == ["old", "old"]
+    assert (folder / "own.txt").exists()
+    assert (tmp_path / "own.nbi").exists()
+
+
+def test_a_function_that_another_process_removed_is_compiled_again(tmp_path: Path) -> None:
+    folder = twice(tmp_path)[2]
+    (code,) = folder.rglob("*.nbc")
+    code.unlink()
+    assert twice(tmp_path) == (42.0, 0, folder, "")
+    assert twice(tmp_path) == (42.0, 1, folder, "")
 
 
 def test_a_private_folder_is_closed_to_others(tmp_path: Path) -> None:

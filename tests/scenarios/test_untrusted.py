@@ -83,6 +83,8 @@ def test_an_expression_without_a_value_is_refused_with_its_part(
         ("[run]", f"[{'a.' * 20_000}b]\n[run]", "my.toml: a key has more than 20 parts: not a scenario"),
         ("[run]", f"[{QUOTED * 20_000}b]\n[run]", "my.toml: a key has more than 20 parts: not a scenario"),
         ("[run]", f"x = {'[' * 20_000}\n[run]", "my.toml: not a scenario: nested too deeply"),
+        ("[run]", f"{'[[a.b]]' + chr(10)}" * 16_000 + "[run]", "my.toml: has more than 100 tables: not a scenario"),
+        ("[run]", f"x = '{'a' * 5_500_000}'\n[run]", "my.toml: longer than 4000000 characters: not a scenario"),
     ],
 )
 def test_a_scenario_beyond_all_measure_is_refused_at_once(old: str, new: str, message: str) -> None:
@@ -173,6 +175,19 @@ def test_no_message_shows_what_a_file_holds(folder: Path, content: str) -> None:
     assert "hunter2" not in str(caught.value)
 
 
+def test_a_line_beyond_all_measure_is_refused_at_once(folder: Path) -> None:
+    (folder / "points.csv").write_text(f"slip,friction,{'x,' * 500_000}\n0,1\n")
+    with processor_time(1.0), pytest.raises(ss.InputError, match="line 1: longer than 50000 characters: not a table of points"):
+        load_scenario(of_file(folder, "points.csv"))
+
+
+def test_what_a_message_repeats_of_a_file_stays_on_its_line_and_is_escaped(capsys: pytest.CaptureFixture[str]) -> None:
+    error = ss.InputError("events.csv: the row 'a\n\x1b[31mb\u2028'")
+    assert str(error) == r"events.csv: the row 'a\n\x1b[31mb\u2028'"
+    assert str(type(error)(str(error))) == str(error)
+    assert "\x1b" not in said(capsys, "show", "a\x1b[31m\r.csv")
+
+
 def test_a_pipe_is_not_waited_for(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     os.mkfifo(tmp_path / "pipe")
     os.mkfifo(folder / "pipe")
@@ -217,3 +232,23 @@ def test_a_command_line_beyond_all_measure_is_refused(
     capsys: pytest.CaptureFixture[str], arguments: list[str], message: str
 ) -> None:
     assert said(capsys, *arguments).startswith(f"stickslip: {message}")
+
+
+@pytest.mark.parametrize("pieces", [10**15, 10**30, 1e15])
+def test_a_history_that_no_machine_can_hold_is_refused(pieces: int) -> None:
+    with pytest.raises(ss.InputError, match="simulate: max_pieces must be a whole number from 1 to 1000000000, got 1"):
+        ss.simulate("fig6-slab", max_pieces=pieces)
+
+
+def test_a_run_ends_in_order_where_memory_is_short(monkeypatch: pytest.MonkeyPatch) -> None:
+    from stickslip.engine.state import layout
+
+    def short(*_: object) -> None:
+        raise MemoryError
+
+    scenario = ss.load_scenario("cycles-block")
+    whole = ss.simulate(scenario, 2000 * ss.YEAR)
+    monkeypatch.setattr(layout, "resized", short)
+    cut = ss.simulate(scenario, 2000 * ss.YEAR)
+    assert cut.status.name == "too many pieces"
+    assert 0 < len(cut.history) < len(whole.history)

@@ -117,5 +117,7 @@ def _show_warning(message: Warning | str, category: type[Warning], filename: str
 
 
 def _fail(message: str, code: int = 2) -> int:
-    sys.stderr.write(f"stickslip: {' '.join(message.split())}\n")
+    from stickslip.foundation.errors import printable
+
+    sys.stderr.write(f"stickslip: {printable(' '.join(message.split()))}\n")
     return code

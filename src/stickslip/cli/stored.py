@@ -142,9 +142,11 @@ def stored(path: Path, quantity: str | None = None) -> Stored:
     if quantity is not None and not path.is_dir():
         raise InputError(f"show: --quantity chooses what is drawn of a sweep, and {path} is none")
     if path.is_dir():
+        from stickslip.sweeps.results.layout import reading
         from stickslip.sweeps.results.store import open_store
 
-        dataset = open_store(path)
+        with reading(path):
+            dataset = open_store(path).load()
         return StoredSweep(path, dataset.attrs, dataset, quantity)
     suffix = path.suffix.lower()
     if suffix in (".csv", ".parquet"):

@@ -50,38 +50,53 @@ def _opened_at_once(path: str, flags: int) -> int:
     return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
 
 
-def write_atomically(path: Path, write: Callable[[Path], object]) -> Path:
-    """Let `write` fill a temporary file (the draft) beside `path`, rename it to `path`, and return the path.
+def write_atomically(path: Path, write: Callable[[Path], object], *, folder: bool = False) -> Path:
+    """Let `write` fill a temporary file or folder (the draft) beside `path`, rename it to `path`, and return the path.
 
-    Readers never see half a file. The content is on the disk before the file is renamed, and the new name before the function
-    returns. Drafts of writers that were killed are removed. Raises OSError, which names `path` and not the draft.
+    Readers never see half of it. The content of a file is on the disk before the file is renamed, and the new name before the
+    function returns. The draft is locked, and drafts of writers that were killed are removed. Raises OSError, which names `path`,
+    or a file in it, and not the draft.
     """
-    draft = draft_beside(path)
+    draft = _draft_beside(path)
     try:
-        draft.touch(exist_ok=False)
+        if folder:
+            draft.mkdir()
+        else:
+            draft.touch(exist_ok=False)
         held = _locked(draft)
         try:
             write(draft)
-            sync(draft)
+            if not folder:
+                sync(draft)
             draft.replace(path)
             sync_folder(path.parent)
         finally:
             _close(held)
     except OSError as error:
-        if error.errno is None or Path(str(error.filename)) not in (draft, Path("None")):
+        named = path if error.filename is None else Path(str(error.filename))
+        if error.errno is None or not (named == path or named.is_relative_to(draft)):
             raise
-        raise OSError(error.errno, error.strerror, str(path)) from None
+        final = path / named.relative_to(draft) if named.is_relative_to(draft) else path
+        raise OSError(error.errno, error.strerror, str(final)) from None
     finally:
-        draft.unlink(missing_ok=True)
+        _remove(draft)
     return path
 
 
-def draft_beside(path: Path) -> Path:
+def _remove(draft: Path) -> None:
+    """Remove a draft, if it is there."""
+    if draft.is_dir():
+        shutil.rmtree(draft, ignore_errors=True)
+    else:
+        draft.unlink(missing_ok=True)
+
+
+def _draft_beside(path: Path) -> Path:
     """Return a temporary name beside a path, with the same suffix, and remove drafts that killed writers have left there."""
     with suppress(OSError):
         for old in list(path.parent.glob(f"{DRAFT}*")):
             if _is_stale(old):
-                shutil.rmtree(old) if old.is_dir() else old.unlink(missing_ok=True)
+                _remove(old)
     return path.with_name(f"{DRAFT}{uuid4().hex}{path.suffix}")
 
 
@@ -119,10 +134,13 @@ def held(path: Path, refusal: str) -> Iterator[None]:
 
     A folder is locked itself. For a file the lock is on the file `.NAME.lock` beside it, which is removed afterwards. The operating
     system releases the lock when the process ends, however it ends. Raises InputError with the text `refusal` if another process
-    holds the name. If the file system does not support locks, nothing is reserved.
+    holds the name, and if the file of the lock cannot be made. If the file system does not support locks, nothing is reserved.
     """
     beside = None if path.is_dir() else path.with_name(f".{path.name}.lock")
-    number = _locked(path, refusal) if beside is None else _locked_beside(beside, refusal)
+    try:
+        number = _locked(path, refusal) if beside is None else _locked_beside(beside, refusal)
+    except OSError as error:
+        raise InputError(f"{beside or path}: cannot be written: {error.strerror or error}") from None
     try:
         yield
     finally:

@@ -45,6 +45,8 @@ COLUMNS: Mapping[str, Column] = {
 """The columns that are known, by their plain heading. Capitals, spaces, - and _ make no difference."""
 LARGEST: Mapping[str, float] = {"slip": 100.0, "slip_rate": 100.0}
 """Largest values (SI) that no friction test reaches: beyond them the numbers are hardly in SI."""
+LONGEST_LINE = 50_000
+"""Largest number of characters of a line."""
 PREAMBLE = 200
 """Number of lines before the header in which notes of an instrument are looked for."""
 PURE = ("", "-", "–", "1", "none", "no unit", "dimensionless")
@@ -223,6 +225,9 @@ def _rows(text: str, place: str, wanted: Sequence[str]) -> tuple[Iterator[tuple[
     Rows that are blank or comments are left out.
     """
     lines = text.lstrip("\ufeff").splitlines()
+    long = next((n for n, line in enumerate(lines, 1) if len(line) > LONGEST_LINE), None)
+    if long is not None:
+        raise InputError(f"{place}, line {long}: longer than {LONGEST_LINE} characters: not a table of points")
     first = _header_line(lines, wanted)
     separator = _separator(lines[first]) if lines else ","
     lines[:first] = [""] * first

@@ -10,8 +10,19 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 
 
+def printable(text: str) -> str:
+    """Return a text in which line breaks and other characters that cannot be printed are escaped."""
+    return text if text.isprintable() else "".join(one if one.isprintable() else ascii(one)[1:-1] for one in text)
+
+
 class InputError(ValueError):
-    """Raised for input that cannot be used; the message says in one line where the fault is, what it is and what is allowed."""
+    """Raised for input that cannot be used; the message says in one line where the fault is, what it is and what is allowed.
+
+    What a message repeats of a file or a name may be the work of somebody else: it is shown on that line, with escapes.
+    """
+
+    def __init__(self, message: str) -> None:
+        super().__init__(printable(message))
 
 
 class InputWarning(UserWarning):
@@ -35,7 +46,7 @@ def gathered() -> Iterator[list[str]]:
 
 def warn(message: str) -> None:
     """Issue an `InputWarning` that points at the first line outside this package which led here, or have it gathered."""
-    messages = _GATHERED.get()
+    message, messages = printable(message), _GATHERED.get()
     if messages is not None:
         messages.append(message)
         return

@@ -16,7 +16,7 @@ from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import HistoryPiece, Store
 from stickslip.foundation import netcdf_file
 from stickslip.foundation.arguments import as_path
-from stickslip.foundation.errors import InputError
+from stickslip.foundation.errors import InputError, printable
 from stickslip.foundation.netcdf_file import FullDiskError, write
 from stickslip.io.soundness import check_history, history_table, number
 from stickslip.loading import HISTORIES, LoadingHistory
@@ -318,7 +318,9 @@ def to_solution(dataset: xr.Dataset, path: Path) -> Solution:
     """
     try:
         found = _solution(dataset, path)
-    except (KeyError, TypeError, AttributeError) as error:
+    except InputError:
+        raise
+    except (KeyError, TypeError, AttributeError, ValueError, OverflowError) as error:
         raise InputError(
             f"{path}: not a file that stickslip has written: {' '.join(str(error).split())} is missing or wrong"
         ) from None
@@ -338,7 +340,8 @@ def _solution(dataset: xr.Dataset, path: Path) -> Solution:
     store = Store(history_table(columns, path), state)
     creep = _array(dataset, "history_creep") if "history_creep" in dataset else NO_LEAPS
     round_trip_time, ramp, reached = (float(dataset[name].item()) for name in ("round_trip_time", "ramp", "reached"))
-    status = Status(str(attributes["status"]), str(attributes["status_message"]), bool(attributes["status_ok"]))
+    ended, why = (printable(str(attributes[name])) for name in ("status", "status_message"))
+    status = Status(ended, why, bool(attributes["status_ok"]))
     counted = scenario.max_events if status.name == STATUSES[ENOUGH_EVENTS].name else None
     history = History(store, scenario.problem, round_trip_time, ramp, reached, creep=creep, max_events=counted)
     checkpoint = None
@@ -346,7 +349,7 @@ def _solution(dataset: xr.Dataset, path: Path) -> Solution:
         arrays = {name: _array(dataset, f"engine_{name}") for name in ARRAYS}
         checkpoint = Checkpoint(**arrays, engine=str(attributes["engine"]))
     about = scenario.max_events, scenario.creep_rtol, scenario.shortest_event
-    lumping, rounding = (str(attributes.get(name, "")) for name in ("lumping", "rounding"))
+    lumping, rounding = (printable(str(attributes.get(name, ""))) for name in ("lumping", "rounding"))
     undecided, named = int(attributes.get("undecided", 0)), (scenario.title, scenario.description)
     return Solution(scenario.problem, duration, rtol, status, history, checkpoint, *about, lumping, rounding, undecided, *named)
 

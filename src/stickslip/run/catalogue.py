@@ -138,7 +138,13 @@ def check_energy(creep_rtol: float | None, energy: bool, where: str, options: st
 
 
 def alone_with(rows: Rows) -> AbstractContextManager[None]:
-    """Lock the files of a catalogue against other processes. Raises InputError if another run is writing to them."""
+    """Lock the files of a catalogue against other processes.
+
+    Raises InputError if another run is writing to them, or if there is a folder in place of one of them.
+    """
+    folder = next((path for path in (rows.path, rows.growing, checkpoint_of(rows)) if path.is_dir()), None)
+    if folder is not None:
+        raise InputError(f"{folder}: is a folder, where the catalogue needs a file: choose another name")
     return held(checkpoint_of(rows), f"{rows.path}: another run is writing its catalogue there: choose another name")
 
 

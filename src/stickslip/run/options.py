@@ -30,6 +30,9 @@ CHECKPOINT_EVERY = 30.0
 MAX_PIECES = 1_000_000
 """Largest number of pieces of a history unless `max_pieces` is given: some 0.4 GB."""
 
+LARGEST_HISTORY = 1_000_000_000
+"""Largest number of pieces that can be asked for: 0.4 TB, more than the memory of most machines."""
+
 
 @dataclass(frozen=True)
 class RunOptions:
@@ -83,6 +86,7 @@ class RunOptions:
         shortest = None if self.shortest_event is None else SHORTEST_EVENT.check(who, "shortest_event", self.shortest_event)
         if not isinstance(self.title, str):
             raise InputError(f"{who}: title must be text, got {shown(self.title)}")
+        pieces = None if self.max_pieces is None else check_whole(f"{who}: max_pieces", self.max_pieces, 1, LARGEST_HISTORY)
         checked: dict[str, Any] = {
             "duration": DURATION.check(who, "duration", self.duration),
             "rtol": check_rtol(self.rtol, who),
@@ -90,7 +94,7 @@ class RunOptions:
             "shortest_event": check_shortest_event(problem, shortest, who),
             "checkpoint_every": CHECKPOINT_INTERVAL.check(who, "checkpoint_every", self.checkpoint_every),
             "max_events": None if self.max_events is None else check_whole(f"{who}: max_events", self.max_events),
-            "max_pieces": None if self.max_pieces is None else check_whole(f"{who}: max_pieces", self.max_pieces),
+            "max_pieces": pieces,
         }
         converted = {name: value for name, value in checked.items() if value is not getattr(self, name)}
         return replace(self, **converted) if converted else self

@@ -6,6 +6,7 @@ block.
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Self
 
@@ -161,17 +162,19 @@ class Session:
         return Stop.NONE
 
     def grow(self, max_pieces: int) -> bool:
-        """Make room for more pieces. Returns False if the history already has `max_pieces` of them."""
+        """Make room for more pieces. Returns False if the history already has `max_pieces` of them, or if memory is short."""
         if self.length >= max_pieces:
             return False
-        self.reserve(min(4 * len(self.store.pieces), max_pieces + SPARE))
-        return True
+        with suppress(MemoryError):
+            self.reserve(min(4 * len(self.store.pieces), max_pieces + SPARE))
+            return True
+        return False
 
     def reserve(self, pieces: int) -> None:
         """Make sure that there is room for at least the given number of pieces."""
         if pieces > len(self.store.pieces):
-            self.store = at.resized_store(self.store, self.length, pieces)
-            self.echoes = at.resized(self.echoes, self.length, pieces)
+            store, echoes = at.resized_store(self.store, self.length, pieces), at.resized(self.echoes, self.length, pieces)
+            self.store, self.echoes = store, echoes
             self._lend()
 
     def forget_before(self, piece: int) -> int:

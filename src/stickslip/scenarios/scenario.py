@@ -36,6 +36,11 @@ UNNAMED = "scenario"
 """Name of a scenario that has none of its own."""
 DEEPEST = 20
 """Largest number of parts in a dotted key: tomllib takes a time that grows with the square of this number."""
+LARGEST_TEXT = 4_000_000
+"""Largest number of characters of a scenario, as in a file of results, which holds the points of data files, too."""
+MOST_TABLES = 100
+"""Largest number of tables in a scenario; the laws with most parts have a fifth of it."""
+_HEADING = re.compile(r"""^[ \t]*\[{1,2}[ \t]*[A-Za-z_"']""", re.MULTILINE)
 _LONG_KEY = re.compile(rf"""(?<![\w-])(?:(?:[\w-]+|"[^"\n]*"|'[^'\n]*')[ \t]*\.[ \t]*){{{DEEPEST}}}""")
 
 
@@ -203,6 +208,10 @@ def read_scenario(text: str, file: str, name: str | None = None, folder: Path | 
     InputError
         As from `load_scenario`.
     """
+    if len(text) > LARGEST_TEXT:
+        raise InputError(f"{file}: longer than {LARGEST_TEXT} characters: not a scenario")
+    if len(_HEADING.findall(text)) > MOST_TABLES:
+        raise InputError(f"{file}: has more than {MOST_TABLES} tables: not a scenario")
     if _LONG_KEY.search(text):
         raise InputError(f"{file}: a key has more than {DEEPEST} parts: not a scenario")
     try:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections import Counter
 from typing import TYPE_CHECKING, Any
@@ -43,15 +42,16 @@ def show_sweep(title: str, dataset: xr.Dataset) -> int:
     """Print the summary of a sweep on standard output. Returns the exit code of the sweep: 1 if every member failed."""
     from stickslip.sweeps.design.design import GRID, in_words
     from stickslip.sweeps.execution.outcome import FIRST_FAILURE
+    from stickslip.sweeps.results.layout import read_design
 
     dataset, screen = dataset.load(), console()
-    design = json.loads(dataset.attrs["design"])
+    kind, keys, _ = read_design(dataset.attrs)
     say(screen, clean(title), style="bold")
-    say(screen, f"{in_words(design['design'], dataset.status.shape)} over {', '.join(design['keys'])}")
+    say(screen, f"{in_words(kind, dataset.status.shape)} over {', '.join(keys)}")
     status = dataset.status.to_numpy().ravel()
     _show_ends(status, dataset.reason.to_numpy().ravel())
     _show_quantities(dataset)
-    _show_changes(dataset, is_grid=design["design"] == GRID)
+    _show_changes(dataset, is_grid=kind == GRID)
     return int((status >= FIRST_FAILURE).all())
 
 
@@ -68,7 +68,7 @@ def _show_ends(status: np.ndarray[tuple[int], np.dtype[np.int8]], reasons: np.nd
 
     screen = console()
     for code, count in sorted(Counter(status.tolist()).items()):
-        say(screen, f"{count} {MEANINGS[code].replace('_', ' ')}")
+        say(screen, f"{count} {MEANINGS.get(code, f'ended with the unknown code {code}').replace('_', ' ')}")
         if code >= FIRST_FAILURE:
             _show_reasons(reasons[status == code].tolist())
     screen.print()

@@ -1,26 +1,25 @@
 """Keep compiled code in a cache on disk that belongs to this user, and verify each file before it is used.
 
 Machine code and pickles from the cache folder are executed. The folder must therefore belong to this user alone (see
-`private_folder`). If there is no such folder, code is compiled into a temporary one, which is removed when the process ends. Every
-file that numba writes carries a checksum; a damaged file counts as missing, and its function is compiled again. Formulas are
-executed from the text in memory, never from the file.
+`private_folder`). If there is no such folder, each process compiles for itself. Every file that numba writes carries a checksum; a
+damaged file counts as missing, and its function is compiled again. The text of formulas stays in memory.
 
 The name of the folder contains a hash of all code that is compiled (`sources.py`), so that an edited kernel never meets its old
 machine code. Numba's own comparison does not suffice: it looks at the date of a function's file, and not at the files of the
 functions that it calls.
+
+The cache has a largest size. The functions that have not been used for longest are removed, whichever version of the code they
+belong to; a process that still needs one compiles it again.
 """
 
 from __future__ import annotations
 
-import atexit
 import hashlib
-import importlib.util
 import os
 import pickle
-import shutil
 import sys
-import tempfile
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from types import ModuleType
@@ -42,6 +41,8 @@ from stickslip.foundation.errors import InputError
 
 SEAL = b"stickslip cache 1\n"
 """First bytes of each file of the cache; the checksum of its name and content follows, then the content."""
+LARGEST = 500_000_000
+"""Size (bytes) of all functions in the cache above which the least recently used are removed; a formula takes up to 2 MB."""
 
 if UNCOMPILED:
     numba.config.DISABLE_JIT = True
@@ -73,8 +74,8 @@ SOURCES = sources_key()
 """Hash that identifies the code that is compiled, together with the versions of numba and Python that compile it."""
 
 
-def cache_folder() -> Path:
-    """Return the folder of compiled code in `cache_root`, or a temporary one if it cannot be made there or would not be private."""
+def cache_folder() -> Path | None:
+    """Return the folder of compiled code in `cache_root`, or None if it cannot be made there or would not be private."""
     try:
         return private_folder(cache_root() / f"compiled-{SOURCES}")
     except OSError as error:
@@ -83,28 +84,43 @@ def cache_folder() -> Path:
         f"no cache for compiled code: {ascii(reason)[1:-1]}; this run compiles for itself (15 s or more); "
         "STICKSLIP_CACHE_DIR names another folder"
     )
-    folder = Path(tempfile.mkdtemp(prefix="stickslip-compiled-"))
-    atexit.register(_remove, folder, os.getpid())
-    return folder
-
-
-def _remove(folder: Path, owner: int) -> None:
-    """Remove a temporary folder when the process that made it ends, but not when a process forked from that one ends."""
-    if os.getpid() == owner:
-        shutil.rmtree(folder, ignore_errors=True)
+    return None
 
 
 CACHE = cache_folder()
-"""The folder of compiled code of this process."""
+"""The folder of compiled code, or None if this process has to compile for itself."""
 DAMAGED = f"the cache of compiled code in {CACHE} is damaged: what is damaged is compiled again"
+
+
+def make_room(largest: int = LARGEST) -> None:
+    """Remove the least recently used functions from the caches of all versions until they take at most `largest` bytes together."""
+    files: dict[tuple[Path, str], list[Path]] = {}
+    for path in cache_root().glob("compiled-*/*/*.nb[ic]"):  # NAME.nbi is the index of a function, NAME.1.nbc its code
+        files.setdefault((path.parent, path.name.rsplit(".", 1 if path.suffix == ".nbi" else 2)[0]), []).append(path)
+    found = []
+    for paths in files.values():
+        with suppress(FileNotFoundError):  # another process removes it, too
+            stats = [path.stat() for path in paths]
+            found.append((max(one.st_mtime for one in stats), sum(one.st_size for one in stats), paths))
+    excess = sum(size for _, size, _ in found) - largest
+    for _, size, paths in sorted(found):
+        if excess <= 0:
+            return
+        with suppress(OSError):  # on Windows a file that is being read stays
+            for path in paths:
+                path.unlink(missing_ok=True)
+            excess -= size
 
 
 class _SealedFile(IndexDataCacheFile):
     """The cache files of one function, each with a checksum. A damaged file is removed and counts as missing."""
 
     def _load_index(self) -> dict[Any, str]:
-        content = self._unsealed(Path(self._index_path))
+        path = Path(self._index_path)
+        content = self._unsealed(path)
         stamp, overloads = pickle.loads(content) if content else (None, {})
+        with suppress(OSError):
+            os.utime(path)  # this function has been used
         return overloads if stamp == self._source_stamp else {}
 
     def _save_index(self, overloads: dict[Any, str]) -> None:
@@ -128,7 +144,7 @@ class _SealedFile(IndexDataCacheFile):
         """Return the content of a file, or None if it is missing or its checksum is wrong; remove it in the second case."""
         try:
             sealed = path.read_bytes()
-        except FileNotFoundError:
+        except (FileNotFoundError, NotADirectoryError):
             return None
         start = len(SEAL) + hashlib.sha256().digest_size
         content = sealed[start:]
@@ -149,7 +165,7 @@ class _Locator(UserProvidedCacheLocator):
 
     def __init__(self, function: Any, file: str) -> None:
         super().__init__(function, file)
-        self._cache_path = str(CACHE / self.get_suitable_cache_subpath(file))
+        self._cache_path = str((CACHE or cache_root()) / self.get_suitable_cache_subpath(file))
 
     @classmethod
     def from_function(cls, function: Any, file: str) -> _Locator:
@@ -167,7 +183,10 @@ class _Files(CompileResultCacheImpl):
 
 
 class SealedCache(FunctionCache):
-    """The cache of one function. A file that cannot be read is compiled again; one that cannot be written is left out."""
+    """The cache of one function. A file that cannot be read is compiled again; one that cannot be written is left out.
+
+    Without a folder (CACHE) nothing is read or written.
+    """
 
     _impl_class = _Files
 
@@ -185,7 +204,7 @@ class SealedCache(FunctionCache):
         """
         try:
             rtsys.initialize(context)
-            found = self._load_overload(signature, context)
+            found = self._load_overload(signature, context) if CACHE else None
         except Exception as error:  # unpickling may raise anything, and must not make every later start fail
             tell(f"compiled code in {CACHE} cannot be used ({type(error).__name__}): it is compiled again")
             return None
@@ -195,8 +214,11 @@ class SealedCache(FunctionCache):
 
     def save_overload(self, signature: Any, data: Any) -> None:
         """Store a compiled function for later starts; say so on standard error if it cannot be written."""
+        if CACHE is None:
+            return
         try:
             super().save_overload(signature, data)
+            make_room()
         except OSError as error:
             tell(
                 f"compiled code cannot be kept in {CACHE}: {error.strerror}; later starts compile again; "
@@ -235,22 +257,9 @@ def sealed_cfunc(signature: Any, **options: Any) -> Callable[[Callable[..., Any]
 
 
 def load_module(name: str, text: str) -> ModuleType:
-    """Return the module with a given name and source text.
-
-    The text is also written into the cache, because numba inspects the file of each function that it compiles.
-    """
-    folder = CACHE / "formulas"
-    path = folder / f"{name}.py"
-    source = text.encode()
-    kept = path.read_bytes() if path.is_file() else None
-    if kept != source:
-        if kept is not None:
-            tell(DAMAGED)
-        folder.mkdir(exist_ok=True)
-        write_atomically(path, lambda draft: draft.write_bytes(source))
-    spec = importlib.util.spec_from_file_location(name, path)
-    assert spec is not None
-    module = importlib.util.module_from_spec(spec)
+    """Return a new module with a given name and source text, which has the name of a file but needs none."""
+    module = ModuleType(name)
     sys.modules[name] = module  # numba finds the module of a cached function by its name; this entry also keeps the code alive
+    path = (CACHE or cache_root()) / "formulas" / f"{name}.py"  # numba keeps the functions of a file together
     exec(compile(text, str(path), "exec"), module.__dict__)
     return module

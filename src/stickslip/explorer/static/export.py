@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import shutil
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
@@ -31,7 +30,7 @@ from stickslip.explorer.page.tour import told_steps
 from stickslip.explorer.page.words import words_of
 from stickslip.explorer.static.packing import packed_view, script
 from stickslip.figures.style import unit_of
-from stickslip.foundation.atomic_write import draft_beside, sync_folder
+from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import number
 
@@ -82,10 +81,11 @@ def write_tour(folder: Path, told: Callable[[str], object] = lambda text: None, 
         If it cannot be written.
     """
     check_folder(folder)
-    draft = draft_beside(folder)
-    (draft / "data").mkdir(parents=True)
-    try:
-        answers = 0
+    answers = 0
+
+    def write(draft: Path) -> None:
+        nonlocal answers
+        (draft / "data").mkdir()
         for i, step in enumerate(TOUR, 1):
             told(f"step {i} of {len(TOUR)}: {step.title}")
             content = content_of(step, places)
@@ -94,13 +94,11 @@ def write_tour(folder: Path, told: Callable[[str], object] = lambda text: None, 
         (draft / LIBRARY).write_bytes(library())
         (draft / "README.txt").write_text(READ_ME, encoding="utf-8")
         (draft / "index.html").write_text(index_page(), encoding="utf-8")
-        size = sum(path.stat().st_size for path in draft.rglob("*") if path.is_file())
         if folder.is_dir():
             folder.rmdir()
-        draft.rename(folder)
-        sync_folder(folder.parent)
-    finally:
-        shutil.rmtree(draft, ignore_errors=True)
+
+    write_atomically(folder, write, folder=True)
+    size = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
     return Written(folder, size, answers)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 from typing import Any, Unpack
 
@@ -18,6 +17,7 @@ from stickslip.figures.sweeps.colours import colours_of, explain
 from stickslip.figures.sweeps.curves import mark_missing, missing_marks, show_ordinate
 from stickslip.figures.sweeps.varied import LITTLE, ROOM, Scaled, Shown, scaled, shown
 from stickslip.solution.place import Place
+from stickslip.sweeps.results.layout import read_design
 from stickslip.sweeps.results.refinement_spec import ATTRIBUTE, RefinementSpec
 
 SIZE = 16.0
@@ -55,7 +55,7 @@ def draw_members(dataset: xr.Dataset, **place: Unpack[Place]) -> Any:
 
 def axes_of(dataset: xr.Dataset) -> dict[str, Scaled]:
     """Return the varied keys, scaled for drawing; of a refined map, an axis is logarithmic if the search was."""
-    names = [str(name) for name in json.loads(dataset.attrs["design"])["keys"]]
+    _, names, _ = read_design(dataset.attrs)
     found = {name: scaled(dataset[name]) for name in names}
     if ATTRIBUTE not in dataset.attrs:
         return found

@@ -12,13 +12,15 @@ import hashlib
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from stickslip.foundation.atomic_write import write_atomically
+from stickslip.foundation.atomic_write import read_bounded, write_atomically
 from stickslip.foundation.errors import InputError
 
 FOLDER = ".checksums"
 """Name of the folder of lists inside a store."""
 LAYOUT = "layout"
 """Name of the list of the files that exist from the start; the other lists have the number of a chunk as their name."""
+LARGEST = 10_000_000
+"""Size (bytes) of the largest list that is read."""
 ABSENT = "-"
 """Text in place of the SHA-256 of a file that does not exist."""
 
@@ -64,7 +66,7 @@ def check_all(store: Path) -> set[str]:
         names = sorted(path.name for path in (store / FOLDER).iterdir() if not path.name.startswith("."))
         return {file for name in names for file in _checked(store, name)}
     except OSError as error:
-        raise InputError(f"{store}: cannot be read: {error.strerror or error}") from None
+        raise InputError(f"{ascii(error.filename or str(store))[1:-1]}: cannot be read: {error.strerror or error}") from None
 
 
 def _checked(store: Path, name: str) -> Iterator[str]:
@@ -84,8 +86,12 @@ def _checked(store: Path, name: str) -> Iterator[str]:
 
 def _lines(path: Path) -> list[str]:
     """Return the lines of a list except the last. Raises InputError if the last line is not the checksum of the others."""
-    content = path.read_bytes()
-    lines, last = content[:-65], content[-65:]
-    if last != hashlib.sha256(lines).hexdigest().encode() + b"\n":
-        raise InputError(f"{path}: damaged: remove it, and the same sweep runs these members again")
-    return lines.decode().splitlines()
+    try:
+        content = read_bounded(path, LARGEST)
+        lines, last = content[:-65], content[-65:]
+        if last == hashlib.sha256(lines).hexdigest().encode() + b"\n":
+            return lines.decode().splitlines()
+        what = "damaged"
+    except (UnicodeDecodeError, InputError) as error:
+        what = "not a list of checksums" if isinstance(error, UnicodeDecodeError) else str(error)
+    raise InputError(f"{path}: {what}: remove it, and the same sweep runs these members again")

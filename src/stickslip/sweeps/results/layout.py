@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
+import xarray as xr
 import zarr
 from zarr.codecs import Crc32cCodec, ZstdCodec
 
 import stickslip
+from stickslip.foundation.arguments import check_whole, shown
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.formatting import clean
 from stickslip.io.netcdf import LONG_NAMES, PAPER
+from stickslip.sweeps.design.design import GRID, IN_WORDS
 from stickslip.sweeps.design.series import PREFIX, TIME
 from stickslip.sweeps.execution.outcome import MEANINGS, NOT_RUN
 from stickslip.sweeps.execution.plan import Plan
@@ -29,8 +36,8 @@ COMPRESSED = (ZstdCodec(), Crc32cCodec())
 
 
 def lay_out(plan: Plan, place: Any) -> None:
-    """Create a store (a folder or a zarr store) with its attributes and coordinates, and with variables that are still empty."""
-    group = zarr.create_group(place, attributes=attributes(plan), overwrite=True)
+    """Create a store in an empty place, with its attributes and coordinates, and with variables that are still empty."""
+    group = zarr.create_group(place, attributes=attributes(plan))
     design, series = plan.design, plan.work.series
     for one, column in zip(design.parameters, design.columns, strict=True):
         about = {"long_name": one.declared.meaning, "log": int(one.name in design.logs)} | ({"units": one.unit} if one.unit else {})
@@ -108,3 +115,56 @@ def attributes(plan: Plan) -> dict[str, Any]:
         "design": json.dumps(about if design.seed is None else about | {"seed": design.seed}),
         "stickslip_sweep": FORMAT,
     }
+
+
+# ---- reading what somebody else may have written -----------------------------------------------------------------------------
+
+
+@contextmanager
+def reading(place: Any) -> Iterator[None]:
+    """Turn every error in the `with` block, which reads a store, into an InputError with a message of one line."""
+    try:
+        yield
+    except InputError as error:
+        text = str(error)
+        raise (error if text.startswith(f"{place}: ") else InputError(f"{place}: not the store of a sweep: {text}")) from None
+    except Exception as error:  # the libraries raise errors of many kinds for a damaged file
+        text = f"{type(error).__name__}: {clean(' '.join(str(error).split()))[:200]}"
+        raise InputError(f"{place}: cannot be read: {text}") from None
+
+
+def read_design(about: Mapping[str, Any]) -> tuple[str, list[str], tuple[int, ...]]:
+    """Return the kind of design, the keys and the shape of a chunk (empty for a refined map) from the attributes of a store.
+
+    Raises InputError if they are missing or no sweep can have them.
+    """
+    try:
+        found = json.loads(str(about.get("design")))
+        kind, keys, chunk = found["design"], found["keys"], found.get("chunk", [])
+        known = kind in (GRID, *IN_WORDS) and isinstance(keys, list) and isinstance(chunk, list)
+        known = known and all(isinstance(key, str) and key.isprintable() for key in keys)
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        known = False
+    if not known:
+        raise InputError(f"its design is {shown(about.get('design'))}")
+    return kind, keys, tuple(check_whole("the length of a chunk", one) for one in chunk)
+
+
+def check_contents(found: xr.Dataset) -> None:
+    """Refuse a dataset that no sweep has written: variables, types, dimensions and texts are checked. Raises InputError."""
+    _, keys, _ = read_design(found.attrs)
+    missing = [name for name in (STATUS, REASON, *keys) if name not in found.variables]
+    if missing:
+        raise InputError(f"it has no variable {missing[0]!r}")
+    own = {*keys, STATUS, REASON}
+    for name, variable in found.variables.items():
+        about = {key: variable.attrs.get(key, "") for key in ("long_name", "units")}
+        texts = [name, *about.values()]
+        if not all(isinstance(text, str) and text.isprintable() for text in texts):
+            raise InputError(f"the variable {ascii(name)[:60]} has the texts {shown(about)}")
+        if name in found.data_vars and name not in own and ("units" not in variable.attrs or variable.dtype.kind not in "if"):
+            raise InputError(f"the variable {name!r} is no quantity with a unit")
+        if len(set(variable.dims)) < variable.ndim:
+            raise InputError(f"the variable {name!r} has a dimension twice")
+    if found[STATUS].dtype.kind != "i":
+        raise InputError(f"the variable {STATUS!r} has no whole numbers")

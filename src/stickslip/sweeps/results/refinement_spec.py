@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from stickslip.foundation.arguments import check_whole
+from stickslip.foundation.arguments import check_whole, shown
 from stickslip.foundation.errors import InputError
 from stickslip.sweeps.design.adaptive_grid import Floats, Integers, Lattice, Refined, refine_cells
 from stickslip.sweeps.design.axis import Axis
@@ -64,7 +64,10 @@ class RefinementSpec:
         """Read the specification of a dataset. Raises InputError if it has none."""
         if ATTRIBUTE not in dataset.attrs:
             raise InputError("this sweep was not made by stickslip.refine")
-        return cls(**json.loads(dataset.attrs[ATTRIBUTE]))
+        try:
+            return cls(**json.loads(dataset.attrs[ATTRIBUTE]))
+        except (TypeError, ValueError, AttributeError, RecursionError):
+            raise InputError(f"the search of this map is {shown(dataset.attrs[ATTRIBUTE])}, which no search is") from None
 
     def __str__(self) -> str:
         return json.dumps(asdict(self))

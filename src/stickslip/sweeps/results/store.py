@@ -9,7 +9,6 @@ run again. Nothing in the store depends on when, in which order or by which proc
 from __future__ import annotations
 
 import errno
-import shutil
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
@@ -22,13 +21,13 @@ import xarray as xr
 import zarr
 from zarr.storage import MemoryStore
 
-from stickslip.foundation.atomic_write import draft_beside, held, sync_folder
+from stickslip.foundation.atomic_write import held, write_atomically
 from stickslip.foundation.errors import InputError
 from stickslip.sweeps.execution.chunk import ChunkResult
 from stickslip.sweeps.execution.outcome import NOT_RUN
 from stickslip.sweeps.execution.plan import Plan
 from stickslip.sweeps.results.checksums import FOLDER, LAYOUT, check_all, is_vouched_for, vouch_for, vouch_for_layout, withdraw
-from stickslip.sweeps.results.layout import REASON, STATUS, array_of, lay_out
+from stickslip.sweeps.results.layout import REASON, STATUS, array_of, check_contents, lay_out, reading
 from stickslip.sweeps.results.store_compatibility import as_begun
 
 
@@ -57,9 +56,10 @@ class ResultStore:
         check_store(path)
         store = cls(as_begun(plan, path), path)
         store._lock.enter_context(held(path, f"{path}: another sweep is writing into it"))
-        for draft in path.rglob("*.partial"):  # left by a sweep that was killed while it wrote
-            draft.unlink()
         with writing(path):
+            for draft in path.rglob("*.partial"):  # left by a sweep that was killed while it wrote
+                if draft.is_file():
+                    draft.unlink()
             for chunk in store.chunks_without_checksums():
                 (path / store.files_of(chunk)[0]).unlink(missing_ok=True)
         return store
@@ -91,7 +91,8 @@ class ResultStore:
     @property
     def status(self) -> np.ndarray[Any, np.dtype[np.int8]]:
         """The status codes of all members (`outcome.MEANINGS`), in the shape of the design."""
-        return np.asarray(array_of(self.group, STATUS)[...])
+        with reading(self.place):
+            return np.asarray(array_of(self.group, STATUS)[...])
 
     def write(self, chunk: int, result: ChunkResult) -> None:
         """Store the results of a chunk, in place of earlier ones if there are any. Raises InputError if they cannot be written."""
@@ -112,9 +113,10 @@ class ResultStore:
 
     def dataset(self) -> xr.Dataset:
         """Return the contents as a dataset, read lazily from a folder, or as arrays from a store in memory."""
-        found: xr.Dataset = xr.open_zarr(self.place, chunks=None, consolidated=isinstance(self.place, Path))
-        ordered = found[[*self.plan.work.names, STATUS, REASON]]
-        return ordered if isinstance(self.place, Path) else ordered.load()
+        with reading(self.place):
+            found: xr.Dataset = xr.open_zarr(self.place, chunks=None, consolidated=isinstance(self.place, Path))
+            ordered = found[[*self.plan.work.names, STATUS, REASON]]
+            return ordered if isinstance(self.place, Path) else ordered.load()
 
 
 @contextmanager
@@ -125,7 +127,8 @@ def writing(place: Path | MemoryStore) -> Iterator[None]:
     except OSError as error:
         full = error.errno in (errno.ENOSPC, errno.EDQUOT)
         kept = "; the results so far can be read, and the same command continues when there is room" if full else ""
-        raise InputError(f"{place}: cannot be written: {error.strerror or error}{kept}") from None
+        where = ascii(error.filename)[1:-1] if error.filename else place
+        raise InputError(f"{where}: cannot be written: {error.strerror or error}{kept}") from None
 
 
 def check_store(path: Path) -> set[str]:
@@ -166,11 +169,11 @@ def open_store(path: str | Path) -> xr.Dataset:
     for file in path.glob(f"{STATUS}/c*"):
         if file.relative_to(path).as_posix() not in listed and file.suffix != ".partial":
             raise InputError(f"{path}: has members without checksums, where a sweep was stopped: run the same sweep again")
-    try:
+    with reading(path), warnings.catch_warnings():
+        warnings.simplefilter("ignore", category=UserWarning)  # of a dimension that is there twice, which is refused
         found: xr.Dataset = xr.open_zarr(path, chunks=None)
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise InputError(f"{path}: cannot be read: {' '.join(str(error).split())[:200]}") from None
-    return found
+        check_contents(found)
+        return found
 
 
 def publish(path: Path, fill: Callable[[Path], object]) -> None:
@@ -178,16 +181,14 @@ def publish(path: Path, fill: Callable[[Path], object]) -> None:
 
     Raises InputError.
     """
-    draft = draft_beside(path)
-    try:
-        with writing(path):
-            fill(draft)
-            with warnings.catch_warnings():
-                # zarr warns that consolidated metadata is not part of its format, but xarray reads it.
-                warnings.simplefilter("ignore", category=UserWarning)
-                zarr.consolidate_metadata(draft)
-            vouch_for_layout(draft)
-            draft.replace(path)
-            sync_folder(path.parent)
-    finally:
-        shutil.rmtree(draft, ignore_errors=True)
+
+    def write(draft: Path) -> None:
+        fill(draft)
+        with warnings.catch_warnings():
+            # zarr warns that consolidated metadata is not part of its format, but xarray reads it.
+            warnings.simplefilter("ignore", category=UserWarning)
+            zarr.consolidate_metadata(draft)
+        vouch_for_layout(draft)
+
+    with writing(path):
+        write_atomically(path, write, folder=True)
