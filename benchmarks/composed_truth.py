@@ -17,7 +17,7 @@ from benchmarks.composed_laws import BLOCK, SLAB, Composed
 from benchmarks.enclosures import Floats, Interval, Law
 
 RATIO = 0.05
-NARROW = 0.01
+NARROW = 2e-4
 SHORTEST = 3e-15
 """Length of a piece (m) that is not halved any more."""
 FINEST = 1e-9

@@ -24,7 +24,7 @@ CLOSE = 1e-7
 
 AXIS = ss.SpringBlock(mass=10.0, stiffness=2e5, normal_force=100.0)
 FAULT = ss.SpringBlock(mass=1e6, stiffness=1e7, normal_force=1e8)
-SLAB = ss.ElasticSlab(density=2800.0, wave_speed=3500.0, thickness=1e3, normal_stress=1e7)
+SLAB = ss.ElasticSlab(density=2800.0, wave_speed=3500.0, thickness=100.0, normal_stress=1e7)
 SWING = ss.loading.Sinusoidal(mean=0.0, amplitude=2e-3, period=0.2)
 
 
@@ -225,14 +225,16 @@ def slab_truth(one: Truth, problem: Any, t: Floats) -> tuple[Floats, Floats]:
         def missing(v: float) -> float:
             return body.impedance * v + body.normal_stress * one.mu(v, w) - force
 
-        far = (abs(force) + 10.0 * body.normal_stress) / body.impedance
+        far = 1.0
+        while missing(far) < 0.0 or missing(-far) > 0.0:
+            far *= 10.0
         return float(brentq(missing, -far, far, xtol=1e-18, rtol=1e-14))
 
     y, n = np.array([0.0, problem.state]), 0
     while n * trip < t[-1]:
         found = solve_ivp(
             lambda s, y: [v := solved(load(s), float(y[1])), one.change(v, float(y[1]))],
-            (n * trip, (n + 1) * trip), y, "Radau", dense_output=True, rtol=1e-10, atol=1e-15,
+            (n * trip, (n + 1) * trip), y, "DOP853", dense_output=True, rtol=1e-11, atol=1e-15, first_step=1e-9, max_step=4e-5,
         )  # fmt: skip
         past.append(found.sol)
         y, n = found.y[:, -1], n + 1
