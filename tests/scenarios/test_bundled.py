@@ -14,7 +14,7 @@ YEAR = 31_557_600.0
 
 
 VARYING = ("slide-hold-slide-block", "stress-pulse-slab", "tides-block", "velocity-steps-block")
-LABORATORY = ("bowed-string-slab", "direct-shear-block", "granite-slab", "kolsky-slab")
+LABORATORY = ("bowed-string-slab", "direct-shear-block", "granite-slab", "kolsky-slab", "reversing-axis")
 OURS = (*LABORATORY, "block-or-slab", "cycles-block", "cycles-slab", "rate-and-state-block", "rate-and-state-slab", *VARYING)
 PAPERS = [name for name in library.names() if name not in OURS]
 

@@ -157,6 +157,11 @@ class FrictionLaw(LawContract):
         return knotted or _contain(self.trees(), variable)
 
     @property
+    def creeps(self) -> bool:
+        """True if the contact never rests, but slips at rates that differ by orders of magnitude, as faults do."""
+        return not self.sticks and not (self.state is not None and self.state.reverses)
+
+    @property
     @override
     def bends_one_way(self) -> bool:
         return not self.depends_on_rate

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, TypeVar, Unpack
+from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -82,11 +82,17 @@ class Plots(Generic[Run]):
 
         return known_to_pyplot(one_curve.draw(self._run, name, start, end, **place), place)
 
-    def friction(self, start: float | None = None, end: float | None = None, **place: Unpack[Place]) -> Figure | Axes:
-        """Draw the friction coefficient against slip, as papers on laboratory friction do."""
+    def friction(
+        self,
+        start: float | None = None,
+        end: float | None = None,
+        against: Literal["slip", "slip_rate"] = "slip",
+        **place: Unpack[Place],
+    ) -> Figure | Axes:
+        """Draw the friction coefficient against slip, as papers on laboratory friction do, or against slip rate."""
         from stickslip.figures.runs import friction
 
-        return known_to_pyplot(friction.draw(self._run, start, end, **place), place)
+        return known_to_pyplot(friction.draw(self._run, start, end, against, **place), place)
 
     def field(self, start: float | None = None, end: float | None = None, **place: Unpack[Place]) -> Figure:
         """Draw velocity and stress in the slab over time, with characteristics, above the curves of the contact.

@@ -32,6 +32,7 @@ _SECTIONS = {
         "kolsky-slab",
         "cycles-slab",
         "bowed-string-slab",
+        "reversing-axis",
     ),
 }
 OTHERS = "Faults and other cases"

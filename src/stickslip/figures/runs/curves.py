@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -56,12 +57,11 @@ def set_time(axes: Axes, readings: Readings, span: Span) -> None:
 
 
 def draw_curve(axes: Axes, readings: Readings, name: Curve, span: Span) -> None:
-    """Draw one curve against time, with its label; the slip rate on a logarithmic axis if the friction law never sticks."""
+    """Draw one curve against time, with its label; the slip rate on a logarithmic axis if the contact creeps at rest."""
     time, values = readings.curve(name, *span)
     settled = after_start(readings, time, span)
-    log = name == "slip_rate" and not readings.problem.friction.sticks
+    log = name == "slip_rate" and readings.problem.friction.creeps
     if log:
-        # A contact that never sticks slips at widely different rates.
         values = np.where((values != 0.0) & settled, np.abs(values), np.nan)
     elif name == "traction":
         values = np.where(settled, values, np.nan)
@@ -92,7 +92,7 @@ def after_start(readings: Readings, time: Floats, span: Span) -> Floats:
     A contact whose law never sticks starts at a slip rate of 0, far below all that follow, and a block accelerates from there
     within one period. If no more is shown than that, all times count.
     """
-    if readings.problem.friction.sticks or span[0] > 0.0 or "event_slip" in readings.curves:
+    if not readings.problem.friction.creeps or span[0] > 0.0 or "event_slip" in readings.curves:
         return np.ones(time.shape, bool)
     lasts = 0.0 if readings.problem.body.has_waves else readings.problem.body.round_trip_time
     if lasts > BRIEF * (span[1] - span[0]):
@@ -135,23 +135,24 @@ def draw_stress(axes: Axes, readings: Readings, span: Span) -> None:
         fit_height(axes, [load / size, traction / size])
 
 
-def draw_friction(axes: Axes, readings: Readings, span: Span, *, against_slip: bool = False) -> None:
-    """Draw the friction coefficient and the load over the normal load, against time or against slip."""
+def draw_friction(axes: Axes, readings: Readings, span: Span, against: Literal["time", "slip", "slip_rate"] = "time") -> None:
+    """Draw the friction coefficient, against time beside the load over the normal load, or against slip or slip rate."""
     normal, slip = readings.problem.normal, readings.curves[0]
     time, (load, traction) = readings.curves_together(("load", "traction"), *span)
     across, settled = time / time_unit(span[1] - span[0])[1], after_start(readings, time, span)
     traction, load = (np.where(settled, values, np.nan) for values in (traction, load))
-    if against_slip:
-        moved = getattr(readings, slip)(time)
-        unit, size = unit_of("m", moved)
+    if against != "time":
+        shown: Curve = slip if against == "slip" else "slip_rate"
+        moved = getattr(readings, shown)(time)
+        unit, size = unit_of(_unit(readings, shown), moved)
         across = moved / size
-        axes.set_xlabel(curve_label(slip, unit))
+        axes.set_xlabel(curve_label(shown, unit))
     else:
         name = "spring force" if readings.problem.load_unit == "N" else "load"
         axes.plot(across, load / normal, color=INK, linewidth=1.0, linestyle="--", label=rf"{name} over normal load, $\beta/S$")
     axes.plot(across, traction / normal, color=VERMILLION, label=r"friction coefficient $\mu=\tau/S$")
     axes.set_ylabel(curve_label("friction"))
-    fit_height(axes, [traction / normal] if against_slip else [traction / normal, load / normal])
+    fit_height(axes, [traction / normal] if against != "time" else [traction / normal, load / normal])
 
 
 def mark_shocks(panels: Sequence[Axes], readings: Readings, span: Span) -> None:

@@ -46,7 +46,7 @@ def draw(readings: Readings, start: float | None = None, end: float | None = Non
         draw_loading(last, readings, *span)
     set_time(last, readings, span)
     for panel in panels["slip"]:
-        draw_friction(panel, readings, span, against_slip=True)
+        draw_friction(panel, readings, span, "slip")
     add_legend(stress, [mark for panel in (stress, *panels["loading"]) for mark in panel.get_legend_handles_labels()[0]])
     letter_panels([panel for group in panels.values() for panel in group])
     set_title(figure, title_of(readings))

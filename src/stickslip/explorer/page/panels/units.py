@@ -26,7 +26,7 @@ def units_of(answer: Answer, kept: Answer | None = None) -> Units:
     offset = float(main.traction[0]) if nearly_flat(*stresses) else 0.0
     slips = [motion.slip for motion in (*held(answer, "slip"), *further)]
     rates = [motion.slip_rate for motion in (*held(answer, "slip_rate"), *further)]
-    log = not answer.solution.problem.friction.sticks  # slip rates are then never zero, and differ widely
+    log = answer.solution.problem.friction.creeps  # slip rates are then never zero, and differ widely
     span, window = np.ptp(main.time), np.ptp(answer.energy.time)
     whole = window >= WHOLE * span
     return Units(
