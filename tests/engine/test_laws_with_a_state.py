@@ -250,3 +250,13 @@ def test_a_slab_follows_the_method_of_steps(one: Truth, load: float) -> None:
     run, t = ss.simulate(problem, 2.4 * trip), np.linspace(0.0, 2.4 * trip, 49)
     slip, state_then = slab_truth(one, problem, t)
     assert largest_difference(run, t, slip, state_then) < CLOSE
+
+
+def test_a_massless_contact_whose_friction_falls_with_slip_rate_ends_in_words() -> None:
+    law = ss.friction.FromExpression("0.6 + z - 0.2*(1 - exp(-v/0.01))", evolution="dz/dt = -z")
+    problem = ss.Problem(SLAB, law, initial_load=0.61e7)
+    assert "as long as friction" in ss.uniqueness(problem).summary
+    with pytest.raises(ss.InputError, match="no step from here obeys the contact equation"):
+        ss.simulate(problem, 1.0)
+    with_mass = ss.ElasticSlab(2800.0, 3500.0, 100.0, 1e7, contact_mass=1e3)
+    assert ss.simulate(ss.Problem(with_mass, law, initial_load=0.61e7), 0.1).status.ok

@@ -24,6 +24,7 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief, html_table
 from stickslip.foundation.quantities import quantities_of
+from stickslip.friction.statements import rises_with_rate
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SELECTION_RULES
 
@@ -225,7 +226,8 @@ def _determined(problem: Problem, slip: float | None) -> Uniqueness:
         mass = "The contact mass" if problem.body.has_waves else "The block"
         return Uniqueness("regular", problem.rule, _INERTIA.format(body=mass, rule=problem.rule))
     if problem.friction.state is not None:
-        return Uniqueness("regular", problem.rule, _STATE.format(law=type(problem.friction).__name__, rule=problem.rule))
+        text = _STATE if rises_with_rate(problem.friction) else _STATE_FALLS
+        return Uniqueness("regular", problem.rule, text.format(law=type(problem.friction).__name__, rule=problem.rule))
     g = resistance(problem, slip)
     proof = _proof(g)
     stable = branches_of(g, proof)
@@ -292,6 +294,11 @@ _INERTIA = (
 _STATE = (
     "{law}: regular. The slip rate follows from load and state, and is unique: at a given state friction does not fall with the "
     "slip rate. The selection rule ({rule}) has no effect."
+)
+_STATE_FALLS = (
+    "{law}: regular as long as friction, at a given state, falls with the slip rate by less than waves carry away. The slip rate "
+    "then follows from load and state, and is unique. A run that is seen to get beyond that ends as off the law; a contact with "
+    "mass goes on. The selection rule ({rule}) has no effect."
 )
 
 

@@ -176,6 +176,16 @@ def _slopes(law: FrictionLaw, slip: Floats, rate: Floats | float, state: Floats)
     return slope
 
 
+def rises_with_rate(law: FrictionLaw) -> bool:
+    """Return False if friction of a law with a state falls with the slip rate at one of many slip rates and steady states."""
+    rates = _rates(law)[1:]
+    steady = law.steady_state(rates)
+    states = [0.0] if steady is None else [law.inner_state(float(one)) for one in steady[:: len(rates) // SOME]]
+    with np.errstate(all="ignore"):
+        slopes = _slopes(law, np.zeros((1, 1)), rates, np.array(states)[:, None])
+    return not bool(np.any(slopes < 0.0))
+
+
 def _beside(law: FrictionLaw, variable: str) -> Floats:
     """Return places at the knots of a law, and just below them, if the knots are in the given variable."""
     knots = np.asarray(law.knots if law.knot_variable == variable else (), float)

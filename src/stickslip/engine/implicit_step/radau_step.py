@@ -92,9 +92,10 @@ def start_of_step(run: Run) -> float:
             run.stage_rate[0] = 0.0
     elif run.counts.has_inertia == 0:
         run.stage_rate[0] = rate_at_load(run, run.load_along_slip[0], abs(state.rate_now))
-        contact_at(run, state.law_slip, run.stage_rate[0], state.state_now)
-        if run.params.impedance + run.params.normal * run.value.by_rate <= 0.0:
-            run.counts.breach = Stop.OFF_THE_LAW  # several slip rates may balance the load, and nothing selects one
+        for rate in (0.0, run.stage_rate[0]):
+            contact_at(run, state.law_slip, rate, state.state_now)
+            if run.counts.has_state == 1 and run.params.impedance + run.params.normal * run.value.by_rate <= 0.0:
+                run.counts.breach = Stop.OFF_THE_LAW  # several slip rates may balance the load, and nothing selects one
     return force
 
 
