@@ -112,6 +112,12 @@ def make_room(largest: int = LARGEST) -> None:
             excess -= size
 
 
+@cache
+def _tidy() -> None:
+    """Make room once in each process that writes: to look at all files for each function would slow down a first start."""
+    make_room()
+
+
 class _SealedFile(IndexDataCacheFile):
     """The cache files of one function, each with a checksum. A damaged file is removed and counts as missing."""
 
@@ -218,7 +224,7 @@ class SealedCache(FunctionCache):
             return
         try:
             super().save_overload(signature, data)
-            make_room()
+            _tidy()
         except OSError as error:
             tell(
                 f"compiled code cannot be kept in {CACHE}: {error.strerror}; later starts compile again; "
