@@ -340,17 +340,21 @@ class History:
         walked = self.mode(at) * grown if self.problem.friction.counts == "path" else grown
         return np.where(at.before, self.problem.law_slip, self.problem.law_slip + self.store.law_slip[at.piece] + walked)
 
+    def resistance(self, at: Positions) -> Floats:
+        """Return the traction of the law against slip, S mu(u, |v|, state), slab: Pa, block: N."""
+        law, state = self.problem.friction, self.state(at)
+        if law.state is not None and law.state.reverses:
+            state = np.where(self.mode(at) < 0, -state, state)
+        return np.asarray(self.problem.normal * law.coefficient(self.law_slip(at), np.abs(self.rate(at)), state))
+
     def friction(self, at: Positions) -> Floats:
         """Return the friction traction minus the reference strength, with the sign of the load."""
         excess, rate = self.excess(at), self.rate(at)
         body = self.problem.body
         if not body.has_inertia:
             return excess - body.damping * rate
-        law, mode = self.problem.friction, self.mode(at)
-        if law.state is not None and law.state.reverses:
-            towards = np.where(mode < 0, -1.0, 1.0)
-            coefficient = law.coefficient(self.law_slip(at), np.abs(rate), towards * self.state(at))
-            return towards * self.problem.normal * coefficient - self.problem.strength
-        coefficient = law.coefficient(self.law_slip(at), np.abs(rate), self.state(at))
-        by_law = mode * self.problem.normal * coefficient - self.problem.strength
+        state, mode = self.problem.friction.state, self.mode(at)
+        by_law = np.where(mode < 0, -1.0, 1.0) * self.resistance(at) - self.problem.strength
+        if state is not None and state.reverses:  # such a state holds a traction at rest, too
+            return by_law
         return np.where((mode == 0) | (at.before & (rate == 0.0)), excess, by_law)

@@ -214,23 +214,9 @@ def heat(history: History, at: Positions, nodes: int = FULL) -> Floats:
     return up_to(history, at, _heating(history), np.flatnonzero(history.store.mode), nodes=nodes)
 
 
-def resistance(history: History) -> Integrand:
-    """Return the traction against slip while the contact slips as a function of positions (slab: Pa, block: N): S mu(u, |v|)."""
-    problem, law = history.problem, history.problem.friction
-
-    def traction(at: Positions) -> Floats:
-        mode, grown = history.store.mode[at.piece], history.grown(at)
-        walked = mode * grown if law.counts == "path" else grown
-        slip = problem.law_slip + history.store.law_slip[at.piece] + walked
-        return problem.normal * law.coefficient(slip, np.abs(history.rate(at)), history.state(at))
-
-    return traction
-
-
 def _heating(history: History) -> Integrand:
     """Return the power of friction heat as a function of positions (slab: W/m^2, block: W)."""
-    traction = resistance(history)
-    return lambda at: traction(at) * np.abs(history.rate(at))
+    return lambda at: history.resistance(at) * np.abs(history.rate(at))
 
 
 def _damping(history: History) -> Integrand:

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.observables.energy.balance import resistance
 from stickslip.observables.quadrature import between
 from stickslip.trajectory.history import Floats, History, Positions
 from stickslip.trajectory.slip_events import SlipEvents, walk
@@ -65,7 +64,7 @@ class Pulses(NamedTuple):
 
     def fracture(self, history: History) -> Floats:
         """Return the fracture energy of each pulse, J/m^2 (block: J)."""
-        traction, reference = resistance(history), history.problem.strength
+        traction, reference = history.resistance, history.problem.strength
 
         def power(at: Positions) -> Floats:
             return (traction(at) - reference) * np.abs(history.rate(at))
@@ -79,7 +78,7 @@ class Pulses(NamedTuple):
 
     def smallest_traction(self, history: History) -> Floats:
         """Return the smallest traction of each pulse against its slip (Pa, block: N)."""
-        return resistance(history)(self.weakest)
+        return history.resistance(self.weakest)
 
 
 def pulses_table(history: History, threshold: float) -> pd.DataFrame:
@@ -148,6 +147,6 @@ def _weakest(history: History, begin: Positions, end: Positions) -> Positions:
 def _lowest(history: History, piece: NDArray[np.intp], low: Floats, high: Floats) -> tuple[Floats, Floats]:
     """Return the place on a grid from low to high (xi) at which the traction in each piece is smallest, and that traction."""
     xi = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, GRID)
-    values = resistance(history)(Positions.inside(np.repeat(piece, GRID), xi.ravel())).reshape(xi.shape)
+    values = history.resistance(Positions.inside(np.repeat(piece, GRID), xi.ravel())).reshape(xi.shape)
     chosen = np.arange(len(piece)), np.argmin(values, axis=1)
     return xi[chosen], values[chosen]
