@@ -93,14 +93,14 @@ NAMED = (
     Named(
         "heat-without-slip-rate",
         "observables/energy/balance.py",
-        "return lambda at: traction(at) * np.abs(history.rate(at))",
-        "return lambda at: traction(at) * history.rate(at)",
+        "return lambda at: history.resistance(at) * np.abs(history.rate(at))",
+        "return lambda at: history.resistance(at) * history.rate(at)",
     ),
     Named(
         "heat-at-zero-rate",
-        "observables/energy/balance.py",
-        "law.coefficient(slip, np.abs(history.rate(at)), history",
-        "law.coefficient(slip, 0.0 * np.abs(history.rate(at)), history",
+        "trajectory/history.py",
+        "law.coefficient(self.law_slip(at), np.abs(self.rate(at)), state)",
+        "law.coefficient(self.law_slip(at), 0.0 * np.abs(self.rate(at)), state)",
     ),
     Named(
         "no-kinetic-energy-of-the-block",

@@ -18,7 +18,7 @@ from stickslip.engine.state.workspace import counts_in, state_in
 from stickslip.engine_input.automatic import wait_for_creep
 from stickslip.engine_input.prepare import prepare
 from stickslip.friction import LAWS
-from stickslip.run.run_loop import split_time
+from stickslip.run.session import split_time
 from stickslip.scenarios.scenario import Scenario
 from stickslip.trajectory.slip_events import default_event_rate
 

@@ -58,4 +58,8 @@ def test_each_mutant_knows_the_function_around_it() -> None:
         for mutant in named(ROOT)
         if mutant.path in ("trajectory/history.py", "foundation/constants.py")
     }
-    assert around == {"left-and-right-exchanged": "History.find", "year-of-365-days": None}
+    assert around == {
+        "left-and-right-exchanged": "History.find",
+        "heat-at-zero-rate": "History.resistance",
+        "year-of-365-days": None,
+    }

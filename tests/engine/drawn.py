@@ -31,12 +31,18 @@ def bodies(draw: st.DrawFn) -> Any:
     return ss.ElasticSlab(2800, 3500, slab.thickness, NORMAL, driver, draw(st.sampled_from([0.0, 0.0, 1e2, 1e5])))
 
 
+def states(law: ss.friction.FrictionLaw) -> st.SearchStrategy[float]:
+    """Draw a state: a time (s), a coefficient of friction, or a bending (m) in either direction."""
+    assert law.state is not None
+    return {"s": st.floats(1e-3, 1e6), "1": st.floats(0.2, 1.2), "m": st.floats(-1e-3, 1e-3)}[law.state.unit]
+
+
 @st.composite
 def problems(draw: st.DrawFn, kind: str) -> ss.Problem:
     law, body = draw(laws(kind)), draw(bodies())
     share, pull = draw(st.floats(-1.3, 1.3)), draw(st.sampled_from([0.0, 1e-9, 1e-3, -1e-3, 0.3]))
     strength = NORMAL * (float(law.static_coefficient(0.0)) if law.sticks else 0.7)
-    start: dict[str, Any] = {} if law.sticks else {"initial_state": draw(st.floats(1e-3, 1e6))}
+    start: dict[str, Any] = {} if law.sticks else {"initial_state": draw(states(law))}
     rule = draw(st.sampled_from(SELECTION_RULES))
     return ss.Problem(body, law, pull_rate=pull, initial_load=share * strength, selection=rule, **start)
 

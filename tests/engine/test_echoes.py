@@ -9,7 +9,6 @@ import stickslip as ss
 from stickslip.engine.state import layout as at
 from stickslip.engine.waves.echo_queue import NOTHING
 from stickslip.run.options import RunOptions
-from stickslip.run.run_loop import split_time
 from stickslip.run.session import Session
 from stickslip.trajectory.phase_index import Phases
 
@@ -56,9 +55,9 @@ def test_the_side_decides_which_piece_is_read_at_a_border() -> None:
 @pytest.mark.parametrize("problem", [FRAGMENTS, HEALING], ids=["fragments", "healing"])
 def test_echo_queue_finds_every_onset(problem: ss.Problem) -> None:
     """Before each round trip that is met all that stands in the slab keeps within the strength, sampled; abs 1e-6 Pa."""
-    run, last, met = Session.begin(problem, RunOptions(2000.0)), split_time(2000.0, problem.round_trip_time), 0
+    run, met = Session.begin(problem, RunOptions(2000.0)), 0
     impedance, ramp = SLAB.impedance, float(run.setup.params.ramp)
-    while run.advance(last, 1) == -1 and met < 150:
+    while run.advance(1) == -1 and met < 150:
         between_trips = run.count.sparse and run.count.ready == 0 and run.count.behind == NOTHING
         if not between_trips or run.count.new_from != run.length or run.count.mode != 0:
             continue

@@ -170,6 +170,24 @@ def kolsky_bar(names: Names) -> None:
     close(names["event"].peak_rate, (68e6 - 25e6) / 8.7e6, 1e-4)
 
 
+@check
+def reversing_axis(names: Names) -> None:
+    """The run, and the work of friction in a cycle, are those of an integrator that knows the equations only (1e-7)."""
+    from scipy.integrate import solve_ivp
+
+    def motion(t: float, y: Any) -> list[float]:
+        u, v, z, _ = y
+        pulled = 0.01 * 0.2 / (2 * math.pi) * (1 - math.cos(2 * math.pi * t / 0.2))
+        rest = 0.10 + 0.05 * math.exp(-((v / 1e-3) ** 2))
+        bent = v - abs(v) * 1e4 * z / rest
+        force = 100.0 * (1e4 * z + 3.0 * bent + 0.04 * v)
+        return [v, (2e5 * (pulled - u) - force) / 10.0, bent, force * v]
+
+    found = solve_ivp(motion, (0.0, 0.4), [0.0] * 4, method="Radau", rtol=1e-10, atol=1e-14, t_eval=[0.2, 0.3, 0.4])
+    close(names["run"].slip([0.3]), found.y[0, 1:2], 1e-7)
+    close(names["work"], found.y[3, 2] - found.y[3, 0], 1e-6)  # a sum over 20001 places
+
+
 @pytest.fixture(autouse=True)
 def _own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.chdir(tmp_path)

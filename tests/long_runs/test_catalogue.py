@@ -16,7 +16,6 @@ import xarray as xr
 
 import stickslip as ss
 from stickslip.io.catalogue_rows import RowsInMemory
-from stickslip.observables.event_stream import EventStream
 from stickslip.run import catalogue as module
 from stickslip.run.catalogue import EventRows
 from stickslip.run.monitor import Monitor
@@ -24,8 +23,7 @@ from stickslip.run.options import RunOptions
 from stickslip.run.progress import Report
 from stickslip.run.resume import PausedCatalogue
 from stickslip.run.run_loop import run_loop
-from stickslip.run.session import Session
-from stickslip.trajectory.slip_events import default_event_rate
+from stickslip.run.session import Session, split_time
 from stickslip.trajectory.tables import ENERGY_COLUMNS
 from tests.long_runs.problems import RUNS, bundled, differences
 from tests.long_runs.processes import killed
@@ -123,11 +121,12 @@ def test_memory_does_not_grow_with_the_number_of_events(monkeypatch: pytest.Monk
     problem, duration = bundled("cycles-block", 1500.0)
     run = Session.begin(problem, RunOptions(duration))
     monkeypatch.setattr(EventRows, "record", lambda self, run, stream, look: (look.tell(), self._remember(run, stream)))
-    stream = EventStream(problem, default_event_rate(problem), float(run.setup.params.ramp))
+    stream = run.events()
     monitor = Monitor.of(run, EventRows(RowsInMemory()), stream)
     capacities = {len(run.store.pieces)}
     for share in (0.01, 0.1, 1.0):
-        run_loop(run, share * duration, monitor)
+        run.last = split_time(share * duration, problem.round_trip_time)
+        run_loop(run, monitor)
         run.count.to_the_end, run.before_end = 0, None
         capacities.add(len(run.store.pieces))
     assert stream.told > 9_000

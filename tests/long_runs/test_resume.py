@@ -18,7 +18,6 @@ from stickslip.io.netcdf import save_checkpoint
 from stickslip.run.options import RunOptions
 from stickslip.run.progress import Report
 from stickslip.run.resume import resume_run
-from stickslip.run.run_loop import split_time
 from stickslip.run.session import Session
 from stickslip.trajectory.checkpoint import Checkpoint
 from stickslip.trajectory.status import UNDER_WAY
@@ -28,9 +27,9 @@ from tests.long_runs.processes import killed
 
 def steps_of(problem: ss.Problem, duration: float) -> int:
     """Steps (calls of the engine with a budget of one) that a run takes, to 1000 at least."""
-    run, last = Session.begin(problem, RunOptions(duration)), split_time(duration, problem.round_trip_time)
+    run = Session.begin(problem, RunOptions(duration))
     for steps in range(100_000):
-        code = run.advance(last, 1)
+        code = run.advance(1)
         if code == Stop.FULL:
             run.grow(10**6)
         elif code != Stop.NONE:
@@ -40,11 +39,11 @@ def steps_of(problem: ss.Problem, duration: float) -> int:
 
 def stopped(problem: ss.Problem, duration: float, steps: int, path: Path) -> Checkpoint:
     """Write the checkpoint of a run that was stopped after so many steps, counted from the first piece of its history."""
-    run, last = Session.begin(problem, RunOptions(duration)), split_time(duration, problem.round_trip_time)
+    run = Session.begin(problem, RunOptions(duration))
     for step in range(100_000):
         if step >= steps and run.length > 0:
             break
-        if run.advance(last, 1) == Stop.FULL:
+        if run.advance(1) == Stop.FULL:
             run.grow(10**6)
     save_checkpoint(run.solution(UNDER_WAY), path)
     return run.snapshot()
@@ -78,9 +77,9 @@ def test_those_stops_meet_the_engine_in_every_state(tmp_path: Path) -> None:
     """At rest, in slip both explicit and implicit, on the way to a fold, within a piece, with crossings noted."""
     met = set()
     for problem, duration in RUNS.values():
-        run, last = Session.begin(problem, RunOptions(duration)), split_time(duration, problem.round_trip_time)
+        run = Session.begin(problem, RunOptions(duration))
         for _ in range(3000):
-            if run.advance(last, 1) not in (Stop.NONE, Stop.FULL) or run.length > 400:
+            if run.advance(1) not in (Stop.NONE, Stop.FULL) or run.length > 400:
                 break
             count, state = run.count, run.state
             met |= {"stick" if count.mode == 0 else "slip", f"at fold {count.at_fold}"}

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,7 +18,6 @@ from stickslip.run.options import RunOptions
 from stickslip.run.run_loop import run_loop
 from stickslip.run.session import Session
 from stickslip.scenarios.scenario import Scenario
-from stickslip.trajectory.slip_events import default_event_rate
 from stickslip.trajectory.status import INTERRUPTED
 
 if TYPE_CHECKING:
@@ -54,22 +53,22 @@ class Folding:
     counted: int = 0
     """Number of pieces whose shocks have been counted."""
 
-    def look(self, run: Session, *, now: bool) -> int | None:
+    def look(self, run: Any, *, now: bool) -> int | None:
         """End the run if the batch is to stop: see `run_loop.Watch`."""
         return INTERRUPTED if self.stop[0] != 0 else None
 
-    def make_room(self, run: Session) -> bool:
+    def make_room(self, run: Any) -> bool:
         """Reduce the events that are complete, and discard pieces whose waves have left the body: see `run_loop.Watch`.
 
         Returns False if that does not make enough room, and the history cannot grow any more either.
         """
         self.count_shocks(run.store, run.length)
-        look = self.stream.look(run.store, run.length)
+        look = self.stream.look(run.history())
         self.add(look.table())
         look.tell()
         if run.before_end is not None:
             return run.grow(LARGEST)
-        dropped = run.forget_before(self.stream.needed(run.store))
+        dropped = run.forget_before(self.stream.needed(run.history()))
         if dropped > 0:
             self.stream.forget(dropped)
             self.counted -= dropped
@@ -116,13 +115,13 @@ def run_alone(scenario: Scenario, capacity: int, stop: Integers, out: Floats) ->
     problem = scenario.problem
     run = Session.begin(problem, RunOptions.of(scenario))
     run.reserve(capacity)
-    stream = EventStream(problem, default_event_rate(problem), float(run.setup.params.ramp))
+    stream = run.events()
     out[:] = np.nan
     reduced = Reduced(out)
     reduced.events = reduced.pulses = reduced.shocks = 0.0
     watch = Folding(stream, stop, reduced)
-    code = run_loop(run, scenario.duration, watch)
+    code = run_loop(run, watch)
     watch.count_shocks(run.store, run.length)
-    watch.add(stream.look(run.store, run.length).table(unknown=True))
+    watch.add(stream.look(run.history()).table(unknown=True))
     fold_end(run.store.pieces[: run.length], problem.round_trip_time, scenario.duration, code, out)
     return code

@@ -21,7 +21,7 @@ from stickslip.engine_input.lumping_limits import LARGEST_SHARE, check_shortest_
 from stickslip.foundation.quantities import Quantity, quantities_of
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import DURATION, LARGEST_RTOL, RTOL, check_rtol
-from stickslip.run.run_loop import MOST_ROUND_TRIPS, check_round_trips
+from stickslip.run.session import MOST_ROUND_TRIPS, check_round_trips
 from stickslip.scenarios.scenario import Scenario
 
 Values = Mapping[str, Floats]

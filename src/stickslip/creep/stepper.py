@@ -76,22 +76,22 @@ class CreepLeaps:
         """Return True if the engine has paused for an attempt to leap."""
         return bool(count.pause_at <= count.trip <= last_trip and count.source == 0 and count.ready == Incoming.NONE)
 
-    def at_row_end(self, run: Session, last: tuple[int, float]) -> None:
+    def at_row_end(self, run: Session) -> None:
         """Leap if there is creep, and set when to try again.
 
-        The run, which lasts up to `last`, is at the end of a round trip; round trip `pause_at` comes next.
+        The run is at the end of a round trip; round trip `pause_at` comes next.
         """
         count = run.count
         if not self._creeps(run):
             count.pause_at, count.pause_for = count.trip + 1, 1
             return
-        planner = self._planner(run, last[0] - CHECKED - 2 - int(count.trip))
+        planner = self._planner(run, run.last[0] - CHECKED - 2 - int(count.trip))
         plan = planner.plan()
         if planner.at_end and count.to_the_end == 0:
             run.cut_at_end()
         before = run.snapshot()
         while plan is not None and plan.trips >= SHORTEST_LEAP:
-            if self._leap(run, planner.averaged, plan, last):
+            if self._leap(run, planner.averaged, plan):
                 count.pause_for = 1
                 return  # the next leap may follow at once
             run.restore(before)
@@ -141,14 +141,14 @@ class CreepLeaps:
 
     # ---- the leap -----------------------------------------------------------------------------------------------------------
 
-    def _leap(self, run: Session, averaged: AveragedCreep, plan: Plan, last: tuple[int, float]) -> bool:
+    def _leap(self, run: Session, averaged: AveragedCreep, plan: Plan) -> bool:
         """Leap, compute exact round trips after the landing, and return True if they continue as the leap predicts."""
         begun, slip = int(run.count.trip), float(run.state.slip_now)
         self._write(run, averaged, plan)
         delay = plan.error / plan.states[-1].rate * self.problem.round_trip_time
         self.taken[run.count.creep_leaps :] = [(begun, plan.trips, plan.error, delay)]
         run.count.creep_leaps += 1
-        if not self._goes_on(run, begun + plan.trips + 1 + CHECKED, last):
+        if not self._goes_on(run, begun + plan.trips + 1 + CHECKED):
             return False
         first, now = float(run.store.slip[run.count.previous_from]), float(run.state.slip_now)
         expected = averaged.reaching(plan.trips + CHECKED, *averaged.beyond(plan.states[-1], plan.trips + CHECKED)).slip
@@ -177,9 +177,9 @@ class CreepLeaps:
         count.mode = self.direction if end.slips else 0
         count.source = count.moved = count.trips_at_rest = count.leaving_rest = count.jump = count.cause = count.stalled = 0
 
-    def _goes_on(self, run: Session, row: int, last: tuple[int, float]) -> bool:
+    def _goes_on(self, run: Session, row: int) -> bool:
         """Compute exact round trips up to a row; return False if a rest that is leaped over, or a failure, comes first."""
-        while (code := run.step(last, STEPS)) in (Stop.NONE, Stop.FULL):
+        while (code := run.step(STEPS)) in (Stop.NONE, Stop.FULL):
             if code == Stop.FULL:
                 run.reserve(2 * len(run.store.pieces))
         return code == Stop.PAUSED and run.count.trip == row

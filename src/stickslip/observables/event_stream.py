@@ -6,15 +6,13 @@ direction) after the end of the event, or the slip rate has risen again. The row
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Integers, Store
+from stickslip.engine.state.layout import Integers
 from stickslip.observables.event_table import with_energies
-from stickslip.problem.problem import Problem
 from stickslip.trajectory.history import History
 from stickslip.trajectory.slip_events import NOT_YET, SlipEvents
 
@@ -39,29 +37,27 @@ WAVES_OF = 3
 class EventStream:
     """Follow a history and report its slip events.
 
-    `first` is the first piece that the stream still has to search, and `told` the number of events that it has reported. It also
-    needs the waves that travel in the body when piece `first` begins (see `needed`).
+    An event is slip at more than `threshold` (m/s). `first` is the first piece that the stream still has to search, and `told` the
+    number of events that it has reported. It also needs the waves that travel in the body when piece `first` begins (see `needed`).
     """
 
-    problem: Problem
     threshold: float
-    ramp: float
     first: int = 0
     last_start: Place = BEFORE  # of the last event that was reported
     told: int = 0
     energies: bool = False
     """True if the rows also hold the energies of the events."""
 
-    def needed(self, store: Store) -> int:
+    def needed(self, history: History) -> int:
         """Return the first piece of the history that is needed for new events and for the energy of the waves under way.
 
         The piece before the one in which the last event began tells whether slip began there from rest.
         """
-        return max(min(int(np.searchsorted(store.trip, store.trip[self.first] - WAVES_OF)), self.first - 1), 0)
+        trips = history.store.trip
+        return max(min(int(np.searchsorted(trips, trips[self.first] - WAVES_OF)), self.first - 1), 0)
 
-    def look(self, store: Store, length: int) -> Look:
-        """Return the new events in the first `length` pieces of a history."""
-        history = self.history(store, length)
+    def look(self, history: History) -> Look:
+        """Return the new events in a history."""
         events = SlipEvents.of(history, self.threshold, self.first)
         place = events.piece[0] + 0.5 * events.xi[0]
         old = int(np.searchsorted(place, self.last_start.piece + 0.5 * self.last_start.xi, "right"))
@@ -69,12 +65,6 @@ class EventStream:
         by = new.known_by(history)
         open_from = np.flatnonzero(~new.is_over | (by == NOT_YET))[:1]
         return Look(self, history, events, old, by[: open_from[0]] if open_from.size else by)
-
-    def history(self, store: Store, length: int) -> History:
-        """Return the history so far."""
-        kept, row = at.trimmed(store, length), self.problem.round_trip_time
-        reached = float(kept.trip[-1] * row + kept.phase_to[-1]) if len(kept.pieces) else 0.0
-        return History(kept, self.problem, row, self.ramp, reached)
 
     def forget(self, pieces: int) -> None:
         """Shift the piece numbers after the given number of pieces was removed from the start of the history."""
@@ -94,6 +84,10 @@ class Look:
     old: int
     known_by: Integers
     """For each new event that is final, the piece from which on it is final."""
+
+    def first_ones(self, count: int) -> Look:
+        """Return the first few of the new events."""
+        return replace(self, known_by=self.known_by[:count])
 
     def table(self, *, unknown: bool = False) -> pd.DataFrame:
         """Return the rows of the new events; with `unknown`, also of those that are not final at the end of the history."""

@@ -20,7 +20,7 @@ from stickslip.observables.predictability import attributes_of, is_followed, pre
 from stickslip.observables.proof import proof_from
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_event_rate
-from stickslip.run.monitor import run_to_end, stream_of
+from stickslip.run.monitor import run_to_end
 from stickslip.run.options import CHECKPOINT_EVERY, RunOptions, problem_and_options
 from stickslip.run.progress import Progress
 from stickslip.run.progress_line import told
@@ -116,7 +116,7 @@ def catalogue_of(
 ) -> Catalogue:
     """Run from the start; with a path, an earlier table and checkpoint of the same names are deleted first."""
     run = Session.begin(problem, replace(options, creep_rtol=leaps_with(energy, options.creep_rtol)))
-    stream = stream_of(run, event_rate, energy)
+    stream = run.events(event_rate, energy)
     if path is None:
         return follow(run, stream, RowsInMemory())
     rows = Rows(path)
@@ -213,7 +213,7 @@ class EventRows:
         Returns False if the store may not grow. Nothing is discarded after the checkpoint for a longer run has been stored, which
         refers to pieces by their number.
         """
-        dropped = run.forget_before(stream.needed(run.store)) if run.before_end is None else 0
+        dropped = run.forget_before(stream.needed(run.history())) if run.before_end is None else 0
         if dropped > 0:
             stream.forget(dropped)
             self._remember(run, stream)
@@ -229,7 +229,7 @@ class EventRows:
     def finish(self, run: Session, stream: EventStream, code: int) -> Catalogue:
         """Write the remaining rows, with one for an event that the end leaves open, and give the table its final format."""
         if code != ENOUGH_EVENTS:
-            self.rows.append(stream.look(run.store, run.length).table(unknown=True))
+            self.rows.append(stream.look(run.history()).table(unknown=True))
         solution = run.solution(code)
         known = is_followed(run.problem)
         prediction = predictability_of_events(self.rows.columns("start", "amplification"), run.options.rtol) if known else None

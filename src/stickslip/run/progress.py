@@ -6,13 +6,13 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Self
 
 from stickslip.foundation.formatting import about_time, in_unit, number
 
 if TYPE_CHECKING:
     from stickslip.run.options import RunOptions
-    from stickslip.run.session import Session
+    from stickslip.run.solver import Solver
 
 Doing = Literal["stuck", "creeping", "slipping"]
 
@@ -94,7 +94,7 @@ class Reporter:
         tell = options.progress
         return None if tell is None else cls(tell, options.duration, options.max_events, event_rate)
 
-    def report(self, run: Session, events: int) -> None:
+    def report(self, run: Solver[Any], events: int) -> None:
         """Call the callback with the progress of the run."""
         now = min(run.time, self.duration)
         share = max(now / self.duration, events / self.max_events if self.max_events else 0.0)
@@ -103,10 +103,5 @@ class Reporter:
         took, done = time.monotonic() - self.started, share - self.from_share
         pace = (now - self.from_time) / took if took > 0 else float("nan")
         left = took * (1.0 - share) / done if done > 0 else float("nan")
-        doing = self._doing(run)
+        doing: Doing = "stuck" if run.fastest == 0.0 else "slipping" if run.fastest > self.event_rate else "creeping"
         self.tell(Report(now, self.duration, events, self.max_events, run.forgotten + run.length, doing, pace, left))
-
-    def _doing(self, run: Session) -> Doing:
-        if run.count.mode == 0:
-            return "stuck"
-        return "slipping" if abs(run.state.rate_now) > self.event_rate else "creeping"

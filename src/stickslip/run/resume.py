@@ -15,7 +15,7 @@ from stickslip.io.netcdf import CATALOGUE, is_catalogue, open_solution, read, to
 from stickslip.io.soundness import check_checkpoint, check_place
 from stickslip.observables.event_stream import Place
 from stickslip.run.catalogue import Catalogue, alone_with, checkpoint_of, follow
-from stickslip.run.monitor import run_to_end, stream_of
+from stickslip.run.monitor import run_to_end
 from stickslip.run.options import CHECKPOINT_EVERY, RunOptions
 from stickslip.run.progress import Progress
 from stickslip.run.progress_line import told
@@ -133,7 +133,7 @@ class PausedCatalogue:
             check_events(self.path, run.options.max_events, int(about["told"]))
         check_catalogue(rows.path)
         run.forgotten = about["forgotten"]
-        fresh = stream_of(run, about["event_rate"], bool(about["energies"]))
+        fresh = run.events(about["event_rate"], bool(about["energies"]))
         start = Place(about["last_piece"], about["last_xi"])
         stream = replace(fresh, first=about["first"], last_start=start, told=about["told"])
         with alone_with(rows):
@@ -163,7 +163,7 @@ def taken_up(stopped: Solution, path: Path, options: RunOptions) -> Session:
 
 def events_in(run: Session) -> int:
     """Return the number of events that are over in the history of a run."""
-    return len(stream_of(run).look(run.store, run.length).known_by)
+    return len(run.events().look(run.history()).known_by)
 
 
 def check_events(path: Path, wanted: int, had: int) -> None:

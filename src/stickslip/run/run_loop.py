@@ -1,9 +1,8 @@
-"""Run a session: call the engine for a fraction of a second at a time, and do everything else between these calls."""
+"""Run a solver: call it for a fraction of a second at a time, and do everything else between these calls."""
 
 from __future__ import annotations
 
 import _signal  # `signal` also looks for members of enums, which takes longer than a short run
-import math
 import threading
 import time
 from collections.abc import Iterator
@@ -11,20 +10,16 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from signal import SIGINT, default_int_handler
 from types import FrameType
-from typing import Protocol, Self
+from typing import Any, Protocol, Self
 
 from stickslip.engine.state.layout import Stop
-from stickslip.foundation.errors import InputError
-from stickslip.run.session import Session
-from stickslip.trajectory.checkpoint import Checkpoint
+from stickslip.run.solver import Solver
 from stickslip.trajectory.status import FULL_HISTORY, INTERRUPTED
 
 MOMENT = 0.1
-"""Wall-clock time that one call of the engine should take, s: short enough for Ctrl-C and for reports of progress."""
+"""Wall-clock time that one call of the solver should take, s: short enough for Ctrl-C and for reports of progress."""
 FIRST_BUDGET, SMALLEST_BUDGET, LARGEST_BUDGET = 5_000, 100, 20_000
 """Number of steps in the first call, and its bounds in later ones: no call should take seconds when steps suddenly cost more."""
-MOST_ROUND_TRIPS = 2**53
-"""Largest number of round trips of a slab, or periods of a block: a float64 counts up to here without gaps."""
 SHARE = 0.1
 """Largest share of the wall-clock time that any periodic task may take."""
 
@@ -56,26 +51,26 @@ class NowAndThen:
 
 
 class Watch(Protocol):
-    """The interface of a monitor, which is called between two calls of the engine, when the state of the run is consistent."""
+    """The interface of a monitor, which is called between two calls of the solver, when the state of the run is consistent."""
 
-    def look(self, run: Session, *, now: bool) -> int | None:
-        """Monitor the run after a call of the engine. Returns a code to end the run, or None to continue.
+    def look(self, run: Solver[Any], *, now: bool) -> int | None:
+        """Monitor the run after a call of the solver. Returns a code to end the run, or None to continue.
 
         `now` is True if the call did more than use up its steps (an end, a full history): counting events must not wait then.
         """
 
-    def make_room(self, run: Session) -> bool:
+    def make_room(self, run: Solver[Any]) -> bool:
         """Make room in a full history. Returns False if that is not allowed."""
 
 
-def run_loop(run: Session, duration: float, watch: Watch) -> int:
-    """Run up to `duration` (s from the start of the run). Returns the code of what ended the run (see `trajectory.status`)."""
-    last, budget = split_time(duration, run.problem.round_trip_time), FIRST_BUDGET
+def run_loop(run: Solver[Any], watch: Watch) -> int:
+    """Run to the end. Returns the code of what ended the run (see `trajectory.status`)."""
+    budget = FIRST_BUDGET
     with Interrupts() as interrupts:
         try:
             while True:
                 start = time.perf_counter()
-                code = run.advance(last, budget)
+                code = run.advance(budget)
                 if code == Stop.NONE:
                     budget = next_budget(budget, time.perf_counter() - start)
                 end = after_call(run, code, watch)
@@ -89,26 +84,21 @@ def run_loop(run: Session, duration: float, watch: Watch) -> int:
             return INTERRUPTED
 
 
-def after_call(run: Session, code: int, watch: Watch) -> int | None:
-    """Do what is due after a call of the engine that returned `code`. Returns a code to end the run, or None to continue."""
+def after_call(run: Solver[Any], code: int, watch: Watch) -> int | None:
+    """Do what is due after a call of the solver that returned `code`. Returns a code to end the run, or None to continue."""
     stop = watch.look(run, now=code != Stop.NONE)
     if stop is not None:
         return stop
-    if code == Stop.END_AHEAD:
-        run.cut_at_end()
-        return None
     if code == Stop.FULL:
         return None if watch.make_room(run) else FULL_HISTORY
-    return None if code == Stop.NONE else code
+    return None if code in (Stop.NONE, Stop.END_AHEAD) else code
 
 
-def repeat(run: Session, since: Checkpoint, duration: float, length: int) -> None:
-    """Go back to an earlier state of a run up to `duration` (s), and step from there until the history has `length` pieces."""
-    last = split_time(duration, run.problem.round_trip_time)
+def repeat(run: Solver[Any], since: Any, length: int) -> None:
+    """Go back to an earlier state of a run, and step from there until the history has `length` pieces."""
     run.restore(since)
     while run.length < length:
-        if run.advance(last, 1) == Stop.END_AHEAD:
-            run.cut_at_end()
+        run.advance(1)
 
 
 def next_budget(budget: int, took: float) -> int:
@@ -142,24 +132,3 @@ class Interrupts:
         """Note a Ctrl-C; this is the handler."""
         self.noted = True
         _signal.signal(SIGINT, default_int_handler)
-
-
-def check_round_trips(duration: float, row: float, where: str) -> None:
-    """Refuse a run of more than 2^53 round trips of `row` seconds, which cannot be counted exactly. Raises InputError."""
-    if not duration <= MOST_ROUND_TRIPS * row:
-        raise InputError(
-            f"{where}: duration must be at most {MOST_ROUND_TRIPS * row:.3g} s, 2^53 round trips of {row:.3g} s, got {duration:g} s"
-        )
-
-
-def split_time(time: float, row: float) -> tuple[int, float]:
-    """Return a positive time (s) as (whole rows, offset in (0, row]). Raises InputError for too many rows.
-
-    A row is a round trip of a slab or a period of a block; `row` is its length, s.
-    """
-    check_round_trips(time, row, "run")
-    rows = math.floor(time / row)
-    offset = time - rows * row
-    if offset <= 0.0 and rows > 0:
-        return rows - 1, row
-    return rows, min(offset, row)

@@ -6,8 +6,9 @@ block.
 
 from __future__ import annotations
 
+import math
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
@@ -22,12 +23,15 @@ from stickslip.engine_input.automatic import lumping_note
 from stickslip.engine_input.branch_table import RuleFollower, renewed
 from stickslip.engine_input.creep_limits import creep_tolerance
 from stickslip.engine_input.prepare import prepare
+from stickslip.foundation.errors import InputError
+from stickslip.observables.event_stream import EventStream
 from stickslip.problem.problem import Problem
 from stickslip.run.options import RunOptions
 from stickslip.solution.solution import Solution
 from stickslip.trajectory.checkpoint import Checkpoint, engine
 from stickslip.trajectory.history import NO_LEAPS, History
 from stickslip.trajectory.phase_index import standing_behind
+from stickslip.trajectory.slip_events import default_event_rate
 from stickslip.trajectory.status import ENOUGH_EVENTS, STATUSES, rounding_note
 
 FIRST_CAPACITY = 256
@@ -36,9 +40,16 @@ SPARE = 16
 """Room beyond the largest number of pieces allowed: the engine calls a history full when it has room for fewer than 8 more."""
 
 
+MOST_ROUND_TRIPS = 2**53
+"""Largest number of round trips of a slab, or periods of a block: a float64 counts up to here without gaps."""
+
+
 @dataclass(eq=False)
 class Session:
-    """The options, the setup, the state and the history of a run between two calls of the engine."""
+    """The exact solver of one contact, an implementation of `run.solver.Solver`.
+
+    It holds the options, the setup, the state and the history of a run between two calls of the engine.
+    """
 
     problem: Problem
     options: RunOptions
@@ -53,10 +64,13 @@ class Session:
     """Checkpoint of the moment before the end of the run cut a piece or a leap; None if it has not yet done so."""
     forgotten: int = 0
     """Number of pieces of history that have been discarded."""
+    end_is_ahead: bool = False
+    """True if the next call must let the end of the run cut pieces and leaps."""
 
     def __post_init__(self) -> None:
         self.params, self.state, self.count = self.setup.params, state_in(self.memory), counts_in(self.memory)
         self.scratch = scratch_in(self.memory)
+        self.last = split_time(self.options.duration, self.problem.round_trip_time)
         self.follower = RuleFollower(self.problem, self.problem.round_trip_time, self.state, self.count)
         if self.leaps is not None:
             self.leaps.begin(self.count)
@@ -98,6 +112,16 @@ class Session:
         return float(self.count.trip * self.problem.round_trip_time + self.state.phase_from + xi * (speed + xi * bend))
 
     @property
+    def fastest(self) -> float:
+        """The |slip rate|, m/s; exactly 0 while the contact sticks."""
+        return abs(float(self.state.rate_now)) if self.count.mode != 0 else 0.0
+
+    def events(self, event_rate: float | None = None, energies: bool = False) -> EventStream:
+        """Return a stream of all slip events of the run, from its start; with `energies`, their rows hold those, too."""
+        rate = default_event_rate(self.problem) if event_rate is None else event_rate
+        return EventStream(rate, energies=energies)
+
+    @property
     def lumping_note(self) -> str:
         """One line on automatic lumping, or an empty string if it has not begun."""
         return lumping_note(self.count, self.params, self.options.shortest_event)
@@ -112,14 +136,18 @@ class Session:
         """The leaps over creep so far, as in `History.creep`."""
         return NO_LEAPS if self.leaps is None else self.leaps.table(self.count)
 
+    def history(self) -> History:
+        """Return the history so far, without the leaps over creep."""
+        kept, row = at.trimmed(self.store, self.length), self.problem.round_trip_time
+        reached = float(kept.trip[-1] * row + kept.phase_to[-1]) if len(kept.pieces) else 0.0
+        return History(kept, self.problem, row, float(self.setup.params.ramp), reached)
+
     def solution(self, code: int) -> Solution:
         """Return the solution computed so far, with the status that belongs to this code."""
-        kept, row, options = at.trimmed(self.store, self.length), self.problem.round_trip_time, self.options
-        whole = code in (Stop.FINISHED, Stop.LOCKED)
-        reached = options.duration if whole else float(kept.trip[-1] * row + kept.phase_to[-1])
+        options, history = self.options, self.history()
+        reached = options.duration if code in (Stop.FINISHED, Stop.LOCKED) else history.duration
         counted = options.max_events if code == ENOUGH_EVENTS else None
-        ramp = float(self.setup.params.ramp)
-        history = History(kept, self.problem, row, ramp, reached, creep=self.creep, max_events=counted)
+        history = replace(history, duration=reached, creep=self.creep, max_events=counted)
         return Solution(
             self.problem,
             options.duration,
@@ -137,20 +165,23 @@ class Session:
             undecided=int(self.count.undecided),
         )
 
-    def advance(self, last: tuple[int, float], budget: int) -> int:
-        """Call the engine once or, if it has paused for that, leap over creep. Returns the code of `loop.run_until`.
-
-        The run goes up to `last` (whole rows, offset in s), by at most `budget` steps. A pause is returned as Stop.NONE.
-        """
-        if self.leaps is not None and self.leaps.are_due(self.count, last[0]):
-            self.leaps.at_row_end(self, last)
+    def advance(self, budget: int) -> int:
+        """Call the engine once or, if it has paused for that, leap over creep: see `Solver.advance`."""
+        if self.end_is_ahead:
+            self.cut_at_end()
+        if self.leaps is not None and self.leaps.are_due(self.count, self.last[0]):
+            self.leaps.at_row_end(self)
             return Stop.NONE
-        code = self.step(last, budget)
+        code = self.step(budget)
+        self.end_is_ahead = code == Stop.END_AHEAD
         return Stop.NONE if code == Stop.PAUSED else code
 
-    def step(self, last: tuple[int, float], budget: int) -> int:
-        """Call the engine once, and compute the branches of a law of slip and slip rate again when the engine asks for them."""
-        code = self.follower.advance(self.memory, self.store, last, budget)
+    def step(self, budget: int) -> int:
+        """Call the engine once, and return the code of `loop.run_until`.
+
+        The branches of a law of slip and slip rate are computed again when the engine asks for them.
+        """
+        code = self.follower.advance(self.memory, self.store, self.last, budget)
         if code == Stop.NEED_PART:
             lend_part(self.memory)
             return Stop.NONE
@@ -208,7 +239,7 @@ class Session:
 
     def cut_at_end(self) -> None:
         """Store the state from which a longer run would continue, and let the end of this run cut pieces and leaps."""
-        self.before_end = self.snapshot()
+        self.before_end, self.end_is_ahead = self.snapshot(), False
         self.count.to_the_end = 1
 
     def snapshot(self) -> Checkpoint:
@@ -229,6 +260,28 @@ class Session:
         self.params.stick_to = checkpoint.stick_to[0]
         self.follower.times.clear()
         self.follower.times.extend(checkpoint.crossings.tolist())
+        self.end_is_ahead = False
         if self.count.to_the_end == 0:
             self.before_end = None
         self._rebuild_queue()
+
+
+def check_round_trips(duration: float, row: float, where: str) -> None:
+    """Refuse a run of more than 2^53 round trips of `row` seconds, which cannot be counted exactly. Raises InputError."""
+    if not duration <= MOST_ROUND_TRIPS * row:
+        raise InputError(
+            f"{where}: duration must be at most {MOST_ROUND_TRIPS * row:.3g} s, 2^53 round trips of {row:.3g} s, got {duration:g} s"
+        )
+
+
+def split_time(time: float, row: float) -> tuple[int, float]:
+    """Return a positive time (s) as (whole rows, offset in (0, row]). Raises InputError for too many rows.
+
+    A row is a round trip of a slab or a period of a block; `row` is its length, s.
+    """
+    check_round_trips(time, row, "run")
+    rows = math.floor(time / row)
+    offset = time - rows * row
+    if offset <= 0.0 and rows > 0:
+        return rows - 1, row
+    return rows, min(offset, row)

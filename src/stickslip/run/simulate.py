@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 from stickslip.foundation.arguments import as_path
 from stickslip.foundation.conversion import WithUnit
-from stickslip.observables.event_stream import EventStream, Look
 from stickslip.problem.problem import Problem
 from stickslip.run.monitor import run_to_end
 from stickslip.run.options import CHECKPOINT_EVERY, problem_and_options
 from stickslip.run.progress import Progress
 from stickslip.run.progress_line import told
 from stickslip.run.session import Session
+from stickslip.run.solver import Events, NewEvents, Solver
 from stickslip.solution.solution import Solution
 from stickslip.trajectory.status import UNDER_WAY
 
@@ -119,22 +119,22 @@ class WholeHistory:
     who = "simulate"
     wants_events = False
 
-    def record(self, run: Session, stream: EventStream, look: Look) -> None:
+    def record(self, run: Solver[Solution], stream: Events, look: NewEvents) -> None:
         """Report the events: the history holds them."""
         look.tell()
 
-    def make_room(self, run: Session, stream: EventStream) -> bool:
+    def make_room(self, run: Solver[Solution], stream: Events) -> bool:
         """Enlarge the store of the history, up to the largest number of pieces allowed."""
         return run.grow(run.options.most_pieces)
 
-    def save(self, run: Session) -> None:
+    def save(self, run: Solver[Solution]) -> None:
         """Renew the checkpoint if a file for it was given."""
         if run.options.checkpoint is not None:
             from stickslip.io.netcdf import save_checkpoint  # imports xarray, which takes a while
 
             save_checkpoint(run.solution(UNDER_WAY), run.options.checkpoint)
 
-    def finish(self, run: Session, stream: EventStream, code: int) -> Solution:
+    def finish(self, run: Solver[Solution], stream: Events, code: int) -> Solution:
         """Return the solution, and write it if a file for it was given."""
         solution = run.solution(code)
         if run.options.checkpoint is not None and run.options.keeps(code):

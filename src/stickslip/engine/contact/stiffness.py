@@ -87,10 +87,14 @@ def hanging_rate(run: Run) -> float:
     """
     if run.counts.reverses == 0:
         return 0.0
-    contact_at(run, run.state.law_slip, 0.0, run.state.state_now)
     params, value = run.params, run.value
-    mass = math.sqrt(params.inertia * params.normal * abs(value.by_state * value.change_by_rate))
-    return HANGING * params.tolerance * params.normal * abs(value.mu) / (params.impedance + mass)
+    contact_at(run, run.state.law_slip, 0.0, -run.state.state_now)
+    against = abs(value.by_state * value.change_by_rate)
+    contact_at(run, run.state.law_slip, 0.0, run.state.state_now)
+    # Bristles that are bent as far as they go yield in this direction, but not in the other.
+    stiffest = max(against, abs(value.by_state * value.change_by_rate))
+    resistance = params.impedance + math.sqrt(params.inertia * params.normal * stiffest)
+    return HANGING * params.tolerance * params.normal * abs(value.mu) / resistance if resistance > 0.0 else 0.0
 
 
 @kernel

@@ -173,7 +173,8 @@ class _Tables:
         if isinstance(far, Mapping):
             yield self.of("loading.far_stress", HISTORIES[far["kind"]], (), "Far stress that varies")
         start = "steady" if self.starts_steadily else "load" if self.setting.value("initial.excess") is None else "excess"
-        kinds = STARTS if law.sticks else STARTS_IN_MOTION if self.problem.has_initial_rate else ()
+        in_motion = self.problem.has_initial_rate and self.problem.first_pull_rate != 0.0
+        kinds = STARTS if law.sticks else STARTS_IN_MOTION if in_motion else ()
         yield replace(self.of("initial", type(body), (), state=law.state), kind=start, kinds=kinds)
         yield self.of_run()
 

@@ -12,7 +12,7 @@ from stickslip.foundation.conversion import Number
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import quantity
 from stickslip.friction.contract import Formula, StateVariable
-from stickslip.friction.formula.expression import arcsinh, exp, log, sqrt
+from stickslip.friction.formula.expression import arcsinh, exp, expm1, log, sqrt
 from stickslip.friction.law import FrictionLaw
 from stickslip.friction.laws.rate_and_state import FARTHEST_STATE, LARGEST_EXPONENT, SLOWEST
 
@@ -23,6 +23,8 @@ class FlashHeating(FrictionLaw):
 
     psi_ss = a ln(2 rate / v sinh(mu_ss / a)) is the state of steady sliding, whose friction is
     mu_ss = weakened + (mu_low - weakened) / (1 + (v / weakening_rate)^8)^(1/8), with mu_low = reference - (b - a) ln(v / rate).
+    Where a > b this mu_low is negative at the slowest slip rates; a arcsinh(exp(mu_low / a) / 2), which differs from it by less
+    than rounding where mu_low > 19 a, goes to zero there, as the friction of rate-and-state laws does.
 
     Below `weakening_rate` this is rate-and-state friction with the slip law; far above it friction falls to `weakened`. The contact
     never sticks.
@@ -77,15 +79,13 @@ class FlashHeating(FrictionLaw):
 
     def steady_coefficient(self, v: ArrayLike) -> NDArray[np.float64]:
         """Return the friction coefficient mu_ss (no unit) of steady sliding at slip rates v > 0 (m/s)."""
-        rate = np.asarray(v, float)
-        low = self.reference - (self.b - self.a) * np.log(rate / self.rate)
-        return np.asarray(self.weakened + (low - self.weakened) / (1.0 + (rate / self.weakening_rate) ** 8) ** 0.125)
+        return np.asarray(self.a * _steady(self, np.asarray(v, float))[0])
 
     @override
     def steady_state(self, v: ArrayLike) -> NDArray[np.float64]:
         """Return the state psi (no unit) of steady sliding at slip rates v > 0 (m/s)."""
-        x = self.steady_coefficient(v) / self.a
-        return np.asarray(self.a * (x + np.log1p(-np.exp(-2.0 * x)) - np.log(np.asarray(v, float) / self.rate)))
+        x, logarithm = _steady(self, np.asarray(v, float))
+        return np.asarray(self.a * (x + np.log(-np.expm1(-2.0 * x)) - logarithm))
 
 
 def _friction(law: Any, u: Any, v: Any, psi: Any) -> Any:
@@ -94,10 +94,14 @@ def _friction(law: Any, u: Any, v: Any, psi: Any) -> Any:
 
 def _renewal(law: Any, u: Any, v: Any, psi: Any) -> Any:
     """Return dpsi/dt (1/s); the logarithm of the slip rate is finite at rest, where it is multiplied by zero."""
+    x, logarithm = _steady(law, v)
+    return -(v / law.distance) * (psi - law.a * (x + log(-expm1(-2.0 * x)) - logarithm))
+
+
+def _steady(law: Any, v: Any) -> tuple[Any, Any]:
+    """Return mu_ss / a (no unit), which is above zero, and ln(v / rate)."""
     y = v / law.rate
     logarithm = 0.5 * log(y * y + SLOWEST)
-    low = law.reference - (law.b - law.a) * logarithm
-    fast = (v / law.weakening_rate) ** 8
-    x = (law.weakened + (low - law.weakened) / sqrt(sqrt(sqrt(1.0 + fast)))) / law.a
-    steady = law.a * (x + log(1.0 - exp(-2.0 * x)) - logarithm)
-    return -(v / law.distance) * (psi - steady)
+    low = arcsinh(0.5 * exp((law.reference - (law.b - law.a) * logarithm) / law.a))
+    share = 1.0 / sqrt(sqrt(sqrt(1.0 + (v / law.weakening_rate) ** 8)))
+    return share * low + (1.0 - share) * law.weakened / law.a, logarithm
