@@ -62,7 +62,8 @@ def obeys(run: ss.Solution) -> None:
     energy = run.energy(times[::30])
     assert reverses or (np.diff(energy.heat) >= 0.0).all()
     size = float(max(np.abs(energy.heat).max(), np.abs(energy.work).max(), np.abs(energy.stored).max()))
-    rounding = 1e-15 * NORMAL**2 / (2.0 * body.stiffness)  # of what is stored, of which all these are differences
+    largest = max(NORMAL, float(np.abs(traction).max()), float(np.abs(run.load(times)).max()), abs(problem.initial_load or 0.0))
+    rounding = 1e-15 * largest**2 / (2.0 * body.stiffness)  # of what is stored, of which all these are differences
     assert float(np.abs(energy.balance).max()) <= 1e-8 * size + rounding
 
 
