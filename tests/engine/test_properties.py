@@ -61,8 +61,9 @@ def obeys(run: ss.Solution) -> None:
         assert body.impedance * rate + traction == pytest.approx(run.load(times), rel=0.0, abs=1e-14 * NORMAL)
     energy = run.energy(times[::30])
     assert reverses or (np.diff(energy.heat) >= 0.0).all()
-    size = float(max(np.abs(energy.heat).max(), np.abs(energy.work).max(), np.abs(energy.stored).max()))
-    largest = max(NORMAL, float(np.abs(traction).max()), float(np.abs(run.load(times)).max()), abs(problem.initial_load or 0.0))
+    size = max(float(np.abs(energy[name]).max()) for name in ("heat", "work", "stored", "kinetic"))
+    loads = np.abs([*run.load(times), *traction, problem.strength, problem.initial_load or 0.0])
+    largest = max(NORMAL, float(loads.max()))
     rounding = 1e-15 * largest**2 / (2.0 * body.stiffness)  # of what is stored, of which all these are differences
     assert float(np.abs(energy.balance).max()) <= 1e-8 * size + rounding
 

@@ -35,6 +35,8 @@ LOAD_ROUNDING = 1e-14
 """Share (1) of the load's coefficients below which a load is zero: rounding where it passes through zero."""
 LITTLE = 2.0**-10
 """Share (1) of the way to go after which the load is looked at where forces balance."""
+BALANCED = 1e-7
+"""Share (1) of the net force at that place below which forces balance: the motion that they make until they do is lost in rounding."""
 DEFECT_ROUNDING = 1e-14
 """Share (1) of the largest slip rate, or state, that rounding makes of the defect: derivatives of polynomials lose two digits."""
 ALLOWED = 0.1
@@ -226,7 +228,9 @@ def turn_with_bristles(run: Run, left: float) -> None:
     force, later = run.load_along_slip[0] - held, total(run.load_along_slip) - held
     rounding = LOAD_ROUNDING * size_of_load(run) + run.state.hanging * run.params.impedance
     if run.counts.has_inertia == 1:
-        rounding = run.params.tolerance * abs(held)
+        rounding = max(run.params.tolerance * abs(held), BALANCED * abs(later))
+        if abs(force) <= rounding:
+            run.load[0] -= run.counts.mode * force  # The stages must see the forces balance here, too.
     if force < -rounding or (force <= rounding and later < -rounding):
         run.counts.mode, run.state.state_now = -run.counts.mode, -run.state.state_now
 
