@@ -2,48 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
-from typing import Any
+from dataclasses import fields
 
 import numpy as np
 import pytest
-import tomli_w
 
 import stickslip as ss
 from stickslip.friction import LAWS, FrictionLaw
 from stickslip.reference.method_of_steps import method_of_steps
-from stickslip.scenarios import read_scenario
-
-SLAB = ss.ElasticSlab(2800, 3500, 1e3, 1e8)
-BODIES: dict[str, Any] = {
-    "block": ss.SpringBlock(2.8e9, 3e10, 1e11),
-    "slab": SLAB,
-    "slab with mass": replace(SLAB, contact_mass=3e5),
-}
-
-
-def example_law(kind: str) -> FrictionLaw:
-    """The law as its own example has it, read the way a scenario is."""
-    tables = {
-        "body": {"kind": "spring-block", "mass": 1.0, "stiffness": 1.0, "normal_force": 1.0},
-        "friction": {"kind": kind} | {k.replace("values", "parameters"): v for k, v in LAWS[kind].example.items()},
-        "initial": {"excess": 0.0} if LAWS[kind].sticks else {"load": 0.0, "state": LAWS[kind].start["state"]},
-        "run": {"duration": 1.0},
-    }
-    return read_scenario(tomli_w.dumps(tables), "example").problem.friction
-
-
-def example_problem(kind: str, body: str) -> ss.Problem:
-    """The law under a load a little above its strength; for one that never sticks, above that of steady sliding.
-
-    Bristles begin bent by a metre, so that they throw the contact backwards.
-    """
-    law, normal = example_law(kind), 1e11 if body == "block" else 1e8
-    if law.sticks:
-        return ss.Problem(BODIES[body], law, pull_rate=1e-3, initial_excess=1e-4 * normal)
-    assert law.state is not None
-    load, state = law.start["coefficient"] * normal, law.start["state"] if law.state.unit == "1" else 1.0
-    return ss.Problem(BODIES[body], law, pull_rate=1e-3, initial_load=load, initial_state=state)
+from tests.engine.examples import BODIES, SLAB, example_problem
 
 
 @pytest.mark.parametrize("kind", LAWS)

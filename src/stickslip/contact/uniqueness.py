@@ -208,7 +208,11 @@ def regime_of(problem: Problem) -> Regime:
     """Return the `regime` of `uniqueness_of`, without what the rule makes of the branches: a sweep asks it of each of its runs."""
     if problem.body.has_inertia or problem.friction.state is not None:
         return "regular"
-    g = resistance(problem, None)
+    return regime_at(resistance(problem, None))
+
+
+def regime_at(g: Resistance) -> Regime:
+    """Return the regime of a contact without mass at one slip of its law, proven where the law has formulas."""
     return _regime(g, _window(branches_of(g, _proof(g))))
 
 

@@ -36,7 +36,7 @@ LOAD_ROUNDING = 1e-14
 LITTLE = 2.0**-10
 """Share (1) of the way to go after which the load is looked at where forces balance."""
 BALANCED = 1e-7
-"""Share (1) of the net force at that place below which forces balance: the motion that they make until they do is lost in rounding."""
+"""Share (1) of the net force at that place below which forces balance: what moves until they do is lost in rounding."""
 DEFECT_ROUNDING = 1e-14
 """Share (1) of the largest slip rate, or state, that rounding makes of the defect: derivatives of polynomials lose two digits."""
 ALLOWED = 0.1

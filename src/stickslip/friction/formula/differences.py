@@ -1,8 +1,9 @@
-"""Compute friction as a difference from rest, mu(u + du, v) - mu(u, 0), without cancellation where the two are nearly equal.
+"""Compute friction on arrays: its value and slopes, and its difference from rest without cancellation.
 
-The rules for each node (sin(r+e) - sin(r), expm1, log1p ...) are those that `stickslip.engine.codegen.taylor_series` compiles. Here
-numpy evaluates them, for quantities that are computed once per problem rather than once per step. Near the critical value of a
-rate law all folds of the contact equation lie within 3e-4 Pa at a load of 8e7 Pa: they are visible only in differences.
+The difference is mu(u + du, v) - mu(u, 0), which keeps its digits where the two are nearly equal. The rules for each node (sin(r+e)
+- sin(r), expm1, log1p ...) are those that `stickslip.engine.codegen.taylor_series` compiles. Here numpy evaluates them, for
+quantities that are computed once per problem rather than once per step. Near the critical value of a rate law all folds of the
+contact equation lie within 3e-4 Pa at a load of 8e7 Pa: they are visible only in differences.
 """
 
 from __future__ import annotations
@@ -23,9 +24,10 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class _Node:
-    """A node's value at the reference point, its change to the end point, its value there, and its derivative by the slip rate.
+    """A node's value at the reference point, its change to the end point, its value there, and its derivative there.
 
-    The value at the end point is computed independently: reference + step would lose the digits of a value that has become small.
+    The derivative is that by the slip rate or, with one more axis in front, those by slip, slip rate and state. The value at the
+    end point is computed independently: reference + step would lose the digits of a value that has become small.
     """
 
     reference: Any
@@ -44,11 +46,32 @@ def difference(
     healed, at both points. Raise KeyError for a parameter without a value.
     """
     du, v = np.broadcast_arrays(np.asarray(slip_step, float), np.asarray(rate, float))
-    found = {SLIP: _Node(slip, du, slip + du, 0.0), RATE: _Node(0.0, v, v, 1.0), STATE: _Node(0.0, 0.0, 0.0, 0.0)}
-    nodes = nodes_of(tree)
+    ends = {SLIP: _Node(slip, du, slip + du, 0.0), RATE: _Node(0.0, v, v, 1.0), STATE: _Node(0.0, 0.0, 0.0, 0.0)}
+    result = _evaluated(tree, parameters, ends)
+    return np.broadcast_to(result.step, v.shape) + 0.0, np.broadcast_to(result.slope, v.shape) + 0.0
+
+
+def value_and_slopes(
+    tree: Expression, parameters: Mapping[str, ArrayLike], slip: ArrayLike, rate: ArrayLike, state: ArrayLike = 0.0
+) -> tuple[Array, Array]:
+    """Return a formula and its derivatives by slip, slip rate and state, as an array with one axis of three in front.
+
+    The arguments are those of `difference`; `state` is in the form that the formulas use. All broadcast, and so do parameters: each
+    point may have its own.
+    """
+    shape = np.broadcast_shapes(*(np.shape(given) for given in (slip, rate, state, *parameters.values())))
+    seeds = np.eye(3).reshape(3, 3, *(1 for _ in shape))
+    given = zip((SLIP, RATE, STATE), (slip, rate, state), seeds, strict=True)
+    result = _evaluated(tree, parameters, {symbol: _Node(x := np.asarray(at, float), 0.0, x, seed) for symbol, at, seed in given})
+    return np.broadcast_to(result.value, shape) + 0.0, np.broadcast_to(result.slope, (3, *shape)) + 0.0
+
+
+def _evaluated(tree: Expression, parameters: Mapping[str, ArrayLike], variables: Mapping[Expression, _Node]) -> _Node:
+    """Return the node of a whole formula from those of its variables."""
+    found = dict(variables)
     limited = _limited(tree)
     with np.errstate(divide="ignore", over="ignore", under="ignore"):
-        for node in nodes:
+        for node in nodes_of(tree):
             if node in limited:
                 found[node] = _RULES[node.operation](_at_most(found[node.arguments[0]], LARGEST_EXPONENT))
             elif node.arguments:
@@ -56,8 +79,7 @@ def difference(
             elif node not in found:
                 number = parameters[node.name] if node.operation == "parameter" else node.value
                 found[node] = _Node(number, 0.0, number, 0.0)
-    result = found[tree]
-    return np.broadcast_to(result.step, v.shape) + 0.0, np.broadcast_to(result.slope, v.shape) + 0.0
+    return found[tree]
 
 
 @lru_cache(maxsize=256)
