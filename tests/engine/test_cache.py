@@ -74,8 +74,8 @@ TWICE = """
 from stickslip.engine.codegen.cache import CACHE, load_module
 text = '''
 from numba import types
-from stickslip.engine.codegen.cache import sealed_cfunc
-@sealed_cfunc(types.float64(types.float64), nopython=True)
+from stickslip.engine.codegen.kernels import compiled_cfunc
+@compiled_cfunc(types.float64(types.float64), nopython=True)
 def twice(x):
     return 2.0 * x
 '''

@@ -28,8 +28,8 @@ EXPRESSIONS: dict[str, dict[str, float | str]] = {
     "0.4 + 0.1*tanh(u)**2 + 0.1*sqrt(1 + v**2) + arcsinh(v) * 1e-2 + (1 + v)**-0.5 - cos(pi*u)/9": {},
     "0.6 - 0.1*v + 0.01*v**3": {},
 }
-SAVED = "from stickslip.engine.codegen.cache import sealed_cfunc"
-NOT_KEPT = "from tests.friction.drawn import unsaved_cfunc as sealed_cfunc"
+SAVED = "from stickslip.engine.codegen.kernels import compiled_cfunc"
+NOT_KEPT = "from tests.friction.drawn import unsaved_cfunc as compiled_cfunc"
 """A line of generated code, and another in its place: what the tests compile is not kept on disk."""
 PAIRS = [
     ("linear-slip-weakening", "hyperbolic-rate"),

@@ -19,7 +19,7 @@ from numba import types
 from numba.extending import intrinsic
 
 from stickslip.engine.codegen.cache import load_module
-from stickslip.engine.codegen.one_module import Kernel
+from stickslip.engine.codegen.kernels import Kernel
 from stickslip.engine.codegen.records import FLOATS, INTEGERS, Floats
 from stickslip.engine.codegen.taylor_series import ORDER, FormulaWriter
 from stickslip.engine.codegen.uncompiled import MATHS, UNCOMPILED, Pointer, as_python, call, handle_of, pointer_at

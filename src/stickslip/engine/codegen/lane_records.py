@@ -11,17 +11,9 @@ from typing import Any
 
 import llvmlite.ir as ir
 from numba import types
-from numba.core.typing.templates import AbstractTemplate, AttributeTemplate, infer_global, signature
-from numba.extending import (
-    infer_getattr,
-    intrinsic,
-    lower_builtin,
-    lower_getattr_generic,
-    lower_setattr_generic,
-    models,
-    register_model,
-)
+from numba.extending import intrinsic, lower_builtin, lower_getattr_generic, lower_setattr_generic, models, register_model
 
+from stickslip.engine.codegen.numba_privates import AbstractTemplate, AttributeTemplate, infer_getattr, infer_global, signature
 from stickslip.engine.codegen.records import FLOATS, Place, Record
 from stickslip.engine.codegen.simd import LANES, POINTER, VECTOR, WIDTH
 

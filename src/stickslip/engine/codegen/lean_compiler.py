@@ -12,11 +12,17 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from numba.core.compiler import Compiler
-from numba.core.typed_passes import InlineOverloads, NopythonRewrites
-from numba.core.types import Function as NumbaFunction
-from numba.core.untyped_passes import InlineClosureLikes, InlineInlinables, LiteralUnroll, WithLifting
-from numba.core.utils import OPERATORS_TO_BUILTINS
+from stickslip.engine.codegen.numba_privates import (
+    OPERATORS_TO_BUILTINS,
+    Compiler,
+    InlineClosureLikes,
+    InlineInlinables,
+    InlineOverloads,
+    LiteralUnroll,
+    NopythonRewrites,
+    WithLifting,
+)
+from stickslip.engine.codegen.numba_privates import Function as NumbaFunction
 
 NOT_NEEDED = (InlineClosureLikes, InlineInlinables, InlineOverloads, LiteralUnroll, NopythonRewrites, WithLifting)
 """Passes of numba's compiler that find nothing in our code, which has no closures, array expressions or `with` statements."""
@@ -50,6 +56,7 @@ def _at_speed() -> Iterator[None]:
         yield
     finally:
         Function.get_call_type = before
+        _found.clear()
         if collecting:
             gc.enable()
 

@@ -12,16 +12,11 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import llvmlite.binding as llvm
-from numba import njit, types
-from numba.core.codegen import JITCodeLibrary
-from numba.extending import typeof_impl
+from numba import njit
 
-from stickslip.engine.codegen.cache import SealedCache
 from stickslip.engine.codegen.lean_compiler import LeanCompiler
-
-OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "fastmath": {"contract"}, "no_cfunc_wrapper": True}
-"""Options of all kernels: divisions by zero give infinity or NaN as in numpy, the interpreter's lock is released, and a product and
-a sum may be fused into one operation."""
+from stickslip.engine.codegen.numba_privates import JITCodeLibrary
+from stickslip.engine.codegen.sealed_cache import SealedCache
 
 
 class Part(JITCodeLibrary):  # type: ignore[misc] # numba is untyped
@@ -140,22 +135,9 @@ class WholeCompiler(LeanCompiler):
         super().__init__(typingctx, targetctx, library, *rest)
 
 
-class Kernel:
-    """A compiled function. Called from Python it is an entry point (`Whole`), called from compiled code a `Part`."""
-
-    def __init__(self, function: Callable[..., Any], **options: bool) -> None:
-        self.__doc__, self.__name__, self.__module__ = function.__doc__, function.__name__, function.__module__
-        self.__wrapped__ = function
-        self.part: Any = njit(pipeline_class=PartCompiler, no_cpython_wrapper=True, **OPTIONS, **options)(function)
-        self.entry: Any = njit(pipeline_class=WholeCompiler, **OPTIONS)(function)
-        self.entry._cache = SealedCache(function)
-
-    def __call__(self, *arguments: Any) -> Any:
-        """Call the machine code, which the first call compiles or loads."""
-        return self.entry(*arguments)
-
-
-@typeof_impl.register(Kernel)
-def _type_of_kernel(kernel: Kernel, context: Any) -> Any:
-    """Return the type that compiled code sees when it calls a kernel: that of its part."""
-    return types.Dispatcher(kernel.part)
+def dispatchers(function: Callable[..., Any], entry: dict[str, Any], part: dict[str, Any]) -> tuple[Any, Any]:
+    """Return what compiled code calls, a `Part`, and what Python calls, a `Whole` that is kept in the cache."""
+    called: Any = njit(pipeline_class=PartCompiler, no_cpython_wrapper=True, **entry, **part)(function)
+    whole: Any = njit(pipeline_class=WholeCompiler, **entry)(function)
+    whole._cache = SealedCache(function)
+    return called, whole

@@ -18,19 +18,10 @@ from typing import Any, ClassVar, Self, get_type_hints
 import llvmlite.ir as ir
 import numpy as np
 from numba import types
-from numba.core import datamodel
-from numba.core.typing.templates import AbstractTemplate, AttributeTemplate, infer_global, signature
-from numba.extending import (
-    infer_getattr,
-    intrinsic,
-    lower_builtin,
-    lower_getattr_generic,
-    lower_setattr_generic,
-    models,
-    register_model,
-)
+from numba.extending import intrinsic, lower_builtin, lower_getattr_generic, lower_setattr_generic, models, register_model
 from numpy.typing import NDArray
 
+from stickslip.engine.codegen.numba_privates import AbstractTemplate, AttributeTemplate, infer_getattr, infer_global, signature
 from stickslip.engine.codegen.uncompiled import UNCOMPILED, Pointer, pointer_at
 
 Floats = NDArray[np.float64]
@@ -221,7 +212,7 @@ class RecordPointer(types.Type):  # type: ignore[misc] # numba is untyped
 class _PointerModel(models.PrimitiveModel):  # type: ignore[misc]
     """The representation of such a pointer in machine code: the address of a 64-bit place."""
 
-    def __init__(self, manager: datamodel.DataModelManager, kind: RecordPointer) -> None:
+    def __init__(self, manager: Any, kind: RecordPointer) -> None:
         super().__init__(manager, kind, ir.IntType(64).as_pointer())
 
 

@@ -14,10 +14,9 @@ from typing import Any
 import llvmlite.ir as ir
 import numpy as np
 from numba import njit, types
-from numba.core.cgutils import get_or_insert_function
-from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 from numba.extending import intrinsic, lower_builtin, lower_cast, models, register_model
 
+from stickslip.engine.codegen.numba_privates import AbstractTemplate, infer_global, signature
 from stickslip.engine.codegen.uncompiled import UNCOMPILED
 
 WIDTH = 8
@@ -89,10 +88,9 @@ def _instruction(name: str) -> Writer:
 
 def _of_the_processor(name: str) -> Writer:
     """Return the writer of a function of one argument that LLVM provides for vectors."""
-    kind = ir.FunctionType(VECTOR, [VECTOR])
 
     def write(context: Any, builder: Any, args: list[Any]) -> Any:
-        return builder.call(get_or_insert_function(builder.module, kind, f"llvm.{name}.v{WIDTH}f64"), args)
+        return builder.call(builder.module.declare_intrinsic(f"llvm.{name}", [VECTOR]), args)
 
     return write
 

@@ -52,7 +52,7 @@ from math import asinh, cos, exp, expm1, log, log1p, sin, sqrt, tanh
 
 from numba import types
 
-from stickslip.engine.codegen.cache import sealed_cfunc
+from stickslip.engine.codegen.kernels import compiled_cfunc
 from stickslip.engine.series.{functions} import arcsinh_difference, exp_difference, exp_value
 from stickslip.engine.series.{functions} import log_difference, power_difference, power_value, tanh_difference
 from stickslip.engine.series.sine import sine, versine
@@ -232,7 +232,9 @@ class FormulaWriter(Recurrences):
         """Return the source text of a module that has one of the functions."""
         arguments = SIGNATURES[part]
         kinds = ", ".join("_array" if name.endswith("[]") else "types.float64" for name in arguments)
-        head = f"@sealed_cfunc(types.void({kinds}), **_options)\ndef {part}({', '.join(name.strip('[]') for name in arguments)}):\n"
+        head = (
+            f"@compiled_cfunc(types.void({kinds}), **_options)\ndef {part}({', '.join(name.strip('[]') for name in arguments)}):\n"
+        )
         body = "".join(f"    {line}\n" for line in self.statements(part))
         functions, lanes = ("lane_differences", SIDE) if part in SIDE_BY_SIDE else ("differences", ONE)
         lanes = RADII_HEADER + lanes if part in RADII else lanes

@@ -1,0 +1,105 @@
+"""Every private name of numba that the package uses, in one place, and what is done where one of them is missing.
+
+Numba promises nothing about these names. Those that tell it the types of records and lanes have been the same for ten years, and
+nothing can replace them. Those behind the faster first start can be done without: where one is missing or has changed, numba's
+public compiler and its own cache take over (`plain_numba`), and `WHY_PLAIN` says why.
+"""
+
+from __future__ import annotations
+
+import inspect
+import os
+from typing import Any
+
+import numba
+
+from stickslip.engine.codegen.uncompiled import UNCOMPILED
+from stickslip.foundation.errors import InputError
+
+WHY_PLAIN = ""
+"""Why numba's public compiler is used; empty if the faster way works."""
+
+
+def _has(owner: Any, *names: str) -> None:
+    """Raise ImportError if a class lacks one of the attributes that are used or replaced."""
+    for name in names:
+        if not hasattr(owner, name):
+            raise ImportError(f"{owner.__name__} has no {name}")
+
+
+def _takes(function: Any, *names: str) -> None:
+    """Raise ImportError if a function does not take the given parameters, in this order and before all others."""
+    found = tuple(inspect.signature(function).parameters)[: len(names)]
+    if found != names:
+        raise ImportError(f"{function.__qualname__} takes {', '.join(found)}")
+
+
+AbstractTemplate: Any = object
+AttributeTemplate: Any = object
+infer_getattr: Any = lambda one: one  # noqa: E731  # stands for numba's function, as the next ones do
+infer_global: Any = lambda _: lambda one: one  # noqa: E731
+signature: Any = None
+
+if not UNCOMPILED:
+    try:
+        from numba import extending
+        from numba.core.typing import templates
+
+        AbstractTemplate, AttributeTemplate = templates.AbstractTemplate, templates.AttributeTemplate
+        infer_getattr, infer_global, signature = extending.infer_getattr, templates.infer_global, templates.signature
+    except (ImportError, AttributeError) as error:
+        raise InputError(
+            f"numba {numba.__version__} cannot compile the engine ({error}); 0.62 to 0.68 can: pip install 'numba>=0.62,<0.69'"
+        ) from None
+
+    try:
+        if os.environ.get("STICKSLIP_PLAIN_NUMBA", "") not in ("", "0"):
+            raise ImportError("STICKSLIP_PLAIN_NUMBA is set")
+        from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile, UserProvidedCacheLocator
+        from numba.core.ccallback import CFunc
+        from numba.core.codegen import JITCodeLibrary
+        from numba.core.compiler import Compiler
+        from numba.core.runtime import rtsys
+        from numba.core.sigutils import normalize_signature
+        from numba.core.typed_passes import InlineOverloads, NopythonRewrites
+        from numba.core.types import Function
+        from numba.core.untyped_passes import InlineClosureLikes, InlineInlinables, LiteralUnroll, WithLifting
+        from numba.core.utils import OPERATORS_TO_BUILTINS
+
+        _has(JITCodeLibrary, "finalize", "_optimize_final_module", "_get_module_for_linking", "_raise_if_finalized")
+        _has(FunctionCache, "_load_overload", "save_overload", "_impl_class")
+        _has(IndexDataCacheFile, "_load_index", "_save_index", "_load_data", "_save_data", "_dump", "_data_path")
+        _has(CompileResultCacheImpl, "_locator_classes", "locator", "filename_base")
+        _has(Compiler, "define_pipelines", "compile_extra")
+        _has(rtsys, "initialize")
+        _takes(Function.get_call_type, "self", "context", "args", "kws")
+        _takes(CFunc.__init__, "self", "pyfunc", "sig", "locals", "options", "pipeline_class")
+        _takes(IndexDataCacheFile.__init__, "self", "cache_path", "filename_base", "source_stamp")
+    except (ImportError, AttributeError, TypeError, ValueError) as error:
+        WHY_PLAIN = " ".join(str(error).split())
+
+__all__ = [
+    "OPERATORS_TO_BUILTINS",
+    "WHY_PLAIN",
+    "AbstractTemplate",
+    "AttributeTemplate",
+    "CFunc",
+    "CompileResultCacheImpl",
+    "Compiler",
+    "Function",
+    "FunctionCache",
+    "IndexDataCacheFile",
+    "InlineClosureLikes",
+    "InlineInlinables",
+    "InlineOverloads",
+    "JITCodeLibrary",
+    "LiteralUnroll",
+    "NopythonRewrites",
+    "UserProvidedCacheLocator",
+    "WithLifting",
+    "infer_getattr",
+    "infer_global",
+    "normalize_signature",
+    "rtsys",
+    "signature",
+]

@@ -1,0 +1,95 @@
+"""Where a private name of numba is missing, numba's public compiler takes over, with the same bits."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+PRINTED = (
+    "from stickslip.engine.codegen import numba_privates as found; print(repr(found.WHY_PLAIN), hasattr(found, 'JITCodeLibrary'))"
+)
+
+MISSING = {
+    "a name": ("import numba.core.caching as m; del m.FunctionCache", "cannot import name 'FunctionCache'"),
+    "a method": ("import numba.core.caching as m; del m.FunctionCache._load_overload", "FunctionCache has no _load_overload"),
+    "a parameter": (
+        "import numba.core.types as m; m.Function.get_call_type = lambda self, args: None",
+        "<lambda> takes self, args",
+    ),
+}
+
+
+def python(code: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    settings = os.environ | environment
+    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=settings)
+
+
+@pytest.mark.parametrize("what", MISSING)
+def test_what_is_missing_is_named(what: str) -> None:
+    spoil, reason = MISSING[what]
+    assert reason in python(f"{spoil}\n{PRINTED}").stdout
+
+
+def test_nothing_is_missing_here() -> None:
+    assert python(PRINTED).stdout == "'' True\n"
+
+
+def test_plain_python_imports_no_private_name() -> None:
+    assert python(PRINTED, STICKSLIP_UNCOMPILED="1").stdout == "'' False\n"
+
+
+SPOILT_TYPES = """
+import numba.core.typing.templates as m
+del m.AttributeTemplate
+from stickslip.cli.main import main
+main(["run", "fig6-slab"])
+"""
+
+
+def test_a_numba_that_cannot_serve_gets_one_line() -> None:
+    done = subprocess.run([sys.executable, "-c", SPOILT_TYPES], capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert done.stderr.count("\n") == 1
+    assert "cannot compile the engine" in done.stderr
+    assert "pip install 'numba>=0.62,<0.69'" in done.stderr
+
+
+FOLDS = """
+import stickslip as ss
+found = ss.uniqueness(ss.load_scenario("fig6-slab").problem)
+print(*(fold.load.hex() for fold in found.folds))
+"""
+RUNS = """
+import hashlib
+import stickslip as ss
+slab = ss.Problem(ss.ElasticSlab(2800, 3500, 1e4, 1e8), ss.friction.FromExpression("0.6 - 0.2*v/(v + 1.0) + 0.05*sin(7*u)"),
+                  0.0, initial_excess=1e6)
+for run in (ss.simulate("fig6-slab"), ss.simulate(slab, 8.0), ss.simulate("rate-and-state-block", duration="30 years")):
+    print(hashlib.sha256(run.history.store.pieces.tobytes()).hexdigest())
+found = ss.sweep("fig6-slab", {"friction.alpha": [0.5, 1.0, 2.0]})
+print(found.slip.values.tobytes().hex())
+"""
+
+
+def both_ways(code: str, cache: Path) -> tuple[str, str, str]:
+    """Return what code prints by the faster way and by numba's public compiler, and what the second says."""
+    plain = python(code, STICKSLIP_PLAIN_NUMBA="1", STICKSLIP_CACHE_DIR=str(cache))
+    return python(code).stdout, plain.stdout, plain.stderr
+
+
+def test_folds_are_the_same_bit_for_bit(tmp_path: Path) -> None:
+    ours, plain, said = both_ways(FOLDS, tmp_path)
+    assert ours == plain
+    assert "is used plainly (STICKSLIP_PLAIN_NUMBA is set)" in said
+    assert list((tmp_path).rglob("plain/**/*.nbc"))
+
+
+@pytest.mark.slow
+def test_runs_and_batches_are_the_same_bit_for_bit(tmp_path: Path) -> None:
+    ours, plain, _ = both_ways(RUNS, tmp_path)
+    assert ours == plain
+    assert ours.count("\n") == 4
