@@ -81,10 +81,11 @@ class Pictures:
 
     def draw(self, solution: Solution) -> list[Path]:
         """Draw all that are wanted, and return their files."""
+        events = None if self.catalogue_figure is None else self._file_of_events(solution.events)  # needs pandas
         return write_files(
             (self.figure, drawing(solution.plot, self.look)),
             (self.path, drawing(solution.plot.path, self.look)),
-            (self._file_of_events(solution.events), drawing(solution.plot.catalogue, self.look)),
+            (events, drawing(solution.plot.catalogue, self.look)),
             (self.energy_figure, drawing(solution.plot.energy, self.look)),
             (self.friction_figure, drawing(solution.plot.friction, self.look)),
             (self.space_time, drawing(solution.plot.field, self.look)),
