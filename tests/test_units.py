@@ -9,8 +9,7 @@ import pytest
 
 import stickslip as ss
 from stickslip import InputError
-from stickslip.foundation.unit_table import UNITS, tabulated
-from stickslip.foundation.units import COMMON_UNITS, _looked_up, si_factor, split_quantity, to_si
+from stickslip.foundation.units import COMMON_UNITS, UNITS, _looked_up, si_factor, split_quantity, tabulated, to_si
 
 
 @pytest.mark.parametrize(

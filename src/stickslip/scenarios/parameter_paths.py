@@ -12,8 +12,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from stickslip.foundation.arguments import shown
-from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.errors import full_name
 from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, fields_of
 from stickslip.problem.selection_rule import names as rules
 from stickslip.scenarios.entries import Source, key_of
@@ -70,17 +69,7 @@ class ParameterPath:
 def find_parameter(scenario: Scenario, name: str, where: str) -> ParameterPath:
     """Return the parameter with this name, or whose name ends with it. Raises InputError if none fits, or several do."""
     found = {parameter.name: parameter for parameter in parameter_paths(scenario)}
-    if name in found:
-        return found[name]
-    fitting = [full for full in found if full.endswith(f".{name}")]
-    if len(fitting) > 1:
-        raise InputError(f"{where}: '{name}' is ambiguous: give one of {', '.join(fitting)}")
-    if not fitting:
-        plain = [full for full in found if "[" not in full]
-        hint = nearest(name, [full.rpartition(".")[2] for full in plain])
-        hint = hint if hint.startswith("did") and "." not in name else nearest(name, plain)
-        raise InputError(f"{where}: {shown(name)} is not a parameter of this scenario; {hint}")
-    return found[fitting[0]]
+    return found[full_name(name, found, f"{where}: ", "is not a parameter of this scenario")]
 
 
 def with_values(scenario: Scenario, values: Mapping[str, Any], where: str) -> Scenario:
