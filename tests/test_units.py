@@ -69,6 +69,7 @@ def test_a_number_too_large_for_a_float_is_infinite_and_left_to_the_range_check(
     ("unit", "si", "message"),
     [
         ("kg", "m", "'kg' does not convert to m"),
+        ("nan", "m", "'nan' is not a unit; write it like m"),
         ("parsnip", "m", "'parsnip' is not a unit; examples: km, s, year, kg, MPa, GN, kg/m^3, Pa s/m"),
         ("yaer", "s", "'yaer' is not a unit; did you mean 'year'?"),
         ("degC", "m", "'degC' does not convert to m"),

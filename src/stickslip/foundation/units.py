@@ -143,7 +143,7 @@ def _looked_up(unit: str, hint: str) -> tuple[Fraction, dict[str, Any]]:
         known = nearest(name, COMMON_UNITS)
         examples = known if known.startswith("did") else "examples: km, s, year, kg, MPa, GN, kg/m^3, Pa s/m"
         raise InputError(f"'{name}' is not a unit; {examples}") from None
-    except pint.PintError:
+    except (pint.PintError, ValueError):  # ValueError for the unit "nan", from fractions
         raise InputError(f"'{unit}' is not a unit{hint}") from None
 
 
