@@ -26,7 +26,7 @@ import numpy as np
 
 import stickslip as ss
 from benchmarks.damages import copied, damage, edit, edit_metadata
-from stickslip.cli.stored import StoredSweep, stored
+from stickslip.cli.commands.show import StoredSweep, stored
 from stickslip.sweeps.results.store import open_store
 
 LIMIT = 60.0

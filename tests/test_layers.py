@@ -57,8 +57,8 @@ ROOMS = {
     "explorer": (("extra", "model"), ("page",), ("server", "static"), ("notebook",)),
     "reference": (("rate_and_state",), ("block", "slab"), ("method_of_steps",)),
     "cli": (
-        ("output", "names", "overrides", "mistyped", "installation"),
-        ("long_run", "options", "help", "stored", "self_test"),
+        ("output", "overrides", "installation"),
+        ("long_run", "options"),
         ("commands",),
         ("app",),
         ("main",),

@@ -9,8 +9,7 @@ import pytest
 
 import stickslip as ss
 from stickslip import InputError
-from stickslip.foundation.unit_table import UNITS, tabulated
-from stickslip.foundation.units import COMMON_UNITS, _looked_up, si_factor, split_quantity, to_si
+from stickslip.foundation.units import COMMON_UNITS, UNITS, _looked_up, si_factor, split_quantity, tabulated, to_si
 
 
 @pytest.mark.parametrize(
@@ -70,6 +69,7 @@ def test_a_number_too_large_for_a_float_is_infinite_and_left_to_the_range_check(
     ("unit", "si", "message"),
     [
         ("kg", "m", "'kg' does not convert to m"),
+        ("nan", "m", "'nan' is not a unit; write it like m"),
         ("parsnip", "m", "'parsnip' is not a unit; examples: km, s, year, kg, MPa, GN, kg/m^3, Pa s/m"),
         ("yaer", "s", "'yaer' is not a unit; did you mean 'year'?"),
         ("degC", "m", "'degC' does not convert to m"),

@@ -14,7 +14,7 @@ from typer.main import get_command
 
 from stickslip import __version__
 from stickslip.cli.app import app
-from stickslip.cli.names import (
+from stickslip.cli.options import (
     CHOICES,
     STARTERS,
     complete_law,

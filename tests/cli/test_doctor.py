@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from stickslip.cli import installation, self_test
+from stickslip.cli import installation
+from stickslip.cli.installation import Trial, judged
 from stickslip.cli.main import main
-from stickslip.cli.self_test import Trial, judged
 from stickslip.scenarios.templates import template
 from tests.cli.conftest import Outcome
 
@@ -35,7 +35,7 @@ def versions(monkeypatch: pytest.MonkeyPatch, **replaced: str | None) -> None:
 
 
 def without_trials(monkeypatch: pytest.MonkeyPatch, *trials: Callable[[], Trial]) -> None:
-    monkeypatch.setattr(self_test, "TRIALS", trials)
+    monkeypatch.setattr(installation, "TRIALS", trials)
 
 
 def fault(found: Outcome) -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from stickslip.cli.names import complete_fitted, complete_table
+from stickslip.cli.options import complete_fitted, complete_table
 from stickslip.scenarios import library
 from stickslip.scenarios.scenario import load_scenario
 from stickslip.scenarios.templates import template_names, with_law

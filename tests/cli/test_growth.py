@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 import stickslip as ss
+from stickslip.cli.long_run import Growth
 from stickslip.cli.output.files import file_size
-from stickslip.cli.output.growth import Growth
 from stickslip.io.netcdf import history_dataset, piece_size
 from stickslip.run.progress import MANY, Report
 from tests.cli.conftest import Outcome

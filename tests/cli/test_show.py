@@ -9,7 +9,7 @@ import pytest
 
 import stickslip as ss
 from stickslip import __version__
-from stickslip.cli.names import complete_result
+from stickslip.cli.options import complete_result
 from stickslip.scenarios.scenario import load_scenario
 from tests.cli.conftest import Outcome
 

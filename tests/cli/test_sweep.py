@@ -6,7 +6,7 @@ import pytest
 import xarray as xr
 from typer import Context
 
-from stickslip.cli.names import complete_axis, complete_design, complete_quantity, complete_series, complete_vary
+from stickslip.cli.options import complete_axis, complete_design, complete_quantity, complete_series, complete_vary
 from stickslip.sweeps.design.quantities import QUANTITIES
 from stickslip.sweeps.sweep import SweepProgress
 

@@ -6,8 +6,8 @@ from typing import Any
 import pytest
 
 import stickslip as ss
+from stickslip.cli.overrides import typed_values
 from stickslip.scenarios.library import text
-from stickslip.scenarios.other_values import with_typed_values
 from stickslip.scenarios.parameter_paths import parameter_paths
 from stickslip.scenarios.scenario import Scenario, read_scenario
 
@@ -35,7 +35,7 @@ def test_other_values_are_those_of_an_edited_file(name: str, values: dict[str, A
     assert found != ss.scenarios[name]
     assert found.problem == expected.problem
     assert (found.duration, found.rtol, found.max_events) == (expected.duration, expected.rtol, expected.max_events)
-    typed = with_typed_values(ss.scenarios[name], [f"{key} = {value}" for key, value in values.items()], "typed")
+    typed = ss.scenarios[name].with_values(typed_values([f"{key} = {value}" for key, value in values.items()], "typed", "a=1"))
     assert typed.problem == expected.problem
 
 

@@ -8,8 +8,8 @@ from typing import ClassVar
 
 import numpy as np
 
+from stickslip.foundation.arguments import CheckedArguments
 from stickslip.foundation.brief_repr import brief_repr
-from stickslip.foundation.checked_arguments import CheckedArguments
 from stickslip.foundation.conversion import Number
 from stickslip.foundation.quantities import check_fields, quantity
 

@@ -1,12 +1,15 @@
-"""The subcommands of `stickslip`, one file each, in the groups in which the help shows them."""
+"""The subcommands of `stickslip` in groups, their help, and one line on what was mistyped."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
+from inspect import cleandoc
+from textwrap import wrap
 from typing import Annotated, Any
 
 import typer
-from typer.core import TyperGroup
+from typer.core import TyperArgument, TyperCommand, TyperGroup
 
 from stickslip.cli.commands.analogy import analogy
 from stickslip.cli.commands.check import check
@@ -22,8 +25,57 @@ from stickslip.cli.commands.regularise import regularise
 from stickslip.cli.commands.run import run
 from stickslip.cli.commands.show import show
 from stickslip.cli.commands.sweep import sweep
-from stickslip.cli.help import Command, prose_of, sections_of, write_list
+from stickslip.cli.options import CHOICES
 from stickslip.foundation.errors import InputError, nearest
+
+WIDEST_TERM = 28
+"""Largest width (columns) of the terms of a list; the explanation of a longer one begins below it."""
+LEAST_WIDTH = 20
+"""Smallest width (columns) of explanations."""
+
+
+def prose_of(command: Callable[..., Any]) -> str:
+    """Return the docstring of a command with each paragraph on one line, but for those that begin with a backslash and b."""
+    paragraphs = cleandoc(command.__doc__ or "").split("\n\n")
+    return "\n\n".join(text.replace(r"\b", "\b") if text.startswith(r"\b") else " ".join(text.split("\n")) for text in paragraphs)
+
+
+class Command(TyperCommand):
+    """A command whose help shows its options by groups, with the names that they accept."""
+
+    def format_options(self, ctx: Any, formatter: Any) -> None:
+        """Write the arguments and the options."""
+        for one in self.params:
+            names = CHOICES.get(str(one.name))
+            if names is not None:
+                one.help = f"{one.help} One of: {', '.join(names())}."  # type: ignore[attr-defined] # typer's options have one
+        sections_of(self, ctx, formatter)
+
+
+def sections_of(command: Any, ctx: Any, formatter: Any) -> None:
+    """Write the arguments and options of a command, each under the heading of its group."""
+    sections: dict[str, list[tuple[str, str]]] = {"Arguments": [], "Options": []}
+    for one in command.get_params(ctx):
+        heading = "Arguments" if isinstance(one, TyperArgument) else getattr(one, "rich_help_panel", None) or "Options"
+        record = one.get_help_record(ctx)
+        if record is not None:
+            sections.setdefault(heading, []).append(record)
+    for heading, records in sections.items():
+        if records:
+            with formatter.section(heading):
+                write_list(formatter, records)
+
+
+def write_list(formatter: Any, records: list[tuple[str, str]]) -> None:
+    """Write terms, each with its explanation beside it or, after a long term, below it; words with hyphens stay whole."""
+    start = min(max(len(term) for term, _ in records), WIDEST_TERM) + 2
+    width = max(formatter.width - formatter.current_indent - start, LEAST_WIDTH)
+    for term, text in records:
+        lines = wrap(text, width, break_on_hyphens=False, break_long_words=False) or [""]
+        first = f"{term:{start}}{lines.pop(0)}" if len(term) <= start - 2 else term
+        for line in (first, *(f"{'':{start}}{one}" for one in lines)):
+            formatter.write(f"{'':{formatter.current_indent}}{line}".rstrip() + "\n")
+
 
 _HELP = """Dynamic frictional sliding of a rigid block and of an elastic slab.
 
@@ -118,3 +170,58 @@ def start(
     """Show the help if no command is given."""
     if context.invoked_subcommand is None:
         typer.echo(context.get_help())
+
+
+_KINDS = {"int": "a whole number", "float": "a number"}
+"""What a value must be, by the type of its parameter."""
+
+
+def explain(error: Any) -> str:
+    """Return the message for an error of the parser of the command line."""
+    context = getattr(error, "ctx", None)
+    if context is None:  # of an option without its value, or with one that it does not take
+        return str(error.format_message()).replace("requires an argument", "needs a value").rstrip(".")
+    command = f"{context.info_name}: " if context.parent else ""
+    options = [name for one in context.command.get_params(context) for name in one.opts if name.startswith("--")]
+    teach = f"`{context.command_path} --help` {'explains it, with examples' if context.parent else 'shows all'}"
+    said = {
+        "MissingParameter": lambda: f"{_name(error.param)} is missing; {teach}",
+        "NoSuchOption": lambda: f"there is no option {error.option_name}; {_hint(error.option_name, options)}{teach}",
+        "BadParameter": lambda: _bad_value(error),
+        "UsageError": lambda: _too_many(error.format_message(), teach),
+    }.get(type(error).__name__)
+    return f"{command}{said()}" if said else str(error.format_message())
+
+
+def _name(parameter: Any) -> str:
+    longest = max(parameter.opts, key=len)
+    return str(longest if longest.startswith("-") else longest.upper())
+
+
+def _hint(name: str, options: list[str]) -> str:
+    hint = nearest(name, options)
+    return f"{hint} " if hint.startswith("did") else ""
+
+
+def _bad_value(error: Any) -> str:
+    """Return what a value must be and what was given, if both are known."""
+    from stickslip.foundation.conversion import decimal_point  # imports numpy
+
+    kind = _KINDS.get(error.param.type_descriptor.annotation.__name__) if error.param else None
+    faults = error.__cause__.errors() if hasattr(error.__cause__, "errors") else []
+    if kind is None or not faults:
+        return " ".join(str(error.format_message()).split())
+    least = getattr(error.param, "min", None)
+    bound = "" if least is None else f", at least {least}"
+    given = str(faults[0]["input"])
+    point = decimal_point(given)
+    return f"{_name(error.param)} must be {kind}{bound}, got {given[:60]!a}" + (f": write {point}" if point else "")
+
+
+def _too_many(message: str, teach: str) -> str:
+    found = re.search(r"unexpected extra arguments?(?:\(s\))? \((.*)\)", message)
+    if found is None:
+        return message
+    if "=" in found[1]:
+        return f"{ascii(found[1])[:60]} is too much; a value of the scenario is replaced by --set NAME=VALUE; {teach}"
+    return f'{ascii(found[1])[:60]} is too much; a text with spaces stands in quotes, as "480 years"; {teach}'

@@ -85,7 +85,7 @@ def _code(arguments: Sequence[str] | None) -> int:
     from typer import Abort
     from typer.exceptions import TyperException
 
-    from stickslip.cli.app import app
+    from stickslip.cli.app import app, explain
     from stickslip.foundation.errors import InputError, InputWarning
 
     try:
@@ -96,8 +96,6 @@ def _code(arguments: Sequence[str] | None) -> int:
     except InputError as error:
         return _fail(str(error))
     except TyperException as error:
-        from stickslip.cli.mistyped import explain
-
         return _fail(explain(error))
     except OSError as error:
         return _fail(f"{error.filename}: {error.strerror}" if error.filename and error.strerror else str(error))

@@ -2,13 +2,165 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from importlib import import_module
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from typer import Context  # typer evaluates the annotation at run time
 
-from stickslip.cli.names import complete_axis, complete_scenario, complete_vary
+STARTERS = ("slab", "lab-slab", "block")
+"""Names of `templates.STARTERS`, repeated because completion must not wait for the import of that module."""
+
+RESULT_FILES = (".nc", ".csv", ".parquet")
+"""Suffixes of the files that hold results of runs and catalogues."""
+
+Names = Callable[[], list[str]]
+"""A function that returns all names that an option accepts."""
+
+
+def _table(module: str, table: str) -> Names:
+    """Return a function that imports a module and returns the names in one of its tables."""
+
+    def names() -> list[str]:
+        found: Iterable[str] = getattr(import_module(f"stickslip.{module}"), table)
+        return list(found)
+
+    return names
+
+
+def _completion(names: Names) -> Callable[[str], list[str]]:
+    return lambda incomplete: [name for name in names() if name.startswith(incomplete)]
+
+
+CHOICES: dict[str, Names] = {
+    "friction": _table("friction", "LAWS"),
+    "pull": _table("loading", "HISTORIES"),
+    "selection": _table("problem.selection_rule", "SELECTION_RULES"),
+    "by": _table("studies.regularisations", "KINDS"),
+    "quantity": _table("sweeps.design.quantities", "QUANTITIES"),
+    "refine": _table("sweeps.design.quantities", "QUANTITIES"),
+    "design": _table("sweeps.design.design", "KINDS"),
+    "series": _table("solution.evaluation", "CURVES"),
+}
+"""The names that each option with a fixed set of values accepts, by option."""
+
+complete_law = _completion(CHOICES["friction"])
+complete_pull = _completion(CHOICES["pull"])
+complete_rule = _completion(CHOICES["selection"])
+complete_regularisation = _completion(CHOICES["by"])
+complete_quantity = _completion(CHOICES["quantity"])
+complete_design = _completion(CHOICES["design"])
+
+
+def complete_series(incomplete: str) -> list[str]:
+    """Return the lists of curves that begin with what is typed: names of curves with commas between them."""
+    before, comma, last = incomplete.rpartition(",")
+    return [f"{before}{comma}{name}" for name in CHOICES["series"]() if name.startswith(last) and name not in before.split(",")]
+
+
+def complete_fitted(incomplete: str) -> list[str]:
+    """Return the names of laws that can be fitted to points, as far as they begin with what is typed."""
+    from stickslip.foundation.errors import InputError
+    from stickslip.friction import LAWS
+    from stickslip.friction.custom.fit_parameters import template
+
+    found = []
+    for name in complete_law(incomplete):
+        try:
+            template(LAWS[name])
+        except InputError:
+            continue
+        found.append(name)
+    return found
+
+
+def complete_table(incomplete: str) -> list[str]:
+    """Return the CSV files and folders that begin with what is typed."""
+    return _files(incomplete, (".csv", ".txt", ".tsv", ".dat"))
+
+
+def complete_scenario(incomplete: str) -> list[str]:
+    """Return the bundled scenarios, TOML files and folders that begin with what is typed."""
+    return _complete_files(incomplete, (".toml",))
+
+
+def complete_source(incomplete: str) -> list[str]:
+    """Return the bundled scenarios, TOML files, files of runs (.nc) and folders that begin with what is typed."""
+    return _complete_files(incomplete, (".toml", ".nc"))
+
+
+def complete_result(incomplete: str) -> list[str]:
+    """Return the files and folders that begin with what is typed and may be results: of runs, catalogues and sweeps."""
+    return [name.removesuffix("/") if name.endswith(".zarr/") else name for name in _files(incomplete, RESULT_FILES)]
+
+
+def _complete_files(incomplete: str, suffixes: tuple[str, ...]) -> list[str]:
+    from stickslip.scenarios import library
+
+    return [name for name in library.names() if name.startswith(incomplete)] + _files(incomplete, suffixes)
+
+
+def _files(incomplete: str, suffixes: tuple[str, ...]) -> list[str]:
+    typed = Path(incomplete)
+    folder = typed if incomplete.endswith("/") else typed.parent
+    files = [str(path) + ("/" if path.is_dir() else "") for path in _listing(folder) if path.is_dir() or path.suffix in suffixes]
+    return [name for name in sorted(files) if name.startswith(incomplete)]
+
+
+def _listing(folder: Path) -> list[Path]:
+    try:
+        return [path for path in folder.iterdir() if not path.name.startswith(".")]
+    except OSError:
+        return []
+
+
+def complete_template(incomplete: str) -> list[str]:
+    """Return the starters and bundled scenarios that begin with what is typed."""
+    from stickslip.scenarios import library
+
+    return [name for name in [*STARTERS, *library.names()] if name.startswith(incomplete)]
+
+
+def complete_vary(context: Context, incomplete: str) -> list[str]:
+    """Return the keys of the scenario on the command line that begin with what is typed, each with the sign before its value."""
+    return _before_a_value([name for name in _parameters(context) if name.startswith(incomplete)], "VALUE")
+
+
+def complete_axis(context: Context, incomplete: str) -> list[str]:
+    """Return the parameters of the scenario on the command line that can be an axis of a map, as `complete_vary` does."""
+    found = (name for name in _parameters(context) if name.startswith(("body.", "friction.")))
+    return _before_a_value([name for name in found if name.startswith(incomplete)], "LOW..HIGH")
+
+
+def _before_a_value(names: list[str], value: str) -> list[str]:
+    """Return names with an equals sign, and for a name that is alone also what may follow.
+
+    After a word that is the only one shells put a space. With a second one that begins like it they stop where the two part, which
+    is behind the equals sign, and show both.
+    """
+    found = [f"{name}=" for name in names]
+    return [*found, f"{found[0]}{value}"] if len(found) == 1 else found
+
+
+def _parameters(context: Context) -> list[str]:
+    """Return the keys of the numbers in the scenario on the command line; none if there is no scenario that can be read.
+
+    While the value of an option is typed, typer leaves the words that are no options in `args`, and the scenario is the first.
+    """
+    from stickslip.foundation.errors import InputError
+    from stickslip.scenarios.parameter_paths import parameter_paths
+    from stickslip.scenarios.scenario import load_scenario
+
+    scenario = context.params.get("scenario") or next(iter(context.args), None)
+    if scenario is None:
+        return []
+    try:
+        return [one.name for one in parameter_paths(load_scenario(scenario))]
+    except InputError:
+        return []
+
 
 AXIS = "NAME=LOW..HIGH[:POINTS][:log]; give two."
 """How the axes of a map are typed, for the help of --map."""

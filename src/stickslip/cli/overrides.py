@@ -1,29 +1,36 @@
-"""Replace numbers of a scenario by those that were typed as options of a command."""
+"""Load a scenario, replace its numbers by those that were typed as options of a command, and read the axes of its maps."""
 
 from __future__ import annotations
 
+import re
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
 from stickslip.engine_input.creep_limits import check_creep_rtol
 from stickslip.engine_input.lumping_limits import check_shortest_event
+from stickslip.foundation.arguments import shown
+from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import SHORTEST_EVENT, check_rtol
+from stickslip.scenarios.entries import read_typed, typed_number
+from stickslip.scenarios.parameter_paths import with_values
 from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
 from stickslip.scenarios.schema import check_events, check_rule, read_duration
 from stickslip.scenarios.text_of_files import LARGEST, text_of
-from stickslip.scenarios.values import read_typed
 
+if TYPE_CHECKING:
+    from stickslip.contact.regime_map import Axis
+
+_AXIS = re.compile(r"(?P<name>[^=]+)=(?P<low>.+?)\.\.(?P<high>[^:]+)(?::(?P<points>\d{1,6}))?(?P<log>:log)?")
+"""The axis of a map, as it is typed."""
 Reader = Callable[[Any, str, str], Any]
 """A function that converts what was typed, given also the name of the command and of the option for messages."""
-
-
 STDIN = "-"
 """The name that stands for standard input in place of a scenario's."""
 
@@ -33,9 +40,8 @@ def load(scenario: str, command: str = "", changes: Sequence[str] | None = None)
     loaded = _load(scenario)
     if not changes:
         return loaded
-    from stickslip.scenarios.other_values import with_typed_values
-
-    return with_typed_values(loaded, changes, f"{command}: --set")
+    where = f"{command}: --set"
+    return with_values(loaded, typed_values(changes, where, '"friction.alpha=2" or "body.thickness=5 km"'), where)
 
 
 def _load(scenario: str) -> Scenario:
@@ -84,3 +90,38 @@ def _shortest_event(problem: Problem, text: str, command: str, option: str) -> f
 
 def _under_rule(problem: Problem, rule: str, command: str, option: str) -> Problem:
     return replace(problem, selection=check_rule(rule, command, option))
+
+
+def typed_values(texts: Iterable[str], where: str, example: str) -> dict[str, float | str]:
+    """Return values that were typed, each as NAME=VALUE, by name: numbers, and texts with a unit or words.
+
+    Raises InputError, whose message begins with `where` and shows the example.
+    """
+    values: dict[str, float | str] = {}
+    for text in texts:
+        name, equals, value = (part.strip() for part in text.partition("="))
+        if not equals or not name or not value:
+            raise InputError(f"{where} must be NAME=VALUE, as {example}, got {shown(text)}")
+        if name in values:
+            raise InputError(f"{where}: {shown(name)} is given twice")
+        values[name] = typed_number(value)
+    return values
+
+
+def read_axis(problem: Problem, text: str, where: str) -> Axis:
+    """Read an axis of the form NAME=LOW..HIGH[:POINTS][:log], with numbers in SI or with a unit.
+
+    The axis has 40 points if no number is given. Raises InputError with a message that begins with `where`.
+    """
+    from stickslip.contact.regime_map import Axis
+
+    parts = _AXIS.fullmatch(text)
+    if parts is None:
+        raise InputError(f'{where} must be NAME=LOW..HIGH[:POINTS][:log], as "friction.alpha=0.01..10:50:log", got {shown(text)}')
+    try:
+        found = problem.parameters[parts["name"].strip()]
+        ends = [read_typed(parts[end], found.declared, where, found.name) for end in ("low", "high")]
+        return Axis(found.name, ends[0], ends[1], int(parts["points"] or 40), bool(parts["log"]))
+    except InputError as error:
+        message = str(error)
+        raise InputError(message if message.startswith(where) else f"{where}: {message}") from None

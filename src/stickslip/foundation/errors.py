@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import inspect
 import warnings
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 
@@ -68,3 +68,21 @@ def nearest_and_all(word: str, allowed: Iterable[str]) -> str:
     allowed = list(allowed)
     close = difflib.get_close_matches(word, allowed, n=1)
     return f"{f'did you mean {close[0]!r}? ' if close else ''}allowed: {', '.join(allowed)}"
+
+
+def full_name(name: str, known: Collection[str], before: str, unknown: str) -> str:
+    """Return the known name that is the given one, or the only one that ends with it: "friction.alpha" for "alpha".
+
+    Raises InputError, whose message begins with `before`, if several names fit, and with the text `unknown` if none does.
+    """
+    if name in known:
+        return name
+    fitting = [full for full in known if full.endswith(f".{name}")]
+    if len(fitting) > 1:
+        raise InputError(f"{before}'{name}' is ambiguous: give one of {', '.join(fitting)}")
+    if not fitting:
+        single = [full for full in known if "[" not in full]
+        hint = nearest(name, [full.rpartition(".")[2] for full in single])
+        hint = hint if hint.startswith("did") and "." not in name else nearest(name, single)
+        raise InputError(f"{before}{ascii(name)[:60]} {unknown}; {hint}")
+    return fitting[0]

@@ -13,8 +13,8 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from stickslip.foundation.arguments import CheckedArguments
 from stickslip.foundation.brief_repr import brief_repr
-from stickslip.foundation.checked_arguments import CheckedArguments
 from stickslip.foundation.field_docs import document_fields
 from stickslip.foundation.quantities import check_fields
 

@@ -12,7 +12,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from stickslip.foundation.arguments import shown
-from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.errors import InputError, full_name
 from stickslip.foundation.formatting import brief
 from stickslip.foundation.quantities import NamedNumbers, Part, Quantity, Series, fields_of, quantities_of
 
@@ -83,21 +83,9 @@ class Parameters(Mapping[str, Parameter]):
         return {one.name: one for one in _of_problem(self._problem)}
 
     def __getitem__(self, name: str) -> Parameter:
-        found = self._found
-        if name in found:
-            return found[name]
         if not isinstance(name, str):
             raise InputError(f'parameters: a name must be text such as "friction.alpha", got {shown(name)}')
-        fitting = [full for full in found if full.endswith(f".{name}")]
-        if len(fitting) > 1:
-            raise InputError(f"parameter '{name}' is ambiguous: give one of {', '.join(fitting)}")
-        if not fitting:
-            single = [full for full in found if "[" not in full]
-            hint = nearest(name, [full.rpartition(".")[2] for full in single])
-            raise InputError(
-                f"parameter {ascii(name)[:60]} is unknown; {hint if hint.startswith('did') else nearest(name, single)}"
-            )
-        return found[fitting[0]]
+        return self._found[full_name(name, self._found, "parameter ", "is unknown")]
 
     def __contains__(self, name: object) -> bool:
         return name in self._found

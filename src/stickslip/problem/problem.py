@@ -12,9 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.bodies import BODIES, Body
-from stickslip.foundation.arguments import check_type, is_number, shown
+from stickslip.foundation.arguments import CheckedArguments, check_type, is_number, shown
 from stickslip.foundation.brief_repr import brief_repr, fields_in, shown_fields
-from stickslip.foundation.checked_arguments import CheckedArguments
 from stickslip.foundation.conversion import Converted, Number, OptionalNumber, WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief, html_table

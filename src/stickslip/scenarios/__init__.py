@@ -12,7 +12,7 @@ __all__ = ["Scenario", "load_scenario", "read_scenario", "template", "template_n
 
 
 def __getattr__(name: str) -> Any:
-    """Import a name when it is first used, because completion in the shell must not wait for pydantic."""
+    """Import a name when it is first used, because completion in the shell must not wait for all that reads them."""
     if name in __all__:
         from stickslip.scenarios import scenario, templates
 

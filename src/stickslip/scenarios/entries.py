@@ -2,13 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import os
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import Choice, Field, Named, NamedNumbers, Part, Quantity, Series, Text, fields_of
-from stickslip.scenarios.values import show
+from stickslip.foundation.arguments import shown
+from stickslip.foundation.atomic_write import read_bounded
+from stickslip.foundation.columns import header_of, missing, read_text
+from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.quantities import (
+    LARGEST_SERIES,
+    Choice,
+    Field,
+    Named,
+    NamedNumbers,
+    Part,
+    Quantity,
+    Series,
+    Text,
+    fields_of,
+)
 
 
 class Source(NamedTuple):
@@ -39,6 +53,19 @@ class Place(NamedTuple):
         return f"[{self.table}] {self.key}"
 
 
+def typed_number(text: str) -> float | str:
+    """Return a text as a number if it is one, otherwise the text without leading and trailing spaces."""
+    try:
+        return float(text)
+    except ValueError:
+        return text.strip()
+
+
+def read_typed(text: str, declared: Quantity, where: str, name: str) -> float:
+    """Return in SI what a user typed, a number or a text with a unit. Raises InputError as `Quantity.check` does."""
+    return declared.check(where, name, typed_number(text))
+
+
 def read_entry(value: Any, entry: Field, place: Place, law: Callable[[dict[str, Any], Source, str], Any]) -> Any:
     """Return a value of a scenario in the form that its field takes, with numbers in SI.
 
@@ -51,13 +78,13 @@ def read_entry(value: Any, entry: Field, place: Place, law: Callable[[dict[str, 
     if isinstance(entry, Series):
         if not isinstance(value, list):
             unit = entry.item.label
-            raise InputError(f"{file}: {place} must be a list of numbers in {unit} or of texts with units, got {show(value)}")
+            raise InputError(f"{file}: {place} must be a list of numbers in {unit} or of texts with units, got {shown(value)}")
         return tuple(entry.item.check(file, f"{place}[{i}]", one) for i, one in enumerate(value))
     if isinstance(entry, NamedNumbers):
         return _named(value, place)
     if isinstance(entry, Part):
         if not isinstance(value, dict):
-            raise InputError(f"{file}: [{place.inner}] must be a table, got {show(value)}")
+            raise InputError(f"{file}: [{place.inner}] must be a table, got {shown(value)}")
         return law(value, place.source, place.inner)
     return value
 
@@ -65,12 +92,12 @@ def read_entry(value: Any, entry: Field, place: Place, law: Callable[[dict[str, 
 def _named(value: Any, place: Place) -> tuple[Named, ...]:
     file, table = place.source.file, f"[{place.inner}]"
     if not isinstance(value, dict):
-        raise InputError(f"{file}: {table} must be a table of names and values, got {show(value)}")
+        raise InputError(f"{file}: {table} must be a table of names and values, got {shown(value)}")
     for name, one in value.items():
         if isinstance(one, bool) or not isinstance(one, int | float | str):
-            raise InputError(f"{file}: {table} {show(name)} must be a number or a text with a unit, got {show(one)}")
+            raise InputError(f"{file}: {table} {shown(name)} must be a number or a text with a unit, got {shown(one)}")
         if isinstance(one, int) and abs(one) > 10**300:
-            raise InputError(f"{file}: {table} {show(name)} must be a number, got a whole number beyond 1e300")
+            raise InputError(f"{file}: {table} {shown(name)} must be a number, got a whole number beyond 1e300")
     return tuple(Named.read(name, one, f"{file}: [{place.table}]") for name, one in value.items())
 
 
@@ -101,3 +128,73 @@ def _written(value: Any, entry: Field) -> Any:
     if isinstance(entry, NamedNumbers):
         return {one.name: f"{one.value!r} {one.unit}" if one.unit else one.value for one in value}
     return to_table(value) if isinstance(entry, Part) else value
+
+
+LARGEST = 5_000_000
+"""Size (bytes) of the largest data file that is read: scenarios are untrusted."""
+ANYWHERE = "STICKSLIP_FILES_ANYWHERE"
+"""Environment variable whose value 1 allows data files outside the folder of the scenario."""
+
+
+def read_points(
+    name: str, folder: Path | None, columns: Mapping[str, str], where: str, along: str | None = None
+) -> dict[str, list[float]]:
+    """Return the numbers (SI) in the CSV file `name` of the scenario's folder, by the field to which they belong.
+
+    `columns` maps headings to fields. The last is that of the dependent variable; exactly one other column must be there, or be
+    named by `along`, and holds the ascending slips, slip rates or times at which the values are given. Blank lines, lines that
+    begin with #, notes before the headings and unknown columns are ignored; headings may carry units (`foundation.columns`).
+    Raises InputError with a message of one line that names the file and the line.
+    """
+    *others, value = columns
+    if along is not None:
+        if along not in others:
+            at = where.removesuffix(" file")
+            raise InputError(f"{at} along: {shown(along)} is no column to go along; {nearest(str(along), others)}")
+        columns = {column: columns[column] for column in (along, value)}
+    try:
+        text = _text(name, folder)
+    except InputError as error:
+        raise InputError(f"{where} {shown(name)}: {error}") from None
+    return _points_in(text, columns, f"{where}: {shown(name)}")
+
+
+def _points_in(text: str, columns: Mapping[str, str], file: str) -> dict[str, list[float]]:
+    """Return the numbers (SI) in CSV text by the field to which they belong, as `read_points` does.
+
+    `file` is the name of the text in messages.
+    """
+    *others, value = columns
+    number, header = header_of(text, file, tuple(columns))
+    table = read_text(text, tuple(columns), file, LARGEST_SERIES)
+    place, found = f"{file}, line {number}", [column for column in others if column in table.columns]
+    if value not in table.columns:
+        raise InputError(f"{place}: no column '{value}' in the header; {missing(header, value)}")
+    if len(found) != 1:
+        got = f'both; choose one with along = "{found[0]}"' if found else f"none; {missing(header, others[0])}"
+        raise InputError(f"{place}: the header needs a column {' or '.join(others)}, got {got}")
+    count = len(table.columns[value])
+    if count < 2:
+        raise InputError(f"{table.at(-1)}: at least two rows of numbers are needed, got {count}")
+    table.check_ascending(found[0])
+    return {columns[column]: numbers.tolist() for column, numbers in table.columns.items()}
+
+
+def _text(name: str, folder: Path | None) -> str:
+    """Return the content of a data file. Raises InputError with a message that is meant to follow its name."""
+    if folder is None:
+        raise InputError("only a scenario in a file can name another file; write the points as lists")
+    anywhere, hint = os.environ.get(ANYWHERE) == "1", f"{ANYWHERE}=1 in the environment allows others"
+    if not name.isprintable() or (Path(name).is_absolute() and not anywhere):
+        raise InputError(f"the path must be relative to the scenario; {hint}")
+    try:
+        path = (folder / name).resolve()
+        if not path.is_relative_to(folder.resolve()) and not anywhere:
+            raise InputError(f"the file must be in the folder of the scenario; {hint}")
+        if not path.is_file():
+            raise InputError("no such file beside the scenario")
+        return read_bounded(path, LARGEST).decode("utf-8-sig")
+    except OSError as error:
+        raise InputError(f"cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise InputError("not a text file in UTF-8") from None

@@ -21,9 +21,8 @@ from stickslip.loading import LoadingHistory
 from stickslip.loading.contract import VARYING
 from stickslip.problem.problem import Problem
 from stickslip.reference.slab.pulse_period import PulseTrain
-from stickslip.scenarios.doubts import doubts
 from stickslip.scenarios.entries import key_of
-from stickslip.scenarios.scenario import Scenario
+from stickslip.scenarios.scenario import Scenario, doubts
 from stickslip.scenarios.schema import quantities_in
 from stickslip.scenarios.stability import stability_of, start_of, wait_of
 

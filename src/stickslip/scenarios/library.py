@@ -55,7 +55,7 @@ class BundledScenarios(Mapping[str, "Scenario"]):
     """
 
     def __getitem__(self, name: str) -> Scenario:
-        from stickslip.scenarios.scenario import load_scenario  # imports pydantic, which a list of names can do without
+        from stickslip.scenarios.scenario import load_scenario  # which a list of names can do without
 
         if not isinstance(name, str):
             raise InputError(f"scenarios: a name must be text, such as 'fig6-slab', got {shown(name)}")

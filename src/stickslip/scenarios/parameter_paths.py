@@ -1,4 +1,4 @@
-"""The parameters of a scenario that can be given other values, one or many of them, named by their place in the file.
+"""The parameters of a scenario, named by their place in the file, and scenarios in which some of them have other values.
 
 Every quantity is one: "body.thickness", "friction.slip.mean", "run.rtol". The last part of a name ("thickness") is
 sufficient if it is unambiguous. One element of a series is written "friction.values[2]".
@@ -7,17 +7,17 @@ sufficient if it is unambiguous. One element of a series is written "friction.va
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass
+import tomllib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
-from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.errors import full_name
 from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, fields_of
 from stickslip.problem.selection_rule import names as rules
-from stickslip.scenarios.entries import key_of
-from stickslip.scenarios.scenario import Scenario
+from stickslip.scenarios.entries import Source, key_of
+from stickslip.scenarios.scenario import Scenario, scenario_of
 from stickslip.scenarios.schema import entries_in
-from stickslip.scenarios.values import show
 
 EVENTS = Quantity("1", "stop after this number of slip events", at_least=1)
 SELECTION = "selection rule"
@@ -69,17 +69,19 @@ class ParameterPath:
 def find_parameter(scenario: Scenario, name: str, where: str) -> ParameterPath:
     """Return the parameter with this name, or whose name ends with it. Raises InputError if none fits, or several do."""
     found = {parameter.name: parameter for parameter in parameter_paths(scenario)}
-    if name in found:
-        return found[name]
-    fitting = [full for full in found if full.endswith(f".{name}")]
-    if len(fitting) > 1:
-        raise InputError(f"{where}: '{name}' is ambiguous: give one of {', '.join(fitting)}")
-    if not fitting:
-        plain = [full for full in found if "[" not in full]
-        hint = nearest(name, [full.rpartition(".")[2] for full in plain])
-        hint = hint if hint.startswith("did") and "." not in name else nearest(name, plain)
-        raise InputError(f"{where}: {show(name)} is not a parameter of this scenario; {hint}")
-    return found[fitting[0]]
+    return found[full_name(name, found, f"{where}: ", "is not a parameter of this scenario")]
+
+
+def with_values(scenario: Scenario, values: Mapping[str, Any], where: str) -> Scenario:
+    """Return a scenario in which some parameters have other values, as `Scenario.with_values` does; `where` begins messages."""
+    document = tomllib.loads(scenario.to_toml())
+    for name, value in values.items():
+        parameter = find_parameter(scenario, name, where)
+        document["initial"].pop(EXCLUDE_EACH_OTHER.get(parameter.name), None)
+        parameter.put(document, parameter.read(value, where))
+    changed = ", ".join(f"{name} = {value}" for name, value in values.items())
+    title = f"{scenario.heading}: {changed}" if scenario.heading else changed
+    return replace(scenario_of(document, Source(where)), name=scenario.name, title=title, description="")
 
 
 def parameter_paths(scenario: Scenario) -> Iterator[ParameterPath]:

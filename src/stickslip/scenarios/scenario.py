@@ -13,7 +13,7 @@ import tomli_w
 
 from stickslip.engine_input.creep_limits import check_creep_rtol
 from stickslip.engine_input.lumping_limits import check_shortest_event
-from stickslip.foundation.arguments import as_path
+from stickslip.foundation.arguments import as_path, shown
 from stickslip.foundation.brief_repr import shown_fields
 from stickslip.foundation.conversion import Number
 from stickslip.foundation.errors import InputError
@@ -25,9 +25,7 @@ from stickslip.problem.run_quantities import DURATION, check_rtol
 from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source, to_table
 from stickslip.scenarios.schema import KINDS, read_document, read_part, read_table, without_owner
-from stickslip.scenarios.text_of_files import about_suffix, read_text
-from stickslip.scenarios.toml_faults import why_not_toml
-from stickslip.scenarios.values import show
+from stickslip.scenarios.text_of_files import about_suffix, read_text, why_not_toml
 
 if TYPE_CHECKING:
     from stickslip.solution.solution import Solution
@@ -40,6 +38,8 @@ LARGEST_TEXT = 4_000_000
 """Largest number of characters of a scenario, as in a file of results, which holds the points of data files, too."""
 MOST_TABLES = 100
 """Largest number of tables in a scenario; the laws with most parts have a fifth of it."""
+LARGE_COEFFICIENT, SMALL_STRESS = 3.0, 10.0
+"""Static coefficient above which, and normal stress (Pa) of a slab below which, a question is due."""
 _HEADING = re.compile(r"""^[ \t]*\[{1,2}[ \t]*[A-Za-z_"']""", re.MULTILINE)
 _LONG_KEY = re.compile(rf"""(?<![\w-])(?:(?:[\w-]+|"[^"\n]*"|'[^'\n]*')[ \t]*\.[ \t]*){{{DEEPEST}}}""")
 
@@ -85,14 +85,14 @@ class Scenario:
         check_fields(self)
 
     def __repr__(self) -> str:
-        shown = dict(shown_fields(self))
-        problem, head = shown.pop("problem"), [self.name, *([self.title] if self.title else [])]
-        others = ", ".join(f"{name}={text}" for name, text in shown.items() if name not in ("name", "title", "description"))
+        fields_shown = dict(shown_fields(self))
+        problem, head = fields_shown.pop("problem"), [self.name, *([self.title] if self.title else [])]
+        others = ", ".join(f"{name}={text}" for name, text in fields_shown.items() if name not in ("name", "title", "description"))
         return f"stickslip Scenario {': '.join(head)}\n{problem}\n{others}"
 
     def _repr_html_(self) -> str:
-        shown = [(name, text.strip("'")) for name, text in shown_fields(self) if name not in ("problem", "name")]
-        return html_table(f"stickslip Scenario {self.name}", shown) + self.problem._repr_html_()
+        rows = [(name, text.strip("'")) for name, text in shown_fields(self) if name not in ("problem", "name")]
+        return html_table(f"stickslip Scenario {self.name}", rows) + self.problem._repr_html_()
 
     @property
     def heading(self) -> str:
@@ -134,7 +134,7 @@ class Scenario:
         InputError
             If there is no such parameter, or if it cannot have the value.
         """
-        from stickslip.scenarios.other_values import with_values
+        from stickslip.scenarios.parameter_paths import with_values
 
         return with_values(self, values, self.name)
 
@@ -156,6 +156,16 @@ class Scenario:
 
 def _without_none(values: Mapping[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in values.items() if value is not None}
+
+
+def doubts(problem: Problem) -> list[str]:
+    """Return the questions about the numbers of a problem, one line each."""
+    found, static = [], problem.strength / problem.normal
+    if static > LARGE_COEFFICIENT:
+        found.append(f"the static friction coefficient is {static:.4g}; that of rock is 0.1 to 1: is it a percentage?")
+    if problem.body.has_waves and problem.normal < SMALL_STRESS:
+        found.append(f"the normal stress is {problem.normal:.4g} Pa: mPa is a thousandth of a pascal, MPa is a million")
+    return found
 
 
 def load_scenario(path_or_name: str | Path) -> Scenario:
@@ -180,7 +190,7 @@ def load_scenario(path_or_name: str | Path) -> Scenario:
     if isinstance(path_or_name, str) and path_or_name in library.names():
         return read_scenario(library.text(path_or_name), path_or_name)
     path = as_path("load_scenario: path_or_name", path_or_name, "the name of a file or of a bundled scenario")
-    file = str(path) if str(path).isprintable() else show(str(path))
+    file = str(path) if str(path).isprintable() else shown(str(path))
     return read_scenario(read_text(path, file), file, name=path.stem, folder=path.parent)
 
 

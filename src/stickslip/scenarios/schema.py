@@ -1,6 +1,6 @@
 """The schema of a scenario file, derived from what bodies, laws, loading histories and `Problem` declare about their fields.
 
-A new law or body enters the schema by being registered. pydantic checks names and types, and `Quantity` checks values.
+A new law or body enters the schema by being registered.
 """
 
 from __future__ import annotations
@@ -8,12 +8,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING
 from functools import cache, partial
-from typing import Annotated, Any
-
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, ValidationInfo, create_model
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 from stickslip.bodies import BODIES
-from stickslip.foundation.arguments import check_whole
+from stickslip.foundation.arguments import check_whole, shown
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import Field as Declared
 from stickslip.foundation.quantities import Part, Quantity, fields_of, in_units
@@ -24,9 +23,7 @@ from stickslip.loading.contract import VARYING
 from stickslip.problem.problem import LOAD, MAY_VARY, Problem
 from stickslip.problem.run_quantities import CREEP_RTOL, DURATION, RTOL, SHORTEST_EVENT
 from stickslip.problem.selection_rule import SELECTION_RULES, names, unknown
-from stickslip.scenarios.entries import Place, Source, describe, key_of, read_entry
-from stickslip.scenarios.points import read_points
-from stickslip.scenarios.values import read_typed, show
+from stickslip.scenarios.entries import Place, Source, describe, key_of, read_entry, read_points, read_typed
 
 KINDS: dict[str, Mapping[str, type]] = {"body": BODIES, "friction": LAWS}
 """Tables that must have a key `kind`, each with the classes that it may name."""
@@ -40,18 +37,29 @@ STATE = Quantity("1", "state variable of the friction law, if it has one")
 """Declaration of the initial state for a law that has no state, and for which none may be given."""
 
 
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+class Key(NamedTuple):
+    """A key of a table: the function that converts and checks its value, its default (MISSING if it must be given), its meaning."""
+
+    read: Callable[[Any, Place], Any]
+    default: Any = MISSING
+    meaning: str = ""
 
 
-class _Document(_Strict):
-    title: str = ""
-    description: str = ""
-    body: dict[str, Any]
-    friction: dict[str, Any]
-    loading: dict[str, Any] = Field(default_factory=dict)
-    initial: dict[str, Any]
-    run: dict[str, Any]
+def _read_text(value: Any, place: Place) -> str:
+    if not isinstance(value, str):
+        raise InputError(f"{place.source.file}: {place.key} must be text in quotes, got {shown(value)}")
+    return value
+
+
+def _read_inner(value: Any, place: Place) -> dict[str, Any]:
+    if not isinstance(value, dict):
+        raise InputError(f"{place.source.file}: [{place.key}] must be a table, got {shown(value)}")
+    return value
+
+
+_DOCUMENT = {name: Key(_read_text, "") for name in ("title", "description")} | {name: Key(_read_inner) for name in TABLES}
+_DOCUMENT["loading"] = Key(_read_inner, MappingProxyType({}))
+"""The keys of a scenario outside its tables, and the tables."""
 
 
 def quantities_in(table: str, kind: type, state: StateVariable | None = None) -> dict[str, tuple[Quantity, Any]]:
@@ -91,30 +99,15 @@ def _declared(kind: type) -> dict[str, tuple[Quantity, Any]]:
 
 
 @cache
-def table_model(table: str, kind: type, state: StateVariable | None = None) -> type[BaseModel]:
-    """Return the pydantic model of one table."""
-    entries: dict[str, Any] = {"kind": (str, ...)} if has_kind(table) else {}
+def keys_of(table: str, kind: type, state: StateVariable | None = None) -> Mapping[str, Key]:
+    """Return the keys of one table."""
+    keys = {"kind": Key(lambda value, _: value)} if has_kind(table) else {}  # `kind_of` has checked it
     for name, (declared, default) in entries_in(table, kind, state).items():
-        read = partial(_read_entry, declared)
-        entries[name] = (_read_by(read, table, name), Field(... if default is MISSING else default, description=describe(declared)))
+        keys[name] = Key(partial(_read_entry, declared), default, describe(declared))
     if table == "run":
-        entries["events"] = (_read_by(_checked_by(check_events), table, "events"), None)
-        entries["selection"] = (_read_by(_checked_by(check_rule), table, "selection"), SELECTION_RULES[0])
-    model: type[BaseModel] = create_model(f"{table} of {kind.__name__}", __base__=_Strict, **entries)
-    return model
-
-
-def _read_by(read: Callable[[Any, Place], Any], table: str, key: str) -> Any:
-    """Return the type of a key whose value `read` converts and checks, given also the place of the key for messages."""
-
-    def validate(value: Any, info: ValidationInfo) -> Any:
-        return read(value, Place(info.context["source"], table, key))  # type: ignore[index] # always given, in _validate
-
-    return Annotated[Any, BeforeValidator(validate)]
-
-
-def _checked_by(check: Callable[[Any, str, str], Any]) -> Callable[[Any, Place], Any]:
-    return lambda value, place: check(value, place.source.file, str(place))
+        keys["events"] = Key(lambda value, place: check_events(value, place.source.file, str(place)), None)
+        keys["selection"] = Key(lambda value, place: check_rule(value, place.source.file, str(place)), SELECTION_RULES[0])
+    return keys
 
 
 def _read_entry(declared: Declared, value: Any, place: Place) -> Any:
@@ -137,7 +130,7 @@ def _law_in(raw: dict[str, Any], source: Source, table: str) -> Any:
     """Return the law in a table such as [friction.slip]. Raises InputError for a law that is made of laws itself."""
     kind = kind_of(table, raw, source.file)
     if any(isinstance(entry, Part) for entry, _ in fields_of(kind).values()):
-        found = f"[{table}] kind {show(raw['kind'])}"
+        found = f"[{table}] kind {shown(raw['kind'])}"
         raise InputError(f"{source.file}: {found} is itself made of laws and cannot be part of another law")
     return read_part(table, raw, source)
 
@@ -167,20 +160,20 @@ def check_events(value: Any, where: str, name: str = "events") -> int:
     """Return a number of slip events if a run can stop after it. Raises InputError otherwise."""
     found = check_whole(f"{where}: {name}", value)
     if found >= MOST_EVENTS:
-        raise InputError(f"{where}: {name} must be below {MOST_EVENTS:g}, got {show(value)}")
+        raise InputError(f"{where}: {name} must be below {MOST_EVENTS:g}, got {shown(value)}")
     return found
 
 
 def check_rule(value: Any, where: str, name: str) -> str:
     """Return the name of a selection rule if there is such a rule. Raises InputError otherwise."""
     if value not in names():
-        raise InputError(f"{where}: {name} {show(value)} {unknown(str(value))}")
+        raise InputError(f"{where}: {name} {shown(value)} {unknown(str(value))}")
     return str(value)
 
 
 def read_document(raw: Mapping[str, Any], source: Source) -> dict[str, Any]:
     """Return a parsed TOML document if it has a scenario's texts and tables, whose content is not checked. Raises InputError."""
-    return _validate(_Document, dict(raw), source)
+    return _read_keys(_DOCUMENT, raw, source)
 
 
 def read_table(table: str, kind: type, raw: dict[str, Any], source: Source, state: StateVariable | None = None) -> dict[str, Any]:
@@ -190,13 +183,13 @@ def read_table(table: str, kind: type, raw: dict[str, Any], source: Source, stat
         name = raw["file"]
         both = next((key for key in columns.values() if key in raw), None)
         if both or not isinstance(name, str):
-            got = f"and {both} exclude each other" if both else f"must be text in quotes, got {show(name)}"
+            got = f"and {both} exclude each other" if both else f"must be text in quotes, got {shown(name)}"
             raise InputError(f"{source.file}: [{table}] file {got}")
         along = raw.get("along") if len(columns) > 2 else None
         points = read_points(name, source.folder, columns, f"{source.file}: [{table}] file", along)
         taken = {"file"} if along is None else {"file", "along"}
         raw = {key: value for key, value in raw.items() if key not in taken} | points
-    return _validate(table_model(table, kind, state), raw, source, table)
+    return _read_keys(keys_of(table, kind, state), raw, source, table)
 
 
 def columns_of(table: str, kind: type) -> dict[str, str]:
@@ -215,41 +208,37 @@ def kind_of(table: str, content: Mapping[str, Any], file: str) -> type:
     if "kind" not in content:
         raise InputError(f"{file}: [{table}] kind is missing; allowed: {', '.join(sorted(registered))}")
     if not isinstance(kind, str) or kind not in registered:
-        raise InputError(f"{file}: [{table}] kind {show(kind)} is unknown; {nearest(str(kind), registered)}")
+        raise InputError(f"{file}: [{table}] kind {shown(kind)} is unknown; {nearest(str(kind), registered)}")
     return registered[kind]
 
 
-def _validate(model: type[BaseModel], raw: dict[str, Any], source: Source, table: str = "") -> dict[str, Any]:
-    try:
-        return dict(model.model_validate(raw, context={"source": source}))
-    except ValidationError as error:
-        raise InputError(_one_line(error, model, source.file, table)) from None
+def _read_keys(keys: Mapping[str, Key], raw: Mapping[str, Any], source: Source, table: str = "") -> dict[str, Any]:
+    """Return the values of all keys of a table, or of the document (""). Raises InputError.
+
+    A key that is unknown comes first, because a misspelt key makes the right one missing, too, but is the cause.
+    """
+    for name, value in raw.items():
+        if name not in keys:
+            place = f"[{table}] {_named(name)}" if table else f"[{_named(name)}]" if isinstance(value, dict) else _named(name)
+            raise InputError(f"{source.file}: {place} is unknown; {_belongs(name, table) or nearest(name, keys)}")
+    found = {name: key.read(raw[name], Place(source, table, name)) for name, key in keys.items() if name in raw}
+    for name, key in keys.items():
+        if found.setdefault(name, key.default) is MISSING:
+            place = f"[{table}] {name}" if table else f"[{name}]"
+            raise InputError(f"{source.file}: {place} is missing" + (f": {key.meaning}" if key.meaning else ""))
+    return found
 
 
-_RANK = {"extra_forbidden": 0, "missing": 2}
-"""Order in which one of several errors is reported: a misspelt key makes the right one missing, too, but is the cause."""
-
-
-def _one_line(error: ValidationError, model: type[BaseModel], file: str, table: str) -> str:
-    first = min(error.errors(), key=lambda one: _RANK.get(one["type"], 1))
-    cause = first.get("ctx", {}).get("error")
-    if isinstance(cause, InputError):
-        return str(cause)
-    name = str(first["loc"][0])
-    shown = name if name.replace("_", "").replace("-", "").isalnum() and name.isascii() and len(name) <= 40 else show(name)
-    place = f"[{table}] {shown}" if table else f"[{shown}]" if name in TABLES or isinstance(first["input"], dict) else shown
-    if first["type"] == "extra_forbidden":
-        return f"{file}: {place} is unknown; {_belongs(name, table) or nearest(name, model.model_fields)}"
-    if first["type"] == "missing":
-        meaning = model.model_fields[name].description if table else None
-        return f"{file}: {place} is missing" + (f": {meaning}" if meaning else "")
-    return f"{file}: {place} must be {'a table' if name in TABLES else 'text in quotes'}, got {show(first['input'])}"
+def _named(name: str) -> str:
+    """Return a key as it is shown: a short word as it is, anything else in quotes."""
+    is_word = name.replace("_", "").replace("-", "").isalnum() and name.isascii() and len(name) <= 40
+    return name if is_word else shown(name)
 
 
 def _belongs(name: str, table: str) -> str:
     """Return a hint if a key is known but belongs in another table; "" otherwise."""
     others = () if table.startswith("friction.") else (other for other in TABLES if other not in ("friction", table))
     for other in others:
-        if any(name in table_model(other, body).model_fields for body in KINDS["body"].values()):
+        if any(name in keys_of(other, body) for body in KINDS["body"].values()):
             return f"it belongs in [{other}]"
     return ""

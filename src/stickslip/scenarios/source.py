@@ -21,7 +21,7 @@ def read_source(who: str, source: Problem | Scenario | str | Path) -> Problem | 
     """
     if isinstance(source, Problem):
         return source
-    from stickslip.scenarios.scenario import Scenario, load_scenario  # imports pydantic, which a problem can do without
+    from stickslip.scenarios.scenario import Scenario, load_scenario  # which a problem can do without
 
     if isinstance(source, str | Path):
         return load_scenario(source)

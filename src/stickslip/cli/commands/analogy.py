@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from stickslip.cli.names import complete_scenario
-from stickslip.cli.options import SCENARIO, Changes, Dpi, FigureFile, Size, axes_of, option, table_of
+from stickslip.cli.options import SCENARIO, Changes, Dpi, FigureFile, Size, axes_of, complete_scenario, option, table_of
 from stickslip.cli.output.files import Look, Target, announce, check_targets, drawing, write_files
 from stickslip.foundation.errors import InputError
 
@@ -65,8 +64,8 @@ def analogy(
 
 
 def _study(scenario: Scenario, typed: list[str], within: float) -> Analogy:
+    from stickslip.cli.overrides import read_axis
     from stickslip.run.progress_line import progress_line
-    from stickslip.scenarios.axes import read_axis
     from stickslip.studies.analogy import analogy as study
 
     x, y = (read_axis(scenario.problem, text, "analogy: --map") for text in typed)

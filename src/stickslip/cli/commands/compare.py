@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from stickslip.cli.names import complete_source
-from stickslip.cli.options import Dpi, Duration, FigureFile, Rtol, Size, option, table_of
+from stickslip.cli.options import Dpi, Duration, FigureFile, Rtol, Size, complete_source, option, table_of
 from stickslip.cli.output.files import Look, Target, announce, check_targets, drawing, write_files
 from stickslip.foundation.errors import InputError
 
@@ -59,9 +58,9 @@ def compare(
 
 def _compared(names: list[str], duration: str | None, rtol: float | None, event: int | None) -> Comparison:
     """Read all sources before any of them is run, then run them. Raises InputError."""
-    from stickslip.cli.long_run import progress
     from stickslip.cli.overrides import STDIN, load, read
     from stickslip.problem.run_quantities import check_rtol
+    from stickslip.run.progress_line import progress_line
     from stickslip.scenarios.schema import read_duration
     from stickslip.studies.compare import Comparison, distinct, read_source
 
@@ -72,6 +71,6 @@ def _compared(names: list[str], duration: str | None, rtol: float | None, event:
     sources = [read_source(load(name) if name == STDIN else name, length, tolerance) for name in names]
     runs = {}
     for name, source in zip(distinct([source.name for source in sources]), sources, strict=True):
-        with progress(name) as report:
+        with progress_line(f"{name}:") as report:
             runs[name] = source.solution(report)
     return Comparison(runs, event)

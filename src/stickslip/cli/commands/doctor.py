@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import typer
 
+from stickslip.cli.output.show import console, print_words, say
+from stickslip.foundation.errors import InputError
+
 
 def doctor() -> None:
     r"""Check this installation: versions, threads, cache, extras, and a self-test against closed forms.
@@ -19,11 +22,7 @@ def doctor() -> None:
 
     Exit code: 0 all is well, 1 something is broken.
     """
-    from stickslip.cli.installation import Finding, engine, installation
-    from stickslip.cli.output.show import console, say
-    from stickslip.cli.output.tables import print_words
-    from stickslip.cli.self_test import self_test
-    from stickslip.foundation.errors import InputError
+    from stickslip.cli.installation import Finding, engine, installation, self_test
 
     found: list[Finding] = []
     try:

@@ -8,8 +8,7 @@ from typing import Annotated
 
 import typer
 
-from stickslip.cli.names import complete_scenario
-from stickslip.cli.options import SCENARIO, Changes, argument, option
+from stickslip.cli.options import SCENARIO, Changes, argument, complete_scenario, option
 from stickslip.foundation.errors import InputError
 
 SERVER = "Server"

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from stickslip.cli.names import complete_source
-from stickslip.cli.options import Duration, option
+from stickslip.cli.options import Duration, complete_source, option
 from stickslip.cli.output.files import announce, check_target
 from stickslip.foundation.errors import InputError
 
@@ -49,9 +48,9 @@ def export(
 
     Exit code: 0 done, 1 the run failed, 2 unusable input, 130 interrupted.
     """
-    from stickslip.cli.long_run import progress
     from stickslip.io.scec import write_scec
     from stickslip.io.seismogram import import_obspy, write_seismogram
+    from stickslip.run.progress_line import progress_line
 
     check_target(file, "FILE", (*TEXT, *SEISMOGRAMS))
     if file.suffix.lower() in TEXT:
@@ -62,7 +61,7 @@ def export(
         if components:
             raise InputError("export: --components is for .txt and .dat")
     place, source = _place(x), _source(run, duration)
-    with progress(source.name) as report:
+    with progress_line(f"{source.name}:") as report:
         solution = source.solution(report)
     readings = solution if event is None else solution.window(event)
     if file.suffix.lower() in TEXT:
@@ -86,7 +85,7 @@ def _place(text: str | None) -> Any:
     """Return a distance (m) from the text that was typed, by default 0. Raises InputError."""
     from stickslip.cli.overrides import read
     from stickslip.foundation.quantities import Quantity
-    from stickslip.scenarios.values import read_typed
+    from stickslip.scenarios.entries import read_typed
 
     distance = Quantity("m", "distance from the contact", at_least=0)
     return read(lambda typed, *place: read_typed(typed, distance, *place), text, "export", "x", 0.0)

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import warnings
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from stickslip.cli.names import complete_fitted, complete_table, complete_template
-from stickslip.cli.options import Dpi, FigureFile, Size, option
+from stickslip.cli.options import Dpi, FigureFile, Size, complete_fitted, complete_table, complete_template, option
 from stickslip.cli.output.files import Look, Target, announce, check_targets, drawing, write_files
-from stickslip.foundation.errors import InputError
+from stickslip.cli.output.show import console, print_sentences, print_words, say
+from stickslip.foundation.errors import InputError, InputWarning
+from stickslip.foundation.formatting import clean
 
 if TYPE_CHECKING:
     from stickslip.friction import Fit, Points, Smooth
+    from stickslip.problem.problem import Problem
 
+MOST_JOINED = 2000
+"""Largest number of points whose exact interpolation is searched for folds, to say how many there would be."""
 DataFile = Annotated[
     str, typer.Argument(help="A CSV file with columns friction and slip, slip_rate or both.", autocompletion=complete_table)
 ]
@@ -62,7 +67,7 @@ def fit(
       stickslip fit data.csv --smooth auto --out mine.toml --body slab
     """
     from stickslip import friction
-    from stickslip.cli.output.fits import show_result
+    from stickslip.cli.overrides import typed_values
     from stickslip.friction import Points
 
     look = Look(dpi, size)
@@ -75,15 +80,18 @@ def fit(
         template(body)  # refuses an unknown name before the work
     points = Points.read(data)
     if law is not None:
-        result: Fit | Smooth = friction.fit(points, law, start=_values(start, "--start"), fixed=_values(fix, "--fix"))
+        known = typed_values(fix or (), "fit: --fix", "static=0.6")
+        result: Fit | Smooth = friction.fit(points, law, start=typed_values(start or (), "fit: --start", "static=0.6"), fixed=known)
     elif smooth is not None:
         result = friction.smooth(points, _strength(smooth), monotone=monotone, along=along)
     else:
         result = _best(points)
-    show_result(result)
+    _show_result(result)
     text = None if out is None else _scenario(result, body, data)
     if text is not None:
-        _print_uniqueness(result, text, str(out))
+        from stickslip.scenarios.scenario import read_scenario
+
+        _show_uniqueness(result, read_scenario(text, str(out)).problem)
     announce(
         *write_files(
             (out, lambda path: _write_text(path, text or "")),
@@ -108,32 +116,6 @@ def _check_options(
             raise InputError(f"fit: {name} belongs to --law")
 
 
-def _values(given: Sequence[str] | None, name: str) -> dict[str, float | str]:
-    """Return typed values of parameters, numbers or texts with a unit, by name. Raises InputError for one without "="."""
-    found: dict[str, float | str] = {}
-    for text in given or ():
-        key, mark, value = text.partition("=")
-        if not (mark and key.strip() and value.strip()):
-            raise InputError(f"fit: {name} must be NAME=VALUE, as static=0.6, got {ascii(text)[:60]}")
-        try:
-            found[key.strip()] = float(value)
-        except ValueError:
-            found[key.strip()] = value.strip()
-    return found
-
-
-def _best(points: Points) -> Fit:
-    """Fit all laws that suit the points, print a comparison, and return the best fit. Raises InputError if there is none."""
-    from stickslip import friction
-    from stickslip.cli.output.fits import show_comparison
-
-    fits = friction.fit_each(points)
-    if not fits:
-        raise InputError(f"fit: no law can be fitted to these {len(points)} points: use --smooth")
-    show_comparison(points, fits)
-    return fits[0]
-
-
 def _strength(text: str) -> Any:
     """Return a typed strength as a number, or "auto". Raises InputError."""
     if text == "auto":
@@ -152,14 +134,6 @@ def _scenario(result: Fit | Smooth, body: str, data: str) -> str:
     return with_law(body, result.law, [f"{Path(data).name}: {result.title}", *rows, *result.notes])
 
 
-def _print_uniqueness(result: Fit | Smooth, text: str, name: str) -> None:
-    """Print whether the slip rate is unique in the new scenario, with the folds before and after."""
-    from stickslip.cli.output.fits import show_uniqueness
-    from stickslip.scenarios.scenario import read_scenario
-
-    show_uniqueness(result, read_scenario(text, name).problem)
-
-
 def _write_text(path: Path, text: str) -> Path:
     from stickslip.foundation.atomic_write import write_atomically
 
@@ -170,3 +144,61 @@ def _draw(result: Fit | Smooth, **place: Any) -> object:
     from stickslip.figures.contact import measured
 
     return measured.draw(measured.data(result), **place)
+
+
+def _show_result(result: Fit | Smooth) -> None:
+    """Print the numbers of a fit or of a smooth curve, and what was noticed."""
+    screen = console()
+    say(screen, clean(f"{result.points.name}: {result.title}"), style="bold")
+    print_words(screen, ("", "value", "unit"), list(result.rows))
+    print_sentences(screen, *result.notes)
+
+
+def _best(points: Points) -> Fit:
+    """Fit all laws that suit the points, print a comparison, and return the best fit. Raises InputError if there is none."""
+    from stickslip import friction
+
+    fits = friction.fit_each(points)
+    if not fits:
+        raise InputError(f"fit: no law can be fitted to these {len(points)} points: use --smooth")
+    screen = console()
+    say(screen, clean(f"{points.name}: {len(points)} points along {' and '.join(points.has)}"), style="bold")
+    rows = []
+    for one in fits:
+        known = f"{len(one.uncertainty)}"
+        noticed = "; ".join(one.notes[:1]) + (f" (and {len(one.notes) - 1} more)" if len(one.notes) > 1 else "")
+        rows.append((one.law.kind, known, f"{one.residual:.3g}", f"{one.bic - fits[0].bic:.1f}", noticed))
+    print_words(screen, ("law", "parameters", "residual", "BIC above best", "noticed"), rows)
+    print_sentences(
+        screen,
+        "a difference of BIC above 10 is decisive. The best of several wrong laws is wrong too: see what was noticed, and a figure",
+    )
+    return fits[0]
+
+
+def _show_uniqueness(result: Fit | Smooth, problem: Problem) -> None:
+    """Print whether the slip rate is unique under a law, and how many folds exact interpolation and the law have."""
+    from stickslip.contact.uniqueness import uniqueness_of
+
+    contact = uniqueness_of(problem)
+    screen = console()
+    print_sentences(screen, contact.summary.removesuffix("."))
+    if contact.resistance is None or not problem.friction.depends_on_rate:
+        return
+    joined = _folds_of_points(result.points, problem)
+    before = "" if joined is None else f"{joined} with the points joined exactly, "
+    print_sentences(screen, f"folds of the contact equation: {before}{len(contact.folds)} with this law")
+
+
+def _folds_of_points(points: Points, problem: Problem) -> int | None:
+    """Return the number of folds of the same problem with the points joined exactly, or None if they cannot be."""
+    from stickslip.contact.uniqueness import uniqueness_of
+    from stickslip.friction import FromTable
+
+    if len(points) > MOST_JOINED or len(points.has) != 1:
+        return None
+    try:
+        with warnings.catch_warnings(action="ignore", category=InputWarning):
+            return len(uniqueness_of(replace(problem, friction=FromTable(points))).folds)
+    except InputError:
+        return None

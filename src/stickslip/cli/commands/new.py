@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from stickslip.cli.names import complete_law, complete_pull, complete_template
-from stickslip.cli.options import argument, option
+from stickslip.cli.options import argument, complete_law, complete_pull, complete_template, option
+from stickslip.cli.output.show import console, print_words
 from stickslip.foundation.errors import InputError
 
 
@@ -43,8 +43,6 @@ def new(
 
 
 def _print_list() -> None:
-    from stickslip.cli.output.show import console
-    from stickslip.cli.output.tables import print_words
     from stickslip.friction import LAWS
     from stickslip.loading import HISTORIES
     from stickslip.scenarios import library

@@ -7,8 +7,18 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from stickslip.cli.names import complete_regularisation
-from stickslip.cli.options import Changes, Dpi, Duration, FigureFile, Rtol, ScenarioName, Size, option, table_of
+from stickslip.cli.options import (
+    Changes,
+    Dpi,
+    Duration,
+    FigureFile,
+    Rtol,
+    ScenarioName,
+    Size,
+    complete_regularisation,
+    option,
+    table_of,
+)
 from stickslip.cli.output.files import Look, Target, announce, check_targets, drawing, write_files
 from stickslip.foundation.errors import InputError
 

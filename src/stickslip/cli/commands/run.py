@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
-from stickslip.cli.names import complete_rule, complete_scenario
 from stickslip.cli.options import (
     ACCURACY,
     RESULTS,
@@ -24,6 +23,8 @@ from stickslip.cli.options import (
     Size,
     SpaceTime,
     argument,
+    complete_rule,
+    complete_scenario,
     option,
 )
 from stickslip.cli.output.files import Look, announce

@@ -1,13 +1,16 @@
-"""`stickslip show`: summarise a file of results."""
+"""`stickslip show`: summarise a file of results, which may be those of a run, a catalogue of slip events, or a sweep."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from stickslip.cli.names import complete_quantity, complete_result
 from stickslip.cli.options import (
     Animation,
     CatalogueFigure,
@@ -18,7 +21,20 @@ from stickslip.cli.options import (
     RunFigure,
     Size,
     SpaceTime,
+    complete_quantity,
+    complete_result,
 )
+from stickslip.cli.output.files import Look, announce, check_targets, drawing
+from stickslip.cli.output.pictures import Pictures
+from stickslip.cli.output.show import console, say
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.formatting import clean
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+    from stickslip.solution.solution import Solution
 
 RESULT = "A file of `run --out`, a catalogue or its checkpoint, or the folder of a sweep."
 QUANTITY = "Of a sweep, draw this quantity: by default the one that was refined, or the first."
@@ -56,10 +72,6 @@ def show(
 
     Exit code: 0 done, 2 unusable input.
     """
-    from stickslip.cli.output.files import Look, check_targets
-    from stickslip.cli.output.pictures import Pictures
-    from stickslip.cli.stored import stored
-
     look = Look(dpi, size)
     pictures = Pictures(figure, path, catalogue_figure, energy_figure, friction_figure, space_time, animation, look)
     check_targets(*pictures.targets())
@@ -71,3 +83,179 @@ def show(
     found.check(pictures)
     found.summarise()
     found.draw(pictures)
+
+
+@dataclass(frozen=True)
+class Stored(ABC):
+    """The results in a file, with the attributes that say where they come from."""
+
+    path: Path
+    about: Mapping[str, Any]
+
+    def scenario(self) -> str:
+        """Return the scenario as TOML text. Raises InputError if the file does not hold it."""
+        if "scenario" not in self.about:
+            raise InputError(f"{self.path}: does not hold its scenario: its checkpoint does, if it is beside it")
+        return str(self.about["scenario"])
+
+    @abstractmethod
+    def check(self, pictures: Pictures) -> None:
+        """Refuse pictures that these results do not have. Raises InputError."""
+
+    @abstractmethod
+    def summarise(self) -> None:
+        """Print the summary on standard output."""
+
+    def draw(self, pictures: Pictures) -> None:
+        """Draw the pictures and say which files were written."""
+        announce(*pictures.wanted.values())
+
+    def print_origin(self) -> None:
+        """Print which version made the results."""
+        if "source" in self.about:
+            made = clean(str(self.about["source"]))
+            say(console(), f"made by {made}; `stickslip show {self.path} --scenario` prints its scenario")
+
+
+@dataclass(frozen=True)
+class StoredRun(Stored):
+    """A run with its whole history."""
+
+    solution: Solution
+
+    def check(self, pictures: Pictures) -> None:
+        """Refuse pictures that these results do not have. Raises InputError."""
+        pictures.check_problem(self.solution.problem, "show")
+
+    def summarise(self) -> None:
+        """Print the summary on standard output."""
+        from stickslip.cli.output.summary import show_solution
+        from stickslip.scenarios.scenario import Scenario
+
+        show_solution(Scenario.of(self.solution, self.path.stem), self.solution)
+        self.print_origin()
+
+    def draw(self, pictures: Pictures) -> None:
+        """Draw the pictures and say which files were written."""
+        announce(*pictures.draw(self.solution))
+
+
+@dataclass(frozen=True)
+class StoredEvents(Stored):
+    """A catalogue of slip events."""
+
+    table: pd.DataFrame
+
+    def check(self, pictures: Pictures) -> None:
+        """Refuse pictures that these results do not have. Raises InputError."""
+        pictures.check_events(str(self.path))
+
+    def summarise(self) -> None:
+        """Print the summary on standard output."""
+        from stickslip.cli.output.summary import show_events
+
+        show_events(self.path.stem, dict(self.table.items()), self.about)
+        self.print_origin()
+
+    def draw(self, pictures: Pictures) -> None:
+        """Draw the pictures and say which files were written."""
+        announce(*pictures.draw_events(self.table, self.path.stem))
+
+
+@dataclass(frozen=True)
+class StoredSweep(Stored):
+    """The results of a sweep."""
+
+    dataset: xr.Dataset
+    quantity: str | None = None
+
+    def check(self, pictures: Pictures) -> None:
+        """Refuse pictures that these results do not have. Raises InputError."""
+        others = [option for option in pictures.wanted if option != "--figure"]
+        if others:
+            raise InputError(f"{self.path}: the results of a sweep have no {', '.join(others)}: --figure draws a quantity")
+        if self.quantity is not None:
+            from stickslip.figures.sweeps.sweep import data
+
+            data(self.dataset, self.quantity)
+
+    def summarise(self) -> None:
+        """Print the summary on standard output."""
+        from stickslip.cli.output.sweep_summary import show_sweep
+
+        show_sweep(self.path.stem, self.dataset)
+        self.print_origin()
+
+    def draw(self, pictures: Pictures) -> None:
+        """Draw the pictures and say which files were written."""
+        if pictures.figure is not None:
+            from stickslip.figures.sweeps.sweep import plot_sweep
+
+            drawing(partial(plot_sweep, self.dataset, self.quantity), pictures.look)(pictures.figure)
+        super().draw(pictures)
+
+
+def stored(path: Path, quantity: str | None = None) -> Stored:
+    """Read the results in a file or folder; `quantity` is the one of a sweep that is drawn.
+
+    Raises InputError if there are none that can be read, and for a quantity of what is no sweep.
+    """
+    if quantity is not None and not path.is_dir():
+        raise InputError(f"show: --quantity chooses what is drawn of a sweep, and {path} is none")
+    if path.is_dir():
+        from stickslip.sweeps.results.layout import reading
+        from stickslip.sweeps.results.store import open_store
+
+        with reading(path):
+            dataset = open_store(path).load()
+        return StoredSweep(path, dataset.attrs, dataset, quantity)
+    suffix = path.suffix.lower()
+    if suffix in (".csv", ".parquet"):
+        from stickslip.io.catalogue_rows import read_table
+
+        return _events(path, read_table(path), _beside(path))
+    if suffix != ".nc":
+        raise InputError(_not_results(path))
+    return _netcdf(path)
+
+
+def _netcdf(path: Path) -> Stored:
+    from stickslip.foundation import netcdf_file
+    from stickslip.io.catalogue_rows import read_table
+    from stickslip.io.netcdf import CATALOGUE, to_solution
+    from stickslip.run.resume import PausedCatalogue
+
+    dataset = netcdf_file.read(path, "a result")
+    if CATALOGUE in dataset.attrs:
+        rows = PausedCatalogue.read(path).rows
+        return _events(path, read_table(rows.path if rows.path.exists() else rows.growing), dataset.attrs)
+    if "event" in dataset.dims and "history_rate" not in dataset:
+        return _events(path, dataset.to_dataframe().reset_index(drop=True), dataset.attrs)
+    return StoredRun(path, dataset.attrs, to_solution(dataset, path))
+
+
+def _events(path: Path, table: pd.DataFrame, about: Mapping[str, Any]) -> StoredEvents:
+    from stickslip.trajectory.tables import EVENT_COLUMNS
+
+    missing = [name for name in EVENT_COLUMNS if name not in table]
+    if missing:
+        raise InputError(f"{path}: not a catalogue of slip events: there is no column {missing[0]}")
+    return StoredEvents(path, about, table)
+
+
+def _beside(path: Path) -> Mapping[str, Any]:
+    """Return the attributes of the checkpoint beside the table of a catalogue, or nothing if there is none."""
+    from stickslip.foundation.netcdf_file import attributes
+    from stickslip.io.catalogue_rows import Rows
+    from stickslip.run.catalogue import checkpoint_of
+
+    return attributes(checkpoint_of(Rows(path)))
+
+
+def _not_results(path: Path) -> str:
+    from stickslip.scenarios import library
+
+    if not path.exists() and str(path) not in library.names():
+        return f"{path}: no such file"
+    cure = f"`stickslip run {path}` runs a scenario, `stickslip check {path}` explains it"
+    return f"{path}: not a file of results, whose names end in .nc, .csv, .parquet or .zarr; {cure}"

@@ -11,8 +11,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from stickslip.cli.names import complete_design, complete_quantity, complete_series, complete_vary
-from stickslip.cli.options import Changes, Dpi, ScenarioName, Size, option
+from stickslip.cli.options import (
+    Changes,
+    Dpi,
+    ScenarioName,
+    Size,
+    complete_design,
+    complete_quantity,
+    complete_series,
+    complete_vary,
+    option,
+)
 from stickslip.cli.output.files import Look, announce, drawing
 from stickslip.foundation.errors import InputError
 

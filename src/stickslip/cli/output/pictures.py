@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -78,26 +77,24 @@ class Pictures:
         def draw(**place: Any) -> object:
             return catalogue.draw(catalogue.data_of_events(table, title), **place)
 
-        return write_files((self._file_of_events(lambda: table), drawing(draw, self.look)))
+        return write_files((self._file_of_events(table), drawing(draw, self.look)))
 
     def draw(self, solution: Solution) -> list[Path]:
         """Draw all that are wanted, and return their files."""
+        events = None if self.catalogue_figure is None else self._file_of_events(solution.events)  # needs pandas
         return write_files(
             (self.figure, drawing(solution.plot, self.look)),
             (self.path, drawing(solution.plot.path, self.look)),
-            (self._file_of_events(lambda: solution.events), drawing(solution.plot.catalogue, self.look)),
+            (events, drawing(solution.plot.catalogue, self.look)),
             (self.energy_figure, drawing(solution.plot.energy, self.look)),
             (self.friction_figure, drawing(solution.plot.friction, self.look)),
             (self.space_time, drawing(solution.plot.field, self.look)),
             (self.animation, lambda target: _animate(solution, target)),
         )
 
-    def _file_of_events(self, table: Callable[[], pd.DataFrame]) -> Path | None:
-        """Return the file of the figure of slip events, None if it is not wanted; if there is no event, say so and return None.
-
-        The table is asked for only if the figure is wanted: it needs pandas, which takes a while to import.
-        """
-        if self.catalogue_figure is not None and table().empty:
+    def _file_of_events(self, table: pd.DataFrame) -> Path | None:
+        """Return the file of the figure of slip events, None if it is not wanted; if there is no event, say so and return None."""
+        if self.catalogue_figure is not None and table.empty:
             typer.echo(f"not written: {self.catalogue_figure} (there is no slip event)")
             return None
         return self.catalogue_figure

@@ -6,8 +6,7 @@ import math
 from collections.abc import Hashable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from stickslip.cli.output.show import console, print_sentences, say, titled
-from stickslip.cli.output.tables import print_numbers
+from stickslip.cli.output.show import console, print_numbers, print_sentences, say, titled
 from stickslip.foundation.formatting import clean, number, with_unit
 from stickslip.studies.regularisations import kind_of
 

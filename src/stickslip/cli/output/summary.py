@@ -8,12 +8,10 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from stickslip.cli.output.files import announce
-from stickslip.cli.output.show import console, say, titled
-from stickslip.cli.output.tables import fits, print_numbers
+from stickslip.cli.output.show import console, fits, print_numbers, say, titled
 from stickslip.engine_input.creep_limits import creep_tolerance
 from stickslip.foundation.formatting import clean, number, with_unit
-from stickslip.scenarios.doubts import doubts
-from stickslip.scenarios.scenario import read_scenario
+from stickslip.scenarios.scenario import doubts, read_scenario
 
 if TYPE_CHECKING:
     from rich.console import Console

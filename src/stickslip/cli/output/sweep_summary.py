@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stickslip.cli.output.files import file_size
-from stickslip.cli.output.show import console, say, titled
-from stickslip.cli.output.tables import print_numbers
+from stickslip.cli.output.show import console, print_numbers, say, titled
 from stickslip.foundation.formatting import about_time, clean, number, with_unit
 
 if TYPE_CHECKING:

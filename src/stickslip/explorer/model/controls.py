@@ -19,9 +19,8 @@ from stickslip.friction.contract import StateVariable
 from stickslip.loading import HISTORIES
 from stickslip.problem.selection_rule import SELECTION_RULES, names
 from stickslip.scenarios import library
-from stickslip.scenarios.entries import describe
+from stickslip.scenarios.entries import describe, typed_number
 from stickslip.scenarios.schema import check_events, entries_in, kind_of
-from stickslip.scenarios.values import typed_number
 
 ControlKind = Literal["number", "whole", "choice", "text", "points"]
 CONSTANT = "constant"

@@ -11,7 +11,7 @@ from stickslip.explorer.model.answer import Answer, KeyNumber
 from stickslip.explorer.model.leaves import leaves_of
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.words import short
-from stickslip.scenarios.values import show
+from stickslip.foundation.arguments import shown
 
 SAME = 1e-9
 """Relative difference up to which two numbers count as equal."""
@@ -95,7 +95,7 @@ def _shown(setting: Setting, path: str, in_si: dict[str, Any]) -> str:
     """Return an entry as it stands in the document, or its value if it is a default."""
     value = setting.value(path)
     value = in_si.get(path) if value is None else value
-    return "" if value is None else value if isinstance(value, str) else f"{value:g}" if isinstance(value, float) else show(value)
+    return "" if value is None else value if isinstance(value, str) else f"{value:g}" if isinstance(value, float) else shown(value)
 
 
 def _moved(old: tuple[KeyNumber, ...], new: tuple[KeyNumber, ...]) -> tuple[Moved, ...]:

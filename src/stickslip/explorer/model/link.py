@@ -17,10 +17,11 @@ from typing import Any
 
 from stickslip.explorer.model.leaves import document_of, leaves_of
 from stickslip.explorer.model.setting import Setting
+from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.scenarios import library
+from stickslip.scenarios.entries import typed_number
 from stickslip.scenarios.schema import TABLES
-from stickslip.scenarios.values import show, typed_number
 
 VERSION = "1"
 """Version of what links look like."""
@@ -104,7 +105,7 @@ def setting_of(parameters: Mapping[str, str]) -> Setting:
     if _length(ours) > LONGEST:
         raise InputError(f"link: it has more than {LONGEST} characters")
     if ours.get("v", VERSION) != VERSION:
-        raise InputError(f"link: version {show(ours['v'])} is unknown, this explorer reads version {VERSION}")
+        raise InputError(f"link: version {shown(ours['v'])} is unknown, this explorer reads version {VERSION}")
     name = ours.get("scenario", "")
     setting = _unpacked(name, ours["document"]) if "document" in ours else _changed(name, ours)
     setting.scenario()

@@ -33,8 +33,8 @@ from stickslip.explorer.page.view import Key, View, axis_label, limits
 from stickslip.figures.style import SPELLED, unit_of
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity
+from stickslip.scenarios.entries import typed_number
 from stickslip.scenarios.parameter_paths import ParameterPath
-from stickslip.scenarios.values import typed_number
 
 NAMES = {"pulses": "Pulses", "slip": "Slip", "first_end": "First arrest", "peak_rate": "Peak slip rate"}
 HEIGHT = 124

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.foundation.arguments import shown
 from stickslip.foundation.conversion import has_unit, without_unit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Choice, Quantity
 from stickslip.scenarios.parameter_paths import ParameterPath
-from stickslip.scenarios.values import show
 
 Values = NDArray[Any]
 """Numbers in SI (float64), or words (strings)."""
@@ -43,8 +43,8 @@ class Axis:
         """
         if isinstance(values, str | Mapping) or not isinstance(values, Iterable) or getattr(values, "ndim", 1) != 1:
             hint = ": use a list or numpy.linspace" if isinstance(values, str) else ""
-            shown = " ".join(show(values).split())
-            raise InputError(f"{where}: {parameter.name} must be a one-dimensional array or a list of values, got {shown}{hint}")
+            got = " ".join(shown(values.tolist() if isinstance(values, np.ndarray) else values).split())
+            raise InputError(f"{where}: {parameter.name} must be a one-dimensional array or a list of values, got {got}{hint}")
         found = read_values(parameter, values, where)
         return cls(parameter, found, log=_in_equal_ratios(found))
 

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError
 from stickslip.scenarios.parameter_paths import ParameterPath, find_parameter
 from stickslip.scenarios.scenario import Scenario
-from stickslip.scenarios.values import show
 from stickslip.sweeps.design.axis import Axis, check_size, read_values
 
 FORM = '"KEY=LOW..HIGH:POINTS", followed by ":log" for equal ratios, or "KEY=VALUE,VALUE,..."'
@@ -35,7 +35,7 @@ def typed_value(parameter: ParameterPath, text: Any) -> Any:
 def _typed_axis(scenario: Scenario, text: str, where: str) -> Axis:
     name, equals, content = (part.strip() for part in text.partition("="))
     if not equals or not name or not content:
-        raise InputError(f"{where} must be {FORM}, got {show(text)}")
+        raise InputError(f"{where} must be {FORM}, got {shown(text)}")
     parameter = find_parameter(scenario, name, where)
     found = _RANGE.fullmatch(content)
     texts = found.group("low", "high") if found else content.split(",")

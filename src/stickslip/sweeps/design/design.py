@@ -12,12 +12,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.foundation.arguments import check_whole
+from stickslip.foundation.arguments import check_whole, shown
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.scenarios.parameter_paths import ParameterPath, find_parameter
 from stickslip.scenarios.scenario import Scenario
-from stickslip.scenarios.values import show
 from stickslip.sweeps.design.axis import LARGEST_AXIS, Axis, Values, read_values
 from stickslip.sweeps.design.axis_text import typed_value
 
@@ -130,8 +129,8 @@ def axes_of(scenario: Scenario, vary: Any, where: str, *, sampled: bool = False)
     elif isinstance(vary, list) and all(isinstance(axis, Axis) for axis in vary):
         axes = vary
     else:
-        shown = " ".join(show(vary).split())
-        raise InputError(f"{where} must be a mapping from parameters to arrays, a DataFrame or the Path of a CSV file, got {shown}")
+        got = " ".join(shown(vary.tolist() if isinstance(vary, np.ndarray) else vary).split())
+        raise InputError(f"{where} must be a mapping from parameters to arrays, a DataFrame or the Path of a CSV file, got {got}")
     if not axes:
         raise InputError(f"{where} is missing: name at least one parameter to vary")
     _check_names([axis.parameter.name for axis in axes], where)
