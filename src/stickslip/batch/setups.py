@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stickslip.batch.kernels.branch_search import MOST_BRANCHES, RULES, Found, Resistances, search_branches
-from stickslip.batch.kernels.constants import fill_constants
+from stickslip.batch.kernels.runs import fill_constants
 from stickslip.batch.vectorised_problem import Values, member, shared, vectorised_problem
 from stickslip.engine.codegen.compiler import CompiledFormula, compile_formula
 from stickslip.engine.enclosure.formula import formulas_of
