@@ -145,12 +145,20 @@ class _Batch:
 
     def run(self, work: Callable[[Part], float], parts: Iterable[Part], threads: int) -> None:
         """Do the same work for each part on threads, and count its processor time. An error, or Ctrl-C, ends every thread."""
-        with ThreadPoolExecutor(threads, initializer=lambda: setattr(self.of_thread, "work", new_workspace())) as pool:
+        if threads == 1:  # a thread of its own would allocate its workspace afresh for each batch
+            self.begin()
+            self.seconds += sum(map(work, parts))
+            return
+        with ThreadPoolExecutor(threads, initializer=self.begin) as pool:
             try:
                 self.seconds += sum(pool.map(work, parts))
             except BaseException:
                 self.stop[0] = 1
                 raise
+
+    def begin(self) -> None:
+        """Give the present thread a workspace."""
+        self.of_thread.work = new_workspace()
 
     def run_long(self, long: tuple[int, Floats]) -> float:
         """Run a member that was set aside. Returns its processor time (s)."""
