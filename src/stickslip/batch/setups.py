@@ -15,7 +15,16 @@ from stickslip.engine.enclosure.formula import formulas_of
 from stickslip.engine.state.layout import Branch, Counts, Floats, Integers, LawPiece, Params, State
 from stickslip.engine_input.automatic import set_lumping, wait_for_creep
 from stickslip.engine_input.branch_table import is_algebraic, table_of_branches
-from stickslip.engine_input.prepare import first_load, functions_of, parameters_of, set_tolerance, start_of, together
+from stickslip.engine_input.prepare import (
+    first_load,
+    functions_of,
+    parameters_of,
+    references_of,
+    set_references,
+    set_tolerance,
+    start_of,
+    together,
+)
 from stickslip.foundation.quantities import quantities_of
 from stickslip.friction import FrictionLaw
 from stickslip.problem.problem import Problem
@@ -149,21 +158,14 @@ def formulas(problem: Problem, group: Alike) -> tuple[Floats, Integers]:
 
     Both have a first axis of members, of length 1 if these do not differ.
     """
-    law, start, pieces, home = problem.friction, problem.law_slip, len(group.prepare), int(group.counts.piece)
-    near = [start if i == home else law.knots[i - 1 if i > home else i] for i in range(pieces)]
-    references = near if law.knot_variable == "slip" else [start] * pieces
-    static = shared(law.pieces[home](law, start, 0.0) + law.static_excess)
-    at_reference = [shared(law.pieces[i](law, x, 0.0)) for i, x in enumerate(references)]
-    offsets = [-law.static_excess if i == home else value - static for i, value in enumerate(at_reference)]
-    knots = [*(knot - start if law.knot_variable == "slip" else knot for knot in law.knots), np.inf]
-    fields = rows(together([*(start - reference for reference in references), *offsets, *knots]))
-    law_pieces = np.array(np.broadcast_to(group.functions, (len(fields), *group.functions.shape)), order="C")
-    own = LawPiece.of(law_pieces)
-    own.slip_shift, own.offset, own.knot = (fields[:, n * pieces : (n + 1) * pieces] for n in range(3))
-    numbers = together([*(getattr(law, name) for name in law.parameters()), *references])
-    rows_of = rows(numbers)
-    constants = np.zeros((len(rows_of), pieces, group.size))
-    fill_constants(group.prepare, rows_of, constants)
+    law, home, pieces = problem.friction, int(group.counts.piece), len(group.prepare)
+    static = shared(law.pieces[home](law, problem.law_slip, 0.0) + law.static_excess)
+    references, own = references_of(problem, home, static, lambda i, slip: shared(law.pieces[i](law, slip, 0.0)))
+    law_pieces = np.array(np.broadcast_to(group.functions, (len(rows(own)), *group.functions.shape)), order="C")
+    set_references(law_pieces, own)
+    numbers = rows(together([*(getattr(law, name) for name in law.parameters()), *references]))
+    constants = np.zeros((len(numbers), pieces, group.size))
+    fill_constants(group.prepare, numbers, constants)
     return constants, law_pieces
 
 
