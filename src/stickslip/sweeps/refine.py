@@ -25,7 +25,7 @@ from stickslip.scenarios.scenario import Scenario
 from stickslip.sweeps.design.adaptive_grid import MOST_MEMBERS, Floats, Integers, refine_cells
 from stickslip.sweeps.design.design import LIST, MEMBER, REFINED, Design, axes_of
 from stickslip.sweeps.design.quantities import DEFAULT, Summary, Wanted, quantities_named
-from stickslip.sweeps.execution.outcome import FIRST_FAILURE, NOT_RUN
+from stickslip.sweeps.execution.chunk import FIRST_FAILURE, NOT_RUN
 from stickslip.sweeps.execution.plan import Plan, make_plan, scenario_to_vary
 from stickslip.sweeps.results.layout import REASON, STATUS, attributes
 from stickslip.sweeps.results.refinement_spec import ATTRIBUTE, RefinementSpec

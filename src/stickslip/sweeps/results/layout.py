@@ -18,8 +18,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import clean
 from stickslip.io.netcdf import LONG_NAMES, PAPER
 from stickslip.sweeps.design.design import GRID, IN_WORDS
-from stickslip.sweeps.design.series import PREFIX, TIME
-from stickslip.sweeps.execution.outcome import MEANINGS, NOT_RUN
+from stickslip.sweeps.execution.chunk import MEANINGS, NOT_RUN, PREFIX, TIME
 from stickslip.sweeps.execution.plan import Plan
 from stickslip.trajectory.checkpoint import engine
 

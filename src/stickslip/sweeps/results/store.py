@@ -23,8 +23,7 @@ from zarr.storage import MemoryStore
 
 from stickslip.foundation.atomic_write import held, write_atomically
 from stickslip.foundation.errors import InputError
-from stickslip.sweeps.execution.chunk import ChunkResult
-from stickslip.sweeps.execution.outcome import NOT_RUN
+from stickslip.sweeps.execution.chunk import NOT_RUN, ChunkResult
 from stickslip.sweeps.execution.plan import Plan
 from stickslip.sweeps.results.checksums import FOLDER, LAYOUT, check_all, is_vouched_for, vouch_for, vouch_for_layout, withdraw
 from stickslip.sweeps.results.layout import REASON, STATUS, array_of, check_contents, lay_out, reading

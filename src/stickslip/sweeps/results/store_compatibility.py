@@ -11,7 +11,7 @@ from zarr.storage import MemoryStore
 
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import clean
-from stickslip.sweeps.design.series import TIME
+from stickslip.sweeps.execution.chunk import TIME
 from stickslip.sweeps.execution.plan import Plan
 from stickslip.sweeps.results.layout import REASON, STATUS, array_of, attributes, lay_out, read_design, reading, results
 
