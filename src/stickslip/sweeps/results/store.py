@@ -26,8 +26,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.sweeps.execution.chunk import NOT_RUN, ChunkResult
 from stickslip.sweeps.execution.plan import Plan
 from stickslip.sweeps.results.checksums import FOLDER, LAYOUT, check_all, is_vouched_for, vouch_for, vouch_for_layout, withdraw
-from stickslip.sweeps.results.layout import REASON, STATUS, array_of, check_contents, lay_out, reading
-from stickslip.sweeps.results.store_compatibility import as_begun
+from stickslip.sweeps.results.layout import REASON, STATUS, array_of, as_begun, check_contents, lay_out, reading
 
 
 class ResultStore:
