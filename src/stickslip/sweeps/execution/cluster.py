@@ -133,14 +133,6 @@ def stream(client: Client, run: Callable[[Chunk], Result], chunks: Iterable[tupl
     `run` and the chunks must be picklable. A chunk that fails does not hold up the others: ChunksLostError is raised when these
     are done. Raises InputError at once if a worker has another version of the engine, and ChunksLostError if the scheduler is lost.
     """
-    try:
-        yield from _streamed(client, run, chunks)
-    except (OSError, CancelledError):
-        # Only the connection can raise these: an error in a chunk is part of its result, and the store is not written here.
-        raise ChunksLostError(GONE) from None
-
-
-def _streamed(client: Client, run: Callable[[Chunk], Result], chunks: Iterable[tuple[int, Chunk]]) -> Iterator[tuple[int, Result]]:
     from distributed import as_completed
 
     waiting = iter(chunks)
@@ -154,18 +146,22 @@ def _streamed(client: Client, run: Callable[[Chunk], Result], chunks: Iterable[t
         numbers.update(zip(sent, (number for number, _ in more), strict=True))
         return sent
 
-    ready = as_completed(send(), loop=client.loop)
-    for future in ready:
-        if future.status in GONE_AGAIN:
-            ready.add(future)
-            continue
-        number = numbers.pop(future)
-        if future.status == "finished":
-            yield number, future.result()
-        else:
-            lost.append(f"chunk {number}: {_why(future)}")
-        future.release()
-        ready.update(send())
+    try:
+        ready = as_completed(send(), loop=client.loop)
+        for future in ready:
+            if future.status in GONE_AGAIN:
+                ready.add(future)
+                continue
+            number = numbers.pop(future)
+            if future.status == "finished":
+                yield number, future.result()
+            else:
+                lost.append(f"chunk {number}: {_why(future)}")
+            future.release()
+            ready.update(send())
+    except (OSError, CancelledError):
+        # Only the connection can raise these: an error in a chunk is part of its result, and the store is not written here.
+        raise ChunksLostError(GONE) from None
     if lost:
         more = f", and {len(lost) - 1} more" if len(lost) > 1 else ""
         raise ChunksLostError(
