@@ -10,7 +10,7 @@ import numpy as np
 from stickslip.batch.kernels.branch_search import MOST_BRANCHES, RULES, Found, Resistances, search_branches
 from stickslip.batch.kernels.runs import fill_constants
 from stickslip.batch.vectorised_problem import Values, member, shared, vectorised_problem
-from stickslip.engine.codegen.compiler import CompiledFormula, compile_formula
+from stickslip.engine.codegen.compiler import compile_formula
 from stickslip.engine.enclosure.formula import formulas_of
 from stickslip.engine.state.layout import Branch, Counts, Floats, Integers, LawPiece, Params, State
 from stickslip.engine_input.automatic import set_lumping, wait_for_creep
@@ -81,7 +81,9 @@ def alike(scenario: Scenario, values: Values) -> Alike:
     with LOADING:
         compiled = [compile_formula(tree, law.parameters(), None) for tree in law.trees()]
         functions = functions_of(compiled, problem)
-        jets = np.array([jets_of(formula, problem) for formula in compiled if not steps_alone(problem)], np.int64).ravel()
+        in_lanes = [] if steps_alone(problem) else compiled
+        parts = "motion_jets" if problem.body.has_inertia else "rate_jets", "radii_in_lanes"
+        jets = np.array([formula.address(part) for formula in in_lanes for part in parts], np.int64)
         prepare = np.array([formula.address("prepare") for formula in compiled], np.int64)
     state, counts = start_of(problem)
     set_lumping(counts, problem, scenario.shortest_event)
@@ -172,11 +174,6 @@ def formulas(problem: Problem, group: Alike) -> tuple[Floats, Integers]:
 def steps_alone(problem: Problem) -> bool:
     """Return True if steps cannot be taken in lanes: the rate is a root of the contact equation, or the law has knots in it."""
     return is_algebraic(problem) or (len(problem.friction.knots) > 0 and problem.friction.knot_variable == "rate")
-
-
-def jets_of(formula: CompiledFormula, problem: Problem) -> tuple[int, int]:
-    """Return the addresses of the compiled series and radii of a formula for lanes."""
-    return formula.address("motion_jets" if problem.body.has_inertia else "rate_jets"), formula.address("radii_in_lanes")
 
 
 # ---- the contact equation ---------------------------------------------------------------------------------------------------

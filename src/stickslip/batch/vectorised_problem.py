@@ -6,7 +6,6 @@ into groups in which every such condition has the same outcome. Scenarios that c
 
 from __future__ import annotations
 
-import copy
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, replace
@@ -93,11 +92,8 @@ def member(scenario: Scenario, values: Mapping[str, float]) -> Scenario:
 
 def with_numbers(owner: Owner, numbers: Mapping[str, Any]) -> Owner:
     """Return a body, law or problem with other numbers, which may be arrays and are not checked."""
-    made = copy.copy(owner)
-    kept = {field.name for field in fields(cast(Any, owner))}  # what follows from the numbers, and is remembered, does not go along
-    for name in set(vars(made)) - kept:
-        del vars(made)[name]
-    vars(made).update(numbers)
+    made = object.__new__(type(owner))  # without what the owner remembers that follows from its numbers
+    vars(made).update({field.name: getattr(owner, field.name) for field in fields(cast(Any, owner))} | dict(numbers))
     return made
 
 
