@@ -16,10 +16,8 @@ import numpy as np
 from benchmarks import c_peer, scipy_peer
 from benchmarks.problems import ROUND, Case, Floats
 from benchmarks.runner import UnavailableError
-from stickslip.batch import run_members
-from stickslip.batch.batch_support import QUANTITIES
-from stickslip.batch.kernels.engine import engine_address
-from stickslip.batch.kernels.runs import Group, run_group
+from stickslip.batch import QUANTITIES, run_members
+from stickslip.batch.kernels.runs import Group, engine_address, run_group
 from stickslip.batch.setups import set_up
 from stickslip.batch.vectorised_problem import member
 from stickslip.batch.workspace import new_workspace, table_of

@@ -51,7 +51,7 @@ ROOMS = {
         ("on_demand",),
         ("loop",),
     ),
-    "batch": (("kernels",), ("vectorised_problem",), ("batch_support", "long_member", "setups"), ("workspace",), ("run",)),
+    "batch": (("kernels",), ("vectorised_problem",), ("long_member", "setups"), ("workspace",), ("run",)),
     "sweeps": (("design",), ("execution",), ("results",), ("sweep",), ("estimate", "refine")),
     "figures": (("names", "style"), ("sheet",), ("legends", "panels"), ("contact", "runs", "sweeps"), ("studies",)),
     "explorer": (("extra", "model"), ("page",), ("server", "static"), ("notebook",)),

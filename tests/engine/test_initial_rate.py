@@ -12,7 +12,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import stickslip as ss
-from stickslip.batch.batch_support import why_not
+from stickslip.batch import why_not
 from stickslip.foundation.quantities import quantity
 from stickslip.friction import FrictionLaw
 from stickslip.scenarios import Scenario

@@ -19,7 +19,6 @@ import pytest
 
 import stickslip as ss
 from stickslip.sweeps.execution.cluster import ChunksLostError, cluster, on_cluster, stream
-from stickslip.sweeps.execution.security import own_security
 from stickslip.sweeps.sweep import SweepProgress, carry_out
 from tests.sweeps.cluster_plan import VARY, plan_of
 from tests.sweeps.stores import files
@@ -186,7 +185,7 @@ def test_a_map_is_refined_on_a_cluster(open_scheduler: str, tmp_path: Path) -> N
 
 def test_without_dask_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "distributed", None)
-    with pytest.raises(ss.InputError, match=r"needs dask\.distributed: pip install 'stickslip\[cluster\]'"):
+    with pytest.raises(ss.InputError, match=r"needs dask\.distributed and cryptography: pip install 'stickslip\[cluster\]'"):
         ss.sweep("fig6-slab", VARY, workers=2)
 
 
@@ -197,7 +196,7 @@ def test_bad_numbers_of_workers_are_refused(options: dict[str, int]) -> None:
 
 
 def test_a_local_cluster_refuses_who_has_no_key(two_workers: Client) -> None:
-    from distributed import Client
+    from distributed import Client, Security
 
     address = two_workers.scheduler.address
     assert address.startswith("tls://127.0.0.1:")
@@ -206,7 +205,7 @@ def test_a_local_cluster_refuses_who_has_no_key(two_workers: Client) -> None:
     with pytest.raises(OSError, match=r"\breset\b|connect"):
         Client(address.replace("tls://", "tcp://"), timeout=2.0)
     with pytest.raises(OSError, match=r"certificate|\breset\b|connect"):
-        Client(address, security=own_security(), timeout=2.0)
+        Client(address, security=Security.temporary(), timeout=2.0)
 
 
 def slowly(number: int) -> int:
@@ -261,10 +260,7 @@ def test_a_local_cluster_shows_no_pages(two_workers: Client) -> None:
         urlopen(f"http://127.0.0.1:{two_workers.cluster.scheduler.http_server.port}/info/main/workers.html", timeout=10)
 
 
-def test_without_any_key_one_line_says_so(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_without_cryptography_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "cryptography", None)
-    monkeypatch.setenv("PATH", "")
-    assert own_security() is None
-    assert capsys.readouterr().err == (
-        "stickslip: sweep: without a key, other users of this machine can run code in the cluster: pip install cryptography\n"
-    )
+    with pytest.raises(ss.InputError, match=r"and cryptography: pip install 'stickslip\[cluster\]'"):
+        ss.sweep("fig6-slab", VARY, workers=2)

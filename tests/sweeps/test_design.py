@@ -13,8 +13,7 @@ import pytest
 import stickslip as ss
 from stickslip.scenarios.parameter_paths import find_parameter, parameter_paths
 from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
-from stickslip.sweeps.design.axis import Axis
-from stickslip.sweeps.design.axis_text import typed_axes
+from stickslip.sweeps.design.axis import Axis, typed_axes
 from stickslip.sweeps.design.design import read_design
 from stickslip.sweeps.execution.plan import make_plan, tile_of
 

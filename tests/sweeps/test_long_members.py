@@ -12,7 +12,7 @@ import xarray as xr
 import stickslip as ss
 from stickslip.batch import run
 from stickslip.cli.output.sweep_summary import show_slowest
-from stickslip.sweeps.execution.outcome import NOT_RUN
+from stickslip.sweeps.execution.chunk import NOT_RUN
 from stickslip.sweeps.execution.plan import make_plan
 from stickslip.sweeps.sweep import SweepProgress
 from tests.batch.cases import CASES

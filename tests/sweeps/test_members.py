@@ -14,8 +14,7 @@ import stickslip as ss
 from stickslip.observables.energy.balance import energy
 from stickslip.scenarios.scenario import load_scenario, read_scenario
 from stickslip.sweeps.design.quantities import QUANTITIES, quantities_named
-from stickslip.sweeps.execution.chunk import Work, one_by_one, run_chunk
-from stickslip.sweeps.execution.outcome import BAD_PARAMETERS, ERROR, MEANINGS
+from stickslip.sweeps.execution.chunk import BAD_PARAMETERS, ERROR, MEANINGS, Work, one_by_one, run_chunk
 from stickslip.sweeps.execution.plan import make_plan
 
 PULSES = load_scenario("fig5-slab-reconstructed")

@@ -19,7 +19,7 @@ import xarray as xr
 import stickslip as ss
 from stickslip.cli.main import main
 from stickslip.run.session import Session
-from stickslip.sweeps.execution.outcome import BAD_PARAMETERS, NOT_RUN
+from stickslip.sweeps.execution.chunk import BAD_PARAMETERS, NOT_RUN
 from stickslip.sweeps.execution.plan import make_plan
 from stickslip.sweeps.results.store import ResultStore, open_store
 from stickslip.sweeps.sweep import SweepProgress, carry_out, on_threads

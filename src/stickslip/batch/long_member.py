@@ -108,7 +108,7 @@ class Folding:
 
 
 def run_alone(scenario: Scenario, capacity: int, stop: Integers, out: Floats) -> int:
-    """Run a member in bounded memory and fill `out` with its numbers, except those of the contact equation.
+    """Run a member in bounded memory and fill `out`, which holds NaN, with its numbers, except those of the contact equation.
 
     `capacity` is the number of pieces for which the history has room at first. Returns the code of what ended the run.
     """
@@ -116,7 +116,6 @@ def run_alone(scenario: Scenario, capacity: int, stop: Integers, out: Floats) ->
     run = Session.begin(problem, RunOptions.of(scenario))
     run.reserve(capacity)
     stream = run.events()
-    out[:] = np.nan
     reduced = Reduced(out)
     reduced.events = reduced.pulses = reduced.shocks = 0.0
     watch = Folding(stream, stop, reduced)

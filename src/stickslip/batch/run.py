@@ -2,31 +2,28 @@
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from queue import Empty, SimpleQueue
-from threading import Lock
+from threading import local
 from time import thread_time
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from stickslip.batch.batch_support import why_not
-from stickslip.batch.kernels.engine import engine_address
 from stickslip.batch.kernels.reduction import COLUMNS, OF_EVENTS, Reduced
-from stickslip.batch.kernels.runs import Group, Stage, run_group
+from stickslip.batch.kernels.runs import Group, Stage, engine_address, run_group
 from stickslip.batch.long_member import run_alone
 from stickslip.batch.setups import Alike, alike, set_up
-from stickslip.batch.vectorised_problem import Values, are_fine, groups, member
-from stickslip.batch.workspace import LARGEST_CAPACITY, Workspace, new_workspace, table_of
+from stickslip.batch.vectorised_problem import Values, are_fine, groups, member, why_not
+from stickslip.batch.workspace import LARGEST_CAPACITY, new_workspace, table_of
 from stickslip.engine.codegen.simd import WIDTH
 from stickslip.engine.on_demand import lend_part
 from stickslip.engine.state.layout import Floats, Integers, Stop
 from stickslip.foundation.errors import InputError
 from stickslip.scenarios.scenario import Scenario
 from stickslip.trajectory.status import BAD_PARAMETERS, INTERRUPTED
+
+Part = TypeVar("Part")
 
 CHUNK = 8192
 """Largest number of members that are set up together: enough to make numpy efficient, and few enough for the processor's cache."""
@@ -98,16 +95,20 @@ def run_members(
     -----
     The results depend neither on the number of threads nor on which members run together.
     """
-    arrays = checked(scenario, values, quantities)
-    count = len(next(iter(arrays.values())))
+    reason = why_not(scenario, tuple(values), quantities)
+    if reason:
+        raise InputError(f"run_members: {reason}")
+    arrays = {key: np.ascontiguousarray(value, float) for key, value in values.items()}
+    shapes = {array.shape for array in arrays.values()}
+    if len(shapes) != 1 or len(next(iter(shapes))) != 1:
+        raise InputError("run_members: values must be one-dimensional arrays of one length, one number a member")
+    (count,) = shapes.pop()
     batch = _Batch(scenario, arrays, quantities, count)
-    for chunk in chunks(count, threads):
-        batch.queue.put(chunk)
-    batch.run(batch.work, threads)
-    waiting = [long.place for long in batch.long]
+    batch.run(batch.chunk, chunks(count, threads), threads)
+    later = sorted(place for place, _ in batch.long)
     if not defer:
-        batch.run(batch.work_alone, threads)
-    return BatchResult(batch.results, batch.status, batch.reason, batch.seconds, batch.alone, sorted(waiting) if defer else [])
+        batch.run(batch.run_long, batch.long, threads)
+    return BatchResult(batch.results, batch.status, batch.reason, batch.seconds, batch.alone, later if defer else [])
 
 
 def chunks(count: int, threads: int) -> Iterator[slice]:
@@ -123,27 +124,8 @@ def chunks(count: int, threads: int) -> Iterator[slice]:
         start += size
 
 
-def checked(scenario: Scenario, values: Mapping[str, Floats], quantities: Sequence[str]) -> dict[str, Floats]:
-    """Return the values as arrays, after checking that the batch can run with them. Raises InputError."""
-    reason = why_not(scenario, tuple(values), quantities)
-    if reason:
-        raise InputError(f"run_members: {reason}")
-    arrays = {key: np.ascontiguousarray(value, float) for key, value in values.items()}
-    if not arrays or any(array.shape != next(iter(arrays.values())).shape or array.ndim != 1 for array in arrays.values()):
-        raise InputError("run_members: values must be one-dimensional arrays of one length, one number a member")
-    return arrays
-
-
-class _Long(NamedTuple):
-    """A member that must run by itself: its index in the batch, and what the setup says about its contact equation."""
-
-    place: int
-    irregular: float
-    branches: float
-
-
 class _Batch:
-    """A batch in progress: a queue of chunks that are still to be done, and the results of those that are.
+    """A batch in progress, and the results of its members that are done.
 
     Members that must run by themselves are set aside and run after all others, so that they hold nobody up.
     """
@@ -153,80 +135,61 @@ class _Batch:
         self.results = {name: np.full(count, np.nan) for name in quantities}
         self.status = np.full(count, INTERRUPTED)
         self.reason: dict[int, str] = {}
-        self.queue: SimpleQueue[slice] = SimpleQueue()
         self.stop = np.zeros(1, np.int64)
         self.engine = engine_address()
         self.alike: dict[int, Alike] = {}
-        self.long: deque[_Long] = deque()
+        self.of_thread = local()  # `work`: the workspace of the thread
+        self.long: list[tuple[int, Floats]] = []  # members set aside: their index, and room for their numbers
         self.seconds = 0.0
         self.alone: dict[int, float] = {}
-        self.counting = Lock()
 
-    def run(self, work: Callable[[], object], threads: int) -> None:
-        """Do the same work on the given number of threads. An error, or Ctrl-C, ends every thread."""
-        if threads == 1:
-            work()
+    def run(self, work: Callable[[Part], float], parts: Iterable[Part], threads: int) -> None:
+        """Do the same work for each part on threads, and count its processor time. An error, or Ctrl-C, ends every thread."""
+        if threads == 1:  # a thread of its own would allocate its workspace afresh for each batch
+            self.begin()
+            self.seconds += sum(map(work, parts))
             return
-        with ThreadPoolExecutor(threads) as pool:
-            done = [pool.submit(work) for _ in range(threads)]
+        with ThreadPoolExecutor(threads, initializer=self.begin) as pool:
             try:
-                for one in done:
-                    one.result()
+                self.seconds += sum(pool.map(work, parts))
             except BaseException:
                 self.stop[0] = 1
                 raise
 
-    def work(self) -> None:
-        """Run chunks on one thread until the queue is empty or the batch is to stop."""
-        start, work = thread_time(), new_workspace()
-        while self.stop[0] == 0:
-            try:
-                chunk = self.queue.get_nowait()
-            except Empty:
-                break
-            work = self.chunk(chunk, work)
-        with self.counting:
-            self.seconds += thread_time() - start
+    def begin(self) -> None:
+        """Give the present thread a workspace."""
+        self.of_thread.work = new_workspace()
 
-    def work_alone(self) -> None:
-        """Run members that were set aside, one after the other, until none is left or the batch is to stop."""
-        while self.stop[0] == 0:
-            try:
-                long = self.long.popleft()
-            except IndexError:
-                return
-            start, out = thread_time(), np.full((1, len(COLUMNS)), np.nan)
-            code = run_alone(self.member(long.place), LARGEST_CAPACITY, self.stop, out[0])
-            self.keep(np.array([long.place]), np.array([code]), out, (long.irregular, long.branches))
-            took = thread_time() - start
-            with self.counting:
-                self.seconds += took
-                self.alone[long.place] = took
+    def run_long(self, long: tuple[int, Floats]) -> float:
+        """Run a member that was set aside. Returns its processor time (s)."""
+        (place, out), start = long, thread_time()
+        code = run_alone(self.member(place), LARGEST_CAPACITY, self.stop, out)
+        self.keep(np.array([place]), np.array([code]), out[None])
+        self.alone[place] = thread_time() - start
+        return self.alone[place]
 
-    def chunk(self, chunk: slice, work: Workspace) -> Workspace:
-        """Run one chunk. Returns the workspace, which may have been replaced by a larger one."""
-        values = {key: value[chunk] for key, value in self.values.items()}
+    def chunk(self, chunk: slice) -> float:
+        """Run one chunk. Returns its processor time (s)."""
+        start, values = thread_time(), {key: value[chunk] for key, value in self.values.items()}
         fine = are_fine(self.scenario, values)
         for n in np.flatnonzero(~fine).tolist():
             self.refuse(chunk.start + n)
         valid = np.flatnonzero(fine)
-        if not valid.size:
-            return work
-        for kind, places, numbers in groups(self.scenario, {key: value[valid] for key, value in values.items()}):
-            work = self.group(kind, chunk.start + valid[places], numbers, work)
-        return work
+        if valid.size:
+            for kind, places, numbers in groups(self.scenario, {key: value[valid] for key, value in values.items()}):
+                self.group(kind, chunk.start + valid[places], numbers)
+        return thread_time() - start
 
-    def group(self, kind: int, places: Integers, values: Values, work: Workspace) -> Workspace:
-        """Run the members of one group, which differ in numbers only. `places` are their indices in the batch.
-
-        Returns the workspace, which may have been replaced by a larger one.
-        """
+    def group(self, kind: int, places: Integers, values: Values) -> None:
+        """Run the members of one group, which differ in numbers only. `places` are their indices in the batch."""
         if kind not in self.alike:
             self.alike[kind] = alike(self.scenario, values)
         setups = set_up(self.scenario, values, self.alike[kind])
         codes, out = np.full(len(places), INTERRUPTED), np.full((len(places), len(COLUMNS)), np.nan)
+        reduced = Reduced.of(out)
+        reduced.irregular, reduced.branches = setups.irregular, setups.branches
         members = Group(self.engine, setups, self.wants_events, self.stop, codes, out)
-        work = work.ready_for(setups.constants.shape[2])
+        work = self.of_thread.work.ready_for(setups.constants.shape[2])
         while True:
             base, stride = table_of(setups, work)
             lane = run_group(members, base, stride, work)
@@ -240,21 +203,18 @@ class _Batch:
                 work = work.larger()
             else:
                 n, work.stage[lane] = int(work.member[lane]), Stage.FREE
-                self.long.append(_Long(int(places[n]), float(setups.irregular[n]), float(setups.branches[n])))
-        self.keep(places, codes, out, (setups.irregular, setups.branches))
-        return work
+                self.long.append((int(places[n]), out[n].copy()))
+        self.of_thread.work = work
+        for n in np.flatnonzero(codes == BAD_PARAMETERS).tolist():
+            self.reason[int(places[n])] = NO_START if setups.branches[n] > 0 else NO_BRANCH
+        self.keep(places, codes, out)
 
-    def keep(self, places: Integers, codes: Integers, out: Floats, contact: tuple[ArrayLike, ArrayLike]) -> None:
-        """Keep the codes and the numbers `out` of members with these indices; `contact` holds their `irregular` and `branches`."""
-        reduced = Reduced.of(out)
-        reduced.irregular, reduced.branches = contact
+    def keep(self, places: Integers, codes: Integers, out: Floats) -> None:
+        """Keep the codes and the numbers `out` of members with these indices."""
         out[codes == BAD_PARAMETERS] = np.nan
         self.status[places] = codes
         for name, column in self.results.items():
             column[places] = out[:, COLUMNS.index(name)]
-        branches = np.broadcast_to(contact[1], len(places))
-        for n in np.flatnonzero(codes == BAD_PARAMETERS).tolist():
-            self.reason[int(places[n])] = NO_START if branches[n] > 0 else NO_BRANCH
 
     def member(self, n: int) -> Scenario:
         """Return the scenario of one member. Raises InputError if its parameters are invalid."""

@@ -8,14 +8,23 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stickslip.batch.kernels.branch_search import MOST_BRANCHES, RULES, Found, Resistances, search_branches
-from stickslip.batch.kernels.constants import fill_constants
+from stickslip.batch.kernels.runs import fill_constants
 from stickslip.batch.vectorised_problem import Values, member, shared, vectorised_problem
-from stickslip.engine.codegen.compiler import CompiledFormula, compile_formula
+from stickslip.engine.codegen.compiler import compile_formula
 from stickslip.engine.enclosure.formula import formulas_of
 from stickslip.engine.state.layout import Branch, Counts, Floats, Integers, LawPiece, Params, State
 from stickslip.engine_input.automatic import set_lumping, wait_for_creep
 from stickslip.engine_input.branch_table import is_algebraic, table_of_branches
-from stickslip.engine_input.prepare import first_load, functions_of, parameters_of, set_tolerance, start_of, together
+from stickslip.engine_input.prepare import (
+    first_load,
+    functions_of,
+    parameters_of,
+    references_of,
+    set_references,
+    set_tolerance,
+    start_of,
+    together,
+)
 from stickslip.foundation.quantities import quantities_of
 from stickslip.friction import FrictionLaw
 from stickslip.problem.problem import Problem
@@ -72,7 +81,9 @@ def alike(scenario: Scenario, values: Values) -> Alike:
     with LOADING:
         compiled = [compile_formula(tree, law.parameters(), None) for tree in law.trees()]
         functions = functions_of(compiled, problem)
-        jets = np.array([jets_of(formula, problem) for formula in compiled if not steps_alone(problem)], np.int64).ravel()
+        in_lanes = [] if steps_alone(problem) else compiled
+        parts = "motion_jets" if problem.body.has_inertia else "rate_jets", "radii_in_lanes"
+        jets = np.array([formula.address(part) for formula in in_lanes for part in parts], np.int64)
         prepare = np.array([formula.address("prepare") for formula in compiled], np.int64)
     state, counts = start_of(problem)
     set_lumping(counts, problem, scenario.shortest_event)
@@ -149,32 +160,20 @@ def formulas(problem: Problem, group: Alike) -> tuple[Floats, Integers]:
 
     Both have a first axis of members, of length 1 if these do not differ.
     """
-    law, start, pieces, home = problem.friction, problem.law_slip, len(group.prepare), int(group.counts.piece)
-    near = [start if i == home else law.knots[i - 1 if i > home else i] for i in range(pieces)]
-    references = near if law.knot_variable == "slip" else [start] * pieces
-    static = shared(law.pieces[home](law, start, 0.0) + law.static_excess)
-    at_reference = [shared(law.pieces[i](law, x, 0.0)) for i, x in enumerate(references)]
-    offsets = [-law.static_excess if i == home else value - static for i, value in enumerate(at_reference)]
-    knots = [*(knot - start if law.knot_variable == "slip" else knot for knot in law.knots), np.inf]
-    fields = rows(together([*(start - reference for reference in references), *offsets, *knots]))
-    law_pieces = np.array(np.broadcast_to(group.functions, (len(fields), *group.functions.shape)), order="C")
-    own = LawPiece.of(law_pieces)
-    own.slip_shift, own.offset, own.knot = (fields[:, n * pieces : (n + 1) * pieces] for n in range(3))
-    numbers = together([*(getattr(law, name) for name in law.parameters()), *references])
-    rows_of = rows(numbers)
-    constants = np.zeros((len(rows_of), pieces, group.size))
-    fill_constants(group.prepare, rows_of, constants)
+    law, home, pieces = problem.friction, int(group.counts.piece), len(group.prepare)
+    static = shared(law.pieces[home](law, problem.law_slip, 0.0) + law.static_excess)
+    references, own = references_of(problem, home, static, lambda i, slip: shared(law.pieces[i](law, slip, 0.0)))
+    law_pieces = np.array(np.broadcast_to(group.functions, (len(rows(own)), *group.functions.shape)), order="C")
+    set_references(law_pieces, own)
+    numbers = rows(together([*(getattr(law, name) for name in law.parameters()), *references]))
+    constants = np.zeros((len(numbers), pieces, group.size))
+    fill_constants(group.prepare, numbers, constants)
     return constants, law_pieces
 
 
 def steps_alone(problem: Problem) -> bool:
     """Return True if steps cannot be taken in lanes: the rate is a root of the contact equation, or the law has knots in it."""
     return is_algebraic(problem) or (len(problem.friction.knots) > 0 and problem.friction.knot_variable == "rate")
-
-
-def jets_of(formula: CompiledFormula, problem: Problem) -> tuple[int, int]:
-    """Return the addresses of the compiled series and radii of a formula for lanes."""
-    return formula.address("motion_jets" if problem.body.has_inertia else "rate_jets"), formula.address("radii_in_lanes")
 
 
 # ---- the contact equation ---------------------------------------------------------------------------------------------------

@@ -1,23 +1,27 @@
 """The problems of many members as one `Problem`, whose varied numbers are arrays with one element for each member.
 
 The formulas of bodies, laws and setup accept arrays. Only conditions on a number ("if") cannot. Members are therefore first sorted
-into groups in which every such condition has the same outcome.
+into groups in which every such condition has the same outcome. Scenarios that cannot be treated so are refused (`why_not`).
 """
 
 from __future__ import annotations
 
-import copy
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, replace
 from typing import Any, NamedTuple, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.batch.kernels.branch_search import RULES
+from stickslip.batch.kernels.reduction import COLUMNS
 from stickslip.bodies import ElasticSlab
+from stickslip.engine.codegen.uncompiled import UNCOMPILED
 from stickslip.engine.state.layout import Floats
+from stickslip.engine_input.branch_table import folds_move, is_algebraic
 from stickslip.engine_input.lumping_limits import LARGEST_SHARE, check_shortest_event
+from stickslip.foundation.errors import nearest
 from stickslip.foundation.quantities import Quantity, quantities_of
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import DURATION, LARGEST_RTOL, RTOL, check_rtol
@@ -30,6 +34,8 @@ Booleans = NDArray[np.bool_]
 Places = NDArray[np.intp]
 Owner = TypeVar("Owner")
 
+QUANTITIES = COLUMNS
+"""Names of the quantities to which a batch can reduce a run."""
 RUN = {"duration": DURATION, "rtol": RTOL}
 """The entries of [run] in a scenario that may be varied."""
 
@@ -86,11 +92,8 @@ def member(scenario: Scenario, values: Mapping[str, float]) -> Scenario:
 
 def with_numbers(owner: Owner, numbers: Mapping[str, Any]) -> Owner:
     """Return a body, law or problem with other numbers, which may be arrays and are not checked."""
-    made = copy.copy(owner)
-    kept = {field.name for field in fields(cast(Any, owner))}  # what follows from the numbers, and is remembered, does not go along
-    for name in set(vars(made)) - kept:
-        del vars(made)[name]
-    vars(made).update(numbers)
+    made = object.__new__(type(owner))  # without what the owner remembers that follows from its numbers
+    vars(made).update({field.name: getattr(owner, field.name) for field in fields(cast(Any, owner))} | dict(numbers))
     return made
 
 
@@ -185,3 +188,71 @@ def groups(scenario: Scenario, values: Values) -> Iterator[tuple[int, Places, di
     for one in np.unique(kind):
         chosen = np.flatnonzero(kind == one)
         yield int(one), chosen, {key: value[chosen] for key, value in values.items()}
+
+
+# ---- what a batch cannot run ------------------------------------------------------------------------------------------------
+
+
+def why_not(scenario: Scenario, parameters: Sequence[str], quantities: Sequence[str]) -> str:
+    """Return in one line why a batch cannot run a scenario; "" if it can.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        The scenario to be run.
+    parameters : sequence of str
+        Names of the parameters that vary, such as "friction.alpha".
+    quantities : sequence of str
+        Names of the quantities to be kept.
+
+    Returns
+    -------
+    str
+        The first reason found, or "".
+    """
+    if UNCOMPILED:
+        return "the engine runs uncompiled, and lanes are registers of a processor"
+    for name in quantities:  # those that need a whole solution are unknown to a batch
+        if name not in QUANTITIES:
+            return f"quantity {ascii(name)[:60]} is not one that a batch can keep; {nearest(str(name), QUANTITIES)}"
+    return next((reason for find in (_of_run, _of_law, _of_parameters) for reason in find(scenario, parameters)), "")
+
+
+def _of_run(scenario: Scenario, parameters: Sequence[str]) -> Iterator[str]:
+    """Yield a reason if the run has a limit of events, a varying load, or leaps over creep from its start."""
+    if scenario.max_events is not None:
+        yield "[run] events: a batch runs for a time, not until a number of events"
+    if scenario.problem.varies:
+        yield "[loading] a batch needs a loading that does not vary in time"
+    if scenario.creep_rtol is not None and scenario.creep_rtol > 0.0:
+        yield "[run] creep_rtol: a batch cannot leap over creep from the start of a run"
+
+
+def _of_law(scenario: Scenario, parameters: Sequence[str]) -> Iterator[str]:
+    """Yield a reason if the law, or its selection rule, cannot be set up by formulas of plain numbers."""
+    problem = scenario.problem
+    law, name = problem.friction, type(problem.friction).__name__
+    if not law.many:
+        yield f"{name} is not made of plain numbers alone"
+    if law.memory != "all":
+        yield f"{name}: memory '{law.memory}' is not followed by a batch"
+    if not law.sticks and (problem.body.has_inertia or "body.contact_mass" in parameters):
+        yield f"{name}: a contact with mass that never sticks starts at a slip rate of its own"
+    if folds_move(problem):
+        yield f"{name}: branches of the contact equation move with slip"
+    chooses = is_algebraic(problem) or ("body.contact_mass" in parameters and law.depends_on_rate)
+    if chooses and problem.rule not in RULES:
+        yield f"selection rule '{problem.rule}' is calculated for one problem at a time; a batch supports {', '.join(RULES)}"
+    if not law.variation < float("inf") or not law.range()[1] < float("inf"):
+        yield f"{name}: friction grows without bound"
+
+
+def _of_parameters(scenario: Scenario, parameters: Sequence[str]) -> Iterator[str]:
+    """Yield a reason if one of the parameters cannot be varied in a batch."""
+    for name in parameters:
+        if declared_at(scenario, name) is None:
+            yield f"{ascii(name)[:60]} is not a plain number of this scenario that a batch can vary"
+    if "initial.load" in parameters and "initial.excess" in parameters:
+        yield "initial.load and initial.excess exclude each other"
+    if "friction.viscosity" in parameters:
+        yield "friction.viscosity: with it friction grows without bound"

@@ -63,14 +63,10 @@ class Workspace(NamedTuple):
         return self._replace(points=new_points(2 * len(self.points.turns.xi)))
 
 
-def divided(table: Any) -> Any:
-    """Return a table with a first axis of lanes, which have equally many rows of it."""
-    return table.reshape(WIDTH, len(table) // WIDTH, table.shape[1])
-
-
 def in_lanes(store: Store) -> Store:
-    """Divide the rows of a history's tables equally among the lanes."""
-    return Store(divided(store.pieces), divided(store.state))
+    """Divide the rows of a history's tables equally among the lanes, which become a first axis."""
+    tables: list[Any] = [table.reshape(WIDTH, -1, table.shape[1]) for table in store]
+    return Store(*tables)
 
 
 def apart(*shape: int, dtype: type = float) -> Any:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 from types import SimpleNamespace
 from typing import Any
@@ -200,21 +200,35 @@ def law_tables(problem: Problem) -> tuple[at.Integers, at.Floats]:
     law, start = problem.friction, problem.law_slip
     change = law.state_tree() if law.state else None
     formulas = [compile_formula(tree, law.parameters(), change) for tree in law.trees()]
-    home = int(law.piece_at(start))
-    # each piece's friction is a difference from its own reference slip: the start in the piece that holds there, else the near knot
-    near = [start if i == home else law.knots[i - 1 if i > home else i] for i in range(len(formulas))]
-    references = near if law.knot_variable == "slip" else [start] * len(formulas)
+    static, home = float(law.static_coefficient(start)), int(law.piece_at(start))
+    references, numbers = references_of(problem, home, static, lambda i, slip: float(law.piece_coefficient(i, slip, 0.0)))
     constants = np.zeros((len(formulas), max(formula.size for formula in formulas)))
     for i, (row, formula) in enumerate(zip(constants, formulas, strict=True)):
         formula.fill(np.array(law.piece_values(i)), references[i], row)
-    static = float(law.static_coefficient(start))
-    at_reference = [float(law.piece_coefficient(i, x, 0.0)) for i, x in enumerate(references)]
     table = functions_of(formulas, problem)
-    pieces = LawPiece.of(table)
-    pieces.slip_shift = [start - reference for reference in references]
-    pieces.offset = [-law.static_excess if i == home else value - static for i, value in enumerate(at_reference)]
-    pieces.knot = [*(knot - start if law.knot_variable == "slip" else knot for knot in law.knots), math.inf]
+    set_references(table, numbers)
     return table, constants
+
+
+def references_of(problem: Problem, home: int, static: Any, friction: Callable[[int, Any], Any]) -> tuple[list[Any], at.Floats]:
+    """Return the reference slip of each piece of the law, and the numbers for `set_references`.
+
+    Each piece's friction is a difference from its value at the piece's own reference slip: the start in the piece `home`, which
+    holds there, and the near knot in any other. `static` is the static friction coefficient at the start, and `friction` returns mu
+    of a piece at a slip and v = 0. If any number is an array, the numbers have a column for each member of a batch.
+    """
+    law, start, pieces = problem.friction, problem.law_slip, range(len(problem.friction.pieces))
+    in_slip = law.knot_variable == "slip"
+    references = [start if i == home or not in_slip else law.knots[i - 1 if i > home else i] for i in pieces]
+    offsets = [-law.static_excess if i == home else friction(i, references[i]) - static for i in pieces]
+    knots = [*(knot - start if in_slip else knot for knot in law.knots), math.inf]
+    return references, together([*(start - reference for reference in references), *offsets, *knots])
+
+
+def set_references(table: at.Integers, numbers: at.Floats) -> None:
+    """Write the numbers of `references_of` into a table of `LawPiece`, or into one for each member of a batch."""
+    pieces = LawPiece.of(table)
+    pieces.slip_shift, pieces.offset, pieces.knot = np.moveaxis(numbers.reshape(3, -1, *numbers.shape[1:]), 1, -1)
 
 
 def functions_of(formulas: Sequence[CompiledFormula], problem: Problem) -> at.Integers:

@@ -9,8 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.sweeps.execution.chunk import ChunkResult
-from stickslip.sweeps.execution.outcome import FIRST_FAILURE
+from stickslip.sweeps.execution.chunk import FIRST_FAILURE, ChunkResult
 from stickslip.sweeps.execution.plan import Plan
 from stickslip.sweeps.results.store import ResultStore
 from stickslip.sweeps.sweep import Runner

@@ -24,8 +24,8 @@ from stickslip.scenarios.parameter_paths import ParameterPath
 from stickslip.scenarios.scenario import Scenario
 from stickslip.sweeps.design.adaptive_grid import MOST_MEMBERS, Floats, Integers, refine_cells
 from stickslip.sweeps.design.design import LIST, MEMBER, REFINED, Design, axes_of
-from stickslip.sweeps.design.quantities import DEFAULT, Summary, Wanted, quantities_named
-from stickslip.sweeps.execution.outcome import FIRST_FAILURE, NOT_RUN
+from stickslip.sweeps.design.quantities import DEFAULT, Wanted, quantities_named
+from stickslip.sweeps.execution.chunk import FIRST_FAILURE, NOT_RUN
 from stickslip.sweeps.execution.plan import Plan, make_plan, scenario_to_vary
 from stickslip.sweeps.results.layout import REASON, STATUS, attributes
 from stickslip.sweeps.results.refinement_spec import ATTRIBUTE, RefinementSpec
@@ -96,7 +96,9 @@ def refine(
         For anything that cannot be used, as for `stickslip.sweep`.
     """
     chosen = scenario_to_vary(scenario, duration)
-    axes, kept = axes_of(chosen, vary, "refine: vary"), _with(quantities, quantity)
+    axes, kept = axes_of(chosen, vary, "refine: vary"), quantities_named(quantities)
+    if quantity not in {one.name for one in kept}:
+        kept = (*kept, *quantities_named(quantity))
     spec = RefinementSpec.of(quantity, axes, [one.name for one in kept], depth=depth, factor=factor, most=most)
     parameters = tuple(axis.parameter for axis in axes)
     search = _Search(spec, parameters, lambda design: make_plan(chosen, design, quantities=kept, chunk=chunk))
@@ -107,12 +109,6 @@ def refine(
         return found
     with runner_of(threads, workers, scheduler) as (run, _), told(progress, "refine") as tell:
         return search.carried_out(place, run, tell)
-
-
-def _with(quantities: Iterable[Wanted], name: str) -> tuple[Summary, ...]:
-    """Return the quantities to keep, with the one whose changes are sought added if it is missing."""
-    kept = quantities_named(quantities)
-    return kept if name in {one.name for one in kept} else (*kept, *quantities_named(name))
 
 
 @dataclass

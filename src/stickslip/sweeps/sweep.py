@@ -23,8 +23,7 @@ from stickslip.run.progress_line import told
 from stickslip.scenarios.scenario import Scenario
 from stickslip.sweeps.design.axis import Values
 from stickslip.sweeps.design.quantities import DEFAULT, Wanted
-from stickslip.sweeps.execution.chunk import ChunkResult, Work, run_chunk
-from stickslip.sweeps.execution.outcome import FIRST_FAILURE, NOT_RUN
+from stickslip.sweeps.execution.chunk import FIRST_FAILURE, NOT_RUN, ChunkResult, Work, run_chunk
 from stickslip.sweeps.execution.plan import SAMPLES, Plan, make_plan
 from stickslip.sweeps.results.store import ResultStore
 

@@ -9,17 +9,19 @@ arrays are counted only when a run has ended.
 from __future__ import annotations
 
 from enum import IntEnum
-from typing import TYPE_CHECKING, NamedTuple
+from functools import cache
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from numba import carray
+from numba import carray, types
+from numba.extending import intrinsic
 
-from stickslip.batch.kernels.engine import run_until_at
 from stickslip.batch.kernels.lanes import Waits, step_side_by_side
 from stickslip.batch.kernels.points import find_events
 from stickslip.batch.kernels.reduction import COLUMNS, Reduced, fold_events, fold_first, fold_whole, reached, reduced_at
-from stickslip.engine.codegen.compiler import ahead, floats, integers, kernel
+from stickslip.engine.codegen.compiler import address_of, ahead, call_prepare, floats, integers, kernel
 from stickslip.engine.codegen.records import numbers_of, whole_numbers_of
 from stickslip.engine.codegen.simd import WIDTH
+from stickslip.engine.loop import run_until
 from stickslip.engine.state.layout import Floats, Integers, Stop
 from stickslip.engine.state.workspace import ADDRESSES, PLACES, Run, borrow
 from stickslip.trajectory.slip_events import NOT_YET
@@ -31,6 +33,9 @@ if TYPE_CHECKING:
 
 BUDGET = 200_000
 """Number of steps of the engine after which it returns, so that the flag which stops the batch is checked."""
+
+ARGUMENTS = (types.Array(types.int64, 1, "C"), types.int64, types.float64, types.int64)
+"""Types of the arguments of `loop.run_until`: table, last row, last theta (s), budget."""
 
 
 class Stage(IntEnum):
@@ -65,6 +70,48 @@ class Group(NamedTuple):
     stop: Integers  # (1,): a flag that ends the whole batch
     codes: Integers  # (members,): codes of what ended the runs
     out: Floats  # (members, Reduced.total)
+
+
+# ---- functions called through their addresses, so that the code of a batch needs no second copy of the engine ----------------
+
+
+@cache
+def engine_address() -> int:
+    """Return the address of the machine code of `loop.run_until`; compile it if no single run has done so."""
+    return address_of(run_until, ARGUMENTS)
+
+
+@intrinsic
+def run_until_at(  # noqa: PLR0917 - the arguments of the function that it calls
+    typingctx: Any, address: Any, table: Any, last_trip: Any, last_phase: Any, budget: Any
+) -> Any:
+    """Call `loop.run_until`, whose machine code is at `address`, and return the code with which it stops."""
+
+    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        convention = context.call_conv
+        function = builder.inttoptr(args[0], convention.get_function_type(types.int64, ARGUMENTS).as_pointer())
+        _, code = convention.call_function(builder, function, types.int64, ARGUMENTS, args[1:])
+        return code
+
+    return types.int64(types.int64, *ARGUMENTS), codegen
+
+
+@kernel
+def fill_constants(prepare: Integers, numbers: Floats, constants: Floats) -> None:
+    """Call `prepare` of each piece of the law for each member, to fill `constants`, of shape (members, pieces, size).
+
+    prepare holds the addresses of these functions. A row of `numbers` has the law's parameters and the reference slip (m) of each
+    piece.
+    """
+    members, pieces, size = constants.shape
+    source, target, parameters = floats(numbers.ctypes.data), floats(constants.ctypes.data), numbers.shape[1] - pieces
+    for n in range(members):
+        for i in range(pieces):
+            c, own = ahead(target, (n * pieces + i) * size), ahead(source, n * numbers.shape[1])
+            call_prepare(prepare[i], own, own[parameters + i], c)
+
+
+# ---- members in lanes -------------------------------------------------------------------------------------------------------
 
 
 @kernel

@@ -109,8 +109,8 @@ def sweep(
     """
     from stickslip.cli.output.sweep_summary import show_slowest, show_sweep
     from stickslip.cli.overrides import load
-    from stickslip.sweeps.design.axis_text import typed_axes
-    from stickslip.sweeps.execution.outcome import NOT_RUN
+    from stickslip.sweeps.design.axis import typed_axes
+    from stickslip.sweeps.execution.chunk import NOT_RUN
     from stickslip.sweeps.execution.plan import make_plan
 
     _check_files(vary, table, out, figure)

@@ -40,7 +40,7 @@ def show_estimate(plan: Plan, found: Estimate) -> None:
 def show_sweep(title: str, dataset: xr.Dataset) -> int:
     """Print the summary of a sweep on standard output. Returns the exit code of the sweep: 1 if every member failed."""
     from stickslip.sweeps.design.design import GRID, in_words
-    from stickslip.sweeps.execution.outcome import FIRST_FAILURE
+    from stickslip.sweeps.execution.chunk import FIRST_FAILURE
     from stickslip.sweeps.results.layout import read_design
 
     dataset, screen = dataset.load(), console()
@@ -56,14 +56,14 @@ def show_sweep(title: str, dataset: xr.Dataset) -> int:
 
 def quantities_of(dataset: xr.Dataset) -> list[str]:
     """Return the names of the quantities in the results of a sweep."""
-    from stickslip.sweeps.design.series import PREFIX
+    from stickslip.sweeps.execution.chunk import PREFIX
     from stickslip.sweeps.results.layout import REASON, STATUS
 
     return [str(name) for name in dataset.data_vars if name not in (STATUS, REASON) and not str(name).startswith(PREFIX)]
 
 
 def _show_ends(status: np.ndarray[tuple[int], np.dtype[np.int8]], reasons: np.ndarray[tuple[int], np.dtype[np.object_]]) -> None:
-    from stickslip.sweeps.execution.outcome import FIRST_FAILURE, MEANINGS
+    from stickslip.sweeps.execution.chunk import FIRST_FAILURE, MEANINGS
 
     screen = console()
     for code, count in sorted(Counter(status.tolist()).items()):

@@ -23,7 +23,7 @@ from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.solution.place import Place
 from stickslip.sweeps.design.design import MEMBER
-from stickslip.sweeps.execution.outcome import FIRST_FAILURE, NOT_RUN
+from stickslip.sweeps.execution.chunk import FIRST_FAILURE, NOT_RUN
 from stickslip.sweeps.results.refinement_spec import ATTRIBUTE, RefinementSpec
 
 

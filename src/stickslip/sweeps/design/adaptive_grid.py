@@ -48,10 +48,6 @@ class Lattice:
         """The number of points of the finest grid along each axis."""
         return tuple((count - 1) * 2**self.depth + 1 for count in self.coarse)
 
-    def fractions(self, points: Integers) -> Floats:
-        """Return the positions of points, from 0 to 1 along each axis. Argument and result have the shape (points, axes)."""
-        return np.asarray(points / (np.array(self.shape) - 1.0))
-
     def levels(self, points: Integers) -> Integers:
         """Return the number of halvings after which the grid contains each point; 0 for a point of the coarse grid."""
         found = np.full(len(points), self.depth)
@@ -143,15 +139,6 @@ class Refined:
     cells: Cells
     changes: NDArray[np.bool_]  # True for each cell around which answers differ
     complete: bool
-
-    @property
-    def boundary(self) -> Floats:
-        """The midpoints (cells, axes) of the finest cells around which answers differ, from 0 to 1 along each axis.
-
-        Every point of the boundary lies within half a cell of one of these midpoints, along each axis.
-        """
-        finest = self.changes & (self.cells.level == self.lattice.depth)
-        return np.asarray((self.cells.corner[finest] + 0.5) / (np.array(self.lattice.shape) - 1.0))
 
 
 def differ(least: Floats, most: Floats, factor: float | None = None) -> NDArray[np.bool_]:

@@ -17,8 +17,7 @@ from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.scenarios.parameter_paths import ParameterPath, find_parameter
 from stickslip.scenarios.scenario import Scenario
-from stickslip.sweeps.design.axis import LARGEST_AXIS, Axis, Values, read_values
-from stickslip.sweeps.design.axis_text import typed_value
+from stickslip.sweeps.design.axis import LARGEST_AXIS, Axis, Values, read_values, typed_value
 
 if TYPE_CHECKING:
     import pandas as pd

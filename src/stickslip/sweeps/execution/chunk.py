@@ -15,24 +15,78 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.batch import run_members, why_not
+from stickslip.engine.state.layout import Stop
 from stickslip.foundation.errors import InputError
 from stickslip.run.simulate import simulate
 from stickslip.scenarios.entries import Source
 from stickslip.scenarios.parameter_paths import EXCLUDE_EACH_OTHER, ParameterPath
 from stickslip.scenarios.scenario import Scenario, read_scenario, scenario_of
+from stickslip.solution.solution import Solution
 from stickslip.sweeps.design.axis import Values
 from stickslip.sweeps.design.quantities import QUANTITIES, Summary
-from stickslip.sweeps.design.series import Series
-from stickslip.sweeps.execution.outcome import BAD_PARAMETERS, CODES, ERROR, FIRST_FAILURE, NOT_RUN
-from stickslip.trajectory.status import STATUSES, Status
+from stickslip.trajectory.status import BAD_PARAMETERS as REFUSED
+from stickslip.trajectory.status import ENOUGH_EVENTS, FULL_HISTORY, STATUSES, Status
 
 Floats = NDArray[np.float64]
 END = "end_time"
 """The quantity that the message on a failed member needs: the time (s) at which its run ended."""
 MAX_PIECES = 200_000
 """Largest number of polynomial pieces in the history of a member that runs by itself (90 MB); a member that needs more fails."""
+NOT_RUN = -1
+"""Code of a member that has not been run; a new store is filled with it."""
+BAD_PARAMETERS = 10
+"""Code of a member whose scenario is refused, or cannot start."""
+ERROR = 14
+"""Code of a member for which a quantity could not be calculated, or something else went wrong."""
+FIRST_FAILURE = 10
+"""Smallest code of a failure. Members that failed have a reason in place of results."""
+
+_OUTCOMES = (
+    (NOT_RUN, "not_run", None),
+    (0, "finished", Stop.FINISHED),
+    (1, "enough_events", ENOUGH_EVENTS),
+    (2, "locked_for_ever", Stop.LOCKED),
+    (BAD_PARAMETERS, "bad_parameters", REFUSED),
+    (11, "event_storm", Stop.STORM),
+    (12, "not_finite", Stop.FAILED),
+    (13, "too_many_pieces", FULL_HISTORY),
+    (15, "negative_friction", Stop.NEGATIVE_FRICTION),
+    (16, "off_the_law", Stop.OFF_THE_LAW),
+    (ERROR, "error", None),
+)
+MEANINGS = {code: name for code, name, _ in _OUTCOMES}
+"""Names of the codes."""
+CODES = {stop: code for code, _, stop in _OUTCOMES if stop is not None}
+"""The code of a member by the code that ended its run (`engine.state.layout`, `trajectory.status`)."""
 CODE_OF = {STATUSES[code].name: ours for code, ours in CODES.items()}
 """The status code of a member by the name of the status of its run."""
+PREFIX = "series_"
+"""Prefix of a curve's name among the results. It tells slip over time from the quantity `slip`, that of the whole run."""
+TIME = "time"
+"""Name of the dimension of the samples."""
+
+
+@dataclass(frozen=True, eq=False)
+class Series:
+    """The curves of a solution that are kept, and the sampling times (s). Samples at a shock are right limits."""
+
+    curves: tuple[str, ...]
+    times: Floats
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the curves among the results."""
+        return tuple(PREFIX + curve for curve in self.curves)
+
+    def of(self, solution: Solution) -> dict[str, Floats]:
+        """Return the samples of a solution by name, with NaN after the end of its run."""
+        there = self.times <= solution.history.duration
+        found = {}
+        for curve, name in zip(self.curves, self.names, strict=True):
+            values = np.full(len(self.times), np.nan)
+            values[there] = getattr(solution, curve)(self.times[there])
+            found[name] = values
+        return found
 
 
 @dataclass(frozen=True)

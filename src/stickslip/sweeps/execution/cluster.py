@@ -2,15 +2,17 @@
 
 Results come back as they are ready. Retries, the loss of workers and load balancing are left to dask. The task of a chunk carries
 everything that it needs, a few kilobytes: nothing is placed on the workers beforehand, so nothing is lost with a worker.
+
+The processes of dask run any code that is sent to them, and all users of a machine can reach its loopback address. The processes of
+a local cluster therefore share a key that is made for it and kept in memory; a connection without the key is refused.
 """
 
 from __future__ import annotations
 
-import asyncio
 import json
 import logging
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import CancelledError, ThreadPoolExecutor
+from concurrent.futures import CancelledError
 from contextlib import contextmanager
 from functools import partial
 from itertools import islice
@@ -20,7 +22,6 @@ from typing import TYPE_CHECKING, TypeVar
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError
 from stickslip.sweeps.execution.chunk import run_chunk
-from stickslip.sweeps.execution.security import own_security
 from stickslip.trajectory.checkpoint import engine
 
 if TYPE_CHECKING:
@@ -76,21 +77,23 @@ def cluster(scheduler: str | None = None, workers: int | None = None) -> Iterato
     """
     try:
         from dask import config
-        from distributed import Client, LocalCluster
+        from distributed import Client, LocalCluster, Security
+
+        security = None if workers is None else Security.temporary()  # by the package cryptography
     except ImportError:
-        raise InputError("sweep: a cluster needs dask.distributed: pip install 'stickslip[cluster]'") from None
+        raise InputError("sweep: a cluster needs dask.distributed and cryptography: pip install 'stickslip[cluster]'") from None
     if scheduler is not None:
-        with _quietly(), Client(_answering(scheduler), set_as_default=False) as client:
+        with _quietly(), _connected(scheduler) as client:
             yield client
-    else:
-        if workers is None or workers < 1:
-            raise InputError(f"sweep: workers must be 1 or more, got {workers}")
-        many = {"n_workers": workers, "threads_per_worker": 1, "preload": [LEAVE_CTRL_C]}
-        private = {"host": LOOPBACK, "dashboard_address": f"{LOOPBACK}:0", "worker_dashboard_address": f"{LOOPBACK}:0"}
-        with config.set(SETTINGS):
-            local = LocalCluster(**many, **private, security=own_security(), silence_logs=logging.ERROR)
-        with _quietly(), local, Client(local, set_as_default=False) as client:
-            yield client
+        return
+    if workers is None or workers < 1:
+        raise InputError(f"sweep: workers must be 1 or more, got {workers}")
+    many = {"n_workers": workers, "threads_per_worker": 1, "preload": [LEAVE_CTRL_C]}
+    private = {"host": LOOPBACK, "dashboard_address": f"{LOOPBACK}:0", "worker_dashboard_address": f"{LOOPBACK}:0"}
+    with config.set(SETTINGS):
+        local = LocalCluster(**many, **private, security=security, silence_logs=logging.ERROR)
+    with _quietly(), local, Client(local, set_as_default=False) as client:
+        yield client
 
 
 @contextmanager
@@ -105,25 +108,18 @@ def _quietly() -> Iterator[None]:
         log.setLevel(before)
 
 
-def _answering(scheduler: str) -> str:
-    """Return the address of a scheduler after checking that it answers. Raises InputError."""
-    from distributed import Security
-    from distributed.comm import connect
-
-    async def knock() -> None:
-        comm = await connect(address, timeout=PATIENCE, **Security().get_connection_args("client"))
-        await comm.close()
+def _connected(scheduler: str) -> Client:
+    """Return a client of the scheduler at an address, or of the one that a scheduler file names. Raises InputError."""
+    from distributed import Client
 
     try:
         path = Path(scheduler)
         address = str(json.loads(read_bounded(path, LARGEST_FILE))["address"]) if path.is_file() else scheduler
-        with ThreadPoolExecutor(1) as aside:  # in this thread a notebook may run an event loop of its own
-            aside.submit(lambda: asyncio.run(knock())).result()
+        return Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError, KeyError, TypeError) as error:  # TypeError means tls:// without a key in dask's configuration
         raise InputError(
             f"sweep: no dask scheduler answers at {scheduler} ({error}); it needs HOST:PORT as `dask scheduler` prints it"
         ) from None
-    return address
 
 
 def on_cluster(client: Client) -> Runner:
@@ -137,14 +133,6 @@ def stream(client: Client, run: Callable[[Chunk], Result], chunks: Iterable[tupl
     `run` and the chunks must be picklable. A chunk that fails does not hold up the others: ChunksLostError is raised when these
     are done. Raises InputError at once if a worker has another version of the engine, and ChunksLostError if the scheduler is lost.
     """
-    try:
-        yield from _streamed(client, run, chunks)
-    except (OSError, CancelledError):
-        # Only the connection can raise these: an error in a chunk is part of its result, and the store is not written here.
-        raise ChunksLostError(GONE) from None
-
-
-def _streamed(client: Client, run: Callable[[Chunk], Result], chunks: Iterable[tuple[int, Chunk]]) -> Iterator[tuple[int, Result]]:
     from distributed import as_completed
 
     waiting = iter(chunks)
@@ -158,18 +146,22 @@ def _streamed(client: Client, run: Callable[[Chunk], Result], chunks: Iterable[t
         numbers.update(zip(sent, (number for number, _ in more), strict=True))
         return sent
 
-    ready = as_completed(send(), loop=client.loop)
-    for future in ready:
-        if future.status in GONE_AGAIN:
-            ready.add(future)
-            continue
-        number = numbers.pop(future)
-        if future.status == "finished":
-            yield number, future.result()
-        else:
-            lost.append(f"chunk {number}: {_why(future)}")
-        future.release()
-        ready.update(send())
+    try:
+        ready = as_completed(send(), loop=client.loop)
+        for future in ready:
+            if future.status in GONE_AGAIN:
+                ready.add(future)
+                continue
+            number = numbers.pop(future)
+            if future.status == "finished":
+                yield number, future.result()
+            else:
+                lost.append(f"chunk {number}: {_why(future)}")
+            future.release()
+            ready.update(send())
+    except (OSError, CancelledError):
+        # Only the connection can raise these: an error in a chunk is part of its result, and the store is not written here.
+        raise ChunksLostError(GONE) from None
     if lost:
         more = f", and {len(lost) - 1} more" if len(lost) > 1 else ""
         raise ChunksLostError(

@@ -13,15 +13,15 @@ from numpy.typing import NDArray
 
 from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.conversion import WithUnit
-from stickslip.foundation.errors import InputError
+from stickslip.foundation.errors import InputError, nearest
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import DURATION
 from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
+from stickslip.solution.evaluation import CURVES
 from stickslip.sweeps.design.axis import Values
 from stickslip.sweeps.design.design import GRID, Design, read_design
 from stickslip.sweeps.design.quantities import DEFAULT, Wanted, quantities_named
-from stickslip.sweeps.design.series import read_series
-from stickslip.sweeps.execution.chunk import Work
+from stickslip.sweeps.execution.chunk import Series, Work
 
 CHUNKS, SMALLEST_CHUNK, LARGEST_CHUNK, LARGEST_BATCH = 64, 16, 4096, 65_536
 """Number of chunks into which a sweep is divided if no chunk size is given, and limits of their size (members).
@@ -31,6 +31,8 @@ lost when a sweep is killed.
 """
 SAMPLES = 200
 """Default number of times at which curves are sampled."""
+MOST_SAMPLES = 1_000_000
+"""Largest number of samples of a curve, which limits its size to 8 MB for each member."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,7 +89,9 @@ def make_plan(
     members_of = read_design(chosen, vary, design, members=members, seed=seed, where=where)
     curves = read_series(chosen, members_of, series, samples)
     work = Work(chosen.to_toml(), members_of.parameters, quantities_named(quantities), curves)
-    return Plan(chosen, members_of, work, tile_of(members_of.shape, _chunk_size(members_of.size, chunk, work)))
+    largest = LARGEST_CHUNK if work.why_one_by_one else LARGEST_BATCH
+    size = min(max(members_of.size // CHUNKS, SMALLEST_CHUNK), largest) if chunk is None else check_whole("sweep: chunk", chunk)
+    return Plan(chosen, members_of, work, tile_of(members_of.shape, size))
 
 
 def scenario_to_vary(given: Problem | Scenario | str | Path, duration: float | str | WithUnit | None = None) -> Scenario:
@@ -104,10 +108,24 @@ def scenario_to_vary(given: Problem | Scenario | str | Path, duration: float | s
     return read_scenario(Scenario(given, DURATION.check("sweep", "duration", duration)).to_toml(), "problem")
 
 
-def _chunk_size(members: int, chunk: int | None, work: Work) -> int:
-    if chunk is None:
-        return min(max(members // CHUNKS, SMALLEST_CHUNK), LARGEST_CHUNK if work.why_one_by_one else LARGEST_BATCH)
-    return check_whole("sweep: chunk", chunk)
+def read_series(scenario: Scenario, design: Design, curves: Sequence[str], samples: int) -> Series | None:
+    """Return the series of these curves, or None if there are no curves.
+
+    `samples` is the number of times, evenly spaced from 0 s to the longest duration of any member. Raises InputError for an
+    unknown or repeated curve, and for a number of samples out of range.
+    """
+    if not curves:
+        return None
+    allowed = [*CURVES, *(["state"] if scenario.problem.friction.state else [])]
+    for curve in curves:
+        if curve not in allowed:
+            raise InputError(f"sweep: series {ascii(curve)[:60]} is unknown; {nearest(curve, allowed)}")
+    if len(set(curves)) < len(curves):
+        raise InputError("sweep: a series is given twice")
+    check_whole("sweep: samples", samples, 2, MOST_SAMPLES)
+    durations = dict(zip(design.names, design.columns, strict=True)).get("run.duration")
+    last = scenario.duration if durations is None else float(durations.max())
+    return Series(tuple(curves), np.linspace(0.0, last, samples))
 
 
 def tile_of(shape: tuple[int, ...], size: int) -> tuple[int, ...]:

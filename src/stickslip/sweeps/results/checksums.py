@@ -41,11 +41,6 @@ def vouch_for(store: Path, name: str, files: Iterable[str]) -> None:
     write_atomically(store / FOLDER / name, lambda draft: draft.write_text(text, encoding="utf-8", newline="\n"))
 
 
-def withdraw(store: Path, name: str) -> None:
-    """Remove the list with this name, if there is one, before its files change."""
-    (store / FOLDER / name).unlink(missing_ok=True)
-
-
 def vouch_for_layout(store: Path) -> None:
     """Write the list LAYOUT of all files that exist now."""
     files = [path.relative_to(store).as_posix() for path in store.rglob("*") if path.is_file()]

@@ -1,16 +1,22 @@
-"""The layout of the store of a sweep: coordinates, variables and attributes, all created before the first member is run."""
+"""The layout of the store of a sweep: coordinates, variables and attributes, all created before the first member is run.
+
+A store that exists is checked: whether a sweep has written it, and whether it belongs to the sweep that is to be continued.
+"""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 import zarr
 from zarr.codecs import Crc32cCodec, ZstdCodec
+from zarr.storage import MemoryStore
 
 import stickslip
 from stickslip.foundation.arguments import check_whole, shown
@@ -18,8 +24,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import clean
 from stickslip.io.netcdf import LONG_NAMES, PAPER
 from stickslip.sweeps.design.design import GRID, IN_WORDS
-from stickslip.sweeps.design.series import PREFIX, TIME
-from stickslip.sweeps.execution.outcome import MEANINGS, NOT_RUN
+from stickslip.sweeps.execution.chunk import MEANINGS, NOT_RUN, PREFIX, TIME
 from stickslip.sweeps.execution.plan import Plan
 from stickslip.trajectory.checkpoint import engine
 
@@ -33,6 +38,13 @@ FILLS = {NUMBERS: np.nan, WORDS: "", CODES: NOT_RUN}
 """The value of an element that has not been written, by data type."""
 COMPRESSED = (ZstdCodec(), Crc32cCodec())
 """Codecs of every array: compression, then a CRC-32C checksum after each chunk, which every reader of zarr verifies."""
+_SAME = {
+    "stickslip_sweep": "by another version of stickslip",
+    "source": "by another version of stickslip",
+    "engine": "by another version of stickslip",
+    "scenario": "from another scenario",
+}
+"""Attributes of a store that must agree with a plan, and the end of the error message if they do not."""
 
 
 def lay_out(plan: Plan, place: Any) -> None:
@@ -168,3 +180,52 @@ def check_contents(found: xr.Dataset) -> None:
             raise InputError(f"the variable {name!r} has a dimension twice")
     if found[STATUS].dtype.kind != "i":
         raise InputError(f"the variable {STATUS!r} has no whole numbers")
+
+
+# ---- continuing a store -------------------------------------------------------------------------------------------------------
+
+
+def as_begun(plan: Plan, path: Path) -> Plan:
+    """Return the plan with the chunk shape of an existing store. Raises InputError if the store does not belong to this plan."""
+    with reading(path):
+        group = zarr.open_group(path, mode="r")
+        if "stickslip_sweep" not in group.attrs:
+            raise InputError(f"{path}: exists and is not the store of a sweep: choose another name")
+        ours = attributes(plan)
+        different = next((what for name, what in _SAME.items() if group.attrs.get(name) != ours[name]), None)
+        different = different or _design_differs(plan, group)
+        if different:
+            raise InputError(f"{path}: was made {different}: use the same settings as before, or choose another name")
+        begun = replace(plan, tile=read_design(group.attrs)[2])
+        _check_arrays(begun, group)
+        return begun
+
+
+def _check_arrays(plan: Plan, group: zarr.Group) -> None:
+    """Raise InputError unless the arrays of a store are those that the plan lays out, with all that is known of them."""
+    if len(plan.tile) != len(plan.design.shape):
+        raise InputError("the shape of its chunks is not that of its members")
+    wanted = MemoryStore()
+    lay_out(plan, wanted)
+    ours, theirs = ({name: array.metadata.to_dict() for name, array in one.arrays()} for one in (zarr.open_group(wanted), group))
+    odd = next((name for name in ours if theirs.get(name) != ours[name]), None)
+    if odd is not None:
+        raise InputError(f"its variable {odd!r} is missing or has another form")
+
+
+def _design_differs(plan: Plan, group: zarr.Group) -> str:
+    """Return in words how the design or the quantities of the store differ from the plan; "" if they agree."""
+    design, series = plan.design, plan.work.series
+    kind, keys, _ = read_design(group.attrs)
+    if keys != list(design.names) or kind != design.kind:
+        return f"over {', '.join(keys)} (design {kind})"
+    for name, column in zip(design.names, design.columns, strict=True):
+        if array_of(group, name).shape != column.shape or not np.array_equal(array_of(group, name)[...], column):
+            return f"with other values of {name}"
+    others = {*design.names, TIME, STATUS, REASON}
+    units = {name: array.attrs.get("units") for name, array in group.arrays() if name not in others}
+    if units != {name: about["units"] for name, about in results(plan).items()}:
+        return f"for other quantities ({clean(', '.join(sorted(units)))})"
+    if series is not None and not np.array_equal(array_of(group, TIME)[...], series.times):
+        return "with other samples of time"
+    return ""

@@ -16,7 +16,7 @@ from stickslip.foundation.arguments import check_whole, shown
 from stickslip.foundation.errors import InputError
 from stickslip.sweeps.design.adaptive_grid import Floats, Integers, Lattice, Refined, refine_cells
 from stickslip.sweeps.design.axis import Axis
-from stickslip.sweeps.execution.outcome import NOT_RUN
+from stickslip.sweeps.execution.chunk import NOT_RUN
 
 ATTRIBUTE = "refinement"
 """Name of the attribute of the dataset that holds the specification (JSON)."""

@@ -23,12 +23,10 @@ from zarr.storage import MemoryStore
 
 from stickslip.foundation.atomic_write import held, write_atomically
 from stickslip.foundation.errors import InputError
-from stickslip.sweeps.execution.chunk import ChunkResult
-from stickslip.sweeps.execution.outcome import NOT_RUN
+from stickslip.sweeps.execution.chunk import NOT_RUN, ChunkResult
 from stickslip.sweeps.execution.plan import Plan
-from stickslip.sweeps.results.checksums import FOLDER, LAYOUT, check_all, is_vouched_for, vouch_for, vouch_for_layout, withdraw
-from stickslip.sweeps.results.layout import REASON, STATUS, array_of, check_contents, lay_out, reading
-from stickslip.sweeps.results.store_compatibility import as_begun
+from stickslip.sweeps.results.checksums import FOLDER, LAYOUT, check_all, is_vouched_for, vouch_for, vouch_for_layout
+from stickslip.sweeps.results.layout import REASON, STATUS, array_of, as_begun, check_contents, lay_out, reading
 
 
 class ResultStore:
@@ -103,7 +101,7 @@ class ResultStore:
             reasons[place] = reason
         with writing(self.place):
             if isinstance(self.place, Path):
-                withdraw(self.place, str(chunk))
+                (self.place / FOLDER / str(chunk)).unlink(missing_ok=True)  # its checksums, before its files change
             for name, values in result.results.items():
                 array_of(self.group, name)[region] = values.reshape(shape + values.shape[1:])
             array_of(self.group, REASON)[region] = reasons.reshape(shape)
