@@ -17,6 +17,7 @@ import xarray as xr
 import stickslip as ss
 from stickslip.io.catalogue_rows import RowsInMemory
 from stickslip.observables.event_stream import EventStream
+from stickslip.observables.event_table import ENERGY_COLUMNS
 from stickslip.run import catalogue as module
 from stickslip.run.catalogue import EventRows
 from stickslip.run.monitor import Monitor
@@ -26,7 +27,6 @@ from stickslip.run.resume import PausedCatalogue
 from stickslip.run.run_loop import run_loop
 from stickslip.run.session import Session
 from stickslip.trajectory.slip_events import default_event_rate
-from stickslip.trajectory.tables import ENERGY_COLUMNS
 from tests.long_runs.problems import RUNS, bundled, differences
 from tests.long_runs.processes import killed
 
