@@ -53,7 +53,7 @@ ROOMS = {
     ),
     "batch": (("kernels",), ("vectorised_problem",), ("long_member", "setups"), ("workspace",), ("run",)),
     "sweeps": (("design",), ("execution",), ("results",), ("sweep",), ("estimate", "refine")),
-    "figures": (("names", "style"), ("sheet",), ("legends", "panels"), ("contact", "runs", "sweeps"), ("studies",)),
+    "figures": (("names", "style"), ("sheet",), ("panels",), ("contact", "runs", "sweeps"), ("studies",)),
     "explorer": (("extra", "model"), ("page",), ("server", "static"), ("notebook",)),
     "reference": (("rate_and_state",), ("block", "slab"), ("method_of_steps",)),
     "cli": (

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import stickslip as ss
@@ -134,6 +135,15 @@ def test_show_repeats_the_summary_of_a_sweep(command: Command):
     assert summary == after_title(ran).removesuffix("written: map.zarr\n")
     assert made.endswith("written: map.svg\n")
     assert "[run]\n" in command("show", "map.zarr", "--scenario").out
+
+
+def test_a_catalogue_of_another_version_may_lack_columns(command: Command, results: Path) -> None:
+    table = pd.read_csv(results / "events.csv").drop(columns=["pulses", "amplification", "static_drop"])
+    table.to_csv(results / "older.csv", index=False)
+    shown = command("show", str(results / "older.csv"))
+    assert (shown.code, shown.err) == (0, "")
+    assert "traction" in shown.out
+    assert "pulses" not in shown.out
 
 
 @pytest.mark.parametrize(

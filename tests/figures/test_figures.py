@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 
 import stickslip as ss
 from stickslip.contact.regime_map import Axis, regime_map
-from stickslip.figures.contact import admissible, hysteresis, laws, regimes, resistance, systems
+from stickslip.figures.contact import admissible, regimes, resistance, systems
 from stickslip.figures.runs import comparison
 from stickslip.figures.runs.run import draw
 from stickslip.figures.studies import ensemble, regularise
@@ -36,9 +36,9 @@ def test_systems_show_the_papers_symbols() -> None:
 
 
 def test_laws_have_a_panel_each() -> None:
-    dataset = laws.data({"slip": ss.friction.SinusoidalSlip(1.0, 0.5, 5.0)}, {"rate": LAW}, 2.0, 10.0)
+    dataset = systems.laws_data({"slip": ss.friction.SinusoidalSlip(1.0, 0.5, 5.0)}, {"rate": LAW}, 2.0, 10.0)
     assert float(dataset.coefficient_along_rate[0, 0]) == pytest.approx(0.8, rel=1e-15)
-    figure = laws.draw(dataset)
+    figure = systems.draw_laws(dataset)
     assert len(labels(figure)) == 4
     assert all(has_unit(text) for text in labels(figure))
 
@@ -60,13 +60,13 @@ def test_a_regular_contact_has_no_corners() -> None:
 
 
 def test_the_run_follows_the_loop_up_and_down() -> None:
-    dataset = hysteresis.data(ss.simulate(LOOP, 5.7))
+    dataset = resistance.loop_data(ss.simulate(LOOP, 5.7))
     up, down = dataset.run_load[: int(dataset.run_turn) + 1], dataset.run_load[int(dataset.run_turn) :]
     last_digit = 1e-15 * float(dataset.run_load.max())
     assert (np.diff(up) >= -last_digit).all()
     assert (np.diff(down) <= last_digit).all()
     assert float(dataset.run_load.max()) == pytest.approx(60e6 + SLAB.impedance * 2.6, rel=1e-9)
-    figure = hysteresis.draw(dataset)
+    figure = resistance.draw_hysteresis(dataset)
     assert all(has_unit(text) for text in labels(figure))
     assert {"A", "B", "C", "D", "E", "to O"} <= {text.get_text() for text in figure.axes[0].texts}
 

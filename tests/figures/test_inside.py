@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 import stickslip as ss
-from stickslip.figures.runs import animation, snapshots, space_time
+from stickslip.figures.runs import animation, inside
 from stickslip.figures.style import image
 from tests.figures.labels import SIZES, labels
 from tests.figures.problems import BLOCK_PROBLEM, SLAB, SLAB_PROBLEM
@@ -46,7 +46,7 @@ def without_unit(figure: Figure) -> list[str]:
 
 def test_images_are_means_over_their_cells(run: ss.Solution) -> None:
     """Where no front passes, the field in the middle: relative 1e-9. In all, they sum to what the contact slipped: 1e-12."""
-    dataset = space_time.data(run)
+    dataset = inside.space_time_data(run)
     time, x = dataset.time.values, dataset.x.values
     field = run.field(x, time[:, None])
     near = np.abs((time[:, None] - x / SLAB.wave_speed) / ROUND % 1.0)
@@ -63,7 +63,7 @@ def test_images_are_means_over_their_cells(run: ss.Solution) -> None:
 def test_no_pulse_falls_between_the_columns() -> None:
     """Pulses of 20 ms in columns of 13 ms: each column of the image has the slip of its time; samples do not (1e-2)."""
     run = ss.simulate(PULSES)
-    dataset = space_time.data(run)
+    dataset = inside.space_time_data(run)
     step, x = float(dataset.time[1] - dataset.time[0]), float(dataset.x[0])
     passed = np.diff(run.field(x, dataset.time.values[:-1] + 0.5 * step).displacement)
     columns = dataset.velocity.values[:, 0] * step
@@ -76,7 +76,7 @@ def test_no_pulse_falls_between_the_columns() -> None:
 
 def test_characteristics_leave_with_shocks_and_bounce(run: ss.Solution) -> None:
     """One zigzag: the second shock is the echo of the first; h/c from side to side, relative 1e-12."""
-    dataset = space_time.data(run)
+    dataset = inside.space_time_data(run)
     assert dataset.front_time.shape == (1, 6)
     assert dataset.front_time.values[0] == pytest.approx(0.5 * ROUND * np.arange(6), rel=1e-12, abs=1e-12)
     assert dataset.front_x.values.tolist() == [0.0, 1e4] * 3
@@ -87,7 +87,7 @@ def test_characteristics_end_where_the_driver_lets_them_out(driver: float, corne
     """A matched driver swallows a wave whole, a nearly matched one all but a hundredth, a dead load nothing."""
     slab = replace(SLAB, driver_impedance=driver * SLAB.impedance)
     run = ss.simulate(replace(SLAB_PROBLEM, body=slab), 1.9 * ROUND)
-    dataset = space_time.data(run)
+    dataset = inside.space_time_data(run)
     assert int(np.isfinite(dataset.front_time.values[0]).sum()) == corners
 
 
@@ -95,19 +95,19 @@ def test_too_many_characteristics_are_not_drawn() -> None:
     critical = ss.load_scenario("fig7-slab-critical").problem
     run = ss.simulate(critical, 94_300.0)
     assert run.shocks.time.between(93_900.0, 94_300.0).sum() > 60
-    assert space_time.data(run, 93_900.0, 94_300.0).sizes["front"] == 0
+    assert inside.space_time_data(run, 93_900.0, 94_300.0).sizes["front"] == 0
 
 
 def test_a_long_run_is_shown_around_an_event() -> None:
     """In local time, from a quarter of a round trip before it to a round trip behind it; what is asked for wins."""
     run = ss.simulate(SLAB_PROBLEM, 480 * ss.YEAR)
-    dataset = space_time.data(run)
+    dataset = inside.space_time_data(run)
     step = float(dataset.time[1] - dataset.time[0])
     assert float(dataset.time[0]) - 0.5 * step == pytest.approx(-0.25 * ROUND, rel=1e-12, abs=0.0)
     assert float(dataset.time[-1]) + 0.5 * step == pytest.approx(2.1 * ROUND, rel=1e-12, abs=0.0)
     assert dataset.attrs["clock"] == "time since the event began"
     assert dataset.front_time.values[0, :2] == pytest.approx([0.0, 0.5 * ROUND], rel=1e-12, abs=1e-12)
-    asked = space_time.data(run, 0.0, 3.0)
+    asked = inside.space_time_data(run, 0.0, 3.0)
     assert asked.attrs["clock"] == "time $t$"
     assert float(asked.contact_time[-1]) == 3.0
 
@@ -125,15 +125,15 @@ def test_space_time_has_units_and_all_of_the_slab(name: str, run: ss.Solution) -
 
 
 def test_the_same_data_draw_the_same(run: ss.Solution) -> None:
-    dataset = space_time.data(run, 0.0, 8.0)
-    assert image(space_time.draw(dataset), "png") == image(space_time.draw(dataset), "png")
+    dataset = inside.space_time_data(run, 0.0, 8.0)
+    assert image(inside.draw_space_time(dataset), "png") == image(inside.draw_space_time(dataset), "png")
 
 
 # ---- snapshots -----------------------------------------------------------------------------------------------------------------
 
 
 def test_snapshots_are_the_field(run: ss.Solution) -> None:
-    dataset = snapshots.data(run, [1.0, 4.0])
+    dataset = inside.snapshots_data(run, [1.0, 4.0])
     x = dataset.x.values
     at, start = run.field(x, 4.0), run.field(x, 0.0)
     assert np.array_equal(dataset.velocity[1], at.velocity)
@@ -147,10 +147,10 @@ def test_snapshots_are_the_field(run: ss.Solution) -> None:
 
 
 def test_snapshots_of_an_event_show_displacement_since_it_began(run: ss.Solution) -> None:
-    dataset = snapshots.data(run.window(0))
+    dataset = inside.snapshots_data(run.window(0))
     assert dataset.displacement.attrs["long_name"] == "displacement since the event began"
     assert 0.0 < float(dataset.time[0]) < float(dataset.time[-1]) < ROUND
-    figure = snapshots.draw(dataset)
+    figure = inside.draw_snapshots(dataset)
     assert figure.axes[0].get_xlabel() == "displacement $u$ (m)\nsince the event began"
 
 
@@ -239,6 +239,6 @@ def test_a_block_has_no_inside_to_draw(draw: str) -> None:
     ],
 )
 def test_times_outside_the_run_are_refused(run: ss.Solution, start: float | None, end: float | None, text: str) -> None:
-    for draw in (space_time.data, animation.data):
+    for draw in (inside.space_time_data, animation.data):
         with pytest.raises(ss.InputError, match=text):
             draw(run, start, end)

@@ -11,7 +11,7 @@ from matplotlib.colors import to_rgb
 from numpy.typing import NDArray
 
 from stickslip.figures.sweeps.colours import FEW, shades
-from stickslip.figures.sweeps.jumps import jumps
+from stickslip.figures.sweeps.curves import jumps
 
 Floats = NDArray[np.float64]
 

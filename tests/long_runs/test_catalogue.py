@@ -16,6 +16,7 @@ import xarray as xr
 
 import stickslip as ss
 from stickslip.io.catalogue_rows import RowsInMemory
+from stickslip.observables.event_table import ENERGY_COLUMNS
 from stickslip.run import catalogue as module
 from stickslip.run.catalogue import EventRows
 from stickslip.run.monitor import Monitor
@@ -24,7 +25,6 @@ from stickslip.run.progress import Report
 from stickslip.run.resume import PausedCatalogue
 from stickslip.run.run_loop import run_loop
 from stickslip.run.session import Session, split_time
-from stickslip.trajectory.tables import ENERGY_COLUMNS
 from tests.long_runs.problems import RUNS, bundled, differences
 from tests.long_runs.processes import killed
 

@@ -1,15 +1,16 @@
-"""Parts of figures that many of them share: sheets with panels, titles, marks, scales, and panels of one kind."""
+"""Parts of figures that many of them share: sheets with panels, titles, keys, marks, scales, and panels of one kind."""
 
 from __future__ import annotations
 
 import string
 import textwrap
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import zip_longest
-from typing import Any
+from typing import Any, Unpack, cast
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator, StrMethodFormatter
@@ -22,6 +23,8 @@ from stickslip.figures.style import PALE, Numbers, label, shown
 from stickslip.problem.problem import Problem
 from stickslip.solution.place import Place
 
+LETTER, MARK = 0.062, 0.4
+"""Widths (inches) of a letter of a key, and of the mark before it with the space around."""
 LETTERS = 13.0
 """Number of letters of a title in an inch; longer titles are broken into lines."""
 BESIDE = 0.7
@@ -63,6 +66,33 @@ def set_title(where: Any, title: str) -> None:
     else:
         look = {"fontsize": mpl.rcParams["axes.titlesize"], "fontweight": "bold", "parse_math": False}
         where.suptitle(text, x=0.012, ha="left", **look)
+
+
+def add_legend(axes: Axes, marks: Sequence[Artist], heading: str = "", *, own: bool = False) -> None:
+    """Add a key for `marks`, which have labels; without any there is none.
+
+    It is placed below all panels of the figure in as many columns as fit, or inside the axes if they are the user's `own`.
+    """
+    if not marks:
+        return
+    figure: Any = axes.figure
+    widths = [LETTER * len(str(mark.get_label()).replace("$", "")) + MARK for mark in marks]
+    width = figure.bbox.width / figure.get_figure(root=True).dpi
+    columns = len(marks) if sum(widths) < width else max(int(width / max(widths)), 1)
+    look: dict[str, Any] = {"handlelength": 1.5, "columnspacing": 1.2, "handletextpad": 0.5, "title_fontsize": 9.0}
+    look |= {"handles": marks, "title": heading or None}
+    if own:
+        axes.legend(**look)
+    else:
+        figure.legend(loc="outside lower center", ncols=columns, **look)
+
+
+def finish(axes: Axes, title: str, **place: Unpack[Place]) -> Figure | Axes:
+    """End a figure of one panel: give it its title and return it, or return the axes of a user as they are."""
+    if place.get("ax") is not None:
+        return axes
+    set_title(axes, title)
+    return cast("Figure", axes.figure)
 
 
 def zero_line(axes: Axes) -> None:

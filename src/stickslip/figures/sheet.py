@@ -10,14 +10,18 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable
+from functools import partial
 from numbers import Real
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, Unpack, cast
 
 import matplotlib as mpl
 from matplotlib.backends.registry import BackendFilter, backend_registry
 from matplotlib.figure import Figure
 
+from stickslip.figures.style import image, styled
 from stickslip.foundation.arguments import shown
+from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.solution.place import Place
 
@@ -70,8 +74,6 @@ class StickslipFigure(Figure):
 
     def _png(self) -> bytes:
         """Return the figure as PNG, for a notebook whose backend does not say how figures are shown."""
-        from stickslip.figures.style import image
-
         return image(self, "png", dpi=self.dpi)
 
 
@@ -90,6 +92,15 @@ def known_to_pyplot(drawn: T, place: Place) -> T:
         # Only a finished figure is handed over: one that fails leaves nothing behind. This must not happen inside `styled`,
         # because with the first figure the backend of a notebook sets options of matplotlib that have to stay.
         pyplot.figure(FigureClass=lambda **_: drawn)  # type: ignore[arg-type]
+    return drawn
+
+
+def shown_or_saved(drawn: Any, path: str | Path | None, place: Place) -> Any:
+    """Make what was drawn known to pyplot, or write its figure to a file, either whole or not at all; return what was drawn."""
+    if path is None:
+        return known_to_pyplot(drawn, place)
+    dpi = {} if place.get("dpi") is None else {"dpi": place["dpi"]}
+    write_atomically(Path(path), partial(styled(drawn.get_figure(root=True).savefig), **dpi))
     return drawn
 
 
@@ -194,8 +205,3 @@ def one_panel(usual: tuple[float, float], **place: Unpack[Place]) -> Axes:
         return place["ax"]
     axes: Axes = sheet(usual, **place).subplots()
     return axes
-
-
-def result(axes: Axes, **place: Unpack[Place]) -> Figure | Axes:
-    """Return what a figure of one panel gives back: the axes if they were the user's, else the figure."""
-    return axes if place.get("ax") is not None else cast("Figure", axes.figure)

@@ -7,8 +7,8 @@ Rules that all figures follow:
 
 1. **Place.** Every function that draws takes the keywords of `Place` (ax, figure, size, dpi) and begins with
    `sheet(usual size, **place)`, or with `one_panel(usual size, **place)` for a figure of one panel, which ends with
-   `return result(axes, **place)`. It returns the figure, or the axes if `ax` was given. `draw` itself never calls pyplot; a method
-   for users returns `known_to_pyplot(draw(dataset, **place), place)`.
+   `return panels.finish(axes, title, **place)`. It returns the figure, or the axes if `ax` was given. `draw` itself never calls
+   pyplot; a method for users returns `known_to_pyplot(draw(dataset, **place), place)`.
 2. **Titles.** `panels.set_title(figure, title)` with the title of the scenario; problems from Python have none, and neither have
    axes of the user. No names of classes or of laws.
 3. **Letters.** Several panels have letters, `panels.letter_panels(axes, texts)`: "(a) text" above the panel, at its left end. A
@@ -17,7 +17,7 @@ Rules that all figures follow:
    its size. Panels that show the same quantity share the unit too. `label` and `curve_label` name quantity, symbol and unit.
    Stress of a slab and force of a block have names of their own (`FORCES`).
 5. **Parameters** have the words and the symbol of their declared meaning (`names.parameter_name`) and their unit.
-6. **Legends.** Every line, band, marker and colour is explained in the figure, in a key (`legends.add_legend`) or by a text beside
+6. **Legends.** Every line, band, marker and colour is explained in the figure, in a key (`panels.add_legend`) or by a text beside
    it. A panel without data is left out.
 """
 

@@ -20,6 +20,7 @@ from stickslip.foundation.errors import InputError, printable
 from stickslip.foundation.netcdf_file import FullDiskError, write
 from stickslip.io.soundness import check_history, history_table, number
 from stickslip.loading import HISTORIES, LoadingHistory
+from stickslip.observables.event_table import EVENT_COLUMNS, unit_for
 from stickslip.observables.predictability import attributes_of, is_followed, predictability
 from stickslip.problem.problem import MAY_VARY, Problem
 from stickslip.problem.selection_rule import names as rule_names
@@ -30,7 +31,7 @@ from stickslip.solution.window import Window
 from stickslip.trajectory.checkpoint import ARRAYS, Checkpoint
 from stickslip.trajectory.history import NO_LEAPS, History
 from stickslip.trajectory.status import ENOUGH_EVENTS, STATUSES, Status
-from stickslip.trajectory.tables import ENERGY_COLUMNS, EVENT_COLUMNS
+from stickslip.trajectory.tables import SHOCK_COLUMNS
 
 FORMAT = 1
 """Version of the file layout below; a file with another version is refused."""
@@ -254,22 +255,18 @@ def _drawing(solution: Solution) -> xr.Dataset:
 
 def _tables(solution: Solution) -> xr.Dataset:
     load = solution.problem.load_unit
-    shock = {"time": ("s", ""), "cause": ("", ""), "rule": ("", "selection rule, where several slip rates are possible")}
+    shock = {name: (unit, "") for name, unit in SHOCK_COLUMNS.items()}
+    shock["rule"] = ("", "selection rule, where several slip rates are possible")
+    event = {name: one.about for name, one in EVENT_COLUMNS.items()}
     variables = {}
-    for prefix, table, columns in (("event", solution.events, EVENT_COLUMNS), ("shock", solution.shocks, shock)):
+    for prefix, table, columns in (("event", solution.events, event), ("shock", solution.shocks, shock)):
         for name in table.columns:
             words = name in ("cause", "rule")
             values = table[name].to_numpy(dtype=object if words else None)
-            unit, meaning = columns.get(name, ("m s-1" if "rate" in name else "load", ""))
-            about = {"units": load if unit == "load" else unit} | ({"long_name": meaning} if meaning else {})
+            unit, meaning = columns[name]
+            about = {"units": unit_for(unit, load)} | ({"long_name": meaning} if meaning else {})
             variables[f"{prefix}_{name}"] = (prefix, values.astype(str) if words else values, about)
     return xr.Dataset(variables)
-
-
-def column_unit(name: str, load_unit: str) -> str:
-    """Return the unit of a column of the table of events."""
-    unit, _ = (EVENT_COLUMNS | ENERGY_COLUMNS)[name]
-    return {"load": load_unit, "energy": "J m-2" if load_unit == "Pa" else "J"}.get(unit, unit)
 
 
 def open_solution(path: str | Path) -> Solution:

@@ -1,22 +1,185 @@
-"""Make the table of slip events, with their energies if they are wanted."""
+"""The table of slip events. A column is declared once, in EVENT_COLUMNS or, if it needs the energies, in ENERGY_COLUMNS.
+
+The declaration says what a column is called, its unit and meaning, how it is computed, and whether summaries show it. The table,
+files, summaries and the tables of the paper all follow from it.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from stickslip.engine.state.layout import Floats, Integers
 from stickslip.observables.energy.balance import event_energies
-from stickslip.trajectory.history import History
-from stickslip.trajectory.slip_events import SlipEvents
-from stickslip.trajectory.tables import event_columns
+from stickslip.trajectory.history import History, Positions
+from stickslip.trajectory.slip_events import NOT_YET, SlipEvents
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
+@dataclass(frozen=True)
+class FoundEvents:
+    """Slip events in a history, with what several columns of their table need. Forces of a block are in N instead of Pa."""
+
+    history: History
+    events: SlipEvents
+
+    @cached_property
+    def placed(self) -> tuple[Integers, Floats]:
+        """The starts of the events: whole rows since t = 0, and offsets in s."""
+        return self.history.placed(self.events.begin)
+
+    @cached_property
+    def slip(self) -> Floats:
+        """The slip within each event, m."""
+        return np.abs(self.history.slipped_within(self.events.begin, self.events.end))
+
+    @cached_property
+    def before(self) -> Floats:
+        """The traction minus the reference strength just before each event, Pa."""
+        return friction_before(self.history, self.events)
+
+    @cached_property
+    def after(self) -> Floats:
+        """The traction minus the reference strength after each event, Pa."""
+        return friction_after(self.history, self.events)
+
+    @cached_property
+    def energies(self) -> dict[str, Floats]:
+        """The energies of each event, J/m^2 (block: J)."""
+        return event_energies(self.history, self.events.begin, self.events.end)
+
+    def if_over(self, values: Floats) -> Floats:
+        """Return values, with NaN for events that are not over within the history."""
+        return np.where(self.events.is_over, values, np.nan)
+
+    def recurrence(self) -> Floats:
+        """Return the time (s) from the start of the previous event to that of each event, NaN for the first."""
+        row, offset = self.placed
+        since = np.full(len(row), np.nan)
+        since[1:] = np.diff(row) * self.history.round_trip_time + np.diff(offset)
+        return since
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of the table of slip events.
+
+    Parameters
+    ----------
+    unit : str
+        Its SI unit as files spell it; "load" stands for Pa (slab) or N (block), "energy" for J m-2 or J.
+    meaning : str
+        What it holds.
+    of : callable
+        Computes its values, one for each event.
+    place : int
+        Its place in summaries on a terminal, counted from 1; 0 if they do not show it.
+    """
+
+    unit: str
+    meaning: str
+    of: Callable[[FoundEvents], Any]
+    place: int = 0
+
+    @property
+    def about(self) -> tuple[str, str]:
+        """Unit and meaning."""
+        return self.unit, self.meaning
+
+
+EVENT_COLUMNS = {
+    "start": Column("s", "when |v| rises above the threshold", lambda e: e.history.seconds(*e.placed), 1),
+    "end": Column(
+        "s",
+        "when |v| falls to the threshold; NaN if the run ends first",
+        lambda e: e.if_over(e.history.seconds(*e.history.placed(e.events.end))),
+    ),
+    "duration": Column(
+        "s",
+        "end - start, without the rounding of either",
+        lambda e: e.if_over(e.history.lasting(e.events.begin, e.events.end)),
+        2,
+    ),
+    "recurrence": Column("s", "start - start of the previous event, without the rounding of either", FoundEvents.recurrence),
+    "slip": Column("m", "slip within the event, positive in either direction", lambda e: e.slip, 4),
+    "peak_rate": Column("m s-1", "largest |v|", lambda e: e.events.peak_rate, 5),
+    "peak_time": Column("s", "time of the largest |v|", lambda e: e.history.seconds(*e.history.placed(e.events.peak))),
+    "peak_after": Column(
+        "s",
+        "peak_time - start, without the rounding of either",
+        lambda e: e.history.lasting(e.events.begin, e.events.peak),
+        3,
+    ),
+    "traction_before": Column(
+        "load",
+        "friction just before the event begins; at rest: the load that friction carried",
+        lambda e: e.history.problem.strength + e.before,
+    ),
+    "traction_after": Column("load", "friction at rest after", lambda e: e.history.problem.strength + e.after),
+    "traction_drop": Column("load", "traction_before - traction_after", lambda e: e.before - e.after, 6),
+    "static_drop": Column("load", "stiffness (G/h, or K) times slip", lambda e: e.history.problem.body.stiffness * e.slip, 7),
+    "pulses": Column("1", "maxima of |v| separated by minima below half the lower one", lambda e: e.events.pulses, 8),
+    "phase": Column(
+        "1",
+        "part of the row (round trip of a slab, period of a block) that has passed at the start",
+        lambda e: e.placed[1] / e.history.round_trip_time,
+    ),
+    "amplification": Column(
+        "1",
+        "what has become, at most, of an error of 1 in the load at the start of the run; NaN if not known",
+        lambda e: e.events.largest(e.history.store.amplified),
+    ),
+    "start_row": Column("1", "whole rows before the start", lambda e: e.placed[0]),
+    "start_offset": Column(
+        "s", "the rest: start = start_row * length of a row + start_offset, without rounding", lambda e: e.placed[1]
+    ),
+}
+"""Columns of the catalogue."""
+
+ENERGY_COLUMNS = {
+    "released": Column("energy", "elastic and kinetic energy that the event takes from the body", lambda e: e.energies["released"]),
+    "work": Column("energy", "work of the driver during the event, net of what radiates through it", lambda e: e.energies["work"]),
+    "damped": Column("energy", "dissipated by the block's damping", lambda e: e.energies["damped"]),
+    "trapped": Column(
+        "energy",
+        "energy of waves travelling in the slab at the end, beyond that of the same mean stress at rest",
+        lambda e: e.energies["trapped"],
+    ),
+    "heat": Column("energy", "friction heat, from the law", lambda e: e.energies["heat"]),
+    "balance": Column("energy", "released + work - heat - damped: zero for an exact solution", lambda e: e.energies["balance"]),
+}
+"""Columns that energies add to the catalogue."""
+
+NEEDED = ("start", "end", "recurrence", "slip")
+"""Columns without which a table is no catalogue. Others may be missing from the file of another version."""
+
+
+def unit_for(unit: str, load_unit: str) -> str:
+    """Return a unit in which "load" and "energy" are replaced by those of a body whose load is in Pa or N."""
+    return {"load": load_unit, "energy": "J m-2" if load_unit == "Pa" else "J"}.get(unit, unit)
+
+
+def column_unit(name: str, load_unit: str) -> str:
+    """Return the unit of a column of the table of slip events, as files spell it; "" for a column that is not known."""
+    known = EVENT_COLUMNS | ENERGY_COLUMNS
+    return unit_for(known[name].unit, load_unit) if name in known else ""
+
+
+def shown_columns() -> list[str]:
+    """Return the names of the columns that summaries show, in their order."""
+    return sorted((name for name, one in EVENT_COLUMNS.items() if one.place), key=lambda name: EVENT_COLUMNS[name].place)
+
+
 def events_table(history: History, threshold: float, energies: bool = False) -> pd.DataFrame:
     """Return a table with one row per maximal interval in which |slip rate| exceeds the threshold (m/s).
 
-    The columns are those of EVENT_COLUMNS, and of ENERGY_COLUMNS with `energies` (both in `trajectory.tables`).
+    The columns are those of EVENT_COLUMNS, and of ENERGY_COLUMNS with `energies`.
     """
     return with_energies(history, SlipEvents.of(history, threshold), energies)
 
@@ -25,5 +188,45 @@ def with_energies(history: History, events: SlipEvents, wanted: bool) -> pd.Data
     """Return a table with one row per event, including the energies if they are wanted."""
     import pandas as pd
 
-    table = pd.DataFrame(event_columns(history, events))
-    return table.assign(**event_energies(history, events.begin, events.end)) if wanted else table
+    return pd.DataFrame(event_columns(history, events, energies=wanted))
+
+
+def event_columns(history: History, events: SlipEvents, *, energies: bool = False) -> dict[str, Any]:
+    """Return the columns of EVENT_COLUMNS, and of ENERGY_COLUMNS with `energies`, with one row per event.
+
+    They need no pandas, which takes a fifth of a second to import.
+    """
+    found = FoundEvents(history, events)
+    return {name: one.of(found) for name, one in (EVENT_COLUMNS | (ENERGY_COLUMNS if energies else {})).items()}
+
+
+def friction_before(history: History, events: SlipEvents) -> Floats:
+    """Return the traction minus the reference strength just before events begin.
+
+    Where slip turns round or begins again in the instant in which it ends, the contact rests for that instant, under the load,
+    unless friction resists the new slip more: an echo may turn the slip of a massless contact round at once.
+    """
+    begin, store = events.begin, history.store
+    at_once = begin.xi == 0.0
+    before = np.empty(len(at_once))
+    before[~at_once] = history.friction(Positions.inside(begin.piece[~at_once], begin.xi[~at_once]))
+    piece = begin.piece[at_once]
+    last = history.just_before(piece)
+    sliding, at_rest, mode = history.friction(last), history.excess(last), store.mode[piece]
+    rests = (mode != store.mode[last.last]) | (store.rate[piece, 0] == 0.0)
+    gave_way = rests & history.problem.friction.sticks & (mode * (at_rest - sliding) > 0.0)
+    before[at_once] = np.where(gave_way, at_rest, sliding)
+    return before
+
+
+def friction_after(history: History, events: SlipEvents) -> Floats:
+    """Return the traction minus the reference strength after events.
+
+    If the slip rate falls from the end of the event to zero, this is the traction at rest. The traction of a law that strengthens
+    as the rate vanishes is different an instant before rest, and would not describe what the event left behind.
+    """
+    by, end, mode = events.known_by(history), events.end, history.store.mode
+    rests = (by != NOT_YET) & (mode[by] != mode[end.piece])
+    steps = ~rests & (end.xi == 1.0) & (end.piece + 1 < len(history))
+    piece = np.where(rests, by, np.where(steps, end.piece + 1, end.piece))
+    return history.friction(Positions.inside(piece, np.where(rests | steps, 0.0, end.xi)))

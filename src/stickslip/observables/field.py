@@ -13,20 +13,29 @@ the present field follows from the past alone, and does not change when a run is
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
+from functools import cached_property
 from typing import NamedTuple, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.polynomial import chebyshev
+from numpy.typing import ArrayLike, NDArray
 
 from stickslip.bodies import ElasticSlab, as_slab
+from stickslip.engine.state.layout import TERMS
 from stickslip.foundation.errors import InputError
-from stickslip.observables.wave_interval import WaveInterval, rounding
 from stickslip.observables.waves import Waves
 from stickslip.problem.problem import Problem
-from stickslip.trajectory.history import Floats, History, Side
+from stickslip.trajectory.history import Floats, History, Positions, Side
 
 ROUNDS = 8
 """Round trips that are evaluated together."""
+POINTS: Floats = np.asarray(chebyshev.chebpts1(TERMS + 1), float)
+"""Points at which the wave of a piece is sampled. Their number makes the interpolation exact for the polynomials of the history
+times the linear derivative of time with respect to xi.
+"""
+TO_SERIES: Floats = np.asarray(np.linalg.inv(chebyshev.chebvander(POINTS, TERMS)), float)
+"""Matrix from values at these points to the coefficients of a Chebyshev series; the transformation loses no digits."""
 
 
 class Field(NamedTuple):
@@ -107,3 +116,105 @@ class _Inside:
     def _left(self, low: Floats, high: Floats) -> Floats:
         """Return the integral between two times of the wave that leaves the contact plus the reference, Pa s."""
         return self.interval.total(high) - self.interval.total(low)
+
+
+class WaveInterval:
+    """The wave that left the contact between two times (s since the epoch): w = 2 Z v - beta, plus the reference strength.
+
+    The pieces of the history that hold in the interval are looked up once, including those whose echoes arrive in rests that were
+    leaped over; then any number of moments is evaluated together. Before the run the wave is that of the initial state, linear in
+    time.
+    """
+
+    def __init__(self, waves: Waves, low: float, high: float) -> None:
+        self.waves, self.history = waves, waves.history
+        self.first, last = self.history.span
+        self.high = min(max(high, self.first), last)
+        low = min(max(low, self.first), self.high)
+        breaks = np.append(low, self._candidates(low, self.high))
+        middle = 0.5 * (breaks + np.append(breaks[1:], self.high))
+        at = self.history.find(middle, "right")
+        another = np.append(True, (np.diff(at.piece) != 0) | (np.diff(at.leaped) != 0.0))
+        if any(self.history.is_averaged(row) for row in np.unique(self.history.store.trip[at.piece])):
+            raise InputError("the field is not known here: the waves in the slab left the contact in a leap over creep")
+        self.start: Floats = breaks[another]
+        """Times (s) from which on another piece of the history holds, or the same one a number of whole round trips later."""
+        self._piece, leaped = at.piece[another], at.leaped[another]
+        store = self.history.store
+        self._origin = self.history.seconds(store.trip[self._piece] + leaped, store.phase_from[self._piece])
+        count = len(POINTS)
+        places = Positions.inside(np.repeat(self._piece, count), np.tile(0.5 + 0.5 * POINTS, len(self._piece)))
+        self._values = waves.leaving(replace(places, leaped=np.repeat(leaped, count))).reshape(-1, count).T
+        self._wave = TO_SERIES @ self._values
+
+    def _candidates(self, low: float, high: float) -> Floats:
+        """Return the times inside at which another piece may begin to hold: phases of all pieces so far, in every round trip."""
+        history, store = self.history, self.history.store
+        known = max(int(np.searchsorted(history.start, high, side="right")), 1)
+        phases = np.unique(np.concatenate([[0.0], store.phase_from[:known], store.phase_to[:known]]))
+        epoch = history.epoch
+        first, last = (epoch.trip + int((time + epoch.offset) // history.round_trip_time) for time in (low, high))
+        times = np.concatenate([history.seconds(np.full(len(phases), row), phases) for row in range(first, last + 1)])
+        return np.unique(times[(times > low) & (times < high)])
+
+    def leaving(self, time: Floats, side: Side) -> Floats:
+        """Return w plus the reference (Pa) at times (s) in the interval."""
+        part = self._part(time, side)
+        inside = np.maximum(part, 0)
+        start = self.waves.left_before(time - self.first)
+        return np.where(part < 0, start, _series(self._wave, inside, self._xi(time, inside)))
+
+    def total(self, time: Floats) -> Floats:
+        """Return the integral of w plus the reference up to times (s) in the interval, Pa s.
+
+        It begins at the start of the interval, or at the start of the run if that is later.
+        """
+        part = np.maximum(self._part(time, "right"), 0)
+        before = np.minimum(time - self.first, 0.0)
+        start = -before * (0.5 * self.waves.slope * before + self.waves.before)
+        return np.where(before < 0.0, start, self._sums[part] + _series(self._integral, part, self._xi(time, part)))
+
+    def _part(self, time: Floats, side: Side) -> NDArray[np.intp]:
+        """Return the part in which each time lies, -1 before the run.
+
+        Times within rounding of a break lie on it, and `side` picks the part.
+        """
+        slack = rounding(time, self.history.round_trip_time)
+        if side == "right":
+            return np.searchsorted(self.start, time + slack, side="right") - 1
+        return np.searchsorted(self.start, time - slack, side="left") - 1
+
+    def _xi(self, time: Floats, part: NDArray[np.intp]) -> Floats:
+        return self.history.xi(self._piece[part], time - self._origin[part])
+
+    @cached_property
+    def _integral(self) -> Floats:
+        """The Chebyshev series of the wave's integral in time from the start of each piece.
+
+        The integral is taken in xi: dtheta = (speed + 2 bend xi) dxi.
+        """
+        speed, bend = (column[self._piece] for column in (self.history.store.speed, self.history.store.bend))
+        pace = speed + bend * (1.0 + POINTS[:, None])
+        return np.asarray(chebyshev.chebint(TO_SERIES @ (pace * self._values), scl=0.5, lbnd=-1.0, axis=0))
+
+    @cached_property
+    def _sums(self) -> Floats:
+        """The addends, one for each part, with which those integrals count from the start of the interval.
+
+        Each is the integral up to the start of the part, less the value of the part's own series there.
+        """
+        parts = np.arange(len(self.start))
+        begin, end = (
+            _series(self._integral, parts, self._xi(time, parts)) for time in (self.start, np.append(self.start[1:], self.high))
+        )
+        return np.append(0.0, np.cumsum(end - begin)[:-1]) - begin
+
+
+def _series(coefficients: Floats, part: NDArray[np.intp], xi: Floats) -> Floats:
+    """Evaluate the Chebyshev series of the parts (one per column) at xi."""
+    return np.asarray(chebyshev.chebval(2.0 * xi - 1.0, coefficients[:, part], tensor=False))
+
+
+def rounding(time: Floats, round_trip_time: float) -> Floats:
+    """Return the possible error (s) of a time that was computed from times and travel times."""
+    return np.asarray(4.0 * np.spacing(np.maximum(np.abs(time), round_trip_time)))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from stickslip.contact.uniqueness import uniqueness_of
-from stickslip.figures.contact import hysteresis, laws, resistance, systems
+from stickslip.figures.contact import resistance, systems
 from stickslip.figures.runs import comparison
 from stickslip.friction import HyperbolicRate, SinusoidalSlip
 from stickslip.paper.cases import Runs, problem, typed
@@ -35,7 +35,7 @@ def _laws(_: Runs) -> xr.Dataset:
     slip = [typed(problem(f"fig5-slab-{name}").friction, SinusoidalSlip) for name in ("printed", "reconstructed")]
     rate = [typed(problem(name).friction, HyperbolicRate) for name in ("fig6-slab", "fig7-slab-critical")]
     slip_laws = {rf"$\omega$ = {law.wavenumber:g} m$^{{-1}}$": law for law in slip}
-    return laws.data(slip_laws, {rf"$\alpha$ = {law.alpha:g} s/m": law for law in rate}, 1.3, 10.0)
+    return systems.laws_data(slip_laws, {rf"$\alpha$ = {law.alpha:g} s/m": law for law in rate}, 1.3, 10.0)
 
 
 def _sets(_: Runs) -> xr.Dataset:
@@ -71,7 +71,7 @@ PLATES = (
         "The friction laws",
         "Left: the sinusoidal slip law (14), as printed and as reconstructed. Right: the hyperbolic rate law (15) of Figs 6 and 7.",
         _laws,
-        laws.draw,
+        systems.draw_laws,
     ),
     Plate(
         3,
@@ -86,8 +86,8 @@ PLATES = (
         "The rule of perfect delay, walked by one run",
         "A slab under a dead load, pushed so that the load rises and falls within one round trip. Left: its path over the "
         "set K (grey); the two ways are drawn a little apart where they share a branch. Right: the same run in time.",
-        lambda runs: hysteresis.data(runs.case("fig4-loop")),
-        hysteresis.draw,
+        lambda runs: resistance.loop_data(runs.case("fig4-loop")),
+        resistance.draw_hysteresis,
     ),
     Plate(
         5,

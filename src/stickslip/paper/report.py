@@ -16,9 +16,8 @@ import stickslip as ss
 from stickslip.foundation.constants import YEAR
 from stickslip.paper.cases import REFERENCE, Runs
 from stickslip.paper.claims import Outcome, Verdict
-from stickslip.paper.constants import constants
 from stickslip.paper.plates import PLATES
-from stickslip.paper.tables import cases_table
+from stickslip.paper.tables import cases_table, constants
 
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 """Translation of digits and the minus sign for powers of ten."""

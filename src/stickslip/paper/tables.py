@@ -1,38 +1,33 @@
-"""Tables of the paper's cases: runs, events, shocks, claims and constants, with units in the headings or in a column."""
+"""Tables of the paper's cases: runs, events, shocks, claims and constants, with units in the headings or in a column.
+
+The constants stand as printed and as reconstructed, with those derived from them; all are read from the bundled cases.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import pandas as pd
 
-from stickslip.paper.cases import READINGS, Runs
+from stickslip.bodies import as_block, as_slab
+from stickslip.contact.uniqueness import uniqueness_of
+from stickslip.foundation.constants import YEAR
+from stickslip.friction import HyperbolicRate, SinusoidalSlip
+from stickslip.observables.event_table import EVENT_COLUMNS
+from stickslip.paper.cases import READINGS, Runs, problem, typed
 from stickslip.paper.claims import Verdict
-from stickslip.paper.constants import constants
-
-UNITS = {
-    "start": "s",
-    "end": "s",
-    "time": "s",
-    "slip": "m",
-    "peak_rate": "m/s",
-    "peak_time": "s",
-    "traction_drop": "Pa or N",
-    "static_drop": "Pa or N",
-    "rate_before": "m/s",
-    "rate_after": "m/s",
-    "traction_before": "Pa",
-    "traction_after": "Pa",
-}
-"""Units of the columns of events and shocks, added to their headings."""
+from stickslip.problem.problem import Problem
+from stickslip.trajectory.tables import SHOCK_COLUMNS
 
 
 def all_tables(runs: Runs, verdicts: Sequence[Verdict]) -> dict[str, pd.DataFrame]:
     """Return every table by the name of its file, without the suffix."""
     return {
         "cases": cases_table(runs),
-        "events": _stacked(runs, "events"),
-        "shocks": _stacked(runs, "shocks"),
+        "events": _stacked(runs, "events", {name: one.unit for name, one in EVENT_COLUMNS.items()}),
+        "shocks": _stacked(runs, "shocks", SHOCK_COLUMNS),
         "claims": claims_table(verdicts),
         "constants": pd.DataFrame(constants()),
     }
@@ -58,13 +53,14 @@ def cases_table(runs: Runs) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def _stacked(runs: Runs, table: str) -> pd.DataFrame:
+def _stacked(runs: Runs, table: str, units: Mapping[str, str]) -> pd.DataFrame:
     """Return the events or shocks of all cases in one table, with the name of the case in the first column."""
+    shown = {name: {"m s-1": "m/s", "load": "Pa or N"}.get(unit, unit) for name, unit in units.items() if unit not in ("", "1")}
     parts: dict[str, pd.DataFrame] = {name: getattr(runs.case(name), table) for name in READINGS}
     # Leave out cases without a row: they would make the types of the columns ambiguous.
     whole = pd.concat([part.assign(case=name) for name, part in parts.items() if len(part)], ignore_index=True)
     whole.insert(0, "case", whole.pop("case"))
-    return whole.rename(columns={name: f"{name} [{unit}]" for name, unit in UNITS.items()})
+    return whole.rename(columns={name: f"{name} [{unit}]" for name, unit in shown.items()})
 
 
 def claims_table(verdicts: Sequence[Verdict]) -> pd.DataFrame:
@@ -75,3 +71,59 @@ def claims_table(verdicts: Sequence[Verdict]) -> pd.DataFrame:
         for measured in v.measured
     ]
     return pd.DataFrame(rows, columns=["number", "claim", "verdict", "reading", "measured", "value", "unit"])
+
+
+@dataclass(frozen=True)
+class Constant:
+    """One row of the table of constants.
+
+    `reconstructed` is None if the printed number is kept; `printed` is None if the printed equation has no solution.
+    """
+
+    symbol: str
+    meaning: str
+    printed: float | None
+    reconstructed: float | None
+    unit: str
+    note: str = ""
+
+
+def constants() -> list[Constant]:
+    """Return every constant, the printed ones before those derived from them."""
+    rate, slip, other_slip = (problem(name) for name in ("fig6-slab", "fig5-slab-printed", "fig5-slab-reconstructed"))
+    slab, law = as_slab(rate.body), typed(rate.friction, HyperbolicRate)
+    sine, other_sine = (typed(case.friction, SinusoidalSlip) for case in (slip, other_slip))
+    block, other_block = (as_block(problem(f"fig6-block-{name}").body) for name in ("printed", "reconstructed"))
+    start_k, start_omega = (problem(f"fig5-block-reconstructed-{name}").initial_slip for name in ("k", "omega"))
+    cube = "m and S describe a cube of 1 km, whose stiffness is G × 10³ m; printed: G × 10⁴ m"
+    needed = "the events described need ω ≥ 6.86 /m"
+    lacking = "S μ'(u0) + K = 0 has no solution as printed"
+    return [
+        Constant("ρ", "density", slab.density, None, "kg/m³"),
+        Constant("c", "shear wave speed", slab.wave_speed, None, "m/s"),
+        Constant("h", "thickness of the slab", slab.thickness, None, "m"),
+        Constant("S", "normal stress of the slab", slab.normal_stress, None, "Pa"),
+        Constant("V", "pull rate", rate.first_pull_rate * YEAR, None, "m/year", "a year is 31 557 600 s"),
+        Constant("m", "mass of the block", block.mass, None, "kg"),
+        Constant("S", "normal force on the block", block.normal_force, None, "N"),
+        Constant("K", "stiffness of the block's spring", block.stiffness, other_block.stiffness, "N/m", cube),
+        Constant("μ0", "mean friction, law (14)", sine.mean, None, ""),
+        Constant("a", "amplitude, law (14)", sine.amplitude, None, ""),
+        Constant("ω", "wavenumber, law (14)", sine.wavenumber, other_sine.wavenumber, "1/m", needed),
+        Constant("μS", "static friction, law (15)", law.static, None, ""),
+        Constant("μD", "dynamic friction, law (15)", law.dynamic, None, ""),
+        Constant("α", "velocity weakening, law (15), Fig. 6", law.alpha, None, "s/m", "no unit is printed: s/m is consistent"),
+        Constant("G", "shear modulus ρc²", slab.shear_modulus, None, "Pa"),
+        Constant("Z", "impedance ρc", slab.impedance, None, "Pa s/m"),
+        Constant("R", "two-way travel time 2h/c", slab.two_way_time, None, "s"),
+        Constant("αc", "critical α, √(ρG)/(S(μS − μD))", uniqueness_of(rate).critical_value, None, "s/m"),
+        Constant("uc", "slip of the largest friction, π/(2ω)", _peak(slip), _peak(other_slip), "m"),
+        Constant("u0", "initial slip of the slab", slip.initial_slip, other_slip.initial_slip, "m", "uc + 10⁻³ m"),
+        Constant("G(D0−u0)/h", "initial load of the slab", slip.load, other_slip.load, "Pa", "reconstructed: D0 is 10⁻³ m larger"),
+        Constant("u0", "initial slip of the block", None, start_k, "m", f"{lacking}; K = G × 10³ m"),
+        Constant("u0", "initial slip of the block", None, start_omega, "m", f"{lacking}; ω = 50 /m"),
+    ]
+
+
+def _peak(case: Problem) -> float:
+    return math.pi / (2.0 * typed(case.friction, SinusoidalSlip).wavenumber)

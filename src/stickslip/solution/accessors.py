@@ -78,9 +78,9 @@ class Plots(Generic[Run]):
         return self._curve("state", start, end, place)
 
     def _curve(self, name: Curve, start: float | None, end: float | None, place: Place) -> Figure | Axes:
-        from stickslip.figures.runs import one_curve
+        from stickslip.figures.runs import curves
 
-        return known_to_pyplot(one_curve.draw(self._run, name, start, end, **place), place)
+        return known_to_pyplot(curves.draw_alone(self._run, name, start, end, **place), place)
 
     def friction(
         self,
@@ -90,18 +90,18 @@ class Plots(Generic[Run]):
         **place: Unpack[Place],
     ) -> Figure | Axes:
         """Draw the friction coefficient against slip, as papers on laboratory friction do, or against slip rate."""
-        from stickslip.figures.runs import friction
+        from stickslip.figures.runs import curves
 
-        return known_to_pyplot(friction.draw(self._run, start, end, against, **place), place)
+        return known_to_pyplot(curves.draw_friction_alone(self._run, start, end, against, **place), place)
 
     def field(self, start: float | None = None, end: float | None = None, **place: Unpack[Place]) -> Figure:
         """Draw velocity and stress in the slab over time, with characteristics, above the curves of the contact.
 
         The default for a long run is the last of its largest slip events. Raises InputError for a block.
         """
-        from stickslip.figures.runs import space_time
+        from stickslip.figures.runs import inside
 
-        return known_to_pyplot(space_time.draw(space_time.data(self._run, start, end), **place), place)
+        return known_to_pyplot(inside.draw_space_time(inside.space_time_data(self._run, start, end), **place), place)
 
     def snapshots(self, t: ArrayLike | None = None, **place: Unpack[Place]) -> Figure:
         """Draw displacement, velocity and stress across the slab at several times.
@@ -122,9 +122,9 @@ class Plots(Generic[Run]):
         InputError
             For a block.
         """
-        from stickslip.figures.runs import snapshots
+        from stickslip.figures.runs import inside
 
-        return known_to_pyplot(snapshots.draw(snapshots.data(self._run, t), **place), place)
+        return known_to_pyplot(inside.draw_snapshots(inside.snapshots_data(self._run, t), **place), place)
 
     def energy(self, start: float | None = None, end: float | None = None, **place: Unpack[Place]) -> Figure | Axes:
         """Draw elastic and kinetic energy, friction heat, radiated and damped energy, stacked over time, and their total.

@@ -85,7 +85,7 @@ class Solution(Exports):
         -------
         pandas.DataFrame
             Columns and units are those of EVENT_COLUMNS, and of ENERGY_COLUMNS with `energy`, in
-            `stickslip.trajectory.tables`.
+            `stickslip.observables.event_table`.
         """
         return events_table(self.history, self._rate(event_rate), energy)
 

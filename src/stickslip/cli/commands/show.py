@@ -235,9 +235,9 @@ def _netcdf(path: Path) -> Stored:
 
 
 def _events(path: Path, table: pd.DataFrame, about: Mapping[str, Any]) -> StoredEvents:
-    from stickslip.trajectory.tables import EVENT_COLUMNS
+    from stickslip.observables.event_table import NEEDED
 
-    missing = [name for name in EVENT_COLUMNS if name not in table]
+    missing = [name for name in NEEDED if name not in table]
     if missing:
         raise InputError(f"{path}: not a catalogue of slip events: there is no column {missing[0]}")
     return StoredEvents(path, about, table)

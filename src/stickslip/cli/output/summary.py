@@ -34,14 +34,16 @@ LATE = 1e4
 
 def show_solution(scenario: Scenario, solution: Solution) -> None:
     """Print the summary of a run on standard output."""
+    from stickslip.observables.event_table import event_columns
     from stickslip.trajectory.slip_events import SlipEvents, default_event_rate
-    from stickslip.trajectory.tables import event_columns, shock_columns
+    from stickslip.trajectory.tables import SHOCK_COLUMNS, shock_columns
 
-    screen, load, history = titled(scenario), scenario.problem.load_unit, solution.history
+    screen, history = titled(scenario), solution.history
     _say_how(screen, scenario, solution.status, solution.creep_note, solution.lumping_note)
     say(screen, f"selection rule {solution.selection_note}\n")
     _print_events(screen, event_columns(history, SlipEvents.of(history, default_event_rate(solution.problem))), solution.problem)
-    _print(screen, "shock", shock_columns(history), ("s", "", "m/s", "m/s", load, load))
+    shocks = shock_columns(history)
+    _print(screen, "shock", shocks, [_unit(SHOCK_COLUMNS[name], scenario.problem) for name in shocks])
     notes = (solution.trapped_note, solution.horizon_note, solution.proven.text, solution.rounding_note)
     for what, note in zip(("trapped energy", "predictability", "proven", "rounding"), notes, strict=True):
         if note:
@@ -86,15 +88,24 @@ def _print_events(screen: Console, events: Mapping[Any, Any], problem: Problem |
 
     Stiffness times slip is left out where the driver has a finite impedance: the load does not fall by that much.
     """
-    load = "Pa or N" if problem is None else problem.load_unit
-    units = {"start": "s", "duration": "s", "peak_after": "s", "slip": "m", "peak_rate": "m/s", "traction_drop": load}
-    units |= {"static_drop": load} if problem is None or math.isinf(problem.body.driver_impedance) else {}
-    units["pulses"] = ""
+    from stickslip.observables.event_table import EVENT_COLUMNS, shown_columns
+
     if problem is not None and _slides_throughout(events, problem):
         say(screen, "the contact slides throughout: there are no separate slip events\n")
         return
-    _print(screen, "slip event", {name: events[name] for name in units}, list(units.values()))
+    rigid = problem is None or math.isinf(problem.body.driver_impedance)
+    names = [name for name in shown_columns() if name in events and (rigid or name != "static_drop")]
+    units = [_unit(EVENT_COLUMNS[name].unit, problem) for name in names]
+    _print(screen, "slip event", {name: events[name] for name in names}, units)
     say(screen, *statistics(events))
+
+
+def _unit(unit: str, problem: Problem | None) -> str:
+    """Return the unit of a column as readers expect to see it, for a problem or for one that is not known."""
+    from stickslip.observables.event_table import unit_for
+
+    found = unit_for(unit, "Pa or N" if problem is None else problem.load_unit)
+    return {"m s-1": "m/s", "1": ""}.get(found, found)
 
 
 def _slides_throughout(events: Mapping[Any, Any], problem: Problem) -> bool:

@@ -13,8 +13,7 @@ import numpy as np
 
 from stickslip.explorer.model.answer import Floats
 from stickslip.explorer.model.shown import Shown
-from stickslip.observables.field import slab_of
-from stickslip.observables.wave_interval import WaveInterval
+from stickslip.observables.field import WaveInterval, slab_of
 from stickslip.observables.waves import Radiation, Waves
 
 EVEN = 3000

@@ -15,8 +15,8 @@ from matplotlib.ticker import FuncFormatter
 from stickslip.contact.equation import Resistance, resistance
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
 from stickslip.figures.contact.resistance import BRANCHES, draw_branches
-from stickslip.figures.panels import set_title
-from stickslip.figures.sheet import one_panel, result
+from stickslip.figures.panels import finish
+from stickslip.figures.sheet import one_panel
 from stickslip.figures.style import (
     GREEN,
     GREY,
@@ -181,9 +181,7 @@ def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure | Axes:
     )
     _draw_path(axes, dataset, scales)
     axes.legend(loc="best")
-    if place.get("ax") is None:
-        set_title(axes, dataset.attrs["title"])
-    return result(axes, **place)
+    return finish(axes, dataset.attrs["title"], **place)
 
 
 class _Scales:

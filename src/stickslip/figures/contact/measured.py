@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
@@ -11,9 +10,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from stickslip.figures.panels import letter_panels, set_title, zero_line
-from stickslip.figures.sheet import known_to_pyplot, sheet
+from stickslip.figures.sheet import sheet, shown_or_saved
 from stickslip.figures.style import BLUE, GREY, INK, Floats, axis_text, quantity, spans_decades, styled, unit_shown
-from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
 from stickslip.friction import Fit, Smooth
 from stickslip.solution.place import Place
@@ -54,11 +52,7 @@ def plot_fit(result: Fit | Smooth, path: str | Path | None = None, **place: Unpa
     """
     if not isinstance(result, Fit | Smooth):
         raise InputError(f"plot_fit: result must come from fit or smooth, got {type(result).__name__}")
-    figure = draw(data(result), **place)
-    if path is None:
-        return known_to_pyplot(figure, place)
-    save = partial(styled(figure.savefig), **({"dpi": place["dpi"]} if "dpi" in place else {}))
-    write_atomically(Path(path), save)
+    figure: Figure = shown_or_saved(draw(data(result), **place), path, place)
     return figure
 
 

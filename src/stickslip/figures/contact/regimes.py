@@ -11,9 +11,8 @@ from matplotlib.colors import ListedColormap
 from matplotlib.patches import Patch
 
 from stickslip.contact.regime_map import RegimeMap
-from stickslip.figures.legends import add_legend
-from stickslip.figures.panels import draw_map, draw_parameters, parameter_numbers, set_title
-from stickslip.figures.sheet import one_panel, result
+from stickslip.figures.panels import add_legend, draw_map, draw_parameters, finish, parameter_numbers
+from stickslip.figures.sheet import one_panel
 from stickslip.figures.style import INK, PALE, TWO, shown, styled, unit_shown
 from stickslip.problem.problem import Problem
 from stickslip.solution.place import Place
@@ -48,6 +47,4 @@ def draw(problem: Problem, found: RegimeMap, title: str = "", **place: Unpack[Pl
     marks += [curve] if len(found.boundary) else []
     marks += [Patch(color=PALE, label="problem not valid")] if np.isnan(margin).any() else []
     add_legend(axes, [*marks, *star], own=place.get("ax") is not None)
-    if place.get("ax") is None:
-        set_title(axes, title)
-    return result(axes, **place)
+    return finish(axes, title, **place)

@@ -15,9 +15,8 @@ from matplotlib.artist import Artist
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from stickslip.figures.legends import add_legend
-from stickslip.figures.panels import set_title, zero_line
-from stickslip.figures.runs.slab_panels import Scales, about, contact_variables, places, snapshots
+from stickslip.figures.panels import add_legend, set_title, zero_line
+from stickslip.figures.runs.inside import Scales, about, contact_variables, field_variables, places
 from stickslip.figures.style import BLUE, GREEN, GREY, INK, VERMILLION, narrow, styled, unit_of, unit_shown
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
@@ -64,7 +63,7 @@ def data(readings: Readings, start: float | None = None, end: float | None = Non
     frames = FRAMES if frames is None else frames
     if frames < 2:
         raise InputError(f"animation: needs at least 2 frames, got {frames}")
-    contents = snapshots(readings, np.linspace(start, end, frames), places(readings, PLACES))
+    contents = field_variables(readings, np.linspace(start, end, frames), places(readings, PLACES))
     contents |= contact_variables(readings, start, end, (readings.curves[0], "slip_rate", "traction"))
     return xr.Dataset(contents, attrs=about(readings))
 

@@ -16,8 +16,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
-from stickslip.figures.legends import add_legend
-from stickslip.figures.panels import count_ticks, letter_panels, set_scale, set_title, zero_line
+from stickslip.figures.panels import add_legend, count_ticks, letter_panels, set_scale, set_title, zero_line
 from stickslip.figures.sheet import sheet, size_of
 from stickslip.figures.style import (
     BLUE,

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Literal
+from typing import TYPE_CHECKING, Literal, Unpack
 
 import numpy as np
 from matplotlib.axes import Axes
 
-from stickslip.figures.panels import set_log_ticks, zero_line
+from stickslip.figures.panels import finish, set_log_ticks, zero_line
+from stickslip.figures.sheet import one_panel
 from stickslip.figures.style import (
     BLUE,
     FORCES,
@@ -22,10 +23,18 @@ from stickslip.figures.style import (
     clock,
     curve_label,
     nearly_flat,
+    styled,
     time_unit,
+    title_of,
     unit_of,
 )
+from stickslip.foundation.arguments import shown
+from stickslip.foundation.errors import InputError, nearest
 from stickslip.solution.evaluation import Curve, Readings, times_of
+from stickslip.solution.place import Place
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 COLOURS: dict[str, str] = {
     "slip": BLUE,
@@ -142,11 +151,11 @@ def draw_friction(axes: Axes, readings: Readings, span: Span, against: Literal["
     across, settled = time / time_unit(span[1] - span[0])[1], after_start(readings, time, span)
     traction, load = (np.where(settled, values, np.nan) for values in (traction, load))
     if against != "time":
-        shown: Curve = slip if against == "slip" else "slip_rate"
-        moved = getattr(readings, shown)(time)
-        unit, size = unit_of(_unit(readings, shown), moved)
+        moving: Curve = slip if against == "slip" else "slip_rate"
+        moved = getattr(readings, moving)(time)
+        unit, size = unit_of(_unit(readings, moving), moved)
         across = moved / size
-        axes.set_xlabel(curve_label(shown, unit))
+        axes.set_xlabel(curve_label(moving, unit))
     else:
         name = "spring force" if readings.problem.load_unit == "N" else "load"
         axes.plot(across, load / normal, color=INK, linewidth=1.0, linestyle="--", label=rf"{name} over normal load, $\beta/S$")
@@ -164,3 +173,31 @@ def mark_shocks(panels: Sequence[Axes], readings: Readings, span: Span) -> None:
         for k, at in enumerate(times if times.size <= MANY else ()):
             name = "shock (jump of the slip rate)" if k == 0 and panel is panels[-1] else None
             panel.axvline(at / size, color=GREY, linewidth=0.7, linestyle=":", zorder=0, label=name)
+
+
+@styled
+def draw_alone(
+    readings: Readings, name: Curve, start: float | None = None, end: float | None = None, **place: Unpack[Place]
+) -> Figure | Axes:
+    """Draw one of `readings.curves`, in a figure of one panel, from `start` to `end` (s)."""
+    start, end = interval(readings, start, end)
+    axes = one_panel((6.4, 3.0), **place)
+    draw_curve(axes, readings, name, (start, end))
+    set_time(axes, readings, (start, end))
+    return finish(axes, title_of(readings), **place)
+
+
+@styled
+def draw_friction_alone(
+    readings: Readings,
+    start: float | None = None,
+    end: float | None = None,
+    against: Literal["slip", "slip_rate"] = "slip",
+    **place: Unpack[Place],
+) -> Figure | Axes:
+    """Draw the friction coefficient against slip, as papers on laboratory friction do, or slip rate, from `start` to `end` (s)."""
+    if against not in ("slip", "slip_rate"):
+        raise InputError(f"friction: against {shown(against)} is unknown; {nearest(str(against), ('slip', 'slip_rate'))}")
+    axes = one_panel((6.4, 3.2), **place)
+    draw_friction(axes, readings, interval(readings, start, end), against)
+    return finish(axes, title_of(readings), **place)

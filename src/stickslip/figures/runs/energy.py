@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Any, Unpack
 import numpy as np
 import xarray as xr
 
-from stickslip.figures.legends import add_legend
-from stickslip.figures.panels import set_title
-from stickslip.figures.sheet import one_panel, result
+from stickslip.figures.panels import add_legend, finish
+from stickslip.figures.sheet import one_panel
 from stickslip.figures.style import (
     BLUE,
     GREEN,
@@ -102,6 +101,4 @@ def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure | Axes:
     axes.set(xlabel=f"{dataset.attrs['clock']} ({time_name})", ylabel=f"energy ({unit})", xlim=time[[0, -1]], ylim=(0.0, None))
     # Reversed, the legend has the order of the stack.
     add_legend(axes, axes.get_legend_handles_labels()[0][::-1], own=place.get("ax") is not None)
-    if place.get("ax") is None:
-        set_title(axes, dataset.attrs["title"])
-    return result(axes, **place)
+    return finish(axes, dataset.attrs["title"], **place)

@@ -9,8 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from stickslip.figures.legends import add_legend
-from stickslip.figures.panels import letter_panels, panels, set_log_ticks, zero_line
+from stickslip.figures.panels import add_legend, letter_panels, panels, set_log_ticks, zero_line
 from stickslip.figures.style import LINE_COLOURS, axis_text, curve_quantity, nearly_flat, quantity, styled, time_unit, unit_of
 from stickslip.solution.evaluation import Curve, Readings
 from stickslip.solution.place import Place

@@ -14,8 +14,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
-from stickslip.figures.legends import add_legend
-from stickslip.figures.panels import count_ticks, letter_panels, set_log_ticks, set_scale
+from stickslip.figures.panels import add_legend, count_ticks, letter_panels, set_log_ticks, set_scale
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import BLUE, GREY, INK, SKY, VERMILLION, WIDE, curve_quantity, quantity, styled, time_unit, unit_of
 from stickslip.solution.place import Place

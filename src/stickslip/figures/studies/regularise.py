@@ -12,8 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from stickslip.figures.contact import resistance
-from stickslip.figures.legends import add_legend
-from stickslip.figures.panels import letter_panels, set_title, zero_line
+from stickslip.figures.panels import add_legend, letter_panels, set_title, zero_line
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import GREY, INK, LINE_COLOURS, Floats, curve_quantity, label, quantity, shown, styled, unit_shown
 from stickslip.solution.place import Place

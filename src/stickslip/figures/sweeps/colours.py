@@ -15,8 +15,7 @@ from matplotlib.colors import BoundaryNorm, LinearSegmentedColormap, ListedColor
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
-from stickslip.figures.legends import add_legend
-from stickslip.figures.panels import set_log_ticks
+from stickslip.figures.panels import add_legend, set_log_ticks
 from stickslip.figures.style import GREY, PALE, TWO, Floats
 from stickslip.figures.sweeps.varied import ROOM, Shown, folded
 

@@ -11,11 +11,9 @@ from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from stickslip.figures.legends import add_legend
-from stickslip.figures.panels import count_ticks, set_log_ticks, set_title
-from stickslip.figures.sheet import one_panel, result
+from stickslip.figures.panels import add_legend, count_ticks, finish, set_log_ticks
+from stickslip.figures.sheet import one_panel
 from stickslip.figures.style import BLUE, GREY, LINE_COLOURS, Floats
-from stickslip.figures.sweeps.jumps import jumps
 from stickslip.figures.sweeps.varied import Scaled, Shown, folded, names_of, scaled, shown
 from stickslip.solution.place import Place
 
@@ -32,6 +30,12 @@ ALL, BESIDE = "members; no line where the result jumps", "members beside a jump,
 """Explanations of dots and gaps of one curve: of few members, and of many."""
 ENDS = "; lines end where the result jumps"
 """The explanation of the gaps of several curves, in the heading of their key."""
+NEAR = 3
+"""Number of steps on each side with which a step is compared."""
+STEEP = 6.0
+"""A jump is larger than this multiple of the median of the steps near it ..."""
+SHARE = 0.05
+"""... and larger than this share of the whole range, so that small steps of a nearly constant quantity are no jumps."""
 
 
 def draw_curves(dataset: xr.Dataset, **place: Unpack[Place]) -> Any:
@@ -64,9 +68,7 @@ def draw_curves(dataset: xr.Dataset, **place: Unpack[Place]) -> Any:
     marks += missing_marks(axes)
     heading = "" if names is None else names.full + (ENDS if broken else "")
     add_legend(axes, marks, heading, own=place.get("ax") is not None)
-    if place.get("ax") is None:
-        set_title(axes, str(dataset.attrs.get("title", "")))
-    return result(axes, **place)
+    return finish(axes, str(dataset.attrs.get("title", "")), **place)
 
 
 def _draw_curve(axes: Axes, across: Scaled, row: Floats, quantity: Shown, look: dict[str, Any]) -> bool:
@@ -123,3 +125,32 @@ def show_ordinate(axes: Axes, quantity: Shown) -> None:
     elif quantity.is_whole:
         count_ticks(axes, 6)
     axes.set_ylabel(folded(quantity.title))
+
+
+def jumps(values: Floats, *, whole: bool = False) -> NDArray[np.bool_]:
+    """Return for each step between neighbours whether the quantity jumps there.
+
+    Parameters
+    ----------
+    values : ndarray
+        Values of the quantity as they are drawn (logarithms on a logarithmic axis), n of them; NaN where there is none.
+    whole : bool
+        True for counts, which jump wherever they change.
+
+    Returns
+    -------
+    ndarray
+        n - 1 truth values; False beside a missing value.
+    """
+    steps = np.abs(np.diff(values))
+    known = np.isfinite(steps)
+    if whole or not known.any():
+        return known & (steps > 0.0)
+    least = SHARE * np.ptp(values[np.isfinite(values)])
+    found = np.zeros(steps.shape, bool)
+    for place in np.flatnonzero(known & (steps > least)):
+        near = np.concatenate([steps[max(place - NEAR, 0) : place], steps[place + 1 : place + 1 + NEAR]])
+        near = near[np.isfinite(near)]
+        # Without neighbours nothing says that the quantity is smooth, and nothing says that it is not.
+        found[place] = near.size > 0 and steps[place] > STEEP * np.median(near)
+    return found

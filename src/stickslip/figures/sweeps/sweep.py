@@ -7,19 +7,16 @@ from __future__ import annotations
 
 import re
 import tomllib
-from functools import partial
 from pathlib import Path
 from typing import Any, Unpack
 
 import numpy as np
 import xarray as xr
 
-from stickslip.figures.sheet import known_to_pyplot
+from stickslip.figures.sheet import shown_or_saved
 from stickslip.figures.style import styled
 from stickslip.figures.sweeps.curves import MOST_CURVES, draw_curves
-from stickslip.figures.sweeps.maps import draw_cells, draw_maps
-from stickslip.figures.sweeps.members import draw_members
-from stickslip.foundation.atomic_write import write_atomically
+from stickslip.figures.sweeps.maps import draw_cells, draw_maps, draw_members
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.solution.place import Place
 from stickslip.sweeps.design.design import MEMBER
@@ -56,12 +53,7 @@ def plot_sweep(dataset: xr.Dataset, quantity: str | None = None, path: str | Pat
         If the sweep has no such quantity, if nothing is varied, or for a grid of more than three keys: then select some values of
         the other keys first.
     """
-    drawing = draw(data(dataset, quantity), **place)
-    if path is None:
-        return known_to_pyplot(drawing, place)
-    save = partial(styled(drawing.get_figure(root=True).savefig), **({"dpi": place["dpi"]} if place.get("dpi") is not None else {}))
-    write_atomically(Path(path), save)
-    return drawing
+    return shown_or_saved(draw(data(dataset, quantity), **place), path, place)
 
 
 def data(dataset: xr.Dataset, quantity: str | None = None) -> xr.Dataset:

@@ -15,38 +15,37 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stickslip.bodies import as_slab
-from stickslip.observables.energy.balance import epochs, event_energies
-from stickslip.observables.energy.kinetic import kinetic
+from stickslip.observables.energy.balance import epochs, event_energies, kinetic
 from stickslip.observables.energy.pulses import Pulses
+from stickslip.observables.event_table import ENERGY_COLUMNS, EVENT_COLUMNS, friction_before
 from stickslip.observables.waves import Radiation, Waves
 from stickslip.trajectory.history import Floats, History, Positions
 from stickslip.trajectory.slip_events import SlipEvents
-from stickslip.trajectory.tables import ENERGY_COLUMNS, EVENT_COLUMNS, friction_before
 
 if TYPE_CHECKING:
     import pandas as pd
 
 ENERGETICS_COLUMNS = {
-    "start": EVENT_COLUMNS["start"],
-    "slip": EVENT_COLUMNS["slip"],
+    "start": EVENT_COLUMNS["start"].about,
+    "slip": EVENT_COLUMNS["slip"].about,
     "work": ("energy", "work of the driver, net of what is radiated"),
     "elastic": ("energy", "elastic energy that the event takes from the body"),
     "kinetic": ("energy", "kinetic energy at the end less that at the start"),
     "heat": ("energy", "all work of friction, from the law: fracture energy is part of it"),
     "fracture": ("energy", "fracture energy, summed over the pulses"),
-    "damped": ENERGY_COLUMNS["damped"],
+    "damped": ENERGY_COLUMNS["damped"].about,
     "radiated": ("energy", "energy radiated through a driver of finite impedance during the event"),
-    "trapped": ENERGY_COLUMNS["trapped"],
+    "trapped": ENERGY_COLUMNS["trapped"].about,
     "waves": ("energy", "made into waves: radiated + damped + what is trapped at the end more than at the start"),
     "balance": ("energy", "elastic + work - kinetic - heat - damped: zero for an exact solution"),
-    "static_drop": EVENT_COLUMNS["static_drop"],
+    "static_drop": EVENT_COLUMNS["static_drop"].about,
     "dynamic_drop": ("load", "traction_before less the smallest traction while it slips"),
     "overshoot": ("1", "static_drop / dynamic_drop - 1: negative for an undershoot, NaN where friction does not fall"),
     "apparent_stress": ("load", "waves / slip"),
     "efficiency": ("1", "seismic efficiency: waves / (waves + heat)"),
     "radiation_efficiency": ("1", "waves / (waves + fracture)"),
 }
-"""Columns of `Solution.energetics`: unit and meaning, as in EVENT_COLUMNS."""
+"""Columns of `Solution.energetics`: unit ("load" is Pa or N, "energy" J m-2 or J) and meaning."""
 
 ROUNDING = 1e-12
 """Rounding of a stress drop, relative to the normal stress (block: force)."""

@@ -31,7 +31,7 @@ PULSE_COLUMNS = {
     "weakening_slip": ("m", "slip until the smallest traction"),
     "fracture": ("energy", "fracture energy: work of friction above the smallest traction until that is reached"),
 }
-"""Columns of `Solution.pulses`: unit and meaning, as in `trajectory.tables.EVENT_COLUMNS`."""
+"""Columns of `Solution.pulses`: unit ("load" is Pa or N, "energy" J m-2 or J) and meaning."""
 
 GRID = 17
 """Number of places on a piece at which the traction is compared to find the smallest one."""
