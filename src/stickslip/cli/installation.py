@@ -118,9 +118,11 @@ def engine() -> Iterator[Finding]:
     from llvmlite import __version__ as version
     from llvmlite.binding import get_host_cpu_name
 
+    from stickslip.engine.codegen.numba_privates import WHY_PLAIN
     from stickslip.engine.codegen.uncompiled import UNCOMPILED
 
-    shown = f"llvmlite {version} for {get_host_cpu_name()}"
+    way = f", plainly ({WHY_PLAIN}): first starts take some three times as long" if WHY_PLAIN else ""
+    shown = f"llvmlite {version} for {get_host_cpu_name()}{way}"
     slow = "STICKSLIP_UNCOMPILED is set, so that runs take a hundred times longer or more: unset it"
     yield Finding("compiler", "not used" if UNCOMPILED else shown, slow if UNCOMPILED else "")
     yield compiled_code(cache.cache_root(), f"compiled-{cache.SOURCES}")
