@@ -13,7 +13,7 @@ from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Stop
 from stickslip.engine.state.workspace import counts_in, lend_history
 from stickslip.engine_input.prepare import prepare
-from stickslip.run.run_loop import split_time
+from stickslip.run.session import split_time
 from stickslip.solution.solution import Solution
 from stickslip.trajectory.history import History
 from stickslip.trajectory.status import STATUSES
