@@ -98,8 +98,8 @@ def test_ctrl_c_in_the_last_moment_of_a_run_ends_the_sweep(monkeypatch: pytest.M
     """The run, which ends just then by itself, must not take it for its own."""
     advance = Session.advance
 
-    def interrupted(run: Session, last: tuple[int, float], budget: int) -> int:
-        code = advance(run, last, budget)
+    def interrupted(run: Session, budget: int) -> int:
+        code = advance(run, budget)
         os.kill(os.getpid(), signal.SIGINT)
         return code
 
