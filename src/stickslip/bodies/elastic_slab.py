@@ -181,7 +181,7 @@ class ElasticSlab(CheckedArguments):
 
         Source: Campillo et al. 1996 compare the two bodies; the equivalence follows from their eqs (7)-(13) as above.
         """
-        if not math.isinf(self.driver_impedance):
+        if not self.is_driven_rigidly:
             raise InputError(
                 "ElasticSlab: equivalent_block needs a rigid driver: behind one of finite impedance nothing holds the slab in the "
                 f"slow limit, so there is no spring; got driver_impedance = {self.driver_impedance:g} Pa s/m"

@@ -73,7 +73,7 @@ class Waves:
         With a rigid driver the state of comparison is sheared at the pull rate (v = V x / h) instead of at rest.
         """
         mean = self._inside(now, lambda load, _: load, lambda leaving, _: -leaving) / (2.0 * self.half)
-        rate = float(self.history.problem.pull_rate_at(self.begun(now))) if self.body.reflection == -1.0 else 0.0
+        rate = float(self.history.problem.pull_rate_at(self.begun(now))) if self.body.is_driven_rigidly else 0.0
         drift = self.body.impedance * rate / self.half
 
         def down(load: Floats, away: Floats) -> Floats:
@@ -140,7 +140,7 @@ class Waves:
         if past <= first:
             return 0.0
         of_row = partial(self._in_row, high=self.round, integrand=self._of(self.power))
-        if self.body.reflection == -1.0:
+        if self.body.is_driven_rigidly:
             return self.stored(Epoch(past, 0.0)) - self.stored(Epoch(first, self.half)) + of_row(past - 1, low=self.half)
         # all these rows are alike, but the waves of the last one may meet another loading at the driver
         return (past - first - 1) * of_row(first, low=0.0) + of_row(past - 1, low=0.0)
@@ -270,14 +270,14 @@ class Radiation(Waves):
 
     def power(self, leaving: Floats, left: Floats) -> Floats:
         """Return the power of the wave beyond the driver, h/c after a wave left the contact; it is zero for a rigid driver."""
-        if self.body.reflection == -1.0:
+        if self.body.is_driven_rigidly:
             return np.zeros(len(leaving))
         behind = self.driver_rate(leaving, left) - self.history.problem.pull_rate_at(left + self.half)
         return np.asarray(self.body.driver_impedance * behind**2)
 
     def _at_rest(self, first: int, past: int) -> float:
         """Return the work of `Waves._at_rest`; it is zero for a rigid driver."""
-        return 0.0 if self.body.reflection == -1.0 else super()._at_rest(first, past)
+        return 0.0 if self.body.is_driven_rigidly else super()._at_rest(first, past)
 
     def power_growth(self, leaving: Floats, left: Floats) -> Floats:
         """Return zero: all echoes at rest move the driver in the same way."""

@@ -200,7 +200,7 @@ class Problem(CheckedArguments):
         object.__setattr__(self, "initial_state", declared.check("Problem", "initial_state", value))
 
     def _check_far_side(self) -> None:
-        if math.isinf(self.body.driver_impedance) and (self.far_stress is not None or self.far_stress_rate != 0.0):
+        if self.body.is_driven_rigidly and (self.far_stress is not None or self.far_stress_rate != 0.0):
             raise InputError("Problem: far_stress and far_stress_rate need a slab with a finite driver_impedance")
 
     @property

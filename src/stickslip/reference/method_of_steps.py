@@ -195,7 +195,7 @@ class _Stepper:
             return lambda t, slip: start + ramp * t
         r, delay = body.reflection, 0.5 * trip
         rate, far = _near(p.pull_rate, time - delay), _near(p.load if p.far_stress is None else p.far_stress, time - delay)
-        share = 2.0 * body.impedance * (1.0 if math.isinf(body.driver_impedance) else 0.5 * (1.0 - r))
+        share = 2.0 * body.impedance * (1.0 if body.is_driven_rigidly else 0.5 * (1.0 - r))
         source = next((piece for piece in self.pieces if piece.start <= time - trip < piece.end), None)
 
         def load(t: float, slip: float) -> float:

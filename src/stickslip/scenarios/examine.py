@@ -84,7 +84,7 @@ def _given(scenario: Scenario) -> dict[str, list[Fact]]:
         for name, (declared, _) in quantities_in(table, type(problem.body), problem.friction.state).items():
             value = getattr(owner, prefix + name)
             off = owner is scenario and value == 0.0  # an option of a run
-            unfelt = name.startswith("far_stress") and math.isinf(problem.body.driver_impedance)
+            unfelt = name.startswith("far_stress") and problem.body.is_driven_rigidly
             if value is not None and not (off or unfelt):
                 facts[table] += _facts(name, value, declared)
     facts["run"] += _automatic(scenario)
@@ -231,7 +231,7 @@ def warnings_of(scenario: Scenario, contact: Uniqueness) -> list[str]:
     """Return what a user should know before trusting a run of a scenario whose uniqueness is `contact`, one line each."""
     problem = scenario.problem
     found = doubts(problem) + _noise(problem.friction, contact)
-    steady = math.isinf(problem.body.driver_impedance)
+    steady = problem.body.is_driven_rigidly
     held = problem.friction.sticks and -problem.strength <= problem.load and problem.excess <= 0
     if held and steady and not problem.varies and wait_of(problem) > scenario.duration:
         found.append("the run ends before loading reaches the static strength: nothing will slip")
@@ -257,7 +257,7 @@ def _slab_warnings(scenario: Scenario, body: ElasticSlab, contact: Uniqueness) -
     strain = abs(problem.load) / body.shear_modulus
     if strain > LARGE_STRAIN:
         found.append(f"the shear strain at the start is {strain:.3g}: linear elasticity is doubtful beyond {LARGE_STRAIN:g}")
-    if problem.friction.memory == "since-arrest" and body.contact_mass == 0.0 and body.reflection == -1.0:
+    if problem.friction.memory == "since-arrest" and body.contact_mass == 0.0 and body.is_driven_rigidly:
         found.append(
             "friction heals instantly and the slab has no contact_mass:"
             " under slow loading it creeps in tiny slips after the first event"

@@ -19,7 +19,7 @@ def loading_rate(problem: Problem) -> float:
     It is exact for a block, and a mean over round trips for a slab.
     """
     body = problem.body
-    if not math.isinf(body.driver_impedance):
+    if not body.is_driven_rigidly:
         return problem.far_stress_rate
     return body.stiffness * problem.first_pull_rate
 
@@ -79,7 +79,7 @@ def stability_of(problem: Problem) -> str:
     number = -problem.normal * by_slip / body.stiffness
     if by_slip >= 0:
         return "friction does not weaken with slip at the start; what slip rate does to it: see uniqueness"
-    if not math.isinf(body.driver_impedance):
+    if not body.is_driven_rigidly:
         return f"friction weakens with slip: alpha_w h = {number:.6g} (a rigid driver holds it below 1, this one is not rigid)"
     if number < 1:
         return f"statically stable: alpha_w h = {number:.6g} < 1, friction weakens more slowly than the slab unloads: it creeps"
@@ -109,7 +109,7 @@ def _steady_sliding(problem: Problem, law: RateAndState) -> str:
         critical = sliding.critical_stiffness(body.inertia, body.damping)
         growth = sliding.block_growth(body.stiffness, body.inertia, body.damping)
         text, unit = f"stiffness K = {body.stiffness:.6g}", "N/m"
-    elif math.isinf(body.driver_impedance) and not body.has_inertia:
+    elif body.is_driven_rigidly and not body.has_inertia:
         critical = sliding.critical_stiffness()
         growth = sliding.slab_growth(body.impedance, 0.5 * body.round_trip_time)
         text, unit = f"stiffness G/h = {body.stiffness:.6g}", "Pa/m"

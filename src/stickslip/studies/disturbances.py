@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -29,7 +28,7 @@ def disturbed(problem: Problem, push: float) -> Problem:
 
 def is_lossy(problem: Problem) -> bool:
     """Return True if the slab has a driver of finite impedance; its far stress follows from the initial load by default."""
-    return not math.isinf(problem.body.driver_impedance)
+    return not problem.body.is_driven_rigidly
 
 
 def drawn(problem: Problem, members: int, size: float, seed: int) -> Floats:

@@ -17,14 +17,11 @@ import math
 from stickslip.engine.codegen.compiler import bits_of, kernel
 from stickslip.engine.contact.contact_equation import rest_limit
 from stickslip.engine.series.polynomial import copy, fill, maximum, mean_of, restrict
-from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import TERMS, EchoNode, HistoryPiece, Integers
+from stickslip.engine.state.layout import NEVER, TERMS, EchoNode, HistoryPiece, Integers
 from stickslip.engine.state.workspace import Run, borrow
 
 NOTHING = -1
 """Index of no piece and of an empty tree."""
-FOREVER = 2**62
-"""Number of a round trip that never comes."""
 LONGEST_SEARCH = 4096
 """Largest number of round trips (1) that are tried one by one: near 2^62, floats are 512 to 1024 apart."""
 NEARLY = 2e-15
@@ -161,7 +158,7 @@ def first_to_break(run: Run, n: int, limit: float, trip: int) -> int:
 
 @kernel
 def next_trip(run: Run, n: int, limit: float) -> int:
-    """Return the next round trip in which the contact may slip under any piece of tree n, or FOREVER.
+    """Return the next round trip in which the contact may slip under any piece of tree n, or NEVER.
 
     The quotient of floats may be early by rounding: the search from there on ends after LONGEST_SEARCH round trips. To meet a piece
     too early is no fault.
@@ -173,7 +170,7 @@ def next_trip(run: Run, n: int, limit: float) -> int:
     growth, first = abs(run.params.ramp), run.echoes[n].first_up if way > 0 else run.echoes[n].first_down
     trips = math.floor(room(run, first, way, limit) / growth) if growth > 0.0 else math.inf
     if not trips < 4e18:
-        return FOREVER
+        return NEVER
     trip = max(run.echoes[first].trip + int(trips), coming)
     for _ in range(LONGEST_SEARCH):
         if breaks(run, first, way, limit, trip):
@@ -264,7 +261,7 @@ def end_trip(run: Run) -> None:
     whole = join(run.echoes, run.params.ramp, run.counts.behind, run.counts.ahead)
     trip = run.counts.trip + 1 if goes_on(run) else next_trip(run, whole, rest_limit(run))
     settled = run.params.ramp == 0.0 and run.counts.moved == 0
-    run.counts.is_locked = 1 if trip == FOREVER or settled else 0
+    run.counts.is_locked = 1 if trip == NEVER or settled else 0
     run.counts.trip = trip
     run.counts.ahead, run.counts.behind = whole, NOTHING
     run.state.new_since = run.state.taken_to = 0.0
@@ -280,7 +277,7 @@ def worth_building(run: Run) -> bool:
     """
     if run.params.reflection != -1.0 or run.counts.is_block == 1 or run.counts.has_state == 1:
         return False
-    if run.counts.sticks == 0 or run.counts.varies == 1 or run.counts.pause_at != at.NEVER:
+    if run.counts.sticks == 0 or run.counts.varies == 1 or run.counts.pause_at != NEVER:
         return False
     slipping, pieces = 0, run.counts.length - run.counts.trip_from
     for n in range(run.counts.trip_from, run.counts.length):

@@ -7,9 +7,9 @@ import math
 from stickslip.engine.codegen.compiler import call_part, kernel
 from stickslip.engine.contact.contact_equation import rest_limit
 from stickslip.engine.series.polynomial import maximum, total
-from stickslip.engine.state.layout import Part, Stop, Task
+from stickslip.engine.state.layout import NEVER, Part, Stop, Task
 from stickslip.engine.state.workspace import Run
-from stickslip.engine.waves.echo_queue import FOREVER, worth_building
+from stickslip.engine.waves.echo_queue import worth_building
 from stickslip.engine.waves.varying_forcing import has_faded
 
 
@@ -17,7 +17,7 @@ from stickslip.engine.waves.varying_forcing import has_faded
 def trips_certain_at_rest(run: Run, limit: float) -> int:
     """Return the number of whole round trips for which a contact at rest is certain to stay there, judged from the one just past.
 
-    `limit` is the load (Pa or N, minus the reference strength) at which rest ends. FOREVER means that it never ends.
+    `limit` is the load (Pa or N, minus the reference strength) at which rest ends. NEVER means that it never ends.
     """
     params = run.params
     ramp = params.ramp
@@ -31,10 +31,10 @@ def trips_certain_at_rest(run: Run, limit: float) -> int:
         top = max(top, maximum(load))
         bottom = max(bottom, maximum(load, -1.0))
     if ramp == 0.0:
-        return FOREVER
+        return NEVER
     room = limit - top if ramp > 0.0 else limit - (bottom - 2.0 * params.reference)
     rows = math.floor(room / abs(ramp)) - 1.0
-    return min(max(int(rows), 0), FOREVER) if rows < 9e18 else FOREVER
+    return min(max(int(rows), 0), NEVER) if rows < 9e18 else NEVER
 
 
 @kernel
@@ -75,7 +75,7 @@ def close_round_trip(run: Run, last_trip: int) -> int:
     if run.counts.moved == 0:
         run.counts.trips_at_rest += 1
         leap = trips_certain_at_rest(run, rest_limit(run))
-        locked = leap >= FOREVER or swings_for_ever(run)
+        locked = leap >= NEVER or swings_for_ever(run)
         room = last_trip - run.counts.trip - 1
         if leap > room and run.counts.to_the_end == 0:
             run.counts.trips_at_rest -= 1

@@ -13,14 +13,13 @@ import math
 from stickslip.engine.codegen.compiler import kernel
 from stickslip.engine.contact.append_segment import xi_at
 from stickslip.engine.series.polynomial import RECIPROCAL, copy, maximum, restrict, total
-from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import TERMS, Cause
+from stickslip.engine.state.layout import NEVER, TERMS, Cause
 from stickslip.engine.state.workspace import Run
 
+AT_EDGE = 1e-13
+"""Distance, as a share of a round trip (1), within which a break of the loading lies on the edge of a piece: it is rounding."""
 BISECTIONS = 64
 """Largest number of bisections (1) of a number of round trips, which are at most 2^63."""
-TIE = 1e-13
-"""Distance, as a share of a round trip (1), within which a break of the loading lies on the edge of a piece: it is rounding."""
 
 
 @kernel
@@ -34,7 +33,7 @@ def take_loading(run: Run) -> None:
         run.counts.arriving = Cause.LOADING
     end, phase_to = 1.0, run.state.phase_to
     change = next_change(run)
-    if change < phase_to - TIE * run.params.round_trip_time:
+    if change < phase_to - AT_EDGE * run.params.round_trip_time:
         end, phase_to = min(xi_at(run, change), 1.0), change
     if begin > 0.0 or end < 1.0:
         cut(run, begin, end, phase, phase_to)
@@ -46,7 +45,7 @@ def take_loading(run: Run) -> None:
 @kernel
 def enter_segment(run: Run, phase: float) -> bool:
     """Enter the segment of the loading that has arrived at a phase (s) of this round trip; return True if the loading jumps."""
-    jumps, tie = False, TIE * run.params.round_trip_time
+    jumps, tie = False, AT_EDGE * run.params.round_trip_time
     for _ in range(run.segments):
         if not next_change(run) <= phase + tie:
             break
@@ -177,12 +176,12 @@ def pulled_in_rows(run: Run, rows: float) -> float:
 def trips_withstood(run: Run, limit: float) -> int:
     """Return the number of whole round trips, up to the next break of the loading, in which a contact at rest stays so.
 
-    `limit` is the load (Pa or N, minus the reference strength) at which rest ends. FOREVER means that it
+    `limit` is the load (Pa or N, minus the reference strength) at which rest ends. NEVER means that it
     never ends.
     """
     segment = run.counts.segment
     following = segment + 1
-    room = run.loading[following].trip - run.counts.trip - 1.0 if following < run.segments else float(at.NEVER)
+    room = run.loading[following].trip - run.counts.trip - 1.0 if following < run.segments else float(NEVER)
     is_dead = run.loading[segment].slope == 0.0 and run.params.tone == 0.0
     if run.counts.is_block == 0 and run.params.reflection != -1.0:
         return int(max(room, 0.0)) if is_dead and has_faded(run) else 0
@@ -203,14 +202,14 @@ def trips_withstood(run: Run, limit: float) -> int:
     return int(low)
 
 
-FORGOTTEN = 1e-17
+FADED = 1e-17
 """Factor (1) at which the differences between round trips at rest have faded: below rounding."""
 
 
 @kernel
 def has_faded(run: Run) -> bool:
     """Return True if the round trips of a slab at rest, but for the ramp, no longer differ: differences fade by |r| in each."""
-    return run.counts.trips_at_rest > 0 and abs(run.params.reflection) ** (run.counts.trips_at_rest - 1) < FORGOTTEN
+    return run.counts.trips_at_rest > 0 and abs(run.params.reflection) ** (run.counts.trips_at_rest - 1) < FADED
 
 
 @kernel

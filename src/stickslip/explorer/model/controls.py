@@ -216,7 +216,7 @@ class _Tables:
 
     def applies(self, path: str) -> bool:
         """Return False for an entry that this problem cannot have, and for a number in place of which there is a table."""
-        if path in ("loading.far_stress", "loading.far_stress_rate") and math.isinf(self.problem.body.driver_impedance):
+        if path in ("loading.far_stress", "loading.far_stress_rate") and self.problem.body.is_driven_rigidly:
             return False
         if path == "initial.state" and (self.problem.friction.state is None or self.starts_steadily):
             return False

@@ -10,7 +10,6 @@ and follows the drift of the far stress.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -55,7 +54,7 @@ class StuckSlab:
     def load(self, t: ArrayLike) -> NDArray[np.float64]:
         """Return the load beta(t) (Pa) at times t >= 0 (s), of the shape of t; right limits at jumps."""
         t = np.asarray(t, float)
-        if math.isinf(self.body.driver_impedance):
+        if self.body.is_driven_rigidly:
             return self.initial_load + self.loading_rate * t
         trips = np.floor(t / self.body.two_way_time)
         factor = -self.body.reflection
