@@ -156,7 +156,7 @@ def test_a_file_in_place_of_a_folder_of_the_cache_is_no_fault_but_one_line(tmp_p
 
 
 def test_a_full_disk_costs_the_cache_and_one_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    from stickslip.engine.codegen import cache
+    from stickslip.engine.codegen import cache, sealed_cache
     from stickslip.engine.codegen.compiler import compile_formula
     from stickslip.friction.formula.parse import parse
 
@@ -164,7 +164,7 @@ def test_a_full_disk_costs_the_cache_and_one_line(monkeypatch: pytest.MonkeyPatc
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
 
     monkeypatch.setattr(FunctionCache, "_load_overload", lambda *_: None)
-    monkeypatch.setattr(cache, "write_atomically", full)
+    monkeypatch.setattr(sealed_cache, "write_atomically", full)
     cache.tell.cache_clear()
     compile_formula.cache_clear()
     assert compile_formula(parse("0.6 + 0.0123*u", ()), ()).address("value") != 0

@@ -88,9 +88,10 @@ def _instruction(name: str) -> Writer:
 
 def _of_the_processor(name: str) -> Writer:
     """Return the writer of a function of one argument that LLVM provides for vectors."""
+    kind = ir.FunctionType(VECTOR, [VECTOR])
 
     def write(context: Any, builder: Any, args: list[Any]) -> Any:
-        return builder.call(builder.module.declare_intrinsic(f"llvm.{name}", [VECTOR]), args)
+        return builder.call(builder.module.declare_intrinsic(f"llvm.{name}.v{WIDTH}f64", (), kind), args)
 
     return write
 
