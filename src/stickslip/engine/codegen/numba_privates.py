@@ -38,7 +38,7 @@ AbstractTemplate: Any = object
 AttributeTemplate: Any = object
 infer_getattr: Any = lambda one: one  # noqa: E731  # stands for numba's function, as the next ones do
 infer_global: Any = lambda _: lambda one: one  # noqa: E731
-signature: Any = None
+signature: Any = lambda *_: None  # noqa: E731
 
 if not UNCOMPILED:
     try:
