@@ -27,7 +27,7 @@ def runner(case: Case, tolerance: float, kernel: Callable[..., int] = run_until)
     setup, memory = prepare(case.problem, tolerance)
     count = counts_in(memory)
     count.to_the_end = 1  # nothing goes on behind it
-    store, echoes = at.new_store(CAPACITY, case.problem.friction.state is not None), at.EchoNode.table(CAPACITY)
+    store, echoes = at.new_store(CAPACITY, len(case.problem.friction.states)), at.EchoNode.table(CAPACITY)
     lend_history(memory, store, echoes)
     lend_parts_of_batch(memory, setup.params, count)
     first = memory.copy()

@@ -20,7 +20,9 @@ def test_values_are_those_of_the_law_and_slopes_those_of_a_complex_step(kind: st
     """Values rel 1e-13; slopes by slip and rate rel 1e-12, by state central differences rel 1e-6."""
     law, rng = example_law(kind), np.random.default_rng(len(kind))
     slip, rate = rng.uniform(0.0, 2.0, (4, 25)), 10.0 ** rng.uniform(-6.0, 1.0, (4, 25))
-    state: Any = np.zeros(slip.shape) if law.state is None else rng.uniform(0.2, 0.6, slip.shape)
+    state: Any = (
+        np.zeros(slip.shape) if law.state is None else rng.uniform(0.2, 0.6, (*((2,) if len(law.states) > 1 else ()), *slip.shape))
+    )
     found = ContactOnArrays(law, 1e12, 1.0).friction(slip, rate, state)
     assert found.value == pytest.approx(law.coefficient(slip, rate, state), rel=1e-13)
     if law.state is None:

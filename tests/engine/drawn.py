@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 import stickslip as ss
 from stickslip.problem.selection_rule import SELECTION_RULES
+from stickslip.problem.start import INITIAL_STATES
 from tests.friction.drawn import laws
 
 NORMAL = 1e8
@@ -31,10 +32,10 @@ def bodies(draw: st.DrawFn) -> Any:
     return ss.ElasticSlab(2800, 3500, slab.thickness, NORMAL, driver, draw(st.sampled_from([0.0, 0.0, 1e2, 1e5])))
 
 
-def states(law: ss.friction.FrictionLaw) -> st.SearchStrategy[float]:
-    """Draw a state: a time (s), a coefficient of friction, or a bending (m) in either direction."""
-    assert law.state is not None
-    return {"s": st.floats(1e-3, 1e6), "1": st.floats(0.2, 1.2), "m": st.floats(-1e-3, 1e-3)}[law.state.unit]
+def states(law: ss.friction.FrictionLaw) -> st.SearchStrategy[dict[str, float]]:
+    """Draw the initial states: times (s), coefficients of friction, or bendings (m) in either direction."""
+    sizes = {"s": st.floats(1e-3, 1e6), "1": st.floats(0.2, 1.2), "m": st.floats(-1e-3, 1e-3)}
+    return st.fixed_dictionaries({name: sizes[state.unit] for name, state in zip(INITIAL_STATES, law.states, strict=False)})
 
 
 @st.composite
@@ -42,7 +43,7 @@ def problems(draw: st.DrawFn, kind: str) -> ss.Problem:
     law, body = draw(laws(kind)), draw(bodies())
     share, pull = draw(st.floats(-1.3, 1.3)), draw(st.sampled_from([0.0, 1e-9, 1e-3, -1e-3, 0.3]))
     strength = NORMAL * (float(law.static_coefficient(0.0)) if law.sticks else 0.7)
-    start: dict[str, Any] = {} if law.sticks else {"initial_state": draw(states(law))}
+    start: dict[str, Any] = {} if law.sticks else draw(states(law))
     rule = draw(st.sampled_from(SELECTION_RULES))
     return ss.Problem(body, law, pull_rate=pull, initial_load=share * strength, selection=rule, **start)
 

@@ -9,6 +9,7 @@ import tomli_w
 
 import stickslip as ss
 from stickslip.friction import LAWS, FrictionLaw
+from stickslip.friction.contract import STATE_NAMES
 from stickslip.scenarios import read_scenario
 
 SLAB = ss.ElasticSlab(2800, 3500, 1e3, 1e8)
@@ -24,7 +25,7 @@ def example_law(kind: str) -> FrictionLaw:
     tables = {
         "body": {"kind": "spring-block", "mass": 1.0, "stiffness": 1.0, "normal_force": 1.0},
         "friction": {"kind": kind} | {k.replace("values", "parameters"): v for k, v in LAWS[kind].example.items()},
-        "initial": {"excess": 0.0} if LAWS[kind].sticks else {"load": 0.0, "state": LAWS[kind].start["state"]},
+        "initial": {"excess": 0.0} if LAWS[kind].sticks else {"load": 0.0} | states_at_start(LAWS[kind]),
         "run": {"duration": 1.0},
     }
     return read_scenario(tomli_w.dumps(tables), "example").problem.friction
@@ -38,6 +39,11 @@ def example_problem(kind: str, body: str) -> ss.Problem:
     law, normal = example_law(kind), 1e11 if body == "block" else 1e8
     if law.sticks:
         return ss.Problem(BODIES[body], law, pull_rate=1e-3, initial_excess=1e-4 * normal)
-    assert law.state is not None
-    load, state = law.start["coefficient"] * normal, law.start["state"] if law.state.unit == "1" else 1.0
-    return ss.Problem(BODIES[body], law, pull_rate=1e-3, initial_load=load, initial_state=state)
+    load, given = law.start["coefficient"] * normal, states_at_start(type(law))
+    states = {f"initial_{name}": given[name] if state.unit == "1" else 1.0 for name, state in zip(given, law.states, strict=True)}
+    return ss.Problem(BODIES[body], law, pull_rate=1e-3, initial_load=load, **states)
+
+
+def states_at_start(law: type[FrictionLaw]) -> dict[str, Any]:
+    """The states with which the law's own example starts, by name."""
+    return {name: law.start[name] for name in STATE_NAMES if name in law.start}

@@ -64,7 +64,7 @@ def test_the_initial_rate_replaces_the_pull_rate_in_steady_sliding(way: int) -> 
     problem = ss.Problem(BLOCK, LAW, pull_rate=SPEED, initial_rate=f"{3 * way} mm/s")
     assert problem.rate == 3e-3 * way
     assert problem.load == pytest.approx(way * (NORMAL * float(LAW.steady_coefficient(3e-3)) + 3e-3 * BLOCK.damping), rel=1e-15)
-    assert problem.state == pytest.approx(LAW.inner_state(float(LAW.steady_state(3e-3))), rel=1e-15)
+    assert problem.states[0] == pytest.approx(LAW.inner_state(float(LAW.steady_state(3e-3))), rel=1e-15)
 
 
 @BOTH_WAYS

@@ -230,7 +230,7 @@ def slab_truth(one: Truth, problem: Any, t: Floats) -> tuple[Floats, Floats]:
             far *= 10.0
         return float(brentq(missing, -far, far, xtol=1e-18, rtol=1e-14))
 
-    y, n = np.array([0.0, problem.state]), 0
+    y, n = np.array([0.0, *problem.states]), 0
     while n * trip < t[-1]:
         found = solve_ivp(
             lambda s, y: [v := solved(load(s), float(y[1])), one.change(v, float(y[1]))],

@@ -126,7 +126,7 @@ def test_the_reader_of_loops_knows_which_ones_count(text: str, ends: bool) -> No
 
 def test_the_code_of_formulas_has_no_loops() -> None:
     law = ss.friction.RateAndState(**ss.friction.RateAndState.example)
-    writer = FormulaWriter(law.trees()[0], law.parameters(), state_rate=law.state_tree())
+    writer = FormulaWriter(law.trees()[0], law.parameters(), state_rates=law.state_trees())
     for part in SIGNATURES:
         tree = ast.parse(writer.module(part))
         assert not any(isinstance(node, ast.While | ast.For | ast.comprehension) for node in ast.walk(tree))

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 import stickslip as ss
 from stickslip.friction import LAWS
+from stickslip.friction.contract import one_argument
 from stickslip.reference.slab.stuck import StuckSlab
 from tests.engine.drawn import NORMAL, few, problems, ran
 
@@ -49,8 +50,9 @@ def obeys(run: ss.Solution) -> None:
     kept = at.recorded()  # at rest slip and state are those at its begin
     walked = np.where(law.counts == "path", history.mode(kept), 1) * history.grown(kept)
     slip = problem.law_slip + history.store.law_slip[kept.piece] + walked
-    reverses = law.state is not None and law.state.reverses
-    state = np.where(reverses & (mode < 0), -1.0, 1.0) * history.state(kept)
+    reverses = bool(law.reverses)
+    turned = np.where(mode < 0, -1.0, 1.0)
+    state = one_argument([one * (turned if n in law.reverses else 1.0) for n, one in enumerate(history.states(kept))])
     by_law = mode * NORMAL * law.coefficient(slip, np.abs(rate), state)
     slips = mode != 0
     assert traction[slips] == pytest.approx(by_law[slips], rel=0.0, abs=1e-8 * NORMAL)

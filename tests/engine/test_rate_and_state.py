@@ -157,7 +157,7 @@ def test_a_slab_agrees_with_scipy(evolution: str) -> None:
         return change
 
     options: dict[str, Any] = {"method": "LSODA", "rtol": 1e-8, "atol": 1e-12, "dense_output": True}
-    first = solve_ivp(derivative(first_load), (0.0, trip), [0.0, problem.state], **options)
+    first = solve_ivp(derivative(first_load), (0.0, trip), [0.0, *problem.states], **options)
     second = solve_ivp(derivative(second_load), (trip, 2 * trip), first.y[:, -1], **options)
     run = ss.simulate(problem, 2 * trip)
     for part, times in ((first, np.linspace(0.01, 1, 12) * trip), (second, np.linspace(1.01, 2, 12) * trip)):

@@ -44,8 +44,8 @@ def test_the_state_of_a_law_is_drawn_in_its_unit() -> None:
     scenario = ss.load_scenario("rate-and-state-block")
     law = scenario.problem.friction
     figure = ss.simulate(scenario.problem, 1e-3 * scenario.duration).plot.state()
-    assert law.state is not None
-    assert figure.axes[0].get_ylabel() == f"state ({law.state.unit})"
+    (state,) = law.states
+    assert figure.axes[0].get_ylabel() == f"state ({state.unit})"
     pyplot.close(figure)
 
 

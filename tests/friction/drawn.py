@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from stickslip import InputError
 from stickslip.engine.codegen.lean_compiler import LeanCompiler
 from stickslip.engine.codegen.taylor_series import FormulaWriter
+from stickslip.engine.state.layout import LawValue
 from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, Text, fields_of
 from stickslip.friction import LAWS, FrictionLaw, FromExpression
 from stickslip.friction.formula.expression import Expression
@@ -89,21 +90,22 @@ def _number(declared: Quantity) -> st.SearchStrategy[float]:
 
 
 def compiled_value(law: FrictionLaw, i: int, reference: float, slip: float, rate: float) -> NDArray[np.float64]:
-    """mu(slip, rate) - mu(reference, 0) by the compiled piece i, and its slopes by rate and slip; with the state 0."""
-    prepare, value, size = _compiled(law.trees()[i], law.parameters(), law.state_tree() if law.state else None)
+    """mu(slip, rate) - mu(reference, 0) by the compiled piece i, and its slopes by rate and slip; with all states 0."""
+    prepare, value, size = _compiled(law.trees()[i], law.parameters(), law.state_trees())
     double = ctypes.POINTER(ctypes.c_double)
-    numbers, constants, out = np.array(law.piece_values(i)), np.zeros(size), np.zeros(8 if law.state else 3)
-    pointers = [array.ctypes.data_as(double) for array in (numbers, constants, out)]
+    numbers, constants, out = np.array(law.piece_values(i)), np.zeros(size), np.zeros(LawValue.total)
+    at_zero = np.zeros(len(law.states))
+    pointers = [array.ctypes.data_as(double) for array in (numbers, constants, out, at_zero)]
     prepare(pointers[0], reference, pointers[1])
-    value(pointers[1], slip - reference, rate, *((0.0,) if law.state else ()), pointers[2])
+    value(pointers[1], slip - reference, rate, *(pointers[3:] if law.states else ()), pointers[2])
     return out[:3]
 
 
 @cache
-def _compiled(tree: Expression, parameters: tuple[str, ...], change: Expression | None) -> tuple[Any, Any, int]:
+def _compiled(tree: Expression, parameters: tuple[str, ...], changes: tuple[Expression, ...]) -> tuple[Any, Any, int]:
     """`prepare` and `value` as the engine compiles them, without the series, which take seconds each."""
-    writer = FormulaWriter(tree, parameters, state_rate=change)
-    value = "value" if change is None else "state_value"
+    writer = FormulaWriter(tree, parameters, state_rates=changes)
+    value = "state_value" if changes else "value"
     scope: dict[str, Any] = {}
     for part in ("prepare", value):
         exec(writer.module(part).replace(SAVED, NOT_KEPT), scope)

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip.contact.equation import Resistance
 from stickslip.contact.uniqueness import regime_at
 from stickslip.foundation.errors import InputError
+from stickslip.friction.contract import one_argument
 from stickslip.friction.formula.differences import value_and_slopes
 from stickslip.friction.formula.expression import Expression
 from stickslip.friction.law import FrictionLaw
@@ -29,7 +30,8 @@ ITERATIONS = 200
 class Friction(NamedTuple):
     """A quantity of the law at each point, with its derivatives by slip, slip rate and state.
 
-    The quantity is the friction coefficient (no unit), or the rate of change of the state (its unit per second).
+    The quantity is the friction coefficient (no unit), or the rate of change of a state (its unit per second). For a law with two
+    states `by_state` has one more axis in front, that of the states.
     """
 
     value: Array
@@ -59,7 +61,7 @@ class ContactOnArrays:
     def _is_irregular(self) -> bool:
         """True if friction depends on the slip rate only, and several slip rates may solve the contact equation somewhere."""
         law = self.law
-        if law.state is not None or law.depends_on_slip or not law.depends_on_rate:
+        if law.states or law.depends_on_slip or not law.depends_on_rate:
             return False
         return regime_at(Resistance(law, float(np.min(self.impedance / np.asarray(self.normal, float))), 1.0, 0.0)) != "regular"
 
@@ -68,21 +70,26 @@ class ContactOnArrays:
         trees = self.law.trees()
         return self._at_each_piece(lambda piece: trees[piece], slip, rate, state)
 
-    def state_rate(self, slip: ArrayLike, rate: ArrayLike, state: ArrayLike) -> Friction:
-        """Return the rate of change of the state, with the arguments of `friction`. Raises InputError for a law without a state."""
-        if self.law.state is None:
-            raise InputError(f"ContactOnArrays: {self.law.kind} has no state")
-        tree = self.law.state_tree()
+    def state_rate(self, slip: ArrayLike, rate: ArrayLike, state: ArrayLike, number: int = 0) -> Friction:
+        """Return the rate of change of a state, the first by default, with the arguments of `friction`.
+
+        Raises InputError for a law without that state.
+        """
+        if number >= len(self.law.states):
+            raise InputError(f"ContactOnArrays: {self.law.kind} has no {'second ' if self.law.states else ''}state")
+        tree = self.law.state_trees()[number]
         return self._at_each_piece(lambda _: tree, slip, rate, state)
 
-    def _at_each_piece(self, tree_of: Callable[[int], Expression], *given: ArrayLike) -> Friction:
-        slip, rate, state = np.broadcast_arrays(*(np.asarray(one, float) for one in given))
-        found, piece = np.empty((4, *slip.shape)), self.law.piece_at(slip, rate)
+    def _at_each_piece(self, tree_of: Callable[[int], Expression], slip: ArrayLike, rate: ArrayLike, state: ArrayLike) -> Friction:
+        given = (slip, rate, *(self.law.each_state(state) or (0.0,)))
+        places = np.stack(np.broadcast_arrays(*(np.asarray(one, float) for one in given)))
+        found, piece = np.empty((2 + len(places) - 1, *places.shape[1:])), self.law.piece_at(places[0], places[1])
         for i in np.unique(piece).tolist():
             own = piece == i
-            value, slopes = value_and_slopes(tree_of(i), self.law.numbers(i), slip[own], rate[own], state[own])
+            value, slopes = value_and_slopes(tree_of(i), self.law.numbers(i), *places[:, own])
             found[:, own] = value, *slopes
-        return Friction(*found)
+        value, by_slip, by_rate, *by_state = found
+        return Friction(value, by_slip, by_rate, by_state[0] if len(by_state) == 1 else np.stack(by_state))
 
     def rate(self, load: ArrayLike, slip: ArrayLike, state: ArrayLike = 0.0) -> Array:
         """Solve the contact equation Z v + S mu(u, v) = load at each point (paper eqs 12-13).
@@ -94,7 +101,7 @@ class ContactOnArrays:
         slip
             Slip as the law counts it, m.
         state
-            State in the form that the formulas use, for a law that has one.
+            State in the form that the formulas use, for a law that has one; a row for each of two states.
 
         Returns
         -------
@@ -109,17 +116,18 @@ class ContactOnArrays:
         """
         if self._is_irregular:
             raise self._several()
-        load, slip, state, impedance, normal = np.broadcast_arrays(
-            *(np.asarray(one, float) for one in (load, slip, state, self.impedance, self.normal))
-        )
+        given = (load, slip, self.impedance, self.normal, *(self.law.each_state(state)))
+        load, slip, impedance, normal, *states = np.broadcast_arrays(*(np.asarray(one, float) for one in given))
+        state = one_argument(states)
         at_rest = normal * (self.friction(slip, 0.0, state).value + self.law.static_excess)
         slips = load > at_rest
         found = np.zeros(load.shape)
         if slips.any():
-            found[slips] = self._root(load[slips], slip[slips], state[slips], impedance[slips], normal[slips])
+            there = one_argument([one[slips] for one in states])
+            found[slips] = self._root(load[slips], slip[slips], there, impedance[slips], normal[slips])
         return found
 
-    def _root(self, load: Array, slip: Array, state: Array, *contact: Array) -> Array:
+    def _root(self, load: Array, slip: Array, state: Any, *contact: Array) -> Array:
         """Return the root of each point by Newton's method, which bisects where it would leave the bracket."""
         impedance, normal = contact
 

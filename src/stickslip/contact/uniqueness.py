@@ -206,7 +206,7 @@ def uniqueness_of(problem: Problem, law_slip: float | str | WithUnit | None = No
 
 def regime_of(problem: Problem) -> Regime:
     """Return the `regime` of `uniqueness_of`, without what the rule makes of the branches: a sweep asks it of each of its runs."""
-    if problem.body.has_inertia or problem.friction.state is not None:
+    if problem.body.has_inertia or problem.friction.states:
         return "regular"
     return regime_at(resistance(problem, None))
 
@@ -229,7 +229,7 @@ def _determined(problem: Problem, slip: float | None) -> Uniqueness:
     if problem.body.has_inertia:
         mass = "The contact mass" if problem.body.has_waves else "The block"
         return Uniqueness("regular", problem.rule, _INERTIA.format(body=mass, rule=problem.rule))
-    if problem.friction.state is not None:
+    if problem.friction.states:
         text = _STATE if rises_with_rate(problem.friction) else _STATE_FALLS
         return Uniqueness("regular", problem.rule, text.format(law=type(problem.friction).__name__, rule=problem.rule))
     g = resistance(problem, slip)

@@ -191,7 +191,7 @@ def take_step(run: Run, xi_to: float) -> int:
 @kernel
 def is_finite(run: Run) -> bool:
     """Return True if the contact's slip, slip rate and state are finite."""
-    return math.isfinite(run.state.rate_now + run.state.slip_now + run.state.state_now)
+    return math.isfinite(run.state.rate_now + run.state.slip_now + run.state.state_now[0] + run.state.state_now[1])
 
 
 @kernel

@@ -94,7 +94,7 @@ def lend_parts_of_batch(memory: Integers, params: Params, counts: Counts) -> Non
     A massless contact rarely needs implicit steps: they are lent if they are there, and otherwise when it asks for them.
     """
     Run(memory).implicit_steps = _at_hand.get(Part.IMPLICIT_STEPS, 0)
-    if counts.has_inertia == 1 or counts.has_state == 1:
+    if counts.has_inertia == 1 or counts.states > 0:
         lend_part(memory, Part.IMPLICIT_STEPS)
     if params.reflection == -1.0 and counts.is_block == 0:
         lend_part(memory, Part.ECHO_QUEUE)

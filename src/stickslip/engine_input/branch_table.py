@@ -49,7 +49,7 @@ def is_algebraic(problem: Problem) -> bool:
 
     This holds for a massless contact under a law of slip rate without a state variable.
     """
-    return not problem.body.has_inertia and problem.friction.depends_on_rate and problem.friction.state is None
+    return not problem.body.has_inertia and problem.friction.depends_on_rate and not problem.friction.states
 
 
 def folds_move(problem: Problem) -> bool:

@@ -52,7 +52,7 @@ def missing_but_pull(problem: Problem) -> str:
         return "a rigid driver (no driver_impedance)"
     if body.has_inertia:
         return "a contact without mass (no contact_mass)"
-    if law.state is not None or law.depends_on_rate:
+    if law.states or law.depends_on_rate:
         return f"a friction law of slip alone ({type(law).__name__} is not one)"
     if law.memory != "all":
         return "a friction law that remembers all slip (no memory of its own)"

@@ -51,7 +51,7 @@ def lumps_by_itself(problem: Problem) -> bool:
         and not body.has_inertia
         and not problem.varies
         and law.depends_on_rate
-        and law.state is None
+        and not law.states
     )
 
 

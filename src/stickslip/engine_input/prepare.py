@@ -74,7 +74,7 @@ def parameters_of(problem: Problem) -> Params:
     params.reference = problem.strength
     params.counts_net = 1.0 if law.counts == "net" else 0.0
     params.static_excess = law.static_excess
-    params.state_scale = law.state.scale if law.state else 0.0
+    params.state_scale = [state.scale for state in law.states] + [0.0] * (at.STATES - len(law.states))
     params.rate_floor = SMALLEST if law.sticks else SLOWEST * min(law.rate_scales, default=1.0)
     params.healed_piece = int(law.piece_at(problem.law_slip)) if law.memory == "since-arrest" else -1
     params.can_be_negative = 1.0 if law.can_be_negative else 0.0
@@ -92,7 +92,8 @@ def parameters_of(problem: Problem) -> Params:
     else:
         params.inflow, params.inflow_rate = steady_inflow(problem)
         params.ramp = params.inflow if body.is_driven_rigidly else problem.far_stress_rate * body.round_trip_time
-    return Params(together([getattr(params, name) for name in Params.places]))
+    numbers = [getattr(params, name) for name in Params.places]
+    return Params(together([one for number in numbers for one in (number if isinstance(number, list) else [number])]))
 
 
 def together(numbers: Sequence[Any]) -> at.Floats:
@@ -198,8 +199,7 @@ def _pieces(theta: list[Any], load: list[Any], slope: list[Any], jump: list[Any]
 def law_tables(problem: Problem) -> tuple[at.Integers, at.Floats]:
     """Return the pieces of the law as a table of `LawPiece`, and the constants of their formulas."""
     law, start = problem.friction, problem.law_slip
-    change = law.state_tree() if law.state else None
-    formulas = [compile_formula(tree, law.parameters(), change) for tree in law.trees()]
+    formulas = [compile_formula(tree, law.parameters(), law.state_trees()) for tree in law.trees()]
     static, home = float(law.static_coefficient(start)), int(law.piece_at(start))
     references, numbers = references_of(problem, home, static, lambda i, slip: float(law.piece_coefficient(i, slip, 0.0)))
     constants = np.zeros((len(formulas), max(formula.size for formula in formulas)))
@@ -236,12 +236,12 @@ def functions_of(formulas: Sequence[CompiledFormula], problem: Problem) -> at.In
 
     A law with a state is always stepped implicitly.
     """
-    table, has_state = LawPiece.table(len(formulas)), problem.friction.state is not None
+    table = LawPiece.table(len(formulas))
     for place, formula in zip(table, formulas, strict=True):
         piece = LawPiece(place)
         if not is_algebraic(problem):
             piece.balls_at = formula.address("balls")
-        if has_state:
+        if problem.friction.states:
             piece.state_at = formula.address("state_value")
         else:
             piece.radii_at = formula.address("radii")
@@ -263,14 +263,13 @@ def start_of(problem: Problem) -> tuple[State, Counts]:
     count.is_block = not problem.body.has_waves
     count.has_inertia = problem.body.has_inertia
     count.is_algebraic = is_algebraic(problem)
-    count.has_state, count.sticks = problem.friction.state is not None, problem.friction.sticks
-    count.reverses = problem.friction.state is not None and problem.friction.state.reverses
-    state.state_now = problem.state
+    count.states, count.sticks = len(problem.friction.states), problem.friction.sticks
+    count.reverses = sum(2**n for n in problem.friction.reverses)
     if not problem.friction.sticks:
         state.rate_now = problem.rate
         count.mode = 1 if (problem.rate or problem.load) >= 0.0 else -1
-    if count.reverses and count.mode < 0:
-        state.state_now = -problem.state
+    for n, value in enumerate(problem.states):
+        state.state_now[n] = -value if count.mode < 0 and n in problem.friction.reverses else value
     count.pause_at = count.lumped_since = count.lump_above = at.NEVER
     count.folds_move = folds_move(problem)
     count.disc = FIRST_DISC

@@ -30,6 +30,7 @@ from stickslip.friction.laws.rate_and_state import RateAndState
 from stickslip.friction.laws.sinusoidal_slip import SinusoidalSlip
 from stickslip.friction.laws.slip_plus_rate import SlipPlusRate
 from stickslip.friction.laws.slip_times_rate import SlipTimesRate
+from stickslip.friction.laws.two_state_rate_and_state import TwoStateRateAndState
 from stickslip.friction.laws.velocity_strengthening import VelocityStrengthening
 
 LAWS: dict[str, type[FrictionLaw]] = {
@@ -48,6 +49,7 @@ LAWS: dict[str, type[FrictionLaw]] = {
         PiecewiseLinearRate,
         VelocityStrengthening,
         RateAndState,
+        TwoStateRateAndState,
         LaggedFriction,
         LuGre,
         Dahl,

@@ -84,7 +84,7 @@ class CompositeLaw(LawOfParts):
         for place, part in self.parts.items():
             if not isinstance(part, FrictionLaw):
                 raise InputError(f"{name}: {place} must be a friction law, got {type(part).__name__}; {MAKES_LAWS}")
-            if part.state is not None:
+            if part.states:
                 raise InputError(f"{name}: {place} must be a law without a state of its own, {part.kind} has one")
         for part, place, other in ((self.slip, "slip", "rate"), (self.rate, "rate", "slip")):
             if getattr(part, f"depends_on_{other}"):

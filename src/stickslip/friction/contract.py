@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
@@ -15,19 +15,32 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.foundation.arguments import CheckedArguments
 from stickslip.foundation.brief_repr import brief_repr
+from stickslip.foundation.errors import InputError
 from stickslip.foundation.field_docs import document_fields
 from stickslip.foundation.quantities import check_fields
+from stickslip.friction.formula.expression import STATES
 
 Formula = Callable[..., Any]
 """A function that returns mu from the parameters (attributes of the first argument), slip u (m) and slip rate v >= 0 (m/s).
 
-For a law with a state variable the state is the fourth argument.
+The states of a law that has some are further arguments, in their order.
 """
+
+
+STATE_NAMES: tuple[Literal["state", "second_state"], ...] = ("state", "second_state")
+"""Names of the states of a law for its users: of the only one, or of the first and the second."""
+MOST_STATES = len(STATES)
+"""Largest number of states of a law."""
+
+
+def one_argument(states: Sequence[Any]) -> Any:
+    """Return the states of a law, which may be none, as the one argument `w` of `FrictionLaw.coefficient`."""
+    return states if len(states) > 1 else states[0] if states else 0.0
 
 
 @dataclass(frozen=True)
 class StateVariable:
-    """Describe the state variable of a law: name, unit and meaning of the number that users see."""
+    """Describe a state variable of a law: name, unit and meaning of the number that users see."""
 
     name: str
     unit: str
@@ -45,6 +58,11 @@ class StateVariable:
     """
     signed: bool = False
     """True if the state may be negative at the start. A state that reverses may in any case."""
+
+
+def states_in(declared: Any) -> tuple[StateVariable, ...]:
+    """Return the state variables that a class declares as its `state`."""
+    return declared if isinstance(declared, tuple) else (declared,) if isinstance(declared, StateVariable) else ()
 
 
 @dataclass(frozen=True)
@@ -74,12 +92,16 @@ class LawContract(CheckedArguments, ABC):
     """The time from which slip is counted: the start of the run, or the last arrest (see `RemembersSlip`)."""
     knot_variable: ClassVar[Literal["slip", "rate"]] = "slip"
     """The variable in which `knots` are given: slip (m) or slip rate (m/s)."""
-    state: ClassVar[StateVariable | None] = None
-    """The state variable, if the law has one: formulas then take it as a fourth argument and `state_rate` is its evolution."""
+    state: ClassVar[StateVariable | tuple[StateVariable, ...] | None] = None
+    """The state variable, if the law has one, or a tuple of two.
+
+    Formulas then take it as a fourth argument, the second as a fifth, and `state_rate` is their evolution. For a law with two
+    states, whatever is said of "the state" below is an array with one axis more in front, that of the states.
+    """
     sticks: ClassVar[bool] = True
     """True if there is a static strength below which the contact rests; False if friction passes smoothly through v = 0."""
     start: ClassVar[Mapping[str, Any]] = {}
-    """Initial values for the example of a law that never sticks: `coefficient` (load / normal load) and `state`."""
+    """Initial values for the example of a law that never sticks: `coefficient` (load / normal load), `state` and `second_state`."""
     many: ClassVar[bool] = False
     """True if fields may be arrays with one number for each member of a batch.
 
@@ -110,6 +132,16 @@ class LawContract(CheckedArguments, ABC):
 
     def check(self) -> None:
         """Check conditions that involve several fields. Raise InputError if one is violated."""
+
+    @property
+    def states(self) -> tuple[StateVariable, ...]:
+        """The state variables: none, one or two."""
+        return states_in(self.state)
+
+    @property
+    def reverses(self) -> tuple[int, ...]:
+        """The numbers of the states that change their sign where slip reverses."""
+        return tuple(i for i, state in enumerate(self.states) if state.reverses)
 
     @property
     def static_excess(self) -> float:
@@ -153,11 +185,11 @@ class LawContract(CheckedArguments, ABC):
     # ---- state ----------------------------------------------------------------------------------------------------------------
 
     @property
-    def state_rate(self) -> Formula:
-        """The function that gives dw/dt (1/s times the unit of w) from parameters, slip, slip rate and state w."""
+    def state_rate(self) -> Formula | tuple[Formula, ...]:
+        """The function that gives dw/dt (1/s times the unit of w) from parameters, slip, slip rate and state, or a tuple of two."""
         raise TypeError(f"{type(self).__name__} has no state variable")
 
-    def inner_state(self, value: float) -> float:
+    def inner_state(self, value: Any) -> Any:
         """Convert a state as users give it to the number w that the formulas use."""
         return value
 
@@ -173,9 +205,9 @@ class LawContract(CheckedArguments, ABC):
         return None
 
     @property
-    def healed_state(self) -> float:
+    def healed_state(self) -> Any:
         """The state, as users see it, of a contact that has been at rest for ever: where a law that sticks starts by default."""
-        return 0.0
+        return 0.0 if len(self.states) < 2 else np.zeros(len(self.states))
 
     # ---------------------------------------------------------------------------------------------------------------------------
 
@@ -188,3 +220,5 @@ class LawContract(CheckedArguments, ABC):
     def __post_init__(self) -> None:
         check_fields(self)
         self.check()
+        if len(self.states) > MOST_STATES:
+            raise InputError(f"{type(self).__name__}: a law has at most {MOST_STATES} states, this one {len(self.states)}")

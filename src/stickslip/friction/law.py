@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from types import SimpleNamespace
@@ -13,8 +14,8 @@ from typing_extensions import override
 
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, Series, fields_of, quantities_of
-from stickslip.friction.contract import Formula, LawContract
-from stickslip.friction.formula.expression import RATE, SLIP, STATE, Expression, Parameter, as_expression, depends_on
+from stickslip.friction.contract import Formula, LawContract, one_argument
+from stickslip.friction.formula.expression import RATE, SLIP, STATES, Expression, Parameter, as_expression, depends_on
 from stickslip.friction.statements import check_statements, is_known, stated_range
 
 Literals = tuple[tuple[str, float], ...]
@@ -22,11 +23,10 @@ Literals = tuple[tuple[str, float], ...]
 
 
 @lru_cache(maxsize=256)
-def _trees(pieces: tuple[Formula, ...], parameters: tuple[str, ...], literals: Literals, has_state: bool) -> tuple[Expression, ...]:
+def _trees(pieces: tuple[Formula, ...], parameters: tuple[str, ...], literals: Literals, states: int) -> tuple[Expression, ...]:
     """Return the formulas as expression trees; laws that differ only in the values of their parameters share them."""
     symbols = SimpleNamespace(**({name: Parameter(name) for name in parameters} | dict(literals)))
-    variables = (SLIP, RATE, STATE) if has_state else (SLIP, RATE)
-    made = {formula: as_expression(formula(symbols, *variables)) for formula in dict.fromkeys(pieces)}
+    made = {formula: as_expression(formula(symbols, SLIP, RATE, *STATES[:states])) for formula in dict.fromkeys(pieces)}
     return tuple(made[formula] for formula in pieces)
 
 
@@ -69,20 +69,28 @@ class FrictionLaw(LawContract):
         """Return the parameters that enter the tree as plain numbers because its shape depends on them: whole exponents."""
         return {name: getattr(self, name) for name, declared in quantities_of(type(self)).items() if declared.whole}
 
+    def inner_states(self, given: Sequence[float]) -> tuple[float, ...]:
+        """Return the states, given as users see them, in the form that the formulas use."""
+        if len(given) < 2:
+            return tuple(float(self.inner_state(value)) for value in given)
+        return tuple(float(value) for value in self.inner_state(np.asarray(given, float)))
+
     # ---- the formulas as trees ----------------------------------------------------------------------------------------------
 
     def trees(self) -> tuple[Expression, ...]:
-        """Return the formulas of `pieces` as expression trees in SLIP, RATE, parameters and, for a law with a state, STATE."""
+        """Return the formulas of `pieces` as expression trees in SLIP, RATE, parameters and, for a law with states, STATES."""
         return self._own_trees
 
     @cached_property
     def _own_trees(self) -> tuple[Expression, ...]:
-        return _trees(self.pieces, self.parameters(), tuple(self.literals().items()), self.state is not None)
+        return _trees(self.pieces, self.parameters(), tuple(self.literals().items()), len(self.states))
 
-    def state_tree(self) -> Expression:
-        """Return dw/dt as an expression tree in SLIP, RATE, STATE and parameters."""
-        (tree,) = _trees((self.state_rate,), self.parameters(), tuple(self.literals().items()), True)
-        return tree
+    def state_trees(self) -> tuple[Expression, ...]:
+        """Return dw/dt of each state as an expression tree in the variables of `trees`."""
+        if not self.states:
+            return ()
+        rates = self.state_rate if isinstance(self.state_rate, tuple) else (self.state_rate,)
+        return _trees(rates, self.parameters(), tuple(self.literals().items()), len(self.states))
 
     # ---- values -------------------------------------------------------------------------------------------------------------
 
@@ -96,8 +104,12 @@ class FrictionLaw(LawContract):
 
     def piece_coefficient(self, i: int, u: Any, v: Any, w: Any = 0.0) -> Any:
         """Return mu by the formula of piece i, also outside its interval; complex slips and rates give complex values."""
-        variables = (u, v) if self.state is None else (u, v, w)
-        return self.pieces[i](SimpleNamespace(**self.numbers(i)), *variables)
+        return self.pieces[i](SimpleNamespace(**self.numbers(i)), u, v, *self.each_state(w))
+
+    def each_state(self, w: Any) -> tuple[Any, ...]:
+        """Return the states in `w`: `w` itself, or its rows if the law has several states; a single number stands for all."""
+        many = len(self.states)
+        return tuple(w) if many > 1 and np.ndim(w) else (w,) * many
 
     def coefficient(self, u: ArrayLike, v: ArrayLike = 0.0, w: ArrayLike = 0.0) -> NDArray[np.float64]:
         """Return the friction coefficient mu while the contact slips.
@@ -109,20 +121,23 @@ class FrictionLaw(LawContract):
         v
             Magnitude of the slip rate (m/s), not negative; 0 means the limit v = 0+.
         w
-            State in the form that the formulas use (`inner_state`), for a law that has one.
+            State in the form that the formulas use (`inner_state`), for a law that has one; for a law with several states an array
+            with one more axis in front, that of the states.
 
         Returns
         -------
         array
             mu (no unit), with the shape to which the arguments broadcast.
         """
-        slip, rate, state = np.broadcast_arrays(np.asarray(u, float), np.asarray(v, float), np.asarray(w, float))
+        given = (np.asarray(one, float) for one in (u, v, *self.each_state(w)))
+        slip, rate, *states = np.broadcast_arrays(*given)
         piece = self.piece_at(slip, rate)
         values = np.empty(slip.shape)
         with np.errstate(over="ignore", under="ignore"):  # exp(-v / 1e-9) may underflow; in a denominator exp(v / 1e-9) overflows
             for i in np.unique(piece).tolist():
                 chosen = piece == i
-                values[chosen] = self.piece_coefficient(i, slip[chosen], rate[chosen], state[chosen])
+                there = one_argument([state[chosen] for state in states])
+                values[chosen] = self.piece_coefficient(i, slip[chosen], rate[chosen], there)
         return values
 
     def static_coefficient(self, u: ArrayLike) -> NDArray[np.float64]:
@@ -159,7 +174,7 @@ class FrictionLaw(LawContract):
     @property
     def creeps(self) -> bool:
         """True if the contact never rests, but slips at rates that differ by orders of magnitude, as faults do."""
-        return not self.sticks and not (self.state is not None and self.state.reverses)
+        return not self.sticks and not self.reverses
 
     @property
     @override

@@ -7,6 +7,7 @@ user has written as a class are compared with its formula when the law is made.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, Series, fields_of
+from stickslip.friction.contract import STATE_NAMES, one_argument
 
 if TYPE_CHECKING:
     from stickslip.friction.law import FrictionLaw
@@ -94,7 +96,7 @@ class _Samples:
     """Friction coefficients and their slopes by the slip rate (s/m), at slips and states (rows) and at slip rates (columns)."""
 
     slip: Floats  # (rows,), m
-    state: Floats  # (rows,)
+    states: list[Floats]  # (rows,) each
     rate: Floats  # (columns,), ascending, m/s
     coefficient: Floats
     slope: Floats
@@ -103,18 +105,20 @@ class _Samples:
     @classmethod
     def of(cls, law: FrictionLaw, slips: Floats, rate: Floats) -> _Samples:
         """Sample a law at all pairs of some slips and slip rates, and at several states."""
-        states = _states(law)
-        slip, state = np.repeat(slips, len(states)), np.tile(states, len(slips))
+        sampled = _states(law)
+        slip = np.repeat(slips, len(sampled[0]) if sampled else 1)
+        states = [np.tile(one, len(slips)) for one in sampled]
+        rows = [one[:, None] for one in states]
         with np.errstate(all="ignore"):
-            value = law.coefficient(slip[:, None], rate, state[:, None])
-            slope = _slopes(law, slip[:, None], rate, state[:, None]) if len(rate) > SOME else np.zeros((0, 1))
-        return cls(slip, state, rate, value, slope, law)
+            value = law.coefficient(slip[:, None], rate, one_argument(rows))
+            slope = _slopes(law, slip[:, None], rate, rows) if len(rate) > SOME else np.zeros((0, 1))
+        return cls(slip, states, rate, value, slope, law)
 
     def place(self, row: int, column: int) -> str:
         """Return where a sample was taken, in words."""
         where = [f"slip {self.slip[row]:.4g} m"] if self.law.depends_on_slip else []
         where += [f"slip rate {self.rate[column]:.4g} m/s"] if len(self.rate) > 1 or not where else []
-        where += [f"state {self.state[row]:.4g}"] if self.law.state is not None else []
+        where += [f"state {one[row]:.4g}" for one in self.states]
         return " and ".join(where)
 
     def check_range(self, name: str, low: float, high: float, step: float, can_be_negative: bool) -> None:
@@ -157,7 +161,7 @@ class _Samples:
                 rate = law.rate_at_slope(float(slope[k]))
                 if rate is None:
                     return
-                there = _slopes(law, self.slip[:1], np.maximum(_number(rate), 0.0), self.state[:1])[0]
+                there = _slopes(law, self.slip[:1], np.maximum(_number(rate), 0.0), [one[:1] for one in self.states])[0]
             if not abs(there - slope[k]) <= 1e-5 * size:
                 raise InputError(
                     f"{type(law).__name__}: rate_at_slope({slope[k]:.6g}) must be the slip rate with this dmu/dv,"
@@ -165,13 +169,13 @@ class _Samples:
                 )
 
 
-def _slopes(law: FrictionLaw, slip: Floats, rate: Floats | float, state: Floats) -> Floats:
+def _slopes(law: FrictionLaw, slip: Floats, rate: Floats | float, states: Sequence[Floats]) -> Floats:
     """Return dmu/dv (s/m), by a complex step of the formula of the piece at each place."""
-    slip, rate, state = np.broadcast_arrays(slip, np.asarray(rate, float), state)
+    slip, rate, *states = np.broadcast_arrays(slip, np.asarray(rate, float), *states)
     piece, slope = law.piece_at(slip, rate), np.empty(slip.shape)
     for i in np.unique(piece).tolist():
         chosen = piece == i
-        there = law.piece_coefficient(i, slip[chosen], rate[chosen] + 1j * TINY_STEP, state[chosen])
+        there = law.piece_coefficient(i, slip[chosen], rate[chosen] + 1j * TINY_STEP, one_argument([one[chosen] for one in states]))
         slope[chosen] = np.imag(there) / TINY_STEP
     return slope
 
@@ -180,9 +184,13 @@ def rises_with_rate(law: FrictionLaw) -> bool:
     """Return False if friction of a law with a state falls with the slip rate at one of many slip rates and steady states."""
     rates = _rates(law)[1:]
     steady = law.steady_state(rates)
-    states = [0.0] if steady is None else [law.inner_state(float(one)) for one in steady[:: len(rates) // SOME]]
+    many, some = len(law.states), slice(None, None, len(rates) // SOME)
+    states = [np.zeros(1)] * many
+    if steady is not None:
+        seen = np.reshape(steady, (many, -1))[:, some]
+        states = list(np.transpose([law.inner_states(one.tolist()) for one in seen.T]))
     with np.errstate(all="ignore"):
-        slopes = _slopes(law, np.zeros((1, 1)), rates, np.array(states)[:, None])
+        slopes = _slopes(law, np.zeros((1, 1)), rates, [one[:, None] for one in states])
     return not bool(np.any(slopes < 0.0))
 
 
@@ -194,7 +202,7 @@ def _beside(law: FrictionLaw, variable: str) -> Floats:
 
 def _rates(law: FrictionLaw) -> Floats:
     """Return the slip rates (m/s) at which a law is sampled, ascending from 0."""
-    if not law.depends_on_rate and law.state is None:
+    if not law.depends_on_rate and not law.states:
         return np.zeros(1)
     return np.unique(np.concatenate((RATES, np.outer(law.rate_scales, MULTIPLES).ravel(), _beside(law, "rate"))))
 
@@ -220,9 +228,10 @@ def _sizes(law: FrictionLaw) -> list[tuple[str, float]]:
     return found
 
 
-def _states(law: FrictionLaw) -> Floats:
-    """Return the states at which a law is sampled, as its formulas use them: 0, and that of its example, if that is a number."""
-    given = law.start.get("state")
-    if law.state is None or not isinstance(given, int | float):
-        return np.zeros(1)
-    return np.unique([0.0, law.inner_state(float(given))])
+def _states(law: FrictionLaw) -> list[Floats]:
+    """Return the samples of each state, as the formulas use it: 0, and that of the law's example, if that is a number."""
+    given = [law.start.get(name) for name in STATE_NAMES[: len(law.states)]]
+    numbers = [float(one) for one in given if isinstance(one, int | float)]
+    if len(numbers) < len(law.states):
+        return [np.zeros(1)] * len(law.states)
+    return [np.array([0.0, one]) for one in law.inner_states(numbers)]

@@ -18,6 +18,7 @@ from stickslip.foundation import netcdf_file
 from stickslip.foundation.arguments import as_path
 from stickslip.foundation.errors import InputError, printable
 from stickslip.foundation.netcdf_file import FullDiskError, write
+from stickslip.friction.contract import STATE_NAMES
 from stickslip.io.soundness import check_history, history_table, number
 from stickslip.loading import HISTORIES, LoadingHistory
 from stickslip.observables.event_table import EVENT_COLUMNS, unit_for
@@ -56,6 +57,7 @@ LONG_NAMES = {
     "traction": "friction on the contact, tau",
     "load": "load on the contact, beta",
     "state": "state of the friction law",
+    "second_state": "second state of the friction law",
 }
 """Meaning of each curve, for the attribute long_name."""
 
@@ -65,9 +67,9 @@ PAPER = "Campillo, Ionescu, Paumier, Renard 1996, Phys. Earth Planet. Inter. 96,
 
 def units(solution: Readings) -> dict[str, str]:
     """Return the unit of each curve of a solution."""
-    load, state = solution.problem.load_unit, solution.problem.friction.state
+    load, states = solution.problem.load_unit, solution.problem.friction.states
     known = {"slip": "m", "event_slip": "m", "slip_rate": "m s-1", "traction": load, "load": load}
-    return known | ({"state": state.unit} if state else {})
+    return known | {name: state.unit for name, state in zip(STATE_NAMES, states, strict=False)}
 
 
 def provenance(solution: Solution) -> dict[str, Any]:
@@ -202,7 +204,7 @@ HISTORY_UNITS = dict.fromkeys(("phase_from", "phase_to", "speed", "bend"), "s") 
 def piece_size(problem: Problem) -> int:
     """Return the number of bytes that a piece of history takes in a file."""
     numbers = sum(place.size if place.inside else 1 for place in HistoryPiece.places.values())
-    return 8 * (numbers + (0 if problem.friction.state is None else at.TERMS))
+    return 8 * (numbers + at.TERMS * len(problem.friction.states))
 
 
 def history_dataset(solution: Solution) -> xr.Dataset:
@@ -234,9 +236,9 @@ def _history(solution: Solution) -> xr.Dataset:
     if len(history.creep):
         about = {"columns": "start_row round_trips error time_error", "units": "1 1 m s", "long_name": "leaps over creep"}
         variables["history_creep"] = (("creep_leap", "creep_column"), history.creep, about)
-    if solution.problem.friction.state is not None:
-        about = {"long_name": "state as the law's formulas see it, Taylor coefficients"}
-        variables["history_state"] = (("piece", "term"), store.state, about)
+    if solution.problem.friction.states:
+        about = {"long_name": "states as the law's formulas see them, Taylor coefficients"}
+        variables["history_state"] = (("piece", "state_variable", "term"), store.state, about)
     return xr.Dataset(variables)
 
 
@@ -332,7 +334,9 @@ def _solution(dataset: xr.Dataset, path: Path) -> Solution:
         raise InputError(f"{path}: made under the selection rule '{rule}', unknown here: stickslip.selection.register it first")
     scenario = read_scenario(attributes["scenario"], str(path))
     columns = {name: _array(dataset, f"history_{name}") for name in HISTORY_AXES}
-    state = _array(dataset, "history_state") if "history_state" in dataset else np.empty((0, at.TERMS))
+    state = _array(dataset, "history_state") if "history_state" in dataset else np.empty((0, 0, at.TERMS))
+    if state.ndim == 2:  # a file from before laws of two states
+        state = state[:, None]
     duration, rtol = number(attributes, "duration", path), number(attributes, "rtol", path)
     store = Store(history_table(columns, path), state)
     creep = _array(dataset, "history_creep") if "history_creep" in dataset else NO_LEAPS

@@ -31,7 +31,7 @@ LAST_CAUSE = Cause.HEALING
 """Largest code for the cause of a shock."""
 FINITE = ("phase_from", "phase_to", "speed", "bend", "slip", "law_slip", "load", "rate")
 """Fields of a piece of the history that must be finite."""
-SAME = ("is_block", "has_inertia", "is_algebraic", "has_state", "reverses", "sticks", "folds_move", "knots_in_rate", "varies")
+SAME = ("is_block", "has_inertia", "is_algebraic", "states", "reverses", "sticks", "folds_move", "knots_in_rate", "varies")
 """Counts that follow from the problem alone, so that those in a file must be the same."""
 FLAGS = ("moved", "jump", "stiff", "branch_ended", "is_locked", "to_the_end", "sparse", "lumped", "lumps")
 """Counts that are 0 or 1."""
@@ -115,9 +115,9 @@ def _shapes_of_columns(columns: dict[str, NDArray[Any]]) -> Iterator[Fault]:
 
 def _shapes_of_history(history: History) -> Iterator[Fault]:
     store, pieces = history.store, len(history)
-    has_state = history.problem.friction.state is not None
+    states = len(history.problem.friction.states)
     yield "number of pieces of the history", pieces < 1
-    yield "shape or type of history_state", not _is(store.state, (pieces if has_state else 0, at.TERMS), "f")
+    yield "shape or type of history_state", not _is(store.state, (pieces if states else 0, states, at.TERMS), "f")
     yield "shape or type of history_creep", not _is(history.creep, (len(history.creep), 4), "f")
 
 
@@ -179,7 +179,8 @@ def _shapes_of_checkpoint(checkpoint: Checkpoint) -> Iterator[Fault]:
 
 def _places(record: Record, *names: str) -> Any:
     """Return some of a record's numbers as an array."""
-    return record.numbers[[record.places[name].first for name in names]]
+    places = [record.places[name] for name in names]
+    return record.numbers[[n for place in places for n in range(place.first, place.first + place.size)]]
 
 
 def _faults_of_places(count: Counts, setup: Setup, pieces: int, leaps: int) -> Iterator[Fault]:
@@ -193,7 +194,7 @@ def _faults_of_places(count: Counts, setup: Setup, pieces: int, leaps: int) -> I
         yield "engine_count previous_from", count.previous_from > count.previous_to
     else:
         yield "engine_count new_from", not 1 <= count.new_from <= length
-        echoes = setup.params.reflection == -1.0 and count.is_block == count.has_state == count.varies == 0
+        echoes = setup.params.reflection == -1.0 and count.is_block == count.states == count.varies == 0
         yield "engine_count sparse", not (echoes and count.sticks == 1)
     yield "engine_count echo_of", not -1 <= count.echo_of < length
     yield "engine_count piece", not 0 <= count.piece < len(setup.law)

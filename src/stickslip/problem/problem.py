@@ -24,7 +24,7 @@ from stickslip.loading import LoadingHistory
 from stickslip.loading.contract import SILENT, VARYING
 from stickslip.problem.parameters import Parameters
 from stickslip.problem.selection_rule import SelectionRule, checked, name_of
-from stickslip.problem.start import Start, check_rate, start_of
+from stickslip.problem.start import INITIAL_STATES, Start, check_rate, start_of
 
 MAY_VARY = ("pull_rate", "far_stress")
 """Fields of a problem that may be a loading history instead of a number."""
@@ -67,6 +67,8 @@ class Problem(CheckedArguments):
     initial_state
         Initial value of the state of a law that has one, in the unit of the law. The default for a law that sticks is 0, which is
         healed; for any other law with a state the value must be given, unless the contact starts in steady sliding.
+    initial_second_state
+        The same for the second state of a law that has two.
     initial_rate
         Slip rate v0 at the start (m/s), of a contact with inertia under a law that never sticks. The default is the rate at which
         the initial load and friction in the initial state balance. If neither load nor state is given, the contact starts in
@@ -107,6 +109,7 @@ class Problem(CheckedArguments):
     initial_excess: OptionalNumber = quantity(LOAD, "initial load minus static strength, kept exactly", default=None)
     # not declared as a quantity, because the law determines its unit
     initial_state: OptionalNumber = field(default=None)  # type: ignore[arg-type] # the annotation is that of a converted value
+    initial_second_state: OptionalNumber = field(default=None)  # type: ignore[arg-type] # as for the one before
     initial_rate: OptionalNumber = quantity(
         "m/s", "slip rate v0 at the start, of a contact with inertia that never sticks", default=None
     )
@@ -134,11 +137,12 @@ class Problem(CheckedArguments):
 
     def _shown(self) -> dict[str, str]:
         """Return the texts of the fields that have not their default value, by name; those of body and friction come first."""
-        state, shown = self.friction.state, dict(shown_fields(self, {LOAD: self.load_unit}))
+        shown = dict(shown_fields(self, {LOAD: self.load_unit}))
         for name in self._varying:
             shown[name] = brief_repr(getattr(self, name), {VARYING: quantities_of(Problem)[name].unit})
-        if state is not None and self.initial_state is not None:
-            shown["initial_state"] = f"'{brief(self.initial_state, state.unit)}'"
+        for name, state in zip(INITIAL_STATES, self.friction.states, strict=False):
+            if getattr(self, name) is not None:
+                shown[name] = f"'{brief(getattr(self, name), state.unit)}'"
         return shown | ({"selection": f"'{self.rule}'"} if "selection" in shown else {})
 
     def __repr__(self) -> str:
@@ -174,30 +178,32 @@ class Problem(CheckedArguments):
             getattr(self, name).check()
 
     def _check_load(self) -> None:
-        steady = self.has_initial_rate and self.initial_state is None
+        steady = self.has_initial_rate and not self.given_states
         if (self.initial_load is None) == (self.initial_excess is None) and not (steady and self.initial_load is None):
             found = "neither" if self.initial_load is None else "both"
             raise InputError(f"Problem: needs either initial_load or initial_excess (load minus static strength), got {found}")
 
     def _check_state(self) -> None:
         law, name = self.friction, type(self.friction).__name__
-        if law.state is None:
-            if self.initial_state is not None:
-                raise InputError(f"Problem: initial_state: {name} has no state variable")
+        for needless in INITIAL_STATES[len(law.states) :]:
+            if getattr(self, needless) is not None:
+                raise InputError(f"Problem: {needless}: {name} has no {'second ' if law.states else ''}state variable")
+        if not law.states:
             return
         if not law.sticks and self.initial_excess is not None:
             raise InputError(f"Problem: initial_excess: {name} has no static strength to exceed, give initial_load")
-        signed = law.state.signed or law.state.reverses
-        above = None if law.sticks or signed else 0.0
-        declared = Quantity(law.state.unit, law.state.meaning, above=above, at_least=None if signed else 0.0)
-        value = self.initial_state
-        if value is None and (law.sticks or (law.state.reverses and self.initial_load is not None)):
-            value = law.healed_state
-        if value is None and self.has_initial_rate and self.initial_load is None:
-            return
-        if value is None:
-            raise InputError(f"Problem: needs initial_state, the {law.state.meaning}, in {law.state.unit}")
-        object.__setattr__(self, "initial_state", declared.check("Problem", "initial_state", value))
+        healed = law.sticks or (law.reverses and self.initial_load is not None)
+        steady = self.has_initial_rate and self.initial_load is None and not healed and not self.given_states
+        for i, state in enumerate(() if steady else law.states):
+            field_name = INITIAL_STATES[i]
+            value = getattr(self, field_name)
+            if value is None and not healed:
+                raise InputError(f"Problem: needs {field_name}, the {state.meaning}, in {state.unit}")
+            signed = state.signed or state.reverses
+            above = None if law.sticks or signed else 0.0
+            declared = Quantity(state.unit, state.meaning, above=above, at_least=None if signed else 0.0)
+            value = float(np.ravel(law.healed_state)[i]) if value is None else value
+            object.__setattr__(self, field_name, declared.check("Problem", field_name, value))
 
     def _check_far_side(self) -> None:
         if self.body.is_driven_rigidly and (self.far_stress is not None or self.far_stress_rate != 0.0):
@@ -312,11 +318,16 @@ class Problem(CheckedArguments):
         return self.load - self.body.damping * self.rate
 
     @property
-    def state(self) -> float:
-        """The initial state in the form that the formulas use (`FrictionLaw.inner_state`); 0 for a law without one."""
+    def given_states(self) -> tuple[float, ...]:
+        """The initial states, as users see them; none for a law without a state, or in steady sliding that is not written out."""
+        return tuple(value for value in (getattr(self, name) for name in INITIAL_STATES) if value is not None)
+
+    @property
+    def states(self) -> tuple[float, ...]:
+        """The initial states in the form that the formulas use (`FrictionLaw.inner_state`); none for a law without one."""
         if self.has_initial_rate:
-            return self._start.state
-        return 0.0 if self.initial_state is None else self.friction.inner_state(self.initial_state)
+            return self._start.states
+        return self.friction.inner_states(self.given_states)
 
     @cached_property
     def strength(self) -> float:

@@ -16,23 +16,26 @@ from numpy.typing import NDArray
 
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief
+from stickslip.friction.contract import STATE_NAMES, one_argument
 
 if TYPE_CHECKING:
     from stickslip.problem.problem import Problem
 
 FASTEST, SLOWEST = 1e3, 1e-300
 """Slip rates (m/s) between which load and friction must balance; a contact that would be slower starts at rate 0."""
+INITIAL_STATES = tuple(f"initial_{name}" for name in STATE_NAMES)
+"""Names of the initial states in a `Problem`."""
 AT_ONCE, ROUNDS = 304, 8
 """Number of slip rates that are tried together, first one in each decade, and how often they close in on the balance."""
 Floats = NDArray[np.float64]
 
 
 class Start(NamedTuple):
-    """A contact at the start, with signs: slip rate (m/s), load (Pa or N), and state in the form that the formulas use."""
+    """A contact at the start, with signs: slip rate (m/s), load (Pa or N), and states in the form that the formulas use."""
 
     rate: float
     load: float
-    state: float  # one that reverses: in the forward direction
+    states: tuple[float, ...]  # those that reverse: in the forward direction
 
 
 def check_rate(problem: Problem) -> None:
@@ -51,8 +54,11 @@ def written_out(problem: Problem) -> Problem:
     if not problem.has_initial_rate or problem.initial_load is not None or problem.initial_excess is not None:
         return problem
     law = problem.friction
-    state = None if law.state is None else float(law.outer_state(np.array(problem.state)))
-    return replace(problem, initial_load=problem.load, initial_state=state)
+    if not law.states:
+        return replace(problem, initial_load=problem.load)
+    seen = np.ravel(law.outer_state(np.array(one_argument(problem.states))))
+    states: dict[str, Any] = dict(zip(INITIAL_STATES, seen.tolist(), strict=False))
+    return replace(problem, initial_load=problem.load, **states)
 
 
 def start_of(problem: Problem) -> Start:
@@ -61,38 +67,38 @@ def start_of(problem: Problem) -> Start:
     if problem.initial_load is None and problem.initial_excess is None:
         return _steady(problem, problem.first_pull_rate if rate is None else rate)
     load = problem.strength + problem.initial_excess if problem.initial_load is None else problem.initial_load  # type: ignore[operator]
-    state = 0.0 if problem.initial_state is None else problem.friction.inner_state(problem.initial_state)
-    if rate is None and problem.friction.state is not None and problem.friction.state.reverses:
+    states = problem.friction.inner_states(problem.given_states)
+    if rate is None and problem.friction.reverses:
         rate = 0.0
     if rate is None:
-        rate = math.copysign(_balance(_resistance(problem, state), abs(load), problem), load)
-    return Start(rate, load, state)
+        rate = math.copysign(_balance(_resistance(problem, states), abs(load), problem), load)
+    return Start(rate, load, states)
 
 
 def _steady(problem: Problem, rate: float) -> Start:
     """Return steady sliding at a slip rate (m/s) of either sign."""
-    law, state = problem.friction, 0.0
+    law, states = problem.friction, tuple[float, ...]()
     if rate == 0.0:
         none = "the pull rate is 0 at first" if problem.initial_rate is None else "initial_rate is 0"
         raise InputError(
             f"Problem: needs initial_load, and initial_state if the law has a state: {none}, so nothing slides steadily"
         )
-    if law.state is not None:
+    if law.states:
         sliding = law.steady_state(abs(rate))
         if sliding is None:
             name = type(law).__name__
             raise InputError(
                 f"Problem: needs initial_load and initial_state: {name} does not say in which state it slides steadily"
             )
-        state = law.inner_state(float(sliding))
-    load = math.copysign(_resistance(problem, state)(abs(rate)).item(), rate)
-    return Start(rate, load, math.copysign(state, rate) if law.state is not None and law.state.reverses else state)
+        states = law.inner_states(np.ravel(sliding).tolist())
+    load = math.copysign(_resistance(problem, states)(abs(rate)).item(), rate)
+    return Start(rate, load, tuple(math.copysign(1.0, rate) * one if i in law.reverses else one for i, one in enumerate(states)))
 
 
-def _resistance(problem: Problem, state: float) -> Callable[[Any], Floats]:
+def _resistance(problem: Problem, states: tuple[float, ...]) -> Callable[[Any], Floats]:
     """Return the load (Pa or N) that slip rates v >= 0 (m/s) take: damping v + S mu."""
     law, slip, damping, normal = problem.friction, problem.law_slip, problem.body.damping, problem.normal
-    return lambda rate: np.asarray(damping * rate + normal * law.coefficient(slip, rate, state))
+    return lambda rate: np.asarray(damping * rate + normal * law.coefficient(slip, rate, one_argument(states)))
 
 
 def _balance(resistance: Callable[[Any], Floats], load: float, problem: Problem) -> float:

@@ -81,7 +81,7 @@ def _given(scenario: Scenario) -> dict[str, list[Fact]]:
     owners = {"body": (problem.body, ""), "loading": (problem, ""), "initial": (problem, "initial_"), "run": (scenario, "")}
     for table, (owner, prefix) in owners.items():
         facts[table] = []
-        for name, (declared, _) in quantities_in(table, type(problem.body), problem.friction.state).items():
+        for name, (declared, _) in quantities_in(table, type(problem.body), problem.friction.states).items():
             value = getattr(owner, prefix + name)
             off = owner is scenario and value == 0.0  # an option of a run
             unfelt = name.startswith("far_stress") and problem.body.is_driven_rigidly

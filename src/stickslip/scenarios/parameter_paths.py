@@ -90,7 +90,7 @@ def parameter_paths(scenario: Scenario) -> Iterator[ParameterPath]:
     yield from _paths_in(problem.body, "body")
     yield from _paths_in(problem.friction, "friction")
     for table in ("loading", "initial", "run"):
-        for name, (declared, _) in entries_in(table, type(problem.body), problem.friction.state).items():
+        for name, (declared, _) in entries_in(table, type(problem.body), problem.friction.states).items():
             if isinstance(declared, Quantity) and (f"{table}.{name}" != "initial.rate" or problem.has_initial_rate):
                 yield ParameterPath(f"{table}.{name}", declared)
     yield ParameterPath("run.events", EVENTS)

@@ -238,7 +238,7 @@ def scenario_of(raw: Mapping[str, Any], source: Source) -> Scenario:
     document, file = read_document(raw, source), source.file
     body, law = (read_part(table, document[table], source) for table in KINDS)
     others = ("loading", "initial", "run")
-    loading, initial, run = (read_table(table, type(body), document[table], source, law.state) for table in others)
+    loading, initial, run = (read_table(table, type(body), document[table], source, law.states) for table in others)
     start = {f"initial_{name}": value for name, value in initial.items()}
     try:
         problem = Problem(body, law, **loading, **start, selection=run.pop("selection"))

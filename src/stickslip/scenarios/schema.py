@@ -17,7 +17,7 @@ from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import Field as Declared
 from stickslip.foundation.quantities import Part, Quantity, fields_of, in_units
 from stickslip.friction import LAWS
-from stickslip.friction.contract import StateVariable
+from stickslip.friction.contract import STATE_NAMES, StateVariable
 from stickslip.loading import HISTORIES
 from stickslip.loading.contract import VARYING
 from stickslip.problem.problem import LOAD, MAY_VARY, Problem
@@ -33,7 +33,7 @@ TABLES = ("body", "friction", "loading", "initial", "run")
 """The tables of a scenario."""
 MOST_EVENTS = 10**12
 """Number of slip events that no run reaches."""
-STATE = Quantity("1", "state variable of the friction law, if it has one")
+NO_STATE = {"state": Quantity("1", "state variable of the friction law, if it has one")}
 """Declaration of the initial state for a law that has no state, and for which none may be given."""
 
 
@@ -62,11 +62,11 @@ _DOCUMENT["loading"] = Key(_read_inner, MappingProxyType({}))
 """The keys of a scenario outside its tables, and the tables."""
 
 
-def quantities_in(table: str, kind: type, state: StateVariable | None = None) -> dict[str, tuple[Quantity, Any]]:
+def quantities_in(table: str, kind: type, states: tuple[StateVariable, ...] = ()) -> dict[str, tuple[Quantity, Any]]:
     """Return each quantity of a table with its default (MISSING if there is none).
 
     `kind` is the class of the law for [friction] and of the body for every other table, because loads are stresses for a slab and
-    forces for a block. `state` is the state variable of the friction law, which [initial] needs.
+    forces for a block. `states` are those of the friction law, which [initial] needs.
     """
     if table in KINDS:
         return _declared(kind)
@@ -76,14 +76,14 @@ def quantities_in(table: str, kind: type, state: StateVariable | None = None) ->
     ours = {name: entry for name, entry in _declared(Problem).items() if name.startswith("initial_") == (table == "initial")}
     units = {LOAD: getattr(kind, "load_unit", LOAD)}
     found = {name.removeprefix("initial_"): (in_units(declared, units), default) for name, (declared, default) in ours.items()}
-    remembered = Quantity(state.unit, state.meaning) if state else STATE
-    return found | {"state": (remembered, None)} if table == "initial" else found
+    remembered = {name: Quantity(state.unit, state.meaning) for name, state in zip(STATE_NAMES, states, strict=False)}
+    return found | {name: (entry, None) for name, entry in (remembered or NO_STATE).items()} if table == "initial" else found
 
 
-def entries_in(table: str, kind: type, state: StateVariable | None = None) -> dict[str, tuple[Declared, Any]]:
+def entries_in(table: str, kind: type, states: tuple[StateVariable, ...] = ()) -> dict[str, tuple[Declared, Any]]:
     """Return every field of a table by its key, with its default: quantities, and other fields of a law or a loading history."""
     if not has_kind(table):
-        return dict(quantities_in(table, kind, state))
+        return dict(quantities_in(table, kind, states))
     of = table.partition(".")[2]
     unit = _declared(Problem)[of][0].unit if of in MAY_VARY else ""
     return {key_of(name, entry): (in_units(entry, {VARYING: unit}), default) for name, (entry, default) in fields_of(kind).items()}
@@ -99,10 +99,10 @@ def _declared(kind: type) -> dict[str, tuple[Quantity, Any]]:
 
 
 @cache
-def keys_of(table: str, kind: type, state: StateVariable | None = None) -> Mapping[str, Key]:
+def keys_of(table: str, kind: type, states: tuple[StateVariable, ...] = ()) -> Mapping[str, Key]:
     """Return the keys of one table."""
     keys = {"kind": Key(lambda value, _: value)} if has_kind(table) else {}  # `kind_of` has checked it
-    for name, (declared, default) in entries_in(table, kind, state).items():
+    for name, (declared, default) in entries_in(table, kind, states).items():
         keys[name] = Key(partial(_read_entry, declared), default, describe(declared))
     if table == "run":
         keys["events"] = Key(lambda value, place: check_events(value, place.source.file, str(place)), None)
@@ -176,7 +176,9 @@ def read_document(raw: Mapping[str, Any], source: Source) -> dict[str, Any]:
     return _read_keys(_DOCUMENT, raw, source)
 
 
-def read_table(table: str, kind: type, raw: dict[str, Any], source: Source, state: StateVariable | None = None) -> dict[str, Any]:
+def read_table(
+    table: str, kind: type, raw: dict[str, Any], source: Source, states: tuple[StateVariable, ...] = ()
+) -> dict[str, Any]:
     """Check one table and return it, with the points from a data file if the table names one. Raises InputError."""
     columns = columns_of(table, kind)
     if columns and "file" in raw:
@@ -189,7 +191,7 @@ def read_table(table: str, kind: type, raw: dict[str, Any], source: Source, stat
         points = read_points(name, source.folder, columns, f"{source.file}: [{table}] file", along)
         taken = {"file"} if along is None else {"file", "along"}
         raw = {key: value for key, value in raw.items() if key not in taken} | points
-    return _read_keys(keys_of(table, kind, state), raw, source, table)
+    return _read_keys(keys_of(table, kind, states), raw, source, table)
 
 
 def columns_of(table: str, kind: type) -> dict[str, str]:

@@ -12,7 +12,7 @@ from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.formatting import clean
 from stickslip.foundation.quantities import NamedNumbers, Part, fields_of
 from stickslip.friction import LAWS, FrictionLaw
-from stickslip.friction.contract import StateVariable
+from stickslip.friction.contract import STATE_NAMES, StateVariable, states_in
 from stickslip.loading import HISTORIES
 from stickslip.problem.selection_rule import SELECTION_RULES
 from stickslip.scenarios import library
@@ -142,8 +142,8 @@ def _written(example: dict[str, Any], about: str = "") -> str:
             lines += [f"# kind = {json.dumps(other.kind)}  # {_first_line(other)}" for other in LAWS.values() if other is not kind]
         if table == "loading":
             lines.append(f"# A pull rate that varies: `stickslip new slab --pull KIND`, KIND one of {', '.join(HISTORIES)}.")
-        state: Any = getattr(kinds["friction"], "state", None)  # a typed state is not that of the class
-        lines += _table(table, kind, example[table], state if isinstance(state, StateVariable) else None)
+        states = states_in(getattr(kinds["friction"], "state", None))  # a typed state is not that of the class
+        lines += _table(table, kind, example[table], states)
         if table == "run":
             given = [f"{key} = {_toml(example[table][key])}" for key in ("events", "selection") if key in example[table]]
             lines += given or [f'# selection = "{SELECTION_RULES[0]}"  # or {", ".join(SELECTION_RULES[1:])}']
@@ -152,9 +152,10 @@ def _written(example: dict[str, Any], about: str = "") -> str:
 
 
 def _start_of(law: type[FrictionLaw], body: dict[str, Any]) -> dict[str, Any]:
-    """Return [initial] for a law that never sticks: its example's state, and a load of the example's share of the normal load."""
+    """Return [initial] for a law that never sticks: its example's states, and a load of the example's share of the normal load."""
     read = read_part("body", body, Source("starter"))
-    return {"load": law.start["coefficient"] * read.normal_load, "state": law.start["state"]}
+    states = {name: law.start[name] for name in STATE_NAMES if name in law.start}
+    return {"load": law.start["coefficient"] * read.normal_load} | states
 
 
 def _keyed(law: type[FrictionLaw]) -> dict[str, Any]:
@@ -162,12 +163,12 @@ def _keyed(law: type[FrictionLaw]) -> dict[str, Any]:
     return {key_of(name, entry): law.example[name] for name, (entry, _) in fields_of(law).items() if name in law.example}
 
 
-def _table(table: str, kind: type, example: dict[str, Any], state: StateVariable | None = None) -> list[str]:
+def _table(table: str, kind: type, example: dict[str, Any], states: tuple[StateVariable, ...] = ()) -> list[str]:
     """Return the lines of a table with its keys, and of the tables inside it."""
     lines, inner = [f"[{table}]"], []
     if has_kind(table):
         lines.append(f"kind = {json.dumps(kind.kind)}  # {_first_line(kind)}")  # type: ignore[attr-defined] # registered
-    for name, (entry, default) in entries_in(table, kind, state).items():
+    for name, (entry, default) in entries_in(table, kind, states).items():
         value = example.get(name)
         if table == "loading" and isinstance(value, dict):
             inner += ["", f"# {describe(entry)}, as it varies in time", *_table(f"{table}.{name}", HISTORIES[value["kind"]], value)]

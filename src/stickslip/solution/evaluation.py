@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import Quantity
+from stickslip.friction.contract import STATE_NAMES
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.history import History, Positions, Side
 from stickslip.trajectory.tables import shocks_table
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from stickslip.observables.field import Field
 
 Floats = NDArray[np.float64]
-Curve = Literal["slip", "slip_rate", "traction", "load", "state", "event_slip"]
+Curve = Literal["slip", "slip_rate", "traction", "load", "state", "second_state", "event_slip"]
 MANY = 100_000
 """Number of pieces from which on fewer values of each are looked at for a curve."""
 TIME = Quantity("s", "time")
@@ -106,10 +107,21 @@ class Readings:
 
         Raises InputError if the law has no state variable.
         """
-        if self.problem.friction.state is None:
-            raise InputError(f"state: {type(self.problem.friction).__name__} has no state variable")
+        return self._state(t, 0)
+
+    def second_state(self, t: ArrayLike) -> Floats:
+        """Return the second state variable of a law that has two, as `state` does the first."""
+        return self._state(t, 1)
+
+    def _state(self, t: ArrayLike, number: int) -> Floats:
+        law = self.problem.friction
+        if number >= len(law.states):
+            which = "second state" if number else "state"
+            raise InputError(f"{STATE_NAMES[number]}: {type(law).__name__} has no {which} variable")
         at, shape = self._at(t, "right")
-        return self.problem.friction.outer_state(self.history.state(at)).reshape(shape)
+        states = self.history.states(at)
+        seen = law.outer_state(np.array(states)) if len(states) > 1 else law.outer_state(states[0])[None]
+        return np.asarray(seen[number]).reshape(shape)
 
     def field(self, x: ArrayLike, t: ArrayLike, side: Side = "right") -> Field:
         """Return displacement, velocity and shear stress inside the slab.
@@ -157,8 +169,8 @@ class Readings:
 
     @property
     def curves(self) -> tuple[Curve, ...]:
-        """The names of the quantities to draw: slip, slip rate, traction, load, and the state of a law that has one."""
-        return CURVES if self.problem.friction.state is None else (*CURVES, "state")
+        """The names of the quantities to draw: slip, slip rate, traction, load, and the states of a law that has some."""
+        return (*CURVES, *STATE_NAMES[: len(self.problem.friction.states)])
 
     def curve(self, name: Curve, start: float | None = None, end: float | None = None, points: int = 2000) -> tuple[Floats, Floats]:
         """Return times and values of one quantity for drawing.
@@ -210,7 +222,7 @@ class Readings:
     def _drawn(self, name: Curve, breaks: Floats, right: Floats) -> Floats:
         """Return the left limits of a quantity at breaks (s), and its right limits at times (s)."""
         evaluate = getattr(self, name)
-        if name in ("slip", "event_slip", "state"):  # continuous: both limits are the same
+        if name in ("slip", "event_slip", *STATE_NAMES):  # continuous: both limits are the same
             found: Floats = evaluate(np.concatenate([breaks, right]))
             return found
         return np.concatenate([evaluate(breaks, side="left"), evaluate(right)])

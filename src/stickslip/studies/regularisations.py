@@ -85,7 +85,7 @@ def check_massless(problem: Problem) -> ElasticSlab:
         raise InputError(
             f"regularise: a contact_mass of {slab.contact_mass:g} kg/m^2 makes the slip rate unique already: start from 0"
         )
-    if problem.friction.state is not None:
+    if problem.friction.states:
         raise InputError(
             f"regularise: {problem.friction.kind} friction has a state of its own already: start from a law of slip rate"
         )

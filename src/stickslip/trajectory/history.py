@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,6 +13,7 @@ from stickslip.engine.codegen.compiler import kernel
 from stickslip.engine.state.layout import Integers, Store
 from stickslip.engine_input.forcing import inflow_of
 from stickslip.foundation.errors import InputError
+from stickslip.friction.contract import one_argument
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.phase_index import Phases
 
@@ -328,11 +329,14 @@ class History:
         add_up(whole, past, sums)
         return sums + (self.grown(end) - self.grown(begin))
 
-    def state(self, at: Positions) -> Floats:
-        """Return the state of the friction law as its formulas see it in forward slip; 0 for a law without a state."""
-        if self.problem.friction.state is None:
-            return np.zeros(len(at.xi))
-        return np.where(at.before, self.problem.state, horner(self.store.state[at.piece], at.xi))
+    def states(self, at: Positions) -> list[Floats]:
+        """Return each state of the friction law as its formulas see it in forward slip."""
+        known = self.store.state
+        return [np.where(at.before, start, horner(known[at.piece, n], at.xi)) for n, start in enumerate(self.problem.states)]
+
+    def state(self, at: Positions) -> Any:
+        """Return the states as the one argument of `FrictionLaw.coefficient`; 0 for a law without a state."""
+        return one_argument(self.states(at))
 
     def law_slip(self, at: Positions) -> Floats:
         """Return the slip that the friction law sees, m."""
@@ -342,10 +346,10 @@ class History:
 
     def resistance(self, at: Positions) -> Floats:
         """Return the traction of the law against slip, S mu(u, |v|, state), slab: Pa, block: N."""
-        law, state = self.problem.friction, self.state(at)
-        if law.state is not None and law.state.reverses:
-            state = np.where(self.mode(at) < 0, -state, state)
-        return np.asarray(self.problem.normal * law.coefficient(self.law_slip(at), np.abs(self.rate(at)), state))
+        law, states = self.problem.friction, self.states(at)
+        for n in law.reverses:
+            states[n] = np.where(self.mode(at) < 0, -states[n], states[n])
+        return np.asarray(self.problem.normal * law.coefficient(self.law_slip(at), np.abs(self.rate(at)), one_argument(states)))
 
     def friction(self, at: Positions) -> Floats:
         """Return the friction traction minus the reference strength, with the sign of the load."""
@@ -353,8 +357,8 @@ class History:
         body = self.problem.body
         if not body.has_inertia:
             return excess - body.damping * rate
-        state, mode = self.problem.friction.state, self.mode(at)
+        mode = self.mode(at)
         by_law = np.where(mode < 0, -1.0, 1.0) * self.resistance(at) - self.problem.strength
-        if state is not None and state.reverses:  # such a state holds a traction at rest, too
+        if self.problem.friction.reverses:  # such a state holds a traction at rest, too
             return by_law
         return np.where((mode == 0) | (at.before & (rate == 0.0)), excess, by_law)

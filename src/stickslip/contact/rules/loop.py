@@ -116,7 +116,7 @@ def first_rate(problem: Problem) -> float:
 
     The result is 0 for a contact that is stuck, has inertia, or whose law has a state.
     """
-    if problem.body.has_inertia or problem.friction.state is not None:
+    if problem.body.has_inertia or problem.friction.states:
         return 0.0
     stable, table = selection_table(problem)
     grows = problem.excess == 0.0 and problem.first_pull_rate > 0.0

@@ -16,7 +16,7 @@ Sources: Rump 2010, Verification methods, Acta Numerica 19 (balls); Rudin 1987, 
 from __future__ import annotations
 
 from stickslip.engine.codegen.recurrences import Recurrences, exp_of
-from stickslip.friction.formula.expression import RATE, SLIP, STATE, Expression, nodes_of
+from stickslip.friction.formula.expression import RATE, SLIP, STATES, VARIABLES, Expression, nodes_of
 
 VARIED = ("exp", "expm1", "pow")
 """Operations whose results vary by orders of magnitude without coming near zero."""
@@ -35,7 +35,7 @@ class Balls:
         self.centres: dict[Expression, None] = {}
         self.lines: list[str] = []
         for node in formula.nodes:
-            if node in wanted and formula.varies[node] and node not in (SLIP, RATE, STATE):
+            if node in wanted and formula.varies[node] and node not in VARIABLES:
                 self._write(f"r{formula.index[node]}", self._radius_rule(node))
 
     # ---- names --------------------------------------------------------------------------------------------------------------
@@ -44,7 +44,8 @@ class Balls:
         """Return the name of a node's radius, or None if the node is constant."""
         if not self._formula.varies[node]:
             return None
-        return {SLIP: "r_slip", RATE: "r_rate", STATE: "r_state"}.get(node) or f"r{self._formula.index[node]}"
+        own = {SLIP: "r_slip", RATE: "r_rate"} | {state: f"r_{state.name}" for state in STATES}
+        return own.get(node) or f"r{self._formula.index[node]}"
 
     def _centre(self, node: Expression) -> str:
         """Return the name of a node's value at the centre."""
@@ -127,7 +128,7 @@ class Balls:
         ra = self.radius(node)
         if not ra:
             return self._size(node)
-        name = f"b{self._formula.index[node]}" if node.arguments else f"b_{node.operation}"
+        name = f"b{self._formula.index[node]}" if node.arguments else f"b_{node.name}"
         plain = f"max({self._size(node)} - {ra}, {TINIEST!r})"
         if not self._varies_much(node):
             return self._write(name, plain)
@@ -150,7 +151,7 @@ class Balls:
         """Write an upper bound of |log(value / centre)| of a node on the disc, and return its name."""
         if not self.radius(node):
             return "0.0"
-        name = f"l{self._formula.index[node]}" if node.arguments else f"l_{node.operation}"
+        name = f"l{self._formula.index[node]}" if node.arguments else f"l_{node.name}"
         plain = f"log_radius({self._size(node)}, {self.radius(node)})"
         if not self._varies_much(node):
             return self._write(name, plain)

@@ -50,8 +50,8 @@ class CompiledFormula:
     Each function is generated, compiled and loaded when it is first needed. What an earlier run compiled comes from the disk.
     """
 
-    def __init__(self, formula: Expression, parameters: tuple[str, ...], state_rate: Expression | None = None) -> None:
-        self._writer = FormulaWriter(formula, parameters, ORDER, state_rate)
+    def __init__(self, formula: Expression, parameters: tuple[str, ...], state_rates: tuple[Expression, ...] = ()) -> None:
+        self._writer = FormulaWriter(formula, parameters, ORDER, state_rates)
         self._functions: dict[str, Any] = {}
         self.size = self._writer.size
 
@@ -94,12 +94,12 @@ _DOUBLE = ctypes.POINTER(ctypes.c_double)
 
 
 @cache
-def compile_formula(formula: Expression, parameters: tuple[str, ...], state_rate: Expression | None = None) -> CompiledFormula:
+def compile_formula(formula: Expression, parameters: tuple[str, ...], state_rates: tuple[Expression, ...] = ()) -> CompiledFormula:
     """Return the compiled functions of a formula; equal formulas share one object in all problems.
 
-    `state_rate` is the formula of the time derivative of the law's state, for a law that has one.
+    `state_rates` are the formulas of the time derivatives of the law's states.
     """
-    return CompiledFormula(formula, parameters, state_rate)
+    return CompiledFormula(formula, parameters, state_rates)
 
 
 @intrinsic
@@ -115,9 +115,9 @@ def call_value(typingctx: Any, address: Any, c: Any, dx: Any, s: Any, out: Any) 
 
 
 @intrinsic
-def call_state_value(typingctx: Any, address: Any, c: Any, dx: Any, s: Any, w: Any, out: Any) -> Any:
-    """Call `state_value(c, dx, s, w, out)`, the function of a formula at `address`."""
-    return types.void(types.int64, FLOATS, types.float64, types.float64, types.float64, FLOATS), _call
+def call_state_value(typingctx: Any, address: Any, c: Any, dx: Any, s: Any, states: Any, out: Any) -> Any:
+    """Call `state_value(c, dx, s, states, out)`, the function of a formula at `address`."""
+    return types.void(types.int64, FLOATS, types.float64, types.float64, FLOATS, FLOATS), _call
 
 
 @intrinsic

@@ -2,14 +2,14 @@
 
 The text uses these names for node number i: c[i] is its value at the reference point, e{i} its difference from that value, n{i}_{k}
 its k-th Taylor coefficient, and w{i}_{k} is k times that coefficient. The k-th coefficients of slip and slip rate are x_{k} and
-s_{k}. The difference of the slip is dx, that of the rate is s_0, and w is the state. Recurrences of elementary functions follow
-from their differential equations, such as (exp a)' = a' exp a, order by order.
+s_{k}. The difference of the slip is dx, that of the rate is s_0, and w and w2 are the states. Recurrences of elementary functions
+follow from their differential equations, such as (exp a)' = a' exp a, order by order.
 """
 
 from __future__ import annotations
 
 from stickslip.friction.formula.denominators import LARGEST_EXPONENT, harmless_overflows
-from stickslip.friction.formula.expression import RATE, SLIP, STATE, Expression, depends_on, nodes_of
+from stickslip.friction.formula.expression import RATE, SLIP, STATES, VARIABLES, Expression, depends_on, nodes_of
 
 NO_LIMIT = 1e308
 """Largest exponent of any other exp, in effect no limit: if exp is infinite, the run ends with a status that says so."""
@@ -44,7 +44,7 @@ def _balanced(terms: list[str]) -> str:
 
 def _vanishes(node: Expression) -> bool:
     """Return True if a node is 0 for any parameters at the reference point, where slip rate and state are 0."""
-    if node in (RATE, STATE):
+    if node in (RATE, *STATES):
         return True
     if node.operation == "mul":
         return any(_vanishes(argument) for argument in node.arguments)
@@ -59,16 +59,18 @@ def exp_of(node: Expression) -> Expression:
 class Recurrences:
     """The nodes of a formula with their dependencies, and the statements that compute them."""
 
-    def __init__(self, formula: Expression, parameters: tuple[str, ...], state_rate: Expression | None = None) -> None:
-        self.formula, self.parameters, self.state_rate = formula, parameters, state_rate
+    def __init__(self, formula: Expression, parameters: tuple[str, ...], state_rates: tuple[Expression, ...] = ()) -> None:
+        self.formula, self.parameters, self.state_rates = formula, parameters, state_rates
         self.nodes = self._with_companions(formula)
-        if state_rate is not None:
-            self.nodes = list(dict.fromkeys((*self.nodes, *self._with_companions(state_rate), STATE)))
+        self.states = STATES[: len(state_rates)]
+        for tree in state_rates:
+            self.nodes = list(dict.fromkeys((*self.nodes, *self._with_companions(tree))))
+        self.nodes = list(dict.fromkeys((*self.nodes, *self.states)))
         self.index = {node: i for i, node in enumerate(self.nodes)}
-        self.varies = {node: any(depends_on(node, one) for one in (SLIP, RATE, STATE)) for node in self.nodes}
+        self.varies = {node: any(depends_on(node, one) for one in VARIABLES) for node in self.nodes}
         self.rate_dependent = {node: depends_on(node, RATE) for node in self.nodes}
-        self.dynamic = [n for n in self.nodes if self.varies[n] and n not in (SLIP, RATE, STATE)]
-        self._own = {*nodes_of(formula), *(nodes_of(state_rate) if state_rate is not None else ())}
+        self.dynamic = [n for n in self.nodes if self.varies[n] and n not in VARIABLES]
+        self._own = {node for tree in (formula, *state_rates) for node in nodes_of(tree)}
         self._only_below = harmless_overflows(self.nodes)
         self.pending_rate: int | None = None
         self.size = len(self.nodes) + 1
@@ -105,8 +107,8 @@ class Recurrences:
         """
         if not self.varies[node]:
             return self.reference(node) if k == 0 else None
-        if node == STATE:
-            return "w"
+        if node in STATES:
+            return node.name
         if node == RATE:
             return None if k == self.pending_rate else f"s_{k}"
         return f"x_{k}" if node == SLIP else f"n{self.index[node]}_{k}"
@@ -115,7 +117,7 @@ class Recurrences:
         """Return the name of a node's difference from its reference value, or None if the node is constant."""
         if not self.varies[node]:
             return None
-        return {SLIP: "dx", RATE: "s_0", STATE: "w"}.get(node, f"e{self.index[node]}")
+        return {SLIP: "dx", RATE: "s_0"}.get(node) or (node.name if node in STATES else f"e{self.index[node]}")
 
     def slope(self, node: Expression, variable: Expression, tag: str) -> str | None:
         """Return the name of a node's derivative with respect to a variable, or None if it is zero.
@@ -222,7 +224,7 @@ class Recurrences:
         }[node.operation]
 
     def slopes(self, variable: Expression, tag: str) -> list[str]:
-        """Write the first derivatives of the nodes by a variable (SLIP, RATE or STATE), with names that begin with `tag`."""
+        """Write the first derivatives of the nodes by one of VARIABLES, with names that begin with `tag`."""
         lines = []
         for node in self.dynamic:
             if not depends_on(node, variable):

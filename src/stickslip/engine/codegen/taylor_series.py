@@ -4,11 +4,11 @@ Each formula becomes straight-line code in C functions, each of which is compile
 
 prepare      fills `c` with the formula's constants and the values of its nodes at the reference point (slip x_ref, rate 0)
 value        mu(x, s) - mu(x_ref, 0), and its derivatives with respect to s and x
-state_value  mu(x, s, w) - mu(x_ref, 0, 0) and dw/dt, each with its derivatives with respect to s, x and the state w
+state_value  mu(x, s, w) - mu(x_ref, 0, 0) and dw/dt of each state w, with their derivatives with respect to s, x and the states
 rate_jet     massless contact, Z s + S mu(x, s) = L: the series of s, solved order by order (an index-1 system)
 motion_jet   contact with mass, M s' = L - K q - Z s - S mu(x, s): the series of s
 radii        how far mu may be from its value where a series starts, if slip and slip rate vary in complex discs (see `balls`)
-balls        the same around any slip, slip rate and state, and for dw/dt
+balls        the same around any slip, slip rate and states, and for dw/dt of each
 rate_jets, motion_jets, radii_in_lanes  the two series and their radii for several runs side by side (see `simd`)
 
 A jet writes the values of the nodes that `radii` needs right after the ORDER + 1 coefficients of its series, if there is room.
@@ -27,7 +27,7 @@ from collections.abc import Callable
 
 from stickslip.engine.codegen.balls import Balls
 from stickslip.engine.codegen.recurrences import Recurrences
-from stickslip.friction.formula.expression import RATE, SLIP, STATE, Expression
+from stickslip.friction.formula.expression import RATE, SLIP, STATES, Expression
 
 ORDER = 18
 """Order of the Taylor series, and therefore degree of the polynomials in the history."""
@@ -35,7 +35,7 @@ ORDER = 18
 SIGNATURES = {
     "prepare": ("p[]", "x_ref", "c[]"),
     "value": ("c[]", "dx", "s", "out[]"),
-    "state_value": ("c[]", "dx", "s", "w", "out[]"),
+    "state_value": ("c[]", "dx", "s", "states[]", "out[]"),
     "radii": ("c[]", "s[]", "k[]"),
     "balls": ("c[]", "s[]", "k[]"),
     "rate_jet": ("c[]", "k[]", "L[]", "s[]"),
@@ -79,11 +79,11 @@ class FormulaWriter(Recurrences):
     """Writes the functions of one formula as source text; the module's docstring lists them."""
 
     def __init__(
-        self, formula: Expression, parameters: tuple[str, ...], order: int = ORDER, state_rate: Expression | None = None
+        self, formula: Expression, parameters: tuple[str, ...], order: int = ORDER, state_rates: tuple[Expression, ...] = ()
     ) -> None:
-        super().__init__(formula, parameters, state_rate)
+        super().__init__(formula, parameters, state_rates)
         self.limit = order
-        self.balls = Balls(self, [formula] if state_rate is None else [formula, state_rate])
+        self.balls = Balls(self, [formula, *state_rates])
 
     def prepare(self) -> list[str]:
         """Write the body of `prepare(p, x_ref, c)`."""
@@ -100,20 +100,21 @@ class FormulaWriter(Recurrences):
         return body
 
     def state_value(self) -> list[str]:
-        """Write the body of `state_value(c, dx, s, w, out)`.
-
-        The first four numbers of out are mu minus its reference and the derivatives of mu with respect to s, x and w; the other
-        four are dw/dt and its derivatives.
-        """
-        assert self.state_rate is not None
-        variables = ((RATE, "d"), (SLIP, "f"), (STATE, "y"))
-        body = ["s_0 = s", *self.order_zero()]
+        """Write the body of `state_value(c, dx, s, states, out)`; out receives the numbers of a `layout.LawValue`."""
+        variables = ((RATE, "d"), (SLIP, "f"), *zip(self.states, ("y", "z"), strict=False))
+        body = [f"{state.name} = states[{n}]" for n, state in enumerate(self.states)]
+        body += ["s_0 = s", *self.order_zero()]
         for variable, tag in variables:
             body += self.slopes(variable, tag)
-        for i, tree in enumerate((self.formula, self.state_rate)):
-            level = self.difference(tree) if tree is self.formula else self.coefficient(tree, 0)
+        most, trees = len(STATES), (self.formula, *self.state_rates)
+        for i, tree in enumerate(trees):
+            level = self.difference(tree) if i == 0 else self.coefficient(tree, 0)
             slopes = [self.slope(tree, variable, tag) for variable, tag in variables]
-            body += [f"out[{4 * i + j}] = {text or '0.0'}" for j, text in enumerate((level, *slopes))]
+            places = [0, 1, 2, *range(3, 3 + most)]
+            if i > 0:  # after mu and its slopes: all levels, all slopes by s, all by x, and the rows of those by the states
+                n, first = i - 1, 3 + most
+                places = [first + k * most + n for k in range(3)] + [first + (3 + n) * most + k for k in range(most)]
+            body += [f"out[{place}] = {text or '0.0'}" for place, text in zip(places, (level, *slopes), strict=False)]
         return body
 
     @property
@@ -139,13 +140,17 @@ class FormulaWriter(Recurrences):
 
     def around(self) -> list[str]:
         """Write the body of `balls(c, s, k)`, which works out the values at the centre itself; `s` is not used."""
-        return ["dx = k[5]", "s_0 = k[6]", "w = k[7]", *self.order_zero(), *self._radii()]
+        most = len(STATES)
+        centres = [f"{state.name} = k[{5 + 2 * most + n}]" for n, state in enumerate(self.states)]
+        return [f"dx = k[{3 + 2 * most}]", f"s_0 = k[{4 + 2 * most}]", *centres, *self.order_zero(), *self._radii()]
 
     def _radii(self) -> list[str]:
-        results = [f"k[3] = {self.balls.radius(self.formula) or '0.0'}"]
-        if self.state_rate is not None:
-            results.append(f"k[4] = {self.balls.radius(self.state_rate) or '0.0'}")
-        return ["r_slip = k[0]", "r_rate = k[1]", "r_state = k[2]", *self.balls.lines, *results]
+        most = len(STATES)
+        results = [
+            f"k[{2 + most + i}] = {self.balls.radius(tree) or '0.0'}" for i, tree in enumerate((self.formula, *self.state_rates))
+        ]
+        radii = [f"r_{state.name} = k[{2 + n}]" for n, state in enumerate(self.states)]
+        return ["r_slip = k[0]", "r_rate = k[1]", *radii, *self.balls.lines, *results]
 
     def rate_jet(self) -> list[str]:
         """Write the body of `rate_jet(c, k, L, s)`, for a massless contact.

@@ -59,7 +59,7 @@ def friction_of(run: Run, piece: int, law_slip: float, rate: float) -> None:
     """Write friction into run.friction as `friction_at` does, by the formula of the given piece of the law."""
     law, value, friction = run.law[piece], run.value, run.friction
     slip = law_slip + law.slip_shift
-    if run.counts.has_state == 1:
+    if run.counts.states > 0:
         call_state_value(law.state_at, constants_of(run, piece), slip, rate, run.state.state_now, numbers_of(value))
     else:
         call_value(law.value_at, constants_of(run, piece), slip, rate, numbers_of(value))

@@ -1,12 +1,14 @@
-"""Judge from friction and its derivatives whether steps must be implicit, and when the state of a law at rest is forgotten."""
+"""Judge from friction and its derivatives whether steps must be implicit, and when the states of a law at rest are forgotten."""
 
 from __future__ import annotations
 
 import math
 
-from stickslip.engine.codegen.compiler import call_state_value, call_value, kernel
+from stickslip.engine.codegen.compiler import ahead, call_state_value, call_value, kernel
 from stickslip.engine.codegen.records import numbers_of
 from stickslip.engine.contact.contact_equation import constants_of
+from stickslip.engine.series.polynomial import copy, evaluate, fill
+from stickslip.engine.state.layout import STATES, TERMS, Floats
 from stickslip.engine.state.workspace import Run
 
 STIFF, NOT_STIFF = 4.0, 1.5
@@ -28,28 +30,50 @@ FORGOTTEN = 1e-18
 
 
 @kernel
-def contact_at(run: Run, law_slip: float, rate: float, state: float) -> None:
-    """Write friction and the change of the state, with their derivatives, into run.value.
+def states_in_step(run: Run, place: float) -> Floats:
+    """Return the states at a place of the step in run.state_jet, in guesses, as a row that holds until the next such call."""
+    for n in range(run.counts.states):
+        run.some_state[n] = evaluate(ahead(run.state_jet, TERMS * n), place)
+    return run.some_state
+
+
+@kernel
+def states_at_point(run: Run, i: int) -> Floats:
+    """Return the states at Radau's point i of an implicit step, as a row that holds until the next such call."""
+    for n in range(run.counts.states):
+        run.some_state[n] = run.stage_state[TERMS * n + i]
+    return run.some_state
+
+
+@kernel
+def turn_states(run: Run, states: Floats) -> None:
+    """Change the sign of those states that do so where slip reverses."""
+    for n in range(run.counts.states):
+        if (run.counts.reverses >> n) % 2 == 1:
+            states[n] = -states[n]
+
+
+@kernel
+def contact_at(run: Run, law_slip: float, rate: float, states: Floats) -> None:
+    """Write friction and the change of the states, with their derivatives, into run.value.
 
     `mu` is then the difference from the static friction coefficient at the start of the run.
     """
     piece = run.counts.piece
     constants, slip = constants_of(run, piece), law_slip + run.law[piece].slip_shift
-    if run.counts.has_state == 1:
-        call_state_value(run.law[piece].state_at, constants, slip, rate, state, numbers_of(run.value))
+    if run.counts.states > 0:
+        call_state_value(run.law[piece].state_at, constants, slip, rate, states, numbers_of(run.value))
     else:
         below = min(rate, 0.0)  # An iteration may try rates below 0, where a law need not hold: continue it linearly.
         call_value(run.law[piece].value_at, constants, slip, rate - below, numbers_of(run.value))
         run.value.mu += run.value.by_rate * below
-        run.value.by_state = run.value.change = 0.0
-        run.value.change_by_rate = run.value.change_by_slip = run.value.change_by_state = 0.0
     run.value.mu += run.law[piece].offset
 
 
 @kernel
 def is_implicit(run: Run) -> bool:
     """Return True if the next step must be implicit."""
-    return run.counts.has_state == 1 or run.counts.stiff == 1
+    return run.counts.states > 0 or run.counts.stiff == 1
 
 
 @kernel
@@ -88,26 +112,40 @@ def hanging_rate(run: Run) -> float:
     if run.counts.reverses == 0:
         return 0.0
     params, value = run.params, run.value
-    contact_at(run, run.state.law_slip, 0.0, -run.state.state_now)
-    against = abs(value.by_state * value.change_by_rate)
+    copy(run.state.state_now, run.some_state, STATES)
+    turn_states(run, run.some_state)
+    contact_at(run, run.state.law_slip, 0.0, run.some_state)
+    against = abs(stiffness_of_states(run))
     contact_at(run, run.state.law_slip, 0.0, run.state.state_now)
     # Bristles that are bent as far as they go yield in this direction, but not in the other.
-    stiffest = max(against, abs(value.by_state * value.change_by_rate))
+    stiffest = max(against, abs(stiffness_of_states(run)))
     resistance = params.impedance + math.sqrt(params.inertia * params.normal * stiffest)
     return HANGING * params.tolerance * params.normal * abs(value.mu) / resistance if resistance > 0.0 else 0.0
 
 
 @kernel
-def forgotten(run: Run) -> bool:
-    """Return True if friction no longer notices what is left of the state at rest, and set the state to zero then.
+def stiffness_of_states(run: Run) -> float:
+    """Return by how much friction grows (1/m) per slip through the states alone, which run.value describes."""
+    found = 0.0
+    for n in range(run.counts.states):
+        found += run.value.by_state[n] * run.value.change_by_rate[n]
+    return found
 
-    A state that does not stay at zero at rest is never forgotten: it heals to another value.
+
+@kernel
+def forgotten(run: Run) -> bool:
+    """Return True if friction no longer notices what is left of the states at rest, and set the states to zero then.
+
+    States that do not stay at zero at rest are never forgotten: they heal to other values.
     """
     contact_at(run, run.state.law_slip, 0.0, run.state.state_now)
-    if abs(run.value.by_state * run.state.state_now) > FORGOTTEN:
-        return False
-    contact_at(run, run.state.law_slip, 0.0, 0.0)
-    if run.value.change != 0.0:
-        return False
-    run.state.state_now = 0.0
+    for n in range(run.counts.states):
+        if abs(run.value.by_state[n] * run.state.state_now[n]) > FORGOTTEN:
+            return False
+    fill(run.some_state, 0.0)
+    contact_at(run, run.state.law_slip, 0.0, run.some_state)
+    for n in range(run.counts.states):
+        if run.value.change[n] != 0.0:
+            return False
+    copy(run.some_state, run.state.state_now, STATES)
     return True

@@ -87,8 +87,7 @@ def put_discs(k: Series, jet: Floats, powers: Floats, ball: Ball) -> None:
     ball.rate = rate
     bent = abs(k.bend) * radius * (0.5 * start + (1.0 / 3.0) * rate)
     ball.slip = radius * (abs(k.speed) * (start + (p + q)) + bent)
-    ball.state = 0.0 * rate
-    ball.at_slip, ball.at_rate, ball.at_state = k.slip, jet[0], 0.0 * rate  # for formulas that keep no centres beside the series
+    ball.at_slip, ball.at_rate = k.slip, jet[0]  # for formulas that keep no centres beside the series
 
 
 @inlined

@@ -11,7 +11,7 @@ from stickslip.engine.codegen.compiler import ahead, call_part, kernel
 from stickslip.engine.contact.append_segment import record
 from stickslip.engine.contact.contact_equation import onset_of_slip
 from stickslip.engine.contact.law_knots import settle_piece
-from stickslip.engine.contact.stiffness import contact_at, forgotten, is_no_longer_stiff
+from stickslip.engine.contact.stiffness import contact_at, forgotten, is_no_longer_stiff, states_at_point
 from stickslip.engine.contact_step.certificate import NEGLIGIBLE
 from stickslip.engine.contact_step.keep_step import keep_step
 from stickslip.engine.contact_step.negative_friction import last_place_above_zero, place_below_zero
@@ -40,7 +40,7 @@ def slip_implicitly(run: Run, xi_to: float) -> None:
     rate = run.history[run.counts.length].rate
     stretch(run, 1.0, rate)
     reached = guess >= xi_to - run.state.xi
-    if run.counts.has_state == 0 and is_no_longer_stiff(run):
+    if run.counts.states == 0 and is_no_longer_stiff(run):
         run.counts.stiff = 0
     cut = Cut(StepEvent.NONE, 0, 1.0) if hanging else cut_at_first_event(run, rate, 1.0)
     cut = end_above_zero(run, rate, cut)
@@ -63,8 +63,9 @@ def hangs(run: Run) -> bool:
         fastest = max(fastest, abs(run.stage_rate[i]))
     if run.counts.has_inertia == 0 and fastest <= STILL * run.state.hanging:
         fill(run.jet, 0.0)
-        fill(run.state_jet, 0.0)
-        run.state_jet[0] = run.state.state_now
+        for n in range(run.counts.states):
+            fill(ahead(run.state_jet, at.TERMS * n), 0.0)
+            run.state_jet[at.TERMS * n] = run.state.state_now[n]
     return fastest <= run.state.hanging
 
 
@@ -87,36 +88,34 @@ def end_above_zero(run: Run, rate: Floats, cut: Cut) -> Cut:
 
 @kernel
 def keep_state(run: Run, length: float) -> None:
-    """Store the state's polynomial, up to the share `length` of the step, in the history, and move the state to its end."""
-    if run.counts.has_state == 0:
-        return
-    kept = ahead(run.history_state, at.TERMS * run.counts.length)
-    for k in range(at.TERMS):
-        kept[k] = run.state_jet[k]
-    if length != 1.0:
-        scale(kept, length)
-    run.state.state_now = total(kept)
-    if run.counts.reverses == 1 and run.counts.mode < 0:
-        turn_over(kept)
+    """Store the states' polynomials, up to the share `length` of the step, in the history, and move the states to its end."""
+    for n in range(run.counts.states):
+        kept = ahead(run.history_state, at.TERMS * (run.counts.states * run.counts.length + n))
+        copy(ahead(run.state_jet, at.TERMS * n), kept, at.TERMS)
+        if length != 1.0:
+            scale(kept, length)
+        run.state.state_now[n] = total(kept)
+        if run.counts.mode < 0 and (run.counts.reverses >> n) % 2 == 1:
+            turn_over(kept)
 
 
 @kernel
 def note_negative_friction(run: Run) -> None:
     """Note a breach if friction is below zero where the step ends, or where it starts if there is no solution from there."""
-    rate, state = run.state.rate_now, run.state.state_now
-    if run.counts.reverses == 1:  # friction may drive slip
+    rate, states = run.state.rate_now, run.state.state_now
+    if run.counts.reverses != 0:  # friction may drive slip
         return
     if not math.isfinite(rate):
-        rate, state = run.stage_rate[0], run.stage_state[0]
-    contact_at(run, run.state.law_slip, abs(rate), state)
+        rate, states = run.stage_rate[0], states_at_point(run, 0)
+    contact_at(run, run.state.law_slip, abs(rate), states)
     if run.params.reference + run.params.normal * run.value.mu < -NEGLIGIBLE * run.params.normal:
         run.counts.breach = Stop.NEGATIVE_FRICTION
 
 
 @kernel
 def evolves_at_rest(run: Run) -> bool:
-    """Return True if the law has a state that still changes the strength of a contact at rest."""
-    return run.counts.has_state == 1 and not forgotten(run)
+    """Return True if the law has states that still change the strength of a contact at rest."""
+    return run.counts.states > 0 and not forgotten(run)
 
 
 @kernel

@@ -7,7 +7,7 @@ two ends, and friction that drives slip must not pass unnoticed.
 from __future__ import annotations
 
 from stickslip.engine.codegen.compiler import kernel
-from stickslip.engine.contact.stiffness import contact_at
+from stickslip.engine.contact.stiffness import contact_at, states_in_step
 from stickslip.engine.contact_step.certificate import NEGLIGIBLE, rough
 from stickslip.engine.contact_step.step_events import growth
 from stickslip.engine.series.polynomial import NONE, RECIPROCAL, bound_below, evaluate
@@ -113,7 +113,6 @@ def last_place_above_zero(run: Run, rate: Floats, length: float, below: float) -
 @kernel
 def friction_in_step(run: Run, rate: Floats, length: float, place: float) -> float:
     """Return the friction coefficient at a place on [0, 1] of a step that is `length` guesses long."""
-    state = evaluate(run.state_jet, place * length) if run.counts.has_state == 1 else 0.0
     slip = run.state.law_slip + run.k.chi * growth(run, rate, length, place)
-    contact_at(run, slip, max(evaluate(rate, place), 0.0), state)
+    contact_at(run, slip, max(evaluate(rate, place), 0.0), states_in_step(run, place * length))
     return run.params.reference / run.params.normal + run.value.mu

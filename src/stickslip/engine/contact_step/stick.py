@@ -16,6 +16,7 @@ from stickslip.engine.contact.contact_equation import (
     rest_limit,
     towards,
 )
+from stickslip.engine.contact.stiffness import turn_states
 from stickslip.engine.series.polynomial import evaluate, fill, restrict, scale
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Cause, Floats
@@ -114,8 +115,8 @@ def stick(run: Run, xi_to: float) -> None:
     if slips:
         scale(load, onset)
     fill(run.history[run.counts.length].rate, 0.0)
-    if run.counts.has_state == 1:
-        fill(ahead(run.history_state, at.TERMS * run.counts.length), 0.0)
+    for n in range(run.counts.states):
+        fill(ahead(run.history_state, at.TERMS * (run.counts.states * run.counts.length + n)), 0.0)
     record(run, run.state.xi + onset * width if slips else xi_to)
     run.counts.leaving_rest = 0
     if slips:
@@ -134,8 +135,7 @@ def come_to_rest(run: Run) -> None:
     run.state.rate_now = 0.0
     if run.counts.sticks == 0:
         run.counts.mode = -before
-        if run.counts.reverses == 1:
-            run.state.state_now = -run.state.state_now
+        turn_states(run, run.state.state_now)
         return
     run.counts.mode = 0
     if run.counts.has_inertia == 0:

@@ -16,14 +16,14 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.codegen.compiler import call_radii, kernel
+from stickslip.engine.codegen.compiler import ahead, call_radii, kernel
 from stickslip.engine.codegen.records import numbers_of
 from stickslip.engine.contact.contact_equation import constants_of
 from stickslip.engine.contact.stiffness import contact_at
-from stickslip.engine.implicit_step.radau_stages import yielding
+from stickslip.engine.implicit_step.radau_stages import WIDTH, yielding, yielding_of_state
 from stickslip.engine.series.polynomial import RECIPROCAL, integral, restrict
 from stickslip.engine.series.radau_nodes import POINT, STAGES
-from stickslip.engine.state.layout import Floats
+from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.engine.state.workspace import Run
 
 DISCS = np.array([4.0, 2.8, 2.0, 1.5, 1.2, 1.0, 0.85, 0.75, 0.68, 0.62])
@@ -75,48 +75,60 @@ def walk_on_disc(c: Floats, radius: float) -> float:
 
 
 @kernel
-def prove_step(run: Run, h: float, force: float) -> tuple[float, float]:
-    """Return bounds of what the step of h seconds lacks: as slip rate (m/s), and in units of the state.
+def state_from_middle(run: Run, n: int) -> Floats:
+    """Return room for the polynomial of state n around the middle of a step, behind the records `between` in run.matrix."""
+    return ahead(run.matrix, WIDTH * STAGES + TERMS * n)
 
-    The polynomials are in run.jet and run.state_jet. At rest, run.jet is the strength, and the first bound is one of its error (Pa
-    or N). The bound of the load that the contact equation lacks is left in run.state.residual. `force` (Pa or N) is the force that
-    the step ignores.
+
+@kernel
+def prove_step(run: Run, h: float, force: float) -> float:
+    """Return a bound of what the step of h seconds lacks, as slip rate (m/s), and leave those of the states in run.state_error.
+
+    The polynomials are in run.jet and run.state_jet. At rest, run.jet is the strength, and the bound is one of its error (Pa or N).
+    The bound of the load that the contact equation lacks is left in run.state.residual. `force` (Pa or N) is the force that the
+    step ignores.
     """
-    slips, rate, state, load = run.counts.mode != 0, run.part, run.powers, run.spare
+    slips, rate, load = run.counts.mode != 0, run.part, run.spare
     restrict(run.jet, 0.5, 1.0, rate)
-    restrict(run.state_jet, 0.5, 1.0, state)
     restrict(run.load_along_slip, 0.5, 1.0, load)
     params, ball, value = run.params, run.ball, run.value
     at_rate = rate[0] if slips else 0.0
     walked = h * integral(run.jet, 0.5, 1) if slips else 0.0
     law_slip = run.state.law_slip + run.k.chi * walked
-    contact_at(run, law_slip, at_rate, state[0])
+    for n in range(run.counts.states):
+        state = state_from_middle(run, n)
+        restrict(ahead(run.state_jet, TERMS * n), 0.5, 1.0, state)
+        ball.at_state[n], run.state_error[n] = state[0], math.inf
+    contact_at(run, law_slip, at_rate, ball.at_state)
     if slips:
         missing = load[0] - force - params.impedance * rate[0] - params.normal * value.mu - params.stiffness * walked
         missing -= params.inertia / h * rate[1]
     else:
         missing = rate[0] - params.normal * value.mu
-    stray = value.change - state[1] / h
-    by_load, by_change = yielding(run, h)
-    piece, least, least_state = run.counts.piece, math.inf, math.inf
-    ball.at_slip, ball.at_rate, ball.at_state = law_slip + run.law[piece].slip_shift, at_rate, state[0]
-    for n in range(len(DISCS)):
-        radius = DISCS[n]
+    piece, least = run.counts.piece, math.inf
+    ball.at_slip, ball.at_rate = law_slip + run.law[piece].slip_shift, at_rate
+    for disc in range(len(DISCS)):
+        radius = DISCS[disc]
         ball.rate = size_on_disc(rate, radius) if slips else 0.0
         ball.slip = h * walk_on_disc(rate, radius) if slips else 0.0
-        ball.state = size_on_disc(state, radius)
+        for n in range(run.counts.states):
+            ball.state[n] = size_on_disc(state_from_middle(run, n), radius)
         call_radii(run.law[piece].balls_at, constants_of(run, piece), run.jet, numbers_of(ball))
         if slips:
             moved = size_on_disc(load, radius) + params.impedance * ball.rate + params.stiffness * ball.slip
             moved += params.inertia / h * slope_on_disc(rate, radius)
-            least = min(least, AT_STAGES[n] * (abs(missing) + params.normal * ball.friction + moved))
+            least = min(least, AT_STAGES[disc] * (abs(missing) + params.normal * ball.friction + moved))
         else:
-            least = min(least, AT_POINTS[n] * (abs(missing) + params.normal * ball.friction + size_on_disc(rate, radius)))
-        if run.counts.has_state == 1:
+            least = min(least, AT_POINTS[disc] * (abs(missing) + params.normal * ball.friction + size_on_disc(rate, radius)))
+        for n in range(run.counts.states):
+            state = state_from_middle(run, n)
             moved = slope_on_disc(state, radius) / h
-            least_state = min(least_state, AT_STAGES[n] * (abs(stray) + ball.change + moved))
+            lacking = AT_STAGES[disc] * (abs(value.change[n] - state[1] / h) + ball.change[n] + moved)
+            run.state_error[n] = min(run.state_error[n], lacking)
+    for n in range(run.counts.states):
+        run.state_error[n] *= yielding_of_state(run, h, n)
     run.state.residual = least
-    return least * by_load if slips else least, least_state * by_change if run.counts.has_state == 1 else 0.0
+    return least * yielding(run, h) if slips else least
 
 
 @kernel

@@ -1,9 +1,10 @@
-"""Solve for the stages of an implicit step: slip rate and state at Radau's points, by Newton's method.
+"""Solve for the stages of an implicit step: slip rate and states at Radau's points, by Newton's method.
 
     M v' = load - K q - Z v - S mu(u, v, w),    u' = v,    w' = F(u, v, w)
 
 A contact without mass (M = 0) and one without a state obey the same equations with terms left out. v >= 0 is the magnitude of the
-slip rate, w the state, and q the slip since the start of the step. A step lasts h seconds; places in it run from 0 to 1.
+slip rate, w the state or the two states, and q the slip since the start of the step. A step lasts h seconds; places in it run from
+0 to 1.
 """
 
 from __future__ import annotations
@@ -13,8 +14,8 @@ from typing import Any
 
 from stickslip.engine.codegen.compiler import ahead, kernel
 from stickslip.engine.codegen.records import record_at
-from stickslip.engine.contact.stiffness import contact_at
-from stickslip.engine.series.polynomial import evaluate
+from stickslip.engine.contact.stiffness import contact_at, states_at_point
+from stickslip.engine.series.polynomial import evaluate, fill
 from stickslip.engine.series.radau_nodes import (
     DERIVATIVE,
     DERIVATIVE_IN_MIDDLE,
@@ -26,7 +27,7 @@ from stickslip.engine.series.radau_nodes import (
     STAGES,
     VALUE_IN_MIDDLE,
 )
-from stickslip.engine.state.layout import TERMS, Between, Floats
+from stickslip.engine.state.layout import STATES, TERMS, Between, Floats
 from stickslip.engine.state.workspace import Run
 
 NUDGE = 1e-15
@@ -35,6 +36,8 @@ ITERATIONS = 40
 """Largest number of Newton iterations (1) before the step counts as unsolved."""
 NEWTON_ROUNDING = 1e-15
 """Rounding of the load (1), relative to its terms, as Newton's method meets it."""
+WIDTH = (1 + STATES) * STAGES + 1
+"""Length of a row of Newton's equations (1), with the right-hand side."""
 between_at: Any = record_at(Between)
 """Function for compiled code that returns the `Between` at a pointer."""
 
@@ -47,7 +50,7 @@ def rate_at_load(run: Run, load: float, guess: float) -> float:
     """
     impedance, normal = run.params.impedance, run.params.normal
     low, high = 0.0, (load + run.params.reference) / impedance
-    if run.counts.reverses == 1:  # friction at rest is that of the state alone
+    if run.counts.reverses != 0:  # friction at rest is that of the state alone
         contact_at(run, run.state.law_slip, 0.0, run.state.state_now)
         high = (load - normal * run.value.mu) / impedance
     if high <= 0.0:
@@ -75,18 +78,16 @@ def assemble(run: Run, h: float, force: float) -> None:
 
     `force` (Pa or N) is the part of the load that the step ignores.
     """
-    params, v, w, m = run.params, run.stage_rate, run.stage_state, run.matrix
-    moving, remembers = run.counts.mode != 0, run.counts.has_state == 1
+    params, v, m = run.params, run.stage_rate, run.matrix
+    moving, states = run.counts.mode != 0, run.counts.states
     mass, chi = params.inertia / h, run.k.chi * h
-    size = 2 * STAGES if remembers else STAGES
+    size = STAGES * (1 + states)
     for i in range(1, POINTS):
-        row, other = ahead(m, TERMS * (i - 1)), ahead(m, TERMS * (STAGES + i - 1))
-        walked, change, evolved = 0.0, 0.0, 0.0
+        row, walked, change = ahead(m, WIDTH * (i - 1)), 0.0, 0.0
         for j in range(POINTS):
             walked += INTEGRAL[i, j] * v[j]
             change += DERIVATIVE[i, j] * v[j]
-            evolved += DERIVATIVE[i, j] * w[j]
-        contact_at(run, run.state.law_slip + chi * walked, v[i], w[i])
+        contact_at(run, run.state.law_slip + chi * walked, v[i], states_at_point(run, i))
         value = run.value
         resisted = params.impedance * v[i] + params.normal * value.mu + params.stiffness * h * walked
         by_walk = params.stiffness * h + params.normal * value.by_slip * chi
@@ -94,22 +95,37 @@ def assemble(run: Run, h: float, force: float) -> None:
             row[j - 1] = mass * DERIVATIVE[i, j] + by_walk * INTEGRAL[i, j] if moving else 0.0
         row[i - 1] += params.impedance + params.normal * value.by_rate if moving else 1.0
         row[size] = evaluate(run.load_along_slip, POINT[i]) - force - resisted - mass * change if moving else 0.0
-        if remembers:
-            for j in range(1, POINTS):
-                row[STAGES + j - 1] = 0.0
-                other[j - 1] = -h * value.change_by_slip * chi * INTEGRAL[i, j] if moving else 0.0
-                other[STAGES + j - 1] = DERIVATIVE[i, j]
-            row[STAGES + i - 1] = params.normal * value.by_state if moving else 0.0
-            other[i - 1] -= h * value.change_by_rate
-            other[STAGES + i - 1] -= h * value.change_by_state
-            other[size] = h * value.change - evolved
+        for n in range(states):
+            assemble_state(run, h, i, n)
+            own = ahead(row, STAGES * (1 + n))
+            for j in range(STAGES):
+                own[j] = 0.0
+            own[i - 1] = params.normal * value.by_state[n] if moving else 0.0
+
+
+@kernel
+def assemble_state(run: Run, h: float, i: int, n: int) -> None:
+    """Write Newton's equation of state n at point i into run.matrix; run.value belongs to that point."""
+    value, moving, chi = run.value, run.counts.mode != 0, run.k.chi * h
+    w, row, evolved = ahead(run.stage_state, TERMS * n), ahead(run.matrix, WIDTH * (STAGES * (1 + n) + i - 1)), 0.0
+    for j in range(POINTS):
+        evolved += DERIVATIVE[i, j] * w[j]
+    for j in range(1, POINTS):
+        row[j - 1] = -h * value.change_by_slip[n] * chi * INTEGRAL[i, j] if moving else 0.0
+    row[i - 1] -= h * value.change_by_rate[n]
+    for other in range(run.counts.states):
+        own = ahead(row, STAGES * (1 + other))
+        for j in range(1, POINTS):
+            own[j - 1] = DERIVATIVE[i, j] if other == n else 0.0
+        own[i - 1] -= h * value.change_by_state[STATES * n + other]
+    row[STAGES * (1 + run.counts.states)] = h * value.change[n] - evolved
 
 
 @kernel
 def eliminate(m: Floats, size: int) -> bool:
     """Solve `size` linear equations in the rows of m; the solution replaces the last column. Return False if they are singular."""
     for i in range(size):
-        row, largest = ahead(m, TERMS * i), 0.0
+        row, largest = ahead(m, WIDTH * i), 0.0
         for j in range(size):
             largest = max(largest, abs(row[j]))
         if not 0.0 < largest < math.inf:
@@ -119,21 +135,21 @@ def eliminate(m: Floats, size: int) -> bool:
     for k in range(size):
         pivot = k
         for i in range(k + 1, size):
-            if abs(m[TERMS * i + k]) > abs(m[TERMS * pivot + k]):
+            if abs(m[WIDTH * i + k]) > abs(m[WIDTH * pivot + k]):
                 pivot = i
-        if m[TERMS * pivot + k] == 0.0:
+        if m[WIDTH * pivot + k] == 0.0:
             return False
         for j in range(k, size + 1):
-            m[TERMS * k + j], m[TERMS * pivot + j] = m[TERMS * pivot + j], m[TERMS * k + j]
+            m[WIDTH * k + j], m[WIDTH * pivot + j] = m[WIDTH * pivot + j], m[WIDTH * k + j]
         for i in range(k + 1, size):
-            factor = m[TERMS * i + k] / m[TERMS * k + k]
+            factor = m[WIDTH * i + k] / m[WIDTH * k + k]
             if factor != 0.0:
                 for j in range(k + 1, size + 1):
-                    m[TERMS * i + j] -= factor * m[TERMS * k + j]
+                    m[WIDTH * i + j] -= factor * m[WIDTH * k + j]
     for i in range(size - 1, -1, -1):
         for j in range(i + 1, size):
-            m[TERMS * i + size] -= m[TERMS * i + j] * m[TERMS * j + size]
-        m[TERMS * i + size] /= m[TERMS * i + i]
+            m[WIDTH * i + size] -= m[WIDTH * i + j] * m[WIDTH * j + size]
+        m[WIDTH * i + size] /= m[WIDTH * i + i]
     return True
 
 
@@ -162,23 +178,28 @@ def correct(run: Run, size: int, rounding: float) -> float:
     `rounding` is that of the load (Pa or N); a change of the slip rate that it, or the rounding of slip, can explain counts as
     none.
     """
-    v, w, m = run.stage_rate, run.stage_state, run.matrix
-    fastest, farthest, moved, evolved = run.state.hanging + 1e-300, run.params.state_scale + 1e-300, 0.0, 0.0
+    v, m = run.stage_rate, run.matrix
+    fastest, moved, evolved = run.state.hanging + 1e-300, 0.0, 0.0
     for i in range(1, POINTS):
-        step = m[TERMS * (i - 1) + size]
+        step = m[WIDTH * (i - 1) + size]
         v[i] += step
         moved, fastest = max(moved, abs(step)), max(fastest, abs(v[i]))
-        if size > STAGES:
-            step = m[TERMS * (STAGES + i - 1) + size]
-            w[i] += step
-            evolved, farthest = max(evolved, abs(step)), max(farthest, abs(w[i]))
-        if not (math.isfinite(v[i]) and math.isfinite(w[i])):
+        if not math.isfinite(v[i]):
             return math.inf
+    for n in range(run.counts.states):
+        w, farthest, changed = ahead(run.stage_state, TERMS * n), run.params.state_scale[n] + 1e-300, 0.0
+        for i in range(1, POINTS):
+            step = m[WIDTH * (STAGES * (1 + n) + i - 1) + size]
+            w[i] += step
+            changed, farthest = max(changed, abs(step)), max(farthest, abs(w[i]))
+            if not math.isfinite(w[i]):
+                return math.inf
+        evolved = max(evolved, changed / farthest)
     if rounding > 0.0:
         # run.value is still that of the last stage.
         rounding += NEWTON_ROUNDING * rounding_of_slip(run)
         moved = max(moved - rounding / abs(run.params.impedance + run.params.normal * run.value.by_rate), 0.0)
-    return max(moved / fastest, evolved / farthest)
+    return max(moved / fastest, evolved)
 
 
 @kernel
@@ -189,12 +210,14 @@ def solve_stages(run: Run, h: float, force: float, share: float) -> bool:
     is that share. On success `look_between` has been called.
     """
     for i in range(1, POINTS):
-        run.stage_rate[i], run.stage_state[i] = run.stage_rate[0], run.stage_state[0]
-        if share > 0.0:
-            run.stage_state[i] = evaluate(run.state_jet, share * POINT[i])
-            if run.counts.mode != 0:  # At rest run.jet holds the strength.
-                run.stage_rate[i] = evaluate(run.jet, share * POINT[i])
-    size = 2 * STAGES if run.counts.has_state == 1 else STAGES
+        run.stage_rate[i] = run.stage_rate[0]
+        if share > 0.0 and run.counts.mode != 0:  # At rest run.jet holds the strength.
+            run.stage_rate[i] = evaluate(run.jet, share * POINT[i])
+    for n in range(run.counts.states):
+        w = ahead(run.stage_state, TERMS * n)
+        for i in range(1, POINTS):
+            w[i] = evaluate(ahead(run.state_jet, TERMS * n), share * POINT[i]) if share > 0.0 else w[0]
+    size = STAGES * (1 + run.counts.states)
     before, rounding = math.inf, NEWTON_ROUNDING * size_of_load(run) if run.counts.has_inertia == 0 else 0.0
     for _ in range(ITERATIONS):
         assemble(run, h, force)
@@ -214,25 +237,27 @@ def solve_stages(run: Run, h: float, force: float, share: float) -> bool:
 @kernel
 def between(run: Run, i: int) -> Between:
     """Return the record of the i-th place of `look_between`: it lies in run.matrix, which is free between Newton's iterations."""
-    return between_at(ahead(run.matrix, TERMS * i))
+    return between_at(ahead(run.matrix, WIDTH * i))
 
 
 @kernel
 def look_between(run: Run) -> None:
-    """Put slip rate and state halfway between the points, with derivatives and integral, into the records `between`."""
-    v, w, remembers = run.stage_rate, run.stage_state, run.counts.has_state == 1
+    """Put slip rate and states halfway between the points, with derivatives and integral, into the records `between`."""
+    v = run.stage_rate
     for i in range(STAGES):
-        rate, acceleration, walked, state, evolved = 0.0, 0.0, 0.0, 0.0, 0.0
+        rate, acceleration, walked = 0.0, 0.0, 0.0
         for j in range(POINTS):
             rate += VALUE_IN_MIDDLE[i, j] * v[j]
             acceleration += DERIVATIVE_IN_MIDDLE[i, j] * v[j]
             walked += INTEGRAL_TO_MIDDLE[i, j] * v[j]
-        if remembers:
+        row = between(run, i)
+        row.rate, row.acceleration, row.walked = rate, acceleration, walked
+        for n in range(run.counts.states):
+            w, state, evolved = ahead(run.stage_state, TERMS * n), 0.0, 0.0
             for j in range(POINTS):
                 state += VALUE_IN_MIDDLE[i, j] * w[j]
                 evolved += DERIVATIVE_IN_MIDDLE[i, j] * w[j]
-        row = between(run, i)
-        row.rate, row.acceleration, row.walked, row.state, row.evolved = rate, acceleration, walked, state, evolved
+            row.state[n], row.evolved[n] = state, evolved
 
 
 @kernel
@@ -240,54 +265,68 @@ def contact_between(run: Run, i: int, h: float, nudge: float) -> None:
     """Evaluate the contact at the i-th place of `look_between`, with all arguments larger by a relative nudge (1)."""
     row = between(run, i)
     slip = run.state.law_slip + run.k.chi * h * row.walked
-    contact_at(run, slip * (1.0 + nudge), row.rate * (1.0 + nudge), row.state * (1.0 + nudge))
+    for n in range(run.counts.states):
+        run.some_state[n] = row.state[n] * (1.0 + nudge)
+    contact_at(run, slip * (1.0 + nudge), row.rate * (1.0 + nudge), run.some_state)
 
 
 @kernel
-def yielding(run: Run, h: float) -> tuple[float, float]:
-    """Return the error of slip rate per missing load, and of the state per missing rate of change (s), over a step of h seconds.
+def yielding(run: Run, h: float) -> float:
+    """Return the error of slip rate per missing load over a step of h seconds.
 
     What is missing of a derivative changes its sign at every point: it adds up over a share 1 / STAGES of the step, at most.
     """
     resistance = abs(run.params.impedance + run.params.normal * run.value.by_rate) + STAGES * run.params.inertia / h
-    return 1.0 / resistance if run.counts.mode != 0 else 0.0, h / (STAGES + h * abs(run.value.change_by_state))
+    return 1.0 / resistance if run.counts.mode != 0 else 0.0
 
 
 @kernel
-def defects(run: Run, h: float, force: float) -> tuple[float, float]:
+def yielding_of_state(run: Run, h: float, n: int) -> float:
+    """Return the error of state n per missing rate of change (s) over a step of h seconds, as `yielding` does for the slip rate."""
+    return h / (STAGES + h * abs(run.value.change_by_state[STATES * n + n]))
+
+
+@kernel
+def defects(run: Run, h: float, force: float) -> float:
     """Return by how much the polynomials through the stages miss the equations halfway between the points.
 
-    The first number is in units of slip rate, the second in units of the state.
+    The result is in units of slip rate; that of each state is left in run.state_error, in units of the state.
     """
-    params, value = run.params, run.value
-    missed, missed_state = 0.0, 0.0
+    params, value, missed = run.params, run.value, 0.0
+    fill(run.state_error, 0.0)
     for i in range(STAGES):
         middle = between(run, i)
         contact_between(run, i, h, 0.0)
-        by_load, by_change = yielding(run, h)
         resisted = params.impedance * middle.rate + params.normal * value.mu + params.stiffness * h * middle.walked
         missing = evaluate(run.load_along_slip, MIDDLE[i]) - force - resisted - params.inertia / h * middle.acceleration
-        missed = larger(missed, abs(missing) * by_load)
-        missed_state = larger(missed_state, abs(value.change - middle.evolved / h) * by_change)
-    return missed, missed_state if run.counts.has_state == 1 else 0.0
+        missed = larger(missed, abs(missing) * yielding(run, h))
+        for n in range(run.counts.states):
+            missing = abs(value.change[n] - middle.evolved[n] / h) * yielding_of_state(run, h, n)
+            run.state_error[n] = larger(run.state_error[n], missing)
+    return missed
 
 
 @kernel
-def rounding_of_law(run: Run, h: float) -> tuple[float, float]:
-    """Return what rounding in the law's formulas makes of slip rate (m/s) and state, by nudging the arguments by a few ulp.
+def rounding_of_law(run: Run, h: float) -> float:
+    """Return what rounding in the law's formulas makes of the slip rate (m/s), by nudging the arguments by a few ulp.
 
-    A formula may lose any number of digits, and nothing but the formula knows how many.
+    What it makes of each state is left in run.state_noise. A formula may lose any number of digits, and nothing but the formula
+    knows how many.
     """
-    lost, lost_state = 0.0, 0.0
+    value, lost = run.value, 0.0
+    fill(run.state_noise, 0.0)
+    change, by_change = run.state_error, ahead(run.state_error, STATES)
     for i in range(STAGES):
         contact_between(run, i, h, 0.0)
-        friction, change = run.value.mu, run.value.change
-        by_load, by_change = yielding(run, h)
+        friction, by_load = value.mu, yielding(run, h)
+        for n in range(run.counts.states):
+            change[n], by_change[n] = value.change[n], yielding_of_state(run, h, n)
         for nudge in (-NUDGE, NUDGE):
             contact_between(run, i, h, nudge)
-            lost = max(lost, abs(run.value.mu - friction) * run.params.normal * by_load)
-            lost_state = max(lost_state, abs(run.value.change - change) * by_change)
-    return lost, lost_state
+            lost = max(lost, abs(value.mu - friction) * run.params.normal * by_load)
+            for n in range(run.counts.states):
+                run.state_noise[n] = max(run.state_noise[n], abs(value.change[n] - change[n]) * by_change[n])
+    return lost
 
 
 @kernel

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.codegen.compiler import kernel
+from stickslip.engine.codegen.compiler import ahead, kernel
 from stickslip.engine.contact.contact_equation import TIE, load_ahead
-from stickslip.engine.contact.stiffness import contact_at, hanging_rate
+from stickslip.engine.contact.stiffness import contact_at, hanging_rate, states_at_point, states_in_step, turn_states
 from stickslip.engine.implicit_step.proof import passes_zero, prove_step
 from stickslip.engine.implicit_step.radau_stages import (
     defects,
@@ -22,11 +22,13 @@ from stickslip.engine.implicit_step.radau_stages import (
 )
 from stickslip.engine.series.polynomial import evaluate, fill, first_descent, restrict, total, turn_over
 from stickslip.engine.series.radau_nodes import MIDDLE, POINTS, STAGES, TO_POWERS_SUM, interpolate, last_terms
-from stickslip.engine.state.layout import Stop
+from stickslip.engine.state.layout import STATES, TERMS, Stop
 from stickslip.engine.state.workspace import Run
 
 ATTEMPTS = 80
 """Largest number of attempts at an implicit step (1), each shorter, before it fails."""
+DOUBLINGS = 2000
+"""Largest number of doublings (1) that lead from any rate to any other."""
 LONGEST_GROWTH = 4.0
 """Largest growth (as an exponent, 1) of a disturbance over a step."""
 ROUNDING = 1e-15
@@ -54,26 +56,67 @@ error has not halved, after which the error is taken to be rounding."""
 
 
 @kernel
-def growth_rate(run: Run) -> float:
+def growth_rate(run: Run, least: float) -> float:
     """Return the rate (1/s) at which a disturbance of slip rate and state grows at the start of the step; 0 where none grows.
+
+    Under a law of two states the result is above `least`, and at most twice the rate, or 0 where no disturbance grows faster.
 
     An implicit step much longer than 1 over that rate would follow an unstable solution as if it were stable. With mass the effect
     of slip is left out: such a contact takes explicit steps out of rest, and later the solution itself grows with the disturbance.
     """
     params, value = run.params, run.value
-    contact_at(run, run.state.law_slip, run.stage_rate[0], run.stage_state[0])
+    contact_at(run, run.state.law_slip, run.stage_rate[0], states_at_point(run, 0))
     resistance = params.impedance + params.normal * value.by_rate
+    if run.counts.states > 1:
+        faster = least
+        for _ in range(DOUBLINGS):
+            if not grows_faster(run, resistance, faster):
+                break
+            faster *= 2.0
+        return faster if faster > least else 0.0
     if run.counts.has_inertia == 0:
-        weakening = -run.k.chi * params.normal * value.by_slip / resistance if run.counts.has_state == 0 else 0.0
-        return max(value.change_by_state - value.change_by_rate * params.normal * value.by_state / resistance + weakening, 0.0)
+        if run.counts.states == 0:
+            return max(-run.k.chi * params.normal * value.by_slip / resistance, 0.0)
+        by_rate = value.change_by_rate[0]
+        return max(value.change_by_state[0] - by_rate * params.normal * value.by_state[0] / resistance, 0.0)
     mass = params.inertia
-    trace = value.change_by_state - resistance / mass
-    product = (params.normal * value.by_state * value.change_by_rate - resistance * value.change_by_state) / mass
+    if run.counts.states == 0:
+        return max(-resistance / mass, 0.0)
+    trace = value.change_by_state[0] - resistance / mass
+    product = (params.normal * value.by_state[0] * value.change_by_rate[0] - resistance * value.change_by_state[0]) / mass
     root = trace * trace - 4.0 * product
     growth = 0.5 * (trace + math.sqrt(root)) if root > 0.0 else 0.5 * trace
     if growth > 0.0 and trace < 0.0 and root > 0.0:
         growth = -2.0 * product / (math.sqrt(root) - trace)  # This form of the same root has no cancellation.
     return max(growth, 0.0)
+
+
+@kernel
+def grows_faster(run: Run, resistance: float, rate: float) -> bool:
+    """Return True if a disturbance of the slip rate and two states grows faster than a rate (1/s), by Hurwitz's criterion.
+
+    run.value describes the law, and `resistance` (Pa s/m or N s/m) is the slope of load against slip rate. The slip rate is
+    eliminated first: it may settle faster than the states change by twenty orders of magnitude. Source: Gantmacher 1959, The
+    Theory of Matrices, vol. 2, ch. XV.
+    """
+    params, value = run.params, run.value
+    settling = resistance + params.inertia * rate  # 0 or less: the slip rate itself grows as fast
+    if settling <= 0.0:
+        return True
+    push = params.normal / settling
+    a = value.change_by_state[0] - rate - value.change_by_rate[0] * push * value.by_state[0]
+    b = value.change_by_state[1] - value.change_by_rate[0] * push * value.by_state[1]
+    c = value.change_by_state[STATES] - value.change_by_rate[1] * push * value.by_state[0]
+    d = value.change_by_state[STATES + 1] - rate - value.change_by_rate[1] * push * value.by_state[1]
+    det = a * d - b * c
+    if params.inertia == 0.0:
+        return a + d >= 0.0 or det <= 0.0
+    fast = settling / params.inertia  # the characteristic polynomial x^3 + p x^2 + q x + fast det, in the shifted rate
+    held, freed = value.change_by_state[0] + value.change_by_state[STATES + 1] - 2.0 * rate, fast * (a + d)
+    minor = (value.change_by_state[0] - rate) * (value.change_by_state[STATES + 1] - rate)
+    minor -= value.change_by_state[1] * value.change_by_state[STATES]
+    p, q = fast - held, minor - freed
+    return p <= 0.0 or det <= 0.0 or p * q <= fast * det
 
 
 @kernel
@@ -83,7 +126,8 @@ def start_of_step(run: Run) -> float:
     It is 0 except where slip leaves rest, because the net force is zero by definition there.
     """
     state, force = run.state, 0.0
-    run.stage_state[0] = state.state_now
+    for n in range(run.counts.states):
+        run.stage_state[TERMS * n] = state.state_now[n]
     run.stage_rate[0] = abs(state.rate_now)
     if run.counts.mode == 0:
         run.stage_rate[0] = 0.0
@@ -96,7 +140,7 @@ def start_of_step(run: Run) -> float:
         run.stage_rate[0] = rate_at_load(run, run.load_along_slip[0], abs(state.rate_now))
         for rate in (0.0, run.stage_rate[0]):
             contact_at(run, state.law_slip, rate, state.state_now)
-            if run.counts.has_state == 1 and run.params.impedance + run.params.normal * run.value.by_rate <= 0.0:
+            if run.counts.states > 0 and run.params.impedance + run.params.normal * run.value.by_rate <= 0.0:
                 run.counts.breach = Stop.OFF_THE_LAW  # several slip rates may balance the load, and nothing selects one
     return force
 
@@ -110,58 +154,70 @@ def strength_ahead(run: Run) -> float:
     params = run.params
     largest, missed = ROUNDING / params.tolerance * params.reference + abs(run.load_along_slip[0]), 0.0
     for i in range(POINTS):
-        contact_at(run, run.state.law_slip, 0.0, run.stage_state[i])
+        contact_at(run, run.state.law_slip, 0.0, states_at_point(run, i))
         run.stage_rate[i] = params.normal * run.value.mu
         largest = max(largest, abs(run.stage_rate[i]))
     interpolate(run.stage_rate, run.jet, run.spare)
     for i in range(STAGES):
-        contact_at(run, run.state.law_slip, 0.0, evaluate(run.state_jet, MIDDLE[i]))
+        contact_at(run, run.state.law_slip, 0.0, states_in_step(run, MIDDLE[i]))
         missed = larger(missed, abs(params.normal * run.value.mu - evaluate(run.jet, MIDDLE[i])))
     fill(run.stage_rate, 0.0)
     return max(missed, last_terms(run.jet)) / (params.tolerance * largest)
 
 
 @kernel
-def error_of(run: Run, force: float, lost: float, lost_state: float) -> float:
+def error_of(run: Run, force: float, lost: float) -> float:
     """Return the error of the step's polynomials, in units of the tolerance and of what rounding makes of slip rate and state.
 
     The error is the larger of what more points would still change and of what the polynomials miss of the governing equation
     between the points; where that is small enough, a share of the proven bound counts too (`proof`), which also sees a feature of
     the law that lies between all places. Under a law that never sticks, a step past a slip rate of zero may do without: friction
-    need not be analytic there. `force` (Pa or N) is the force that the step ignores; `lost` (m/s) and `lost_state` (in units of the
-    state) are known to be lost by rounding in the law itself.
+    need not be analytic there. `force` (Pa or N) is the force that the step ignores; `lost` (m/s), and of each state
+    run.state_noise, are known to be lost by rounding in the law itself.
     """
     params, value, h = run.params, run.value, run.k.speed
-    fastest, farthest = max(params.rate_floor, run.state.hanging), params.state_scale + 1e-300
+    fastest = max(params.rate_floor, run.state.hanging)
     for i in range(POINTS):
-        fastest, farthest = max(fastest, abs(run.stage_rate[i])), max(farthest, abs(run.stage_state[i]))
+        fastest = max(fastest, abs(run.stage_rate[i]))
     # run.value is from the latest evaluation, at or near the end of the step.
     resistance = params.impedance + params.normal * value.by_rate + params.inertia / h
     noise = ROUNDING * (size_of_load(run) + rounding_of_slip(run)) / resistance if resistance > 0.0 else 0.0
-    state_noise = noise * abs(value.change_by_rate / value.change_by_state) if value.change_by_state != 0.0 else noise
-    missed, missed_state = defects(run, h, force)
-    missed = ALLOWED * max(missed - DEFECT_ROUNDING * fastest, 0.0)
+    for n in range(run.counts.states):
+        settles = value.change_by_state[STATES * n + n]
+        run.state_noise[n] += noise * abs(value.change_by_rate[n] / settles) if settles != 0.0 else noise
+    missed = ALLOWED * max(defects(run, h, force) - DEFECT_ROUNDING * fastest, 0.0)
     error = max(last_terms(run.jet), missed) / (params.tolerance * fastest + noise + lost)
-    if run.counts.has_state == 1:
-        missed_state = ALLOWED * max(missed_state - DEFECT_ROUNDING * farthest, 0.0)
-        state_noise += lost_state
-        error = max(error, max(last_terms(run.state_jet), missed_state) / (params.tolerance * farthest + state_noise))
+    for n in range(run.counts.states):
+        farthest = farthest_state(run, n)
+        missed = ALLOWED * max(run.state_error[n] - DEFECT_ROUNDING * farthest, 0.0)
+        missed = max(last_terms(ahead(run.state_jet, TERMS * n)), missed)
+        error = max(error, missed / (params.tolerance * farthest + run.state_noise[n]))
     if run.counts.mode == 0:
         error = max(error, strength_ahead(run))
     if error > 1.0:
         return error
-    missed, missed_state = prove_step(run, h, force)
+    missed = prove_step(run, h, force)
     if run.counts.mode == 0:
         noise, fastest = ROUNDING * params.reference / params.tolerance, params.reference + abs(run.load_along_slip[0])
     proven = larger(0.0, UNPROVEN * missed / (params.tolerance * fastest + noise + lost))
-    if run.counts.has_state == 1:
-        proven = larger(proven, UNPROVEN * missed_state / (params.tolerance * farthest + state_noise))
+    for n in range(run.counts.states):
+        allowed = params.tolerance * farthest_state(run, n) + run.state_noise[n]
+        proven = larger(proven, UNPROVEN * run.state_error[n] / allowed)
     if proven <= 1.0:
         return error
     if passes_zero(run):
         run.state.residual = math.nan
         return error
     return proven
+
+
+@kernel
+def farthest_state(run: Run, n: int) -> float:
+    """Return the largest magnitude of state n at the points of the step, or the size below which it counts as that size."""
+    farthest = run.params.state_scale[n] + 1e-300
+    for i in range(POINTS):
+        farthest = max(farthest, abs(run.stage_state[TERMS * n + i]))
+    return farthest
 
 
 @kernel
@@ -232,7 +288,8 @@ def turn_with_bristles(run: Run, left: float) -> None:
         if abs(force) <= rounding:
             run.load[0] -= run.counts.mode * force  # The stages must see the forces balance here, too.
     if force < -rounding or (force <= rounding and later < -rounding):
-        run.counts.mode, run.state.state_now = -run.counts.mode, -run.state.state_now
+        run.counts.mode = -run.counts.mode
+        turn_states(run, run.state.state_now)
 
 
 @kernel
@@ -241,10 +298,13 @@ def judged_error(run: Run, force: float, before: float) -> float:
 
     An error that has not halved since a longer step had the error `before` may be rounding in the law, which is then measured.
     """
-    error = error_of(run, force, 0.0, 0.0)
+    fill(run.state_noise, 0.0)
+    error = error_of(run, force, 0.0)
     if error > 1.0 and error > 0.5 * before:
-        lost, lost_state = rounding_of_law(run, run.k.speed)
-        error = error_of(run, force, LAW_ROUNDING * lost, LAW_ROUNDING * lost_state)
+        lost = rounding_of_law(run, run.k.speed)
+        for n in range(run.counts.states):
+            run.state_noise[n] *= LAW_ROUNDING
+        error = error_of(run, force, LAW_ROUNDING * lost)
     return error if settle_start(run) else math.inf
 
 
@@ -257,7 +317,7 @@ def first_length(run: Run, left: float) -> float:
         guess = 0.5 * left
     load_ahead(run, guess)
     start_of_step(run)
-    growth = growth_rate(run) if run.counts.mode != 0 else 0.0
+    growth = growth_rate(run, LONGEST_GROWTH / (guess * speed)) if run.counts.mode != 0 else 0.0
     return LONGEST_GROWTH / (growth * speed) if growth * guess * speed > LONGEST_GROWTH else guess
 
 
@@ -272,7 +332,7 @@ def collocate(run: Run, left: float) -> float:
     speed = abs(run.state.speed)
     run.state.hanging = hanging_rate(run)
     if run.counts.sticks == 0 and (run.counts.has_inertia == 0 or run.state.rate_now == 0.0):
-        if run.counts.reverses == 1:
+        if run.counts.reverses != 0:
             turn_with_bristles(run, left)
         else:
             left = turn_with_load(run, left)
@@ -284,7 +344,8 @@ def collocate(run: Run, left: float) -> float:
         solution_over = guess if solved else 0.0
         if solved:
             interpolate(run.stage_rate, run.jet, run.spare)
-            interpolate(run.stage_state, run.state_jet, run.spare)
+            for n in range(run.counts.states):
+                interpolate(ahead(run.stage_state, TERMS * n), ahead(run.state_jet, TERMS * n), run.spare)
             error = judged_error(run, force, before)
             factor = 0.9 * min(max(error, 1e-12), 1e12) ** (-1.0 / (STAGES + 1.0))
             in_vain = in_vain + 1 if 0.5 * before < error < LARGEST_ROUNDING else 0
@@ -303,7 +364,8 @@ def collocate(run: Run, left: float) -> float:
             before = math.inf
             guess *= 0.25
     fill(run.jet, math.nan)
-    fill(run.state_jet, math.nan)
+    for n in range(STATES):
+        fill(ahead(run.state_jet, TERMS * n), math.nan)
     return guess
 
 

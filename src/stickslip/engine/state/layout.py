@@ -16,12 +16,15 @@ from numpy.typing import NDArray
 
 from stickslip.engine.codegen.records import Record, floats_inside
 from stickslip.engine.codegen.taylor_series import ORDER
+from stickslip.friction.formula import expression
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 TERMS = ORDER + 1
 """Coefficients of every polynomial and series (1): the orders 0 to ORDER."""
+STATES = len(expression.STATES)
+"""Largest number of states of a law (1); there is room for as many everywhere."""
 
 
 class Params(Record):
@@ -47,13 +50,13 @@ class Params(Record):
     tolerance: float  # 1: local error allowed to a step, relative to the slip rate
     smallest_jump: float  # m/s: changes of the slip rate up to this size are not noted as shocks
     relative_jump: float  # 1: nor are changes up to this share of the slip rate
-    state_scale: float  # unit of the law's state: a size of the state below which its errors are not measured relative to it
     rate_floor: float  # m/s: slip rate below which the errors of an implicit step are not measured relative to it
     healed_piece: float  # piece of the law that holds after healing, for a law that forgets slip at an arrest; else -1
     shortest: float  # s: pieces of load shorter than this are lumped while `Counts.lumps` is set
     tone: float  # Pa (slab) or N/s (block): amplitude of the tone in an inflow, tone sin(tone_frequency t + tone_phase)
     tone_frequency: float  # rad/s: angular frequency of the tone
     tone_phase: float  # rad: phase of the tone at t = 0
+    state_scale: Floats = floats_inside(STATES)  # units of the states: below these sizes, errors are not relative to the state
 
 
 class State(Record):
@@ -71,7 +74,7 @@ class State(Record):
     bend: float  # s: coefficient of xi^2 in the phase, 0 except next to folds
     table_slip: float  # m: law slip (minus its initial value) at which the table of branches holds
     fold_rate: float  # m/s: magnitude of the slip rate at the moving fold that the contact approaches
-    state_now: float  # unit of the law's state: state variable of the law, as its formulas see it
+    state_now: Floats = floats_inside(STATES)  # units of the states: state variables of the law, as its formulas see them
     new_since: float  # s: phase from which on the pieces of the present round trip are not in a tree of echoes yet
     taken_to: float  # s: phase up to which the echoes of earlier round trips have been taken out of the tree that is ahead
     amplified: float  # 1: size in the present piece of load of an error of 1 in the load at the start; NaN if not known
@@ -117,8 +120,8 @@ class Counts(Record):
     has_inertia: int  # 1 if the contact has mass, so that its slip rate cannot jump
     is_algebraic: int  # 1 if the slip rate is a root of the contact equation: no mass, a law of slip rate, no state
     arriving: int  # cause of the jump with which the present piece of load begins, as a code of `Cause`; 0 without a jump
-    has_state: int  # 1 if the law has a state variable
-    reverses: int  # 1 if this state changes its sign where slip reverses
+    states: int  # number of state variables of the law
+    reverses: int  # sum of 2^n over the numbers n of the states that change their sign where slip reverses
     sticks: int  # 1 if the law knows rest
     stiff: int  # 1 while a contact with mass is stiff and takes implicit steps
     steps: int  # number of explicit steps since slip last began from rest
@@ -175,12 +178,12 @@ class Ball(Record):
 
     slip: float  # k[0], m: radius of the disc in which the law slip varies
     rate: float  # k[1], m/s: radius of that of the slip rate
-    state: float  # k[2], unit of the law's state: radius of that of the state
-    friction: float  # k[3], 1: result, how far mu may be from its value at the centre
-    change: float  # k[4], unit of the law's state over s: the same for dw/dt, under a law with a state
-    at_slip: float  # k[5], m: law slip at the centre, minus the reference slip of the piece of the law; k[5] to k[7] for `balls`
-    at_rate: float  # k[6], m/s: slip rate at the centre
-    at_state: float  # k[7], unit of the law's state: state at the centre
+    state: Floats = floats_inside(STATES)  # from k[2] on, units of the states: radii of those of the states
+    friction: float  # 1: result, how far mu may be from its value at the centre
+    change: Floats = floats_inside(STATES)  # units of the states over s: the same for their rates of change
+    at_slip: float  # m: law slip at the centre, minus the reference slip of the piece of the law; this and what follows for `balls`
+    at_rate: float  # m/s: slip rate at the centre
+    at_state: Floats = floats_inside(STATES)  # units of the states: states at the centre
 
 
 NEVER = 2**62
@@ -393,16 +396,16 @@ class EchoNode(Record):
 
 
 class LawValue(Record):
-    """Hold what a law's formula returns: the friction coefficient and, for a law with a state w, its rate of change."""
+    """Hold what a law's formula returns: the friction coefficient and, for a law with states, their rates of change."""
 
     mu: float  # 1: friction coefficient minus that at the reference of the piece of the law
     by_rate: float  # s/m: its derivative with respect to slip rate
     by_slip: float  # 1/m: with respect to slip
-    by_state: float  # with respect to w; this and all that follows only for a law with a state
-    change: float  # dw/dt, in 1/s times the unit of w
-    change_by_rate: float
-    change_by_slip: float
-    change_by_state: float
+    by_state: Floats = floats_inside(STATES)  # with respect to each state; this and all that follows only for a law with states
+    change: Floats = floats_inside(STATES)  # rate of change of each state, in 1/s times its unit
+    change_by_rate: Floats = floats_inside(STATES)
+    change_by_slip: Floats = floats_inside(STATES)
+    change_by_state: Floats = floats_inside(STATES * STATES)  # a row for each state: with respect to each state
 
 
 class Friction(Record):
@@ -420,8 +423,8 @@ class Between(Record):
     rate: float  # m/s
     acceleration: float  # m/s: derivative of the slip rate
     walked: float  # m/s: integral of the slip rate
-    state: float  # unit of the law's state
-    evolved: float  # unit of the law's state: derivative of the state
+    state: Floats = floats_inside(STATES)  # units of the states
+    evolved: Floats = floats_inside(STATES)  # units of the states: their derivatives
 
 
 # ---- a problem and its history ----------------------------------------------------------------------------------------------
@@ -442,15 +445,15 @@ class Store(NamedTuple):
     """Hold a history. Each field of `HistoryPiece` is an attribute too: a view of the table, with one entry for each piece."""
 
     pieces: Integers  # table of HistoryPiece
-    state: Floats  # (n, TERMS): state of the law, as its formulas see it; (0, TERMS) for a law without a state
+    state: Floats  # (n, states, TERMS): states of the law, as its formulas see them; no rows for a law without a state
 
     def __getattr__(self, field: str) -> Any:
         return getattr(HistoryPiece.of(self.pieces), field)
 
 
-def new_store(capacity: int, has_state: bool = False) -> Store:
+def new_store(capacity: int, states: int = 0) -> Store:
     """Return an empty history with room for `capacity` pieces."""
-    return Store(HistoryPiece.table(capacity), np.zeros((capacity if has_state else 0, TERMS)))
+    return Store(HistoryPiece.table(capacity), np.zeros((capacity if states else 0, states, TERMS)))
 
 
 def resized(table: NDArray[Any], length: int, capacity: int) -> NDArray[Any]:

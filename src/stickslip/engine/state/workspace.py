@@ -14,6 +14,7 @@ import numpy as np
 from stickslip.engine.codegen.records import Record, floats_at, floats_inside, inside, record_at, records_at
 from stickslip.engine.codegen.uncompiled import UNCOMPILED, lend_memory
 from stickslip.engine.state.layout import (
+    STATES,
     TERMS,
     Ball,
     Branch,
@@ -34,7 +35,7 @@ from stickslip.engine.state.layout import (
     Store,
 )
 
-MATRIX_ROWS = 18
+MATRIX_ROWS = 40
 """Rows of TERMS numbers (1) that the matrix and the right-hand side of the equations of an implicit step fill."""
 
 
@@ -82,9 +83,12 @@ class Run(Record):
     saved: State = inside(State, TERMS)  # the first SAVED fields of the state that belong to it
     part: Floats = floats_inside(TERMS)  # room for polynomials that are only tested
     spare: Floats = floats_inside(TERMS)  # further room of this kind
-    state_jet: Floats = floats_inside(TERMS)  # polynomial of the law's state over an implicit step
+    state_jet: Floats = floats_inside(STATES * TERMS)  # polynomials of the law's states over an implicit step
     stage_rate: Floats = floats_inside(TERMS)  # m/s: slip rate at Radau's points of an implicit step
-    stage_state: Floats = floats_inside(TERMS)  # state of the law at these points
+    stage_state: Floats = floats_inside(STATES * TERMS)  # states of the law at these points
+    some_state: Floats = floats_inside(TERMS)  # states of the law at one place
+    state_error: Floats = floats_inside(TERMS)  # units of the states: what an implicit step misses, or may miss, of each
+    state_noise: Floats = floats_inside(TERMS)  # units of the states: what rounding in the law makes of them in a step
     matrix: Floats = floats_inside(MATRIX_ROWS * TERMS)  # equations of an implicit step
 
 

@@ -275,7 +275,7 @@ def worth_building(run: Run) -> bool:
     The round trip must have been at rest, or almost so if it had many pieces. The body must be a slab with a rigid driver, the
     loading steady, the law one that knows rest and has no state variable, and no pause for leaps over creep may be due.
     """
-    if run.params.reflection != -1.0 or run.counts.is_block == 1 or run.counts.has_state == 1:
+    if run.params.reflection != -1.0 or run.counts.is_block == 1 or run.counts.states > 0:
         return False
     if run.counts.sticks == 0 or run.counts.varies == 1 or run.counts.pause_at != NEVER:
         return False

@@ -32,6 +32,7 @@ RARE = ("run.rtol", "run.creep_rtol", "run.shortest_event", "body.p_wave_speed",
 TITLES: dict[str, str] = {"body": "Body", "friction": "Friction", "loading": "Loading", "initial": "Start", "run": "Run"}
 EMPTY = {
     "initial.state": "needed",
+    "initial.second_state": "needed",
     "initial.rate": "load and friction balance",
     "loading.far_stress": "the initial load",
     "run.creep_rtol": "automatic",
@@ -174,7 +175,7 @@ class _Tables:
         start = "steady" if self.starts_steadily else "load" if self.setting.value("initial.excess") is None else "excess"
         in_motion = self.problem.has_initial_rate and self.problem.first_pull_rate != 0.0
         kinds = STARTS if law.sticks else STARTS_IN_MOTION if in_motion else ()
-        yield replace(self.of("initial", type(body), (), state=law.state), kind=start, kinds=kinds)
+        yield replace(self.of("initial", type(body), (), states=law.states), kind=start, kinds=kinds)
         yield self.of_run()
 
     def of_law(self, table: str, kinds: tuple[str, ...]) -> Iterator[Group]:
@@ -185,10 +186,10 @@ class _Tables:
             if isinstance(entry, Part):
                 yield from self.of_law(f"{table}.{name}", PARTLESS)
 
-    def of(self, table: str, kind: type, kinds: tuple[str, ...], title: str = "", state: StateVariable | None = None) -> Group:
+    def of(self, table: str, kind: type, kinds: tuple[str, ...], title: str = "", states: tuple[StateVariable, ...] = ()) -> Group:
         """Return the group of one table."""
         controls: list[Control] = []
-        for name, (entry, default) in entries_in(table, kind, state).items():
+        for name, (entry, default) in entries_in(table, kind, states).items():
             if not self.applies(f"{table}.{name}"):
                 continue
             if isinstance(entry, NamedNumbers):
@@ -218,7 +219,7 @@ class _Tables:
         """Return False for an entry that this problem cannot have, and for a number in place of which there is a table."""
         if path in ("loading.far_stress", "loading.far_stress_rate") and self.problem.body.is_driven_rigidly:
             return False
-        if path == "initial.state" and (self.problem.friction.state is None or self.starts_steadily):
+        if path in ("initial.state", "initial.second_state") and (not self.problem.friction.states or self.starts_steadily):
             return False
         if path == "initial.rate" and not self.problem.has_initial_rate:
             return False

@@ -16,6 +16,7 @@ from stickslip.explorer.model.setting import Setting
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, fields_of
 from stickslip.friction import FrictionLaw
+from stickslip.friction.contract import STATE_NAMES
 from stickslip.loading import HISTORIES
 from stickslip.problem.problem import Problem
 from stickslip.problem.start import written_out
@@ -108,7 +109,8 @@ def _started(setting: Setting) -> Setting:
         return setting.with_value("initial", initial | {"excess": 0.0})
     body = read_part("body", dict(setting.value("body")), Source(setting.name))
     load = law.start["coefficient"] * body.normal_load
-    return setting.with_value("initial", initial | {"load": load, "state": law.start["state"]})
+    states = {name: law.start[name] for name in STATE_NAMES if name in law.start}
+    return setting.with_value("initial", initial | {"load": load} | states)
 
 
 def _or_started(setting: Setting) -> Setting:
@@ -151,10 +153,10 @@ def _with_start(setting: Setting, kind: str) -> Setting:
 
 def _with_start_in_motion(setting: Setting, kind: str, problem: Problem) -> Setting:
     """Return a setting that starts in steady sliding, or from the load and the state that it has now."""
-    initial = {key: value for key, value in setting.value("initial").items() if key not in ("load", "excess", "state")}
+    initial = {key: value for key, value in setting.value("initial").items() if key not in ("load", "excess", *STATE_NAMES)}
     if kind == "load":
         start = written_out(problem)
-        given = {"load": start.initial_load, "excess": start.initial_excess, "state": start.initial_state}
+        given = {name: getattr(start, f"initial_{name}") for name in ("load", "excess", *STATE_NAMES)}
         initial |= {key: value for key, value in given.items() if value is not None}
     return setting.with_value("initial", initial)
 

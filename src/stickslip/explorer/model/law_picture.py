@@ -8,6 +8,7 @@ import numpy as np
 
 from stickslip.explorer.model.answer import CurveName, Floats, LawPicture, Motion
 from stickslip.friction import FrictionLaw, LaggedFriction, RateAndState
+from stickslip.friction.contract import one_argument
 from stickslip.problem.problem import Problem
 from stickslip.solution.solution import Solution
 from stickslip.trajectory.history import Positions
@@ -33,7 +34,7 @@ def law_picture(solution: Solution, motion: Motion) -> LawPicture:
     if law.depends_on_slip and not law.depends_on_rate:
         return _along_slip(solution)
     picture = _along_rate(solution.problem, np.abs(motion.slip_rate))
-    return picture if law.state is None else replace(picture, path=_path(solution))
+    return picture if not law.states else replace(picture, path=_path(solution))
 
 
 def _along_slip(solution: Solution) -> LawPicture:
@@ -61,7 +62,7 @@ def _along_rate(problem: Problem, rates: Floats) -> LawPicture:
     moving = rates[rates > 0.0]
     visited = (float(rates.min()), float(rates.max()))
     scales = [scale for scale in law.rate_scales if 0.0 < scale < np.inf]
-    log = law.state is not None
+    log = bool(law.states)
     if log:
         top = 10.0 * max(visited[1], min(scales, default=1e-6))
         bottom = max(0.1 * min(float(moving.min()) if moving.size else top, min(scales, default=top)), top * 10.0**-DECADES)
@@ -110,5 +111,5 @@ def _coefficient(problem: Problem, rate: Floats) -> tuple[CurveName, Floats]:
         return "steady state", law.steady_coefficient(rate)
     if isinstance(law, LaggedFriction):
         return "steady state", law.coefficient(problem.law_slip, rate, rate)
-    name: CurveName = "law" if law.state is None else "law at the state of the start"
-    return name, law.coefficient(problem.law_slip, rate, problem.state)
+    name: CurveName = "law" if not law.states else "law at the state of the start"
+    return name, law.coefficient(problem.law_slip, rate, one_argument(problem.states))

@@ -43,7 +43,7 @@ def sentence(found: Found, contact: Uniqueness, influence: RuleInfluence) -> str
 def _regime(problem: Problem, contact: Uniqueness, influence: RuleInfluence) -> str:
     if problem.body.has_inertia:
         return f"regular: {'the contact' if problem.body.has_waves else 'the block'} has a mass, so its slip rate cannot jump"
-    if problem.friction.state is not None:
+    if problem.friction.states:
         return "regular: friction has a state, and one slip rate at every load"
     meanings = {
         "regular": "one slip rate at every load",

@@ -30,6 +30,7 @@ from stickslip.figures.style import (
 )
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.friction.contract import STATE_NAMES
 from stickslip.solution.evaluation import Curve, Readings, times_of
 from stickslip.solution.place import Place
 
@@ -43,6 +44,7 @@ COLOURS: dict[str, str] = {
     "traction": VERMILLION,
     "load": INK,
     "state": PURPLE,
+    "second_state": PURPLE,
     "friction": VERMILLION,
 }
 """Colour of each curve, the same in all figures."""
@@ -74,9 +76,9 @@ def draw_curve(axes: Axes, readings: Readings, name: Curve, span: Span) -> None:
         values = np.where((values != 0.0) & settled, np.abs(values), np.nan)
     elif name == "traction":
         values = np.where(settled, values, np.nan)
-    state = readings.problem.friction.state
-    if name == "state" and state is not None:
-        size, text = 1.0, axis_text("state", "", state.unit)
+    if name in STATE_NAMES:
+        state = readings.problem.friction.states[STATE_NAMES.index(name)]
+        size, text = 1.0, axis_text(name.replace("_", " "), "", state.unit)
     else:
         unit, size = unit_of(_unit(readings, name), values, log=log)
         text = curve_label(name, unit, readings.problem.load_unit)

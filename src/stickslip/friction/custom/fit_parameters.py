@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import NamedNumbers, Part, Quantity, Series, fields_of
-from stickslip.friction.contract import StateVariable
+from stickslip.friction.contract import states_in
 from stickslip.friction.law import FrictionLaw
 
 Floats = NDArray[np.float64]
@@ -58,7 +58,7 @@ def template(law: Any) -> FrictionLaw:
     is_class = isinstance(law, type) and issubclass(law, FrictionLaw)
     if not is_class and not isinstance(law, FrictionLaw):
         raise InputError(f"fit: law must be a friction law or the name of one, got {shown(law)}")
-    if isinstance(law.state, StateVariable):  # the class of a law that users type has a property there
+    if states_in(law.state):  # the class of a law that users type has a property there
         of = "its steady friction" if hasattr(law, "steady_coefficient") else "friction in steady sliding"
         raise InputError(
             f"fit: {law.kind} has a state, which points do not show: {of} does not determine all of its parameters; "

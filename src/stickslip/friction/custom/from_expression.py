@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
 from functools import cached_property, partial
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,9 +16,9 @@ from stickslip.foundation.conversion import Converted, WithUnit
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import Choice, Named, NamedNumbers, Text, declare, quantity
 from stickslip.foundation.units import si_base
-from stickslip.friction.contract import Formula, StateVariable
+from stickslip.friction.contract import MOST_STATES, Formula, StateVariable
 from stickslip.friction.custom.sampled import check_samples
-from stickslip.friction.custom.typed_state import STATES, read_evolution, steady
+from stickslip.friction.custom.typed_state import STATES, read_evolution, split, steady
 from stickslip.friction.families import RemembersSlip
 from stickslip.friction.formula.bounds import bounds
 from stickslip.friction.formula.dimensions import check_dimensions
@@ -27,6 +27,8 @@ from stickslip.friction.formula.parse import LARGEST_EXPONENT, LONGEST, RESERVED
 
 MOST_PARAMETERS = 50
 """Largest number of parameters of an expression, which comes from an untrusted scenario file."""
+AtReversal = Literal["keeps-sign", "changes-sign", "first-changes-sign"]
+"""What states do where slip reverses; in the last case the first of two changes its sign, and the second keeps it."""
 LONGEST_NAME = 40
 """Largest number of characters in the name of a parameter, so that messages and tables stay readable."""
 
@@ -47,7 +49,8 @@ class FromExpression(RemembersSlip):
     A law may have a state of its own, whose rate of change `evolution` gives: `FromExpression("mu_0 + a*log(1 + v/v_0) + z",
     {"mu_0": 0.6, "a": 0.01, "v_0": "1 um/s", "b": 0.02, "tau": "1 s", "d": "10 um"}, evolution="dz/dt = (b - z)/tau - v*z/d")`.
     The state changes at rest, too, where v = 0. Friction must be finite at state 0. If it is zero at v = 0 in every state, or if
-    the state changes its sign at reversal, the contact never sticks.
+    the state changes its sign at reversal, the contact never sticks. A law may have two states: their equations stand in
+    `evolution` one after the other, with a semicolon between them, and so do their units in `state_unit` ("m; 1").
     """
 
     kind = "expression"
@@ -63,10 +66,15 @@ class FromExpression(RemembersSlip):
     )
     _: KW_ONLY
     static: float | None = quantity("1", "friction coefficient at rest, if above that at v = 0+", at_least=0, default=None)
-    evolution: str = declare(Text("rate of change of a state, such as dz/dt = (1 - z)/tau, in u, v, z and parameters", LONGEST), "")
-    state_unit: str = declare(Text("unit of the state; without it the state is a pure number", LONGEST_NAME), "")
-    at_reversal: Literal["keeps-sign", "changes-sign"] = declare(
-        Choice("what the state does where slip reverses", ("keeps-sign", "changes-sign")), "keeps-sign"
+    evolution: str = declare(
+        Text("rate of change of a state, such as dz/dt = (1 - z)/tau, in u, v, z and parameters; two are separated by ;", LONGEST),
+        "",
+    )
+    state_unit: str = declare(
+        Text("unit of the state; without it the state is a pure number; those of two states are separated by ;", LONGEST_NAME), ""
+    )
+    at_reversal: AtReversal = declare(
+        Choice("what the state, or each of two states, does where slip reverses", get_args(AtReversal)), "keeps-sign"
     )
     counts: Literal["net", "path"] = declare(Choice("slip that u denotes", ("net", "path")), "net")  # type: ignore[misc] # here a choice of the user
 
@@ -76,7 +84,8 @@ class FromExpression(RemembersSlip):
         self._check_state()
         self._check_formula("expression")
         if self.evolution:
-            self._check_formula("evolution")
+            for number in range(len(self.states)):
+                self._check_formula("evolution", number)
             self._check_at_zero()
         if self.static is not None:
             self._check_static(self.static)
@@ -90,8 +99,7 @@ class FromExpression(RemembersSlip):
                 raise InputError(f"FromExpression: parameters: {ascii(name)[:60]} is not a name: letters, digits and _, up to 40")
             if name in RESERVED or names.count(name) > 1:
                 raise InputError(f"FromExpression: parameters: the name {name} is reserved or used twice")
-        trees = (self.tree, self._change) if self.evolution else (self.tree,)
-        used = {node.name for tree in trees for node in nodes_of(tree) if node.operation == "parameter"}
+        used = {node.name for tree in (self.tree, *self._changes) for node in nodes_of(tree) if node.operation == "parameter"}
         for name in names:
             if name not in used:
                 hint = nearest(name, used) if used else "the expression has no parameters"
@@ -102,35 +110,37 @@ class FromExpression(RemembersSlip):
         needless = "state_unit" if self.state_unit else "at_reversal" if self.at_reversal != "keeps-sign" else ""
         if needless and not self.evolution:
             raise InputError(f"FromExpression: {needless}: the law has no state: give its rate of change as evolution")
+        if self.at_reversal == "first-changes-sign" and len(self._equations) < MOST_STATES:
+            raise InputError("FromExpression: at_reversal: the law has no second state; changes-sign is for one")
         if self.evolution and self.static is not None:
             raise InputError("FromExpression: static: a law with a state has the static coefficient of its expression at v = 0")
 
-    def _check_formula(self, which: Literal["expression", "evolution"]) -> None:
-        """Check units, exponents and samples of a formula, in which the state is a parameter like any other."""
-        state, is_change = self._state_name, which == "evolution"
-        units = {value.name: value.unit for value in self.values} | ({state: self._unit} if state else {})
-        text = self._equation[1] if is_change else self.expression
+    def _check_formula(self, which: Literal["expression", "evolution"], number: int = 0) -> None:
+        """Check units, exponents and samples of a formula, in which states are parameters like any other."""
+        names, is_change = tuple(self._equations), which == "evolution"
+        units = {value.name: value.unit for value in self.values} | dict(zip(names, self._units, strict=True))
+        text = tuple(self._equations.values())[number] if is_change else self.expression
         try:
-            tree = parse(text, (*self.parameters(), state) if state else self.parameters())
+            tree = parse(text, (*self.parameters(), *names))
             if any(units.values()):
-                check_dimensions(tree, units, self._unit if is_change else None)
+                check_dimensions(tree, units, self._units[number] if is_change else None)
             self._check_exponents(tree)
-            check_samples(tree, self.numbers(), self.counts == "net", state, is_change)
+            check_samples(tree, self.numbers(), self.counts == "net", names, is_change)
         except InputError as error:
             raise InputError(f"FromExpression: {which}: {error}") from None
 
     def _check_at_zero(self) -> None:
         """Check that friction at rest in state 0 is a number: loads are kept as differences from it."""
-        value = float(evaluate(self.tree, self.numbers(), 0.0, 0.0, 0.0))
+        value = float(evaluate(self.tree, self.numbers(), 0.0, 0.0))
         if not math.isfinite(value):
-            where = f"at u = 0, v = 0 and {self._state_name} = 0"
+            where = f"at u = 0, v = 0 and {' and '.join(f'{name} = 0' for name in self._equations)}"
             raise InputError(f"FromExpression: expression: {where} friction must be a finite number, but it is {value:g}")
 
     def _check_exponents(self, tree: Expression) -> None:
         for node in nodes_of(tree):
             if node.operation == "pow":
                 with np.errstate(all="ignore"):
-                    exponent = float(evaluate(node.arguments[1], self.numbers() | {self._state_name: 0.0}, 0.0, 0.0))
+                    exponent = float(evaluate(node.arguments[1], self.numbers() | dict.fromkeys(self._equations, 0.0), 0.0, 0.0))
                 if not abs(exponent) <= LARGEST_EXPONENT:
                     raise InputError(f"an exponent is {exponent:g}, it must be within {LARGEST_EXPONENT:g}")
 
@@ -144,9 +154,8 @@ class FromExpression(RemembersSlip):
     @property
     def tree(self) -> Expression:
         """The formula as an expression tree."""
-        name = self._state_name
         try:
-            return parse(self.expression, self.parameters(), name)
+            return parse(self.expression, self.parameters(), tuple(self._equations))
         except InputError as error:
             raise InputError(f"FromExpression: expression: {error}") from None
 
@@ -157,53 +166,53 @@ class FromExpression(RemembersSlip):
 
     def _formula(self, tree: Expression) -> Formula:
         names = self.parameters()
-        return lambda law, u, v, w=0.0: evaluate(tree, {name: getattr(law, name) for name in names}, u, v, w)
+        return lambda law, u, v, *states: evaluate(tree, {name: getattr(law, name) for name in names}, u, v, *states)
 
     # ---- the state ------------------------------------------------------------------------------------------------------------
 
-    @property
-    def _state_name(self) -> str:
-        """The name of the state, or an empty text."""
-        return self._equation[0] if self.evolution else ""
-
-    @property
-    def _equation(self) -> tuple[str, str]:
-        """The name of the state and the text of its rate of change."""
+    @cached_property
+    def _equations(self) -> dict[str, str]:
+        """The texts of the rates of change of the states, by the states' names."""
         try:
-            return read_evolution(self.evolution, self.parameters())
+            return read_evolution(self.evolution, self.parameters()) if self.evolution else {}
         except InputError as error:
             raise InputError(f"FromExpression: {error}") from None
 
     @property
-    def _change(self) -> Expression:
-        """The rate of change of the state as an expression tree."""
-        name, text = self._equation
+    def _changes(self) -> tuple[Expression, ...]:
+        """The rates of change of the states as expression trees."""
         try:
-            return parse(text, self.parameters(), name)
+            return tuple(parse(text, self.parameters(), tuple(self._equations)) for text in self._equations.values())
         except InputError as error:
             raise InputError(f"FromExpression: evolution: {error}") from None
 
     @property
-    def _unit(self) -> str:
-        """The unit of the state in powers of m, kg and s."""
-        if not self.state_unit:
-            return ""
-        try:
-            number, unit = si_base(f"1 {self.state_unit}")
-        except InputError as error:
-            raise InputError(f"FromExpression: state_unit: {error}") from None
-        if number != 1.0:
-            wanted = f"must be a unit of the SI without a prefix; write {unit}"
-            raise InputError(f"FromExpression: state_unit: {self.state_unit} {wanted}")
-        return unit
+    def _units(self) -> tuple[str, ...]:
+        """The units of the states in powers of m, kg and s."""
+        given = split(self.state_unit) or ("1",) * len(self._equations)
+        if len(given) != len(self._equations):
+            raise InputError(f'FromExpression: state_unit: give one unit for each state, such as "m; 1", got {self.state_unit!a}')
+        units = []
+        for one in given:
+            try:
+                number, unit = (1.0, "") if one == "1" else si_base(f"1 {one}")
+            except InputError as error:
+                raise InputError(f"FromExpression: state_unit: {error}") from None
+            if number != 1.0:
+                raise InputError(f"FromExpression: state_unit: {one} must be a unit of the SI without a prefix; write {unit}")
+            units.append(unit)
+        return tuple(units)
 
     @cached_property
-    def state(self) -> StateVariable | None:  # type: ignore[override] # of the instance here
-        """The state variable, if `evolution` is given."""
-        if not self.evolution:
-            return None
-        name, reverses = self._state_name, self.at_reversal == "changes-sign"
-        return StateVariable(name, self.state_unit or "1", f"state {name}", reverses=reverses, signed=True)
+    def state(self) -> StateVariable | tuple[StateVariable, ...] | None:  # type: ignore[override] # of the instance here
+        """The state variables, if `evolution` is given."""
+        reverse = {"keeps-sign": 0, "first-changes-sign": 1, "changes-sign": MOST_STATES}[self.at_reversal]
+        units = split(self.state_unit) or ("1",) * len(self._equations)
+        states = tuple(
+            StateVariable(name, unit, f"state {name}", reverses=i < reverse, signed=True)
+            for i, (name, unit) in enumerate(zip(self._equations, units, strict=False))
+        )
+        return states if len(states) > 1 else states[0] if states else None
 
     @cached_property
     def sticks(self) -> bool:  # type: ignore[override] # of the instance here
@@ -211,13 +220,13 @@ class FromExpression(RemembersSlip):
         if not self.evolution:
             return True
         with np.errstate(all="ignore"):
-            at_rest = np.asarray(evaluate(self.tree, self.numbers(), 0.0, 0.0, STATES))
+            at_rest = np.asarray(evaluate(self.tree, self.numbers(), 0.0, 0.0, *np.meshgrid(*[STATES] * len(self._equations))))
         return self.at_reversal == "keeps-sign" and bool(np.any(at_rest[np.isfinite(at_rest)] != 0.0))
 
     @property
     @override
-    def state_rate(self) -> Formula:
-        return self._formula(self._change) if self.evolution else super().state_rate
+    def state_rate(self) -> Formula | tuple[Formula, ...]:
+        return tuple(self._formula(tree) for tree in self._changes) or super().state_rate
 
     @override
     def steady_state(self, v: ArrayLike) -> NDArray[np.float64] | None:
@@ -227,14 +236,18 @@ class FromExpression(RemembersSlip):
         """
         if not self.evolution:
             return None
-        found = [steady(partial(evaluate, self._change, self.numbers(), 0.0, rate)) for rate in np.ravel(v)]
-        return None if None in found else np.reshape(np.array(found, float), np.shape(v))
+        changes = [partial(evaluate, tree, self.numbers(), 0.0) for tree in self._changes]
+        found = [steady([partial(change, rate) for change in changes]) for rate in np.ravel(v)]
+        if any(one is None for one in found):
+            return None
+        shape = np.shape(v) if len(changes) == 1 else (len(changes), *np.shape(v))
+        return np.reshape(np.transpose(np.array(found, float)), shape)
 
     @property
     @override
-    def healed_state(self) -> float:
-        found = self.steady_state(0.0) if self.evolution else None
-        return 0.0 if found is None else float(found)
+    def healed_state(self) -> Any:
+        found = self.steady_state(0.0)
+        return super().healed_state if found is None else found[()]
 
     # ---------------------------------------------------------------------------------------------------------------------------
 
@@ -290,7 +303,8 @@ class FromExpression(RemembersSlip):
         rates = np.geomspace(1e-9, 10.0, 41)
         states = self.steady_state(rates)
         with np.errstate(all="ignore"):
-            values = self.coefficient(0.0, np.append(rates, 0.0), 0.0 if states is None else np.append(states, 0.0))
+            known = 0.0 if states is None else np.concatenate((states, np.zeros((*states.shape[:-1], 1))), axis=-1)
+            values = self.coefficient(0.0, np.append(rates, 0.0), known)
         return float(np.ptp(values[np.isfinite(values)])) or 0.1
 
     @property

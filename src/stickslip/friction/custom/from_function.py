@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from numbers import Real
 from typing import Any, Literal, overload
 
@@ -12,7 +12,7 @@ import numpy as np
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.friction.custom.from_expression import FromExpression
+from stickslip.friction.custom.from_expression import AtReversal, FromExpression
 from stickslip.friction.formula.expression import RATE, SLIP, Expression, Parameter, as_expression, nodes_of
 from stickslip.friction.formula.text import to_text
 
@@ -34,9 +34,9 @@ def FromFunction(
     static: float | str | None = None,
     counts: Literal["net", "path"] = "net",
     memory: Literal["all", "since-arrest"] = "all",
-    state: str = "",
+    state: str | Sequence[str] = "",
     state_unit: str = "",
-    at_reversal: Literal["keeps-sign", "changes-sign"] = "keeps-sign",
+    at_reversal: AtReversal = "keeps-sign",
     **parameters: float | str | WithUnit,
 ) -> FromExpression: ...
 @overload
@@ -47,9 +47,9 @@ def FromFunction(
     static: float | str | None = None,
     counts: Literal["net", "path"] = "net",
     memory: Literal["all", "since-arrest"] = "all",
-    state: str = "",
+    state: str | Sequence[str] = "",
     state_unit: str = "",
-    at_reversal: Literal["keeps-sign", "changes-sign"] = "keeps-sign",
+    at_reversal: AtReversal = "keeps-sign",
     **parameters: float | str | WithUnit,
 ) -> Callable[[Callable[..., Any]], FromExpression]: ...
 def FromFunction(function: Callable[..., Any] | None = None, /, **given: Any) -> Any:  # noqa: N802 - reads as the law it makes
@@ -76,8 +76,8 @@ def FromFunction(function: Callable[..., Any] | None = None, /, **given: Any) ->
     **given
         Values of the function's parameters: numbers in SI, or texts with a unit. The others have their defaults. `static`,
         `counts`, `memory`, `state_unit` and `at_reversal` are options of the law (see `FromExpression`), unless the function has a
-        parameter of that name. `state` names the argument that is a state of the law; the function then returns two numbers, the
-        friction coefficient and the rate of change of the state (its unit over s).
+        parameter of that name. `state` names the argument that is a state of the law, or the two that are; the function then
+        returns the friction coefficient and the rate of change of each state (its unit over s).
 
     Returns
     -------
@@ -102,12 +102,13 @@ def FromFunction(function: Callable[..., Any] | None = None, /, **given: Any) ->
         return lambda decorated: FromFunction(decorated, **given)
     try:
         signature = _signature(function)
-        state = _state(signature, given)
-        values = _values(signature, given, state)
+        states = _states(signature, given)
+        values = _values(signature, given, states)
         options = {name: value for name, value in given.items() if name in OPTIONS and name not in values and name != "state"}
-        trees = _traced(function, signature, state)
-        if state:
-            options["evolution"] = f"d{state}/dt = {to_text(trees[1])}"
+        trees = _traced(function, signature, states)
+        if states:
+            equations = [f"d{state}/dt = {to_text(tree)}" for state, tree in zip(states, trees[1:], strict=True)]
+            options["evolution"] = "; ".join(equations)
         used = {node.name for tree in trees for node in nodes_of(tree) if node.operation == "parameter"}
         return FromExpression(to_text(trees[0]), {name: value for name, value in values.items() if name in used}, **options)
     except InputError as error:
@@ -133,21 +134,23 @@ def _signature(function: Callable[..., Any]) -> inspect.Signature:
     return signature
 
 
-def _state(signature: inspect.Signature, given: dict[str, Any]) -> str:
-    """Return the name of the argument that is the state of the law, or an empty text."""
+def _states(signature: inspect.Signature, given: dict[str, Any]) -> tuple[str, ...]:
+    """Return the names of the arguments that are states of the law."""
     if "state" in signature.parameters:
-        return ""
-    state = given.get("state", "")
-    if state and state not in signature.parameters:
-        arguments = [name for name in signature.parameters if name not in VARIABLES]
-        hint = nearest(str(state), arguments)
-        raise InputError(f"state names the argument that is the state; it has none called {shown(state)}; {hint}")
-    return str(state)
+        return ()
+    named = given.get("state", "")
+    states = (named,) if isinstance(named, str) and named else tuple(named)
+    for state in states:
+        if state not in signature.parameters:
+            arguments = [name for name in signature.parameters if name not in VARIABLES]
+            hint = nearest(str(state), arguments)
+            raise InputError(f"state names the argument that is the state; it has none called {shown(state)}; {hint}")
+    return states
 
 
-def _values(signature: inspect.Signature, given: dict[str, Any], state: str) -> dict[str, Any]:
-    """Return the values of the function's parameters other than u, v and the state, from its defaults and the given values."""
-    parameters = [one for one in signature.parameters.values() if one.name not in (*VARIABLES, state)]
+def _values(signature: inspect.Signature, given: dict[str, Any], states: tuple[str, ...]) -> dict[str, Any]:
+    """Return the values of the function's parameters other than u, v and the states, from its defaults and the given values."""
+    parameters = [one for one in signature.parameters.values() if one.name not in (*VARIABLES, *states)]
     names = [one.name for one in parameters]
     for extra in given:
         if extra in VARIABLES:
@@ -161,10 +164,10 @@ def _values(signature: inspect.Signature, given: dict[str, Any], state: str) -> 
     return values
 
 
-def _traced(function: Callable[..., Any], signature: inspect.Signature, state: str) -> tuple[Expression, ...]:
-    """Return the formula that the function records when it is called with symbols, and that of the state's change if it has one.
+def _traced(function: Callable[..., Any], signature: inspect.Signature, states: tuple[str, ...]) -> tuple[Expression, ...]:
+    """Return the formula that the function records when it is called with symbols, and those of the changes of its states.
 
-    The state is a symbol with its own name, as a parameter is: the formulas are written out as text.
+    A state is a symbol with its own name, as a parameter is: the formulas are written out as text.
     """
     symbols = {name: VARIABLES[name] if name in VARIABLES else Parameter(name) for name in signature.parameters}
     call = inspect.BoundArguments(signature, symbols)
@@ -177,10 +180,11 @@ def _traced(function: Callable[..., Any], signature: inspect.Signature, state: s
         raise InputError(
             f"it cannot be traced ({type(error).__name__}: {said}); use + - * / ** and numpy's {NUMPY}; points make a FromTable"
         ) from None
-    if not state:
+    if not states:
         return (_formula(value),)
-    if not (isinstance(value, tuple | list) and len(value) == 2):
-        raise InputError(f"with a state it must return two numbers, the friction coefficient and d{state}/dt")
+    if not (isinstance(value, tuple | list) and len(value) == 1 + len(states)):
+        number, changes = ("two", "three")[len(states) - 1], " and ".join(f"d{state}/dt" for state in states)
+        raise InputError(f"with a state it must return {number} numbers, the friction coefficient and {changes}")
     return tuple(_formula(one) for one in value)
 
 

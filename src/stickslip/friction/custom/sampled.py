@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -18,11 +18,13 @@ TOLERANCE = 1e-12
 """Size of a negative friction coefficient that still counts as rounding of zero (no unit)."""
 
 
-def check_samples(tree: Expression, numbers: Mapping[str, float], backwards: bool, state: str = "", negative: bool = False) -> None:
+def check_samples(
+    tree: Expression, numbers: Mapping[str, float], backwards: bool, states: Sequence[str] = (), negative: bool = False
+) -> None:
     """Raise InputError if the formula is negative, is not finite or has no derivative at a sample.
 
-    The message names the slip (m) and slip rate (m/s). `backwards` adds negative slips, for laws of net slip. Parts that contain a
-    state, a parameter of that name, are left to the run. `negative` allows negative values.
+    The message names the slip (m) and slip rate (m/s). `backwards` adds negative slips, for laws of net slip. Parts that contain
+    one of the states, parameters of those names, are left to the run. `negative` allows negative values.
     """
     slip = samples(LARGEST_SLIP) if depends_on(tree, SLIP) else np.zeros(1)
     if backwards:
@@ -30,9 +32,10 @@ def check_samples(tree: Expression, numbers: Mapping[str, float], backwards: boo
     rate = samples(LARGEST_RATE) if depends_on(tree, RATE) else np.zeros(1)
     u, v = (grid.ravel() for grid in np.meshgrid(slip, rate, indexing="ij"))
     with np.errstate(all="ignore"):
-        found = evaluate_nodes(tree, {**numbers, state: 0.0}, u, v)
+        found = evaluate_nodes(tree, dict(numbers) | dict.fromkeys(states, 0.0), u, v)
         _check_constants(found)
-        found = {node: value for node, value in found.items() if not (state and depends_on(node, Parameter(state)))}
+        with_state = {node for node in found for state in states if depends_on(node, Parameter(state))}
+        found = {node: value for node, value in found.items() if node not in with_state}
         values = np.broadcast_to(found.get(tree, 0.0), u.shape)
         if negative:
             values = np.abs(values)

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from stickslip.friction.formula.expression import RATE, SLIP, STATE, Expression, nodes_of
+from stickslip.friction.formula.expression import RATE, SLIP, STATES, Expression, nodes_of
 
 Interval = tuple[float, float]
 """Lower and upper end of an interval."""
@@ -20,7 +20,7 @@ EVERYTHING: Interval = (-math.inf, math.inf)
 
 def bounds(tree: Expression, numbers: Mapping[str, float], slip: Interval, rate: Interval) -> Interval:
     """Return bounds of the formula while slip (m) and slip rate (m/s) stay in their intervals, at any state."""
-    found: dict[Expression, Interval] = {SLIP: slip, RATE: rate, STATE: EVERYTHING}
+    found: dict[Expression, Interval] = {SLIP: slip, RATE: rate} | dict.fromkeys(STATES, EVERYTHING)
     with np.errstate(all="ignore"):
         for node in nodes_of(tree):
             if node.operation == "parameter":

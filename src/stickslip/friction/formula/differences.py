@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.friction.formula.denominators import LARGEST_EXPONENT, harmless_overflows
-from stickslip.friction.formula.expression import RATE, SLIP, STATE, Expression, nodes_of
+from stickslip.friction.formula.expression import RATE, SLIP, STATES, VARIABLES, Expression, nodes_of
 
 Array = NDArray[np.float64]
 
@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 class _Node:
     """A node's value at the reference point, its change to the end point, its value there, and its derivative there.
 
-    The derivative is that by the slip rate or, with one more axis in front, those by slip, slip rate and state. The value at the
+    The derivative is that by the slip rate or, with one more axis in front, those by VARIABLES. The value at the
     end point is computed independently: reference + step would lose the digits of a value that has become small.
     """
 
@@ -46,24 +46,26 @@ def difference(
     healed, at both points. Raise KeyError for a parameter without a value.
     """
     du, v = np.broadcast_arrays(np.asarray(slip_step, float), np.asarray(rate, float))
-    ends = {SLIP: _Node(slip, du, slip + du, 0.0), RATE: _Node(0.0, v, v, 1.0), STATE: _Node(0.0, 0.0, 0.0, 0.0)}
+    ends = {SLIP: _Node(slip, du, slip + du, 0.0), RATE: _Node(0.0, v, v, 1.0)}
+    ends |= dict.fromkeys(STATES, _Node(0.0, 0.0, 0.0, 0.0))
     result = _evaluated(tree, parameters, ends)
     return np.broadcast_to(result.step, v.shape) + 0.0, np.broadcast_to(result.slope, v.shape) + 0.0
 
 
 def value_and_slopes(
-    tree: Expression, parameters: Mapping[str, ArrayLike], slip: ArrayLike, rate: ArrayLike, state: ArrayLike = 0.0
+    tree: Expression, parameters: Mapping[str, ArrayLike], slip: ArrayLike, rate: ArrayLike, *states: ArrayLike
 ) -> tuple[Array, Array]:
-    """Return a formula and its derivatives by slip, slip rate and state, as an array with one axis of three in front.
+    """Return a formula and its derivatives by slip, slip rate and each of the states, as an array with one axis more in front.
 
-    The arguments are those of `difference`; `state` is in the form that the formulas use. All broadcast, and so do parameters: each
-    point may have its own.
+    The arguments are those of `difference`; `states` are in the form that the formulas use. All broadcast, and so do parameters:
+    each point may have its own.
     """
-    shape = np.broadcast_shapes(*(np.shape(given) for given in (slip, rate, state, *parameters.values())))
-    seeds = np.eye(3).reshape(3, 3, *(1 for _ in shape))
-    given = zip((SLIP, RATE, STATE), (slip, rate, state), seeds, strict=True)
+    shape = np.broadcast_shapes(*(np.shape(given) for given in (slip, rate, *states, *parameters.values())))
+    many = 2 + len(states)
+    seeds = np.eye(many).reshape(many, many, *(1 for _ in shape))
+    given = zip(VARIABLES, (slip, rate, *states), seeds, strict=False)
     result = _evaluated(tree, parameters, {symbol: _Node(x := np.asarray(at, float), 0.0, x, seed) for symbol, at, seed in given})
-    return np.broadcast_to(result.value, shape) + 0.0, np.broadcast_to(result.slope, (3, *shape)) + 0.0
+    return np.broadcast_to(result.value, shape) + 0.0, np.broadcast_to(result.slope, (many, *shape)) + 0.0
 
 
 def _evaluated(tree: Expression, parameters: Mapping[str, ArrayLike], variables: Mapping[Expression, _Node]) -> _Node:

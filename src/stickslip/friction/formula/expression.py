@@ -153,8 +153,11 @@ SLIP = Expression("slip", name="u")
 """Symbol of the slip u (m)."""
 RATE = Expression("rate", name="v")
 """Symbol of the magnitude v of the slip rate (m/s)."""
-STATE = Expression("state", name="w")
-"""Symbol of the state variable w of a law that has one."""
+STATES = Expression("state", name="w"), Expression("state", name="w2")
+"""Symbols of the state variables of a law: of the only one, or of the first and the second."""
+STATE = STATES[0]
+VARIABLES = (SLIP, RATE, *STATES)
+"""All variables of formulas."""
 
 
 def _product(base: Expression, count: int) -> Expression:
@@ -234,17 +237,17 @@ _UFUNCS: dict[str, Callable[..., Any]] = (
 """Rules that turn numpy functions of expressions into expressions, by the name of the numpy function."""
 
 
-def evaluate(tree: Expression, numbers: Mapping[str, Any], u: Any, v: Any, w: Any = 0.0) -> Any:
-    """Return the formula at slip u (m), slip rate v (m/s) and state w, with the parameters' values by name.
+def evaluate(tree: Expression, numbers: Mapping[str, Any], u: Any, v: Any, *states: Any) -> Any:
+    """Return the formula at slip u (m), slip rate v (m/s) and states, with the parameters' values by name.
 
-    Numbers, arrays and expressions are allowed.
+    Numbers, arrays and expressions are allowed. States that are left out are 0.
     """
-    return evaluate_nodes(tree, numbers, u, v, w)[tree]
+    return evaluate_nodes(tree, numbers, u, v, *states)[tree]
 
 
-def evaluate_nodes(tree: Expression, numbers: Mapping[str, Any], u: Any, v: Any, w: Any = 0.0) -> dict[Expression, Any]:
+def evaluate_nodes(tree: Expression, numbers: Mapping[str, Any], u: Any, v: Any, *states: Any) -> dict[Expression, Any]:
     """Return the values of all nodes of the formula, with the arguments of `evaluate`."""
-    found: dict[Expression, Any] = {SLIP: u, RATE: v, STATE: w}
+    found: dict[Expression, Any] = dict.fromkeys(STATES, 0.0) | dict(zip(VARIABLES, (u, v, *states), strict=False))
     for node in nodes_of(tree):
         if node.operation == "parameter":
             number = numbers[node.name]
@@ -258,7 +261,7 @@ def evaluate_nodes(tree: Expression, numbers: Mapping[str, Any], u: Any, v: Any,
 
 
 def depends_on(node: Expression, variable: Expression) -> bool:
-    """Return True if the formula contains the variable (SLIP, RATE or STATE)."""
+    """Return True if the formula contains the variable, one of VARIABLES."""
     return variable in nodes_of(node)
 
 

@@ -20,7 +20,8 @@ from stickslip.friction.formula.expression import (
     OPERATIONS,
     RATE,
     SLIP,
-    STATE,
+    STATES,
+    VARIABLES,
     Expression,
     Parameter,
     as_expression,
@@ -52,8 +53,8 @@ _BINARY: dict[type[ast.operator], str] = {ast.Add: "add", ast.Sub: "sub", ast.Mu
 
 
 @lru_cache(maxsize=256)
-def parse(text: str, names: tuple[str, ...], state: str = "") -> Expression:
-    """Return the tree of an expression in u, v, the named parameters and the state of that name, if there is one.
+def parse(text: str, names: tuple[str, ...], states: tuple[str, ...] = ()) -> Expression:
+    """Return the tree of an expression in u, v, the named parameters and the states of those names.
 
     Raise InputError with one line that says which part is wrong.
     """
@@ -62,7 +63,7 @@ def parse(text: str, names: tuple[str, ...], state: str = "") -> Expression:
     if not text.isascii() or not text.isprintable():
         odd = next(c for c in text if not (c.isascii() and c.isprintable()))
         raise InputError(f"the character {odd!a} is not allowed; {ALLOWED}")
-    tree = _Reader(text, names, state).read(_syntax(text), 0)
+    tree = _Reader(text, names, states).read(_syntax(text), 0)
     if len(nodes_of(tree)) > MOST_OPERATIONS:
         raise InputError(f"more than {MOST_OPERATIONS} operations, powers written out as products")
     return tree
@@ -87,8 +88,8 @@ def _syntax(text: str) -> ast.expr:
 class _Reader:
     """Translate the Python syntax tree of one expression to a formula tree."""
 
-    def __init__(self, text: str, names: Collection[str], state: str) -> None:
-        self.text, self.names, self.state = text.strip(), names, state
+    def __init__(self, text: str, names: Collection[str], states: tuple[str, ...]) -> None:
+        self.text, self.names, self.states = text.strip(), names, states
 
     def read(self, node: ast.expr, depth: int) -> Expression:
         """Return the formula tree of a part. Raise InputError for anything that is not allowed."""
@@ -124,13 +125,13 @@ class _Reader:
     def variable(self, node: ast.Name) -> Expression:
         if node.id in self.names:
             return Parameter(node.id)
-        if node.id == self.state:
-            return STATE
+        if node.id in self.states:
+            return STATES[self.states.index(node.id)]
         if node.id in ("u", "v", "pi"):
             return {"u": SLIP, "v": RATE, "pi": as_expression(math.pi)}[node.id]
         if node.id in FUNCTIONS:
             raise InputError(f"{self.part(node)} is a function: write {node.id}(...)")
-        known = [*self.names, *filter(None, [self.state]), "u", "v"]
+        known = [*self.names, *self.states, "u", "v"]
         raise InputError(f"{self.part(node)} {UNDECLARED}; {nearest(node.id, known)}")
 
     def signed(self, node: ast.UnaryOp, depth: int) -> Expression:
@@ -149,7 +150,7 @@ class _Reader:
         return self.made(node, _BINARY[type(node.op)], left, right)
 
     def check_exponent(self, node: ast.BinOp, exponent: Expression) -> None:
-        if any(depends_on(exponent, variable) for variable in (SLIP, RATE, STATE)):
+        if any(depends_on(exponent, variable) for variable in VARIABLES):
             raise InputError(f"the exponent of {self.part(node)} must not contain u or v; exp(y * log(x)) is x**y")
         if exponent.operation == "constant" and abs(exponent.value) > LARGEST_EXPONENT:
             raise InputError(f"the exponent of {self.part(node)} must be within {LARGEST_EXPONENT:g}")

@@ -45,7 +45,7 @@ class LaggedFriction(LawOfParts):
     def check(self) -> None:
         if not isinstance(self.rate, FrictionLaw):
             raise InputError(f"LaggedFriction: rate must be a friction law, got {type(self.rate).__name__}; {MAKES_LAWS}")
-        if self.rate.depends_on_slip or not self.rate.depends_on_rate or self.rate.state is not None:
+        if self.rate.depends_on_slip or not self.rate.depends_on_rate or self.rate.states:
             raise InputError(f"LaggedFriction: rate must be a law of slip rate only, {self.rate.kind} is not")
         if self.rate.knots or self.rate.static_excess:
             raise InputError(f"LaggedFriction: rate must be a smooth law, {self.rate.kind} has kinks or a step at rest")

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.friction.contract import STATE_NAMES
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import DURATION
 from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
@@ -116,7 +117,7 @@ def read_series(scenario: Scenario, design: Design, curves: Sequence[str], sampl
     """
     if not curves:
         return None
-    allowed = [*CURVES, *(["state"] if scenario.problem.friction.state else [])]
+    allowed = [*CURVES, *STATE_NAMES[: len(scenario.problem.friction.states)]]
     for curve in curves:
         if curve not in allowed:
             raise InputError(f"sweep: series {ascii(curve)[:60]} is unknown; {nearest(curve, allowed)}")

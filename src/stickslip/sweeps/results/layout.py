@@ -22,6 +22,7 @@ import stickslip
 from stickslip.foundation.arguments import check_whole, shown
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import clean
+from stickslip.friction.contract import STATE_NAMES
 from stickslip.io.netcdf import LONG_NAMES, PAPER
 from stickslip.sweeps.design.design import GRID, IN_WORDS
 from stickslip.sweeps.execution.chunk import MEANINGS, NOT_RUN, PREFIX, TIME
@@ -104,8 +105,8 @@ def results(plan: Plan) -> dict[str, dict[str, Any]]:
         flags = {"flag_values": [0.0, 1.0], "flag_meanings": "no yes"} if one.is_flag else {}
         found[one.name] = {"long_name": one.meaning, "units": one.unit_for(problem), **flags}
     if series is not None:
-        state = problem.friction.state
-        units = {"slip": "m", "slip_rate": "m s-1", "state": state.unit if state else ""}
+        units = {"slip": "m", "slip_rate": "m s-1"}
+        units |= {name: state.unit for name, state in zip(STATE_NAMES, problem.friction.states, strict=False)}
         for curve, name in zip(series.curves, series.names, strict=True):
             found[name] = {"long_name": LONG_NAMES[curve], "units": units.get(curve, problem.load_unit)}
     return found
