@@ -35,7 +35,9 @@ LAYERS = (
 """Folders of the package from the bottom up; those of one layer do not know each other. `engine` never imports a `Problem`."""
 ROOMS = {
     "friction": (
-        ("formula", "contract", "noise", "statements"),
+        ("formula", "noise"),
+        ("contract",),
+        ("statements",),
         ("law",),
         ("families", "composite", "piecewise"),
         ("laws", "custom"),

@@ -11,6 +11,7 @@ import stickslip as ss
 from stickslip.contact.on_arrays import ContactOnArrays
 from stickslip.foundation.errors import InputError
 from stickslip.friction import LAWS
+from stickslip.friction.contract import one_argument
 from stickslip.friction.law import FrictionLaw
 from tests.engine.examples import SLAB, example_law, example_problem
 
@@ -20,9 +21,8 @@ def test_values_are_those_of_the_law_and_slopes_those_of_a_complex_step(kind: st
     """Values rel 1e-13; slopes by slip and rate rel 1e-12, by state central differences rel 1e-6."""
     law, rng = example_law(kind), np.random.default_rng(len(kind))
     slip, rate = rng.uniform(0.0, 2.0, (4, 25)), 10.0 ** rng.uniform(-6.0, 1.0, (4, 25))
-    state: Any = (
-        np.zeros(slip.shape) if law.state is None else rng.uniform(0.2, 0.6, (*((2,) if len(law.states) > 1 else ()), *slip.shape))
-    )
+    states = rng.uniform(0.2, 0.6, (len(law.states), *slip.shape))
+    state = one_argument(list(states))
     found = ContactOnArrays(law, 1e12, 1.0).friction(slip, rate, state)
     assert found.value == pytest.approx(law.coefficient(slip, rate, state), rel=1e-13)
     if law.state is None:
@@ -30,9 +30,10 @@ def test_values_are_those_of_the_law_and_slopes_those_of_a_complex_step(kind: st
         assert found.by_slip == pytest.approx(slopes[0], rel=1e-12, abs=1e-14)
         assert found.by_rate == pytest.approx(slopes[1], rel=1e-12, abs=1e-14)
         assert (found.by_state == 0.0).all()
-    else:
-        ends = [law.coefficient(slip, rate, state + step) for step in (-1e-6, 1e-6)]
-        assert found.by_state == pytest.approx((ends[1] - ends[0]) / 2e-6, rel=1e-5, abs=1e-8)
+    for n, by_state in enumerate(found.by_state if len(states) > 1 else [found.by_state] * len(states)):
+        step = 1e-6 * (np.arange(len(states)) == n)[:, None, None]
+        ends = [law.coefficient(slip, rate, one_argument(list(states + way * step))) for way in (-1.0, 1.0)]
+        assert by_state == pytest.approx((ends[1] - ends[0]) / 2e-6, rel=1e-5, abs=1e-8)
 
 
 @pytest.mark.parametrize("kind", LAWS)

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from stickslip.engine.codegen.taylor_series import FormulaWriter
 from stickslip.engine.codegen.uncompiled import MATHS
 from stickslip.engine.series import ball_radii, differences, sine
+from stickslip.engine.state.layout import Ball
 from stickslip.friction.formula import expression as e
 
 Complexes = NDArray[np.complex128]
@@ -123,13 +124,15 @@ def exact_distance(tree: e.Expression, disc: Disc, point: Complexes) -> float:
 
 def radius_of(tree: e.Expression, disc: Disc, rules: Mapping[str, Any] | None = None) -> float:
     """The radius by the generated text, executed as Python; `rules` replaces functions of `ball_radii`."""
-    writer = FormulaWriter(tree, ())
+    writer, ball = FormulaWriter(tree, (), state_rates=(tree,)), Ball(np.zeros(Ball.total))
+    ball.slip, ball.rate, ball.state[0] = disc.radius
+    ball.at_slip, ball.at_rate, ball.at_state[0] = disc.centre
     names = {**vars(MATHS), **vars(differences), **vars(sine), **vars(ball_radii), **(rules or {})}
     names |= {"c": np.zeros(writer.size), "p": np.zeros(1), "x_ref": np.float64(0.0)}
-    names["k"] = np.array([*disc.radius, 0.0, 0.0, *disc.centre])
+    names["k"] = ball.numbers
     with np.errstate(all="ignore"):
         exec("\n".join([*writer.prepare(), *writer.around()]), names)
-    return float(names["k"][3])
+    return float(ball.friction)
 
 
 @dataclass(frozen=True)

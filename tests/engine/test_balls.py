@@ -19,6 +19,8 @@ from tests.engine.balls import Disc, Drawn, drawn_disc, drawn_formula, exact_dis
 from tests.engine.formulas import FORMULAS, JET, compiled
 
 MANY = 600
+FRICTION = Ball.places["friction"].first
+"""Place of the radius of friction in a `Ball`."""
 NOTHING = 1e100
 """A radius above it says nothing."""
 RULES = ("exp_radius", "sine_radius", "log_radius", "power_radius", "arcsinh_radius", "tanh_radius")
@@ -104,15 +106,16 @@ def test_balls_hold_from_small_to_huge_discs_at_centres_from_small_to_huge(name:
 def test_compiled_balls_are_those_of_the_text(seed: int) -> None:
     """Relative 1e-9, for mu and for the rate of change of a state, which the same formula gives here."""
     one = drawn(seed)
-    functions = compile_formula(one.formula, (), one.formula)
+    functions = compile_formula(one.formula, (), (one.formula, one.formula))
     constants, ball = np.zeros(functions.size), Ball(np.zeros(Ball.total))
     functions.fill(np.zeros(1), 0.0, constants)
-    ball.slip, ball.rate, ball.state = one.disc.radius
-    ball.at_slip, ball.at_rate, ball.at_state = one.disc.centre
+    ball.slip, ball.rate, ball.state[0] = one.disc.radius
+    ball.at_slip, ball.at_rate, ball.at_state[0] = one.disc.centre
     functions.fill_radii(constants, ball.numbers)
     expected = radius_of(one.formula, one.disc)
     assert float(ball.friction) == pytest.approx(expected, rel=1e-9, abs=0.0, nan_ok=True)
-    assert float(ball.change) == pytest.approx(expected, rel=1e-9, abs=0.0, nan_ok=True)
+    for n in range(2):
+        assert float(ball.change[n]) == pytest.approx(expected, rel=1e-9, abs=0.0, nan_ok=True)
 
 
 @pytest.mark.parametrize("name", FORMULAS)
@@ -133,12 +136,12 @@ def test_radii_after_a_series_are_the_same_in_lanes_and_floats_and_hold(name: st
     tree = e.as_expression(FORMULAS[name](e, e.SLIP, e.RATE))
     for n in range(WIDTH):
         own = [np.ascontiguousarray(block[:, n]) for block in (c, k, load, np.zeros_like(series), ball)]
-        own[4][3] = 0.0
+        own[4][FRICTION] = 0.0
         JET(functions.address("motion_jet"))(*(array.ctypes.data_as(double) for array in own[:4]))
         three(functions.address("radii"))(*(array.ctypes.data for array in (own[0], own[3], own[4])))
-        assert float(ball[3, n]) == pytest.approx(float(own[4][3]), rel=1e-14, abs=0.0)
+        assert float(ball[FRICTION, n]) == pytest.approx(float(own[4][FRICTION]), rel=1e-14, abs=0.0)
         disc = Disc((float(k[5, n]), float(own[3][0]), 0.0), (float(ball[0, n]), float(ball[1, n]), 0.0))
-        assert farthest(Drawn(tree, disc, disc.points(rng, 200)), float(ball[3, n])) <= 1.0 + 1e-12
+        assert farthest(Drawn(tree, disc, disc.points(rng, 200)), float(ball[FRICTION, n])) <= 1.0 + 1e-12
 
 
 def test_an_exponential_that_underflows_at_the_centre_still_has_a_ball() -> None:

@@ -310,5 +310,5 @@ def test_a_disturbed_start_has_the_state_of_the_undisturbed_one() -> None:
         steady = ss.Problem(body, LAW, pull_rate=SPEED)
         pushed = disturbed(steady, 1.0)
         assert pushed.load == steady.load + 1.0
-        assert pushed.state == pytest.approx(steady.state, rel=1e-14)
+        assert pushed.states == pytest.approx(steady.states, rel=1e-14)
         assert pushed.rate == pytest.approx(steady.rate * (1.0 + 1.0 / (NORMAL * LAW.a)), rel=1e-9)

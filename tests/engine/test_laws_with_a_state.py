@@ -195,11 +195,11 @@ def test_a_typed_law_that_heals_at_rest_gives_stick_slip(way: float) -> None:
 
 def test_a_law_with_a_state_starts_healed_at_rest_or_steady() -> None:
     body = ss.SpringBlock(mass=1.0, stiffness=2e3, normal_force=10.0)
-    assert ss.Problem(body, HEALING.law, initial_load=0.0).state == pytest.approx(0.2, rel=1e-14)
-    assert ss.Problem(AXIS, LUGRE.law, initial_load=0.0).state == 0.0
+    assert ss.Problem(body, HEALING.law, initial_load=0.0).states[0] == pytest.approx(0.2, rel=1e-14)
+    assert ss.Problem(AXIS, LUGRE.law, initial_load=0.0).states[0] == 0.0
     steady = ss.Problem(AXIS, LUGRE.law, pull_rate=-1e-3)
     assert steady.rate == -1e-3
-    assert steady.state == pytest.approx(-(0.1 + 0.05 * math.exp(-1.0)) / 1e4, rel=1e-14)
+    assert steady.states[0] == pytest.approx(-(0.1 + 0.05 * math.exp(-1.0)) / 1e4, rel=1e-14)
     assert ss.simulate(steady, 1.0).slip_rate(1e-6) == pytest.approx(-1e-3, rel=1e-6)
 
 

@@ -13,6 +13,7 @@ from stickslip import ElasticSlab, InputError, Problem, SpringBlock
 from stickslip.bodies import BODIES
 from stickslip.foundation.quantities import Part, fields_of, quantities_of, quantity
 from stickslip.friction import LAWS, FrictionLaw
+from stickslip.friction.contract import STATE_NAMES
 from stickslip.scenarios import templates
 from stickslip.scenarios.entries import describe, key_of
 from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
@@ -28,7 +29,7 @@ def document(body: type, law: type) -> str:
     friction = (
         tomli_w.dumps({"friction": {"kind": law.kind} | example}) if example else f'[friction]\nkind = "{law.kind}"\n{values(law)}'
     )
-    state = f"state = {json.dumps(law.start['state'])}\n" if law.start else ""
+    state = "".join(f"{name} = {json.dumps(law.start[name])}\n" for name in STATE_NAMES if name in law.start)
     return f'[body]\nkind = "{body.kind}"\n{values(body)}{friction}[initial]\nload = 1.0\n{state}[run]\nduration = 2\n'
 
 

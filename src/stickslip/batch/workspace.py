@@ -65,7 +65,7 @@ class Workspace(NamedTuple):
 
 def in_lanes(store: Store) -> Store:
     """Divide the rows of a history's tables equally among the lanes, which become a first axis."""
-    tables: list[Any] = [table.reshape(WIDTH, -1, table.shape[1]) for table in store]
+    tables: list[Any] = [table.reshape(WIDTH, len(table) // WIDTH, *table.shape[1:]) for table in store]
     return Store(*tables)
 
 
