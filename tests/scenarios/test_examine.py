@@ -5,15 +5,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from stickslip import ElasticSlab, Problem, SpringBlock
 from stickslip.contact.rules.loop import resolved
-from stickslip.friction import LAWS, FromTable, SinusoidalSlip
+from stickslip.friction import LAWS, FromTable, RateAndState, SinusoidalSlip, TwoStateRateAndState
+from stickslip.reference.rate_and_state import SteadySliding
 from stickslip.scenarios import library
 from stickslip.scenarios.examine import examine
 from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
+from stickslip.scenarios.stability import sliding_growth
 from stickslip.scenarios.templates import template
 
+Floats = NDArray[np.float64]
 LAW = SinusoidalSlip(1.0, 0.5, 5.0)
 SLAB = ElasticSlab(2800, 3500, 1e4, 1e8)
 
@@ -77,6 +81,27 @@ def test_the_growth_of_the_block_solves_its_characteristic_equation() -> None:
     slip = math.pi / 5
     growth = growth_in(examine(Scenario(Problem(block, LAW, initial_slip=slip, initial_excess=0.0), 10.0)).stability)
     assert 2.8e12 * growth**2 == pytest.approx(2.5e14 - 3.43e13, rel=1e-5, abs=0)
+
+
+def test_the_growth_under_states_is_that_of_the_closed_form_and_of_the_equations_by_hand() -> None:
+    """One state: rel 1e-9 of the characteristic equation. Two: rel 1e-5 of the eigenvalues of central differences."""
+    block, rate, (a, b, c, near, far) = SpringBlock(2.8e12, 3.43e13, 1e14), 1e-3, (0.01, 0.01, 0.006, 1e-3, 2e-2)
+    one = RateAndState(0.6, a, b + c, near)
+    closed = SteadySliding(1e14, a, b + c, near, rate).block_growth(3.43e13, 2.8e12, 0.0)
+    assert sliding_growth(block, one, rate, (math.log(1e-6 / rate),)) == pytest.approx(closed.real, rel=1e-9)
+
+    def right(y: Floats) -> Floats:
+        u, v, w, w2 = y
+        mu = a * math.asinh(v / 2e-6 * math.exp((0.6 + b * w + c * w2) / a))
+        rates = (1e-6 * math.exp(-w) - v) / near, (1e-6 * math.exp(-w2) - v) / far
+        return np.array([v, (-3.43e13 * u - 1e14 * mu) / 2.8e12, *rates])
+
+    at, steps = np.array([0.0, rate, math.log(1e-6 / rate), math.log(1e-6 / rate)]), np.diag([1e-4, 1e-7, 1e-4, 1e-4])
+    matrix = np.transpose([(right(at + h) - right(at - h)) / (2.0 * h.sum()) for h in steps])
+    found = sliding_growth(block, TwoStateRateAndState(0.6, a, b, near, c, far), rate, (float(at[2]), float(at[3])))
+    assert found == pytest.approx(np.linalg.eigvals(matrix).real.max(), rel=1e-5)
+    problem = Problem(block, TwoStateRateAndState(0.6, a, b, near, c, far), pull_rate=rate)
+    assert growth_in(examine(Scenario(problem, 1.0)).stability) == pytest.approx(found, rel=1e-5)
 
 
 @pytest.mark.parametrize(
