@@ -196,6 +196,22 @@ def test_a_law_of_two_states_starts_healed_or_steady() -> None:
     assert healed.states == pytest.approx([2.0 / 1.125, 2.0 - 0.5 / 1.125], rel=1e-9)
 
 
+def test_a_steady_state_is_worked_out_from_the_pull_rate() -> None:
+    """Closed form, rel 1e-12, in a scenario whose pull rate is changed, too."""
+    law, start = two_state("ageing").law, {"initial_load": 6.2e6, "initial_second_state": 50.0}
+    problem = ss.Problem(FAULT, law, pull_rate=1e-4, initial_state="steady", **start)
+    assert problem.given_states == pytest.approx((10.0, 50.0), rel=1e-12)
+    assert "initial_state='steady'" in repr(problem)
+    scenario = read_scenario(Scenario(problem, 60.0).to_toml(), "steady")
+    assert scenario.problem == problem
+    faster = scenario.with_values({"loading.pull_rate": 1e-3}).problem
+    assert faster.given_states == pytest.approx((1.0, 50.0), rel=1e-12)
+    backward = ss.Problem(
+        AXIS, ss.friction.LuGre(**ss.friction.LuGre.example), pull_rate=-0.1, initial_load=0.0, initial_state="steady"
+    )
+    assert backward.states[0] == pytest.approx(-0.1 / 1e4, rel=1e-6)
+
+
 def test_a_run_with_two_states_is_saved_resumed_and_drawn(tmp_path: Any) -> None:
     start = {"initial_load": 6.2e6, "initial_state": 100.0, "initial_second_state": 50.0}
     problem = ss.Problem(FAULT, two_state("slip").law, pull_rate=1e-4, **start)
@@ -238,6 +254,10 @@ REFUSED: dict[str, tuple[Callable[[], Any], str]] = {
     "two numbers for two states": (
         lambda: FromFunction(lambda v, x, y: (0.3 + x + y, -x), state=("x", "y")),
         "it must return three numbers, the friction coefficient and dx/dt and dy/dt",
+    ),
+    "steady at rest": (
+        lambda: ss.Problem(FAULT, two_state("ageing").law, initial_load=6e6, initial_state="steady", initial_second_state=1.0),
+        "initial_state 'steady': the pull rate is 0 at first: give a number",
     ),
     "a too small": (
         lambda: TwoStateRateAndState(0.6, 0.001, 0.01, 1e-3, 0.006, 1e-2),

@@ -24,7 +24,7 @@ from stickslip.loading import LoadingHistory
 from stickslip.loading.contract import SILENT, VARYING
 from stickslip.problem.parameters import Parameters
 from stickslip.problem.selection_rule import SelectionRule, checked, name_of
-from stickslip.problem.start import INITIAL_STATES, Start, check_rate, start_of
+from stickslip.problem.start import INITIAL_STATES, STEADY, Start, check_rate, start_of
 
 MAY_VARY = ("pull_rate", "far_stress")
 """Fields of a problem that may be a loading history instead of a number."""
@@ -66,7 +66,8 @@ class Problem(CheckedArguments):
         the load is negative. A law that never sticks has no strength to exceed: give its initial load.
     initial_state
         Initial value of the state of a law that has one, in the unit of the law. The default for a law that sticks is 0, which is
-        healed; for any other law with a state the value must be given, unless the contact starts in steady sliding.
+        healed; for any other law with a state the value must be given, unless the contact starts in steady sliding. "steady" is
+        the state of steady sliding at the (first) pull rate.
     initial_second_state
         The same for the second state of a law that has two.
     initial_rate
@@ -142,7 +143,8 @@ class Problem(CheckedArguments):
             shown[name] = brief_repr(getattr(self, name), {VARYING: quantities_of(Problem)[name].unit})
         for name, state in zip(INITIAL_STATES, self.friction.states, strict=False):
             if getattr(self, name) is not None:
-                shown[name] = f"'{brief(getattr(self, name), state.unit)}'"
+                value = getattr(self, name)
+                shown[name] = f"'{value if value == STEADY else brief(value, state.unit)}'"
         return shown | ({"selection": f"'{self.rule}'"} if "selection" in shown else {})
 
     def __repr__(self) -> str:
@@ -202,6 +204,9 @@ class Problem(CheckedArguments):
             signed = state.signed or state.reverses
             above = None if law.sticks or signed else 0.0
             declared = Quantity(state.unit, state.meaning, above=above, at_least=None if signed else 0.0)
+            if value == STEADY:
+                _ = self._steady_states  # refuses where there is none
+                continue
             value = float(np.ravel(law.healed_state)[i]) if value is None else value
             object.__setattr__(self, field_name, declared.check("Problem", field_name, value))
 
@@ -320,7 +325,18 @@ class Problem(CheckedArguments):
     @property
     def given_states(self) -> tuple[float, ...]:
         """The initial states, as users see them; none for a law without a state, or in steady sliding that is not written out."""
-        return tuple(value for value in (getattr(self, name) for name in INITIAL_STATES) if value is not None)
+        given: list[Any] = [getattr(self, name) for name in INITIAL_STATES]
+        return tuple(self._steady_states[i] if value == STEADY else value for i, value in enumerate(given) if value is not None)
+
+    @cached_property
+    def _steady_states(self) -> list[float]:
+        """The states of steady sliding at the pull rate, as users see them. Raises InputError if there are none."""
+        law, rate = self.friction, self.first_pull_rate
+        states = law.steady_state(abs(rate)) if rate != 0.0 else None
+        if states is None:
+            why = f"{type(law).__name__} does not say in which state it slides steadily" if rate else "the pull rate is 0 at first"
+            raise InputError(f"Problem: initial_state '{STEADY}': {why}: give a number")
+        return [-one if rate < 0.0 and i in law.reverses else one for i, one in enumerate(np.ravel(states).tolist())]
 
     @property
     def states(self) -> tuple[float, ...]:

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 FASTEST, SLOWEST = 1e3, 1e-300
 """Slip rates (m/s) between which load and friction must balance; a contact that would be slower starts at rate 0."""
+STEADY = "steady"
+"""Initial state that stands for the one of steady sliding at the pull rate."""
 INITIAL_STATES = tuple(f"initial_{name}" for name in STATE_NAMES)
 """Names of the initial states in a `Problem`."""
 AT_ONCE, ROUNDS = 304, 8

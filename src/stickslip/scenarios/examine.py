@@ -15,11 +15,13 @@ from stickslip.engine_input.lumping_limits import MOST_PIECES, automatic_length,
 from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, Text, fields_of, in_units
 from stickslip.friction import FrictionLaw, RateAndState, SinusoidalSlip
 from stickslip.friction.composite import LawOfParts
+from stickslip.friction.contract import STATE_NAMES
 from stickslip.friction.noise import noise_in
 from stickslip.friction.piecewise import PiecewiseLaw
 from stickslip.loading import LoadingHistory
 from stickslip.loading.contract import VARYING
 from stickslip.problem.problem import Problem
+from stickslip.problem.start import STEADY
 from stickslip.reference.slab.pulse_period import PulseTrain
 from stickslip.scenarios.entries import key_of
 from stickslip.scenarios.scenario import Scenario, doubts
@@ -83,6 +85,7 @@ def _given(scenario: Scenario) -> dict[str, list[Fact]]:
         facts[table] = []
         for name, (declared, _) in quantities_in(table, type(problem.body), problem.friction.states).items():
             value = getattr(owner, prefix + name)
+            value = problem.given_states[STATE_NAMES.index(name)] if value == STEADY else value
             off = owner is scenario and value == 0.0  # an option of a run
             unfelt = name.startswith("far_stress") and problem.body.is_driven_rigidly
             if value is not None and not (off or unfelt):

@@ -23,6 +23,7 @@ from stickslip.loading.contract import VARYING
 from stickslip.problem.problem import LOAD, MAY_VARY, Problem
 from stickslip.problem.run_quantities import CREEP_RTOL, DURATION, RTOL, SHORTEST_EVENT
 from stickslip.problem.selection_rule import SELECTION_RULES, names, unknown
+from stickslip.problem.start import STEADY
 from stickslip.scenarios.entries import Place, Source, describe, key_of, read_entry, read_points, read_typed
 
 KINDS: dict[str, Mapping[str, type]] = {"body": BODIES, "friction": LAWS}
@@ -112,6 +113,8 @@ def keys_of(table: str, kind: type, states: tuple[StateVariable, ...] = ()) -> M
 
 def _read_entry(declared: Declared, value: Any, place: Place) -> Any:
     """Return a value converted and checked for its field; a table in place of a number that may vary is a loading history."""
+    if value == STEADY and place.table == "initial" and place.key in STATE_NAMES:
+        return value
     varies = place.table == "loading" and place.key in MAY_VARY
     if varies and isinstance(value, dict):
         return read_part(place.inner, value, place.source)

@@ -15,9 +15,10 @@ from stickslip.foundation.formatting import brief
 from stickslip.foundation.quantities import Choice, Field, NamedNumbers, Part, Quantity, Series, Text, fields_of
 from stickslip.foundation.units import split_quantity, to_si
 from stickslip.friction import LAWS
-from stickslip.friction.contract import StateVariable
+from stickslip.friction.contract import STATE_NAMES, StateVariable
 from stickslip.loading import HISTORIES
 from stickslip.problem.selection_rule import SELECTION_RULES, names
+from stickslip.problem.start import STEADY
 from stickslip.scenarios import library
 from stickslip.scenarios.entries import describe, typed_number
 from stickslip.scenarios.schema import check_events, entries_in, kind_of
@@ -247,6 +248,8 @@ class _Tables:
     def number(self, path: str, label: str, entry: Quantity, default: Any, rare: bool) -> Control:
         """Return the control of a number."""
         given = self.setting.value(path)
+        if given == STEADY:
+            given = self.problem.given_states[STATE_NAMES.index(path.partition(".")[2])]
         value = default if given is None and default is not MISSING else None if given is None else entry.check(label, "it", given)
         unit, size = _unit_of(given, value, entry.unit)
         empty = "" if default is MISSING or path in ("initial.load", "initial.excess") else self._empty(path, default, entry)
