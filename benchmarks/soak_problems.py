@@ -14,6 +14,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, Text, fields_of
 from stickslip.friction import LAWS, FrictionLaw, FromExpression
 from stickslip.problem.selection_rule import SELECTION_RULES
+from stickslip.problem.start import INITIAL_STATES
 
 EXTREME = 0.15
 """Share of problems whose numbers are drawn from many decades."""
@@ -228,7 +229,7 @@ class Drawing:
             given["initial_excess"] = float(self.one_of(0.0, 1.0, 1.0, -1.0)) * normal * self.log(-6, -0.5)
         else:
             given["initial_load"] = normal * float(rng.uniform(-1.0, 1.0))
-            given["initial_state"] = self.time * self.log(-3, 3)
+            given |= {name: self.time * self.log(-3, 3) for name in INITIAL_STATES[: len(law.states)]}
         rounds = float(rng.uniform(0.3, 6.0)) * (self.log(2, 5) if rng.random() < LONG else 1.0)
         rtol = float(self.one_of(*RTOLS))
         if not law.sticks and body.has_inertia and rng.random() < 0.5:

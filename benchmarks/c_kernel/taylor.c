@@ -387,7 +387,7 @@ static double share_on_disc(Run *r, double length, int64_t disc) {
     }
     for (int n = 1; n <= r->count->degree; n++) load += fabs(r->load_along_slip[n]) * powers[n];
     Ball *ball = &r->ball;
-    ball->rate = rate, ball->slip = powers[1] * (fabs(r->k.speed) * straight + fabs(r->k.bend) * powers[1] * bent), ball->state = 0.0;
+    ball->rate = rate, ball->slip = powers[1] * (fabs(r->k.speed) * straight + fabs(r->k.bend) * powers[1] * bent);
     radii(r->c, r->jet, (double *)ball);
     double force = 1.01 * (r->k.impedance * ball->rate + r->k.normal * ball->friction + r->k.stiffness * ball->slip + load);
     double square = length * length, size = fmax(fabs(r->jet[0]), length * first);

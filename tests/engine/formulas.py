@@ -38,7 +38,7 @@ def pointer(array: np.ndarray) -> Any:
 
 
 def compiled(formula: Formula, reference: float) -> tuple[Any, np.ndarray]:
-    functions = compile_formula(e.as_expression(formula(e, e.SLIP, e.RATE)), ())
+    functions = compile_formula(e.as_expression(formula(e, e.SLIP, e.RATE)), (), ())
     constants, none = np.zeros(functions.size), np.zeros(1)
     functions.fill(none, reference, constants)
     return functions, constants

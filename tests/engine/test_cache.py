@@ -167,7 +167,7 @@ def test_a_full_disk_costs_the_cache_and_one_line(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(sealed_cache, "write_atomically", full)
     cache.tell.cache_clear()
     compile_formula.cache_clear()
-    assert compile_formula(parse("0.6 + 0.0123*u", ()), ()).address("value") != 0
+    assert compile_formula(parse("0.6 + 0.0123*u", ()), (), ()).address("value") != 0
     assert f"cannot be kept in {cache.CACHE}: No space left on device; {LATER}\n" in capsys.readouterr().err
 
 

@@ -115,7 +115,7 @@ def test_motion_jet_solves_the_equation_of_motion(name: str, bend: float) -> Non
 
 def test_a_law_compiles_once() -> None:
     tree = e.as_expression(FORMULAS["sin"](e, e.SLIP, e.RATE))
-    assert compile_formula(tree, ()) is compile_formula(tree, ())
+    assert compile_formula(tree, (), ()) is compile_formula(tree, (), ())
 
 
 def test_formulas_that_differ_in_numbers_and_names_alone_share_all_functions_but_one() -> None:

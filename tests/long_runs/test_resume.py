@@ -84,7 +84,7 @@ def test_those_stops_meet_the_engine_in_every_state(tmp_path: Path) -> None:
             count, state = run.count, run.state
             met |= {"stick" if count.mode == 0 else "slip", f"at fold {count.at_fold}"}
             met |= {"stiff"} if count.stiff else set()
-            met |= {"state"} if count.has_state else set()
+            met |= {"state"} if count.states else set()
             met |= {"leap"} if run.length and count.trip > run.store.trip[run.length - 1] + 1 else set()
             met |= {"inside"} if 0.0 < state.xi < 1.0 else set()
             met |= {"crossings"} if run.follower.times else set()

@@ -79,7 +79,7 @@ def alike(scenario: Scenario, values: Values) -> Alike:
     problem = member(scenario, {key: float(value[0]) for key, value in values.items()}).problem
     law = problem.friction
     with LOADING:
-        compiled = [compile_formula(tree, law.parameters()) for tree in law.trees()]
+        compiled = [compile_formula(tree, law.parameters(), law.state_trees()) for tree in law.trees()]
         functions = functions_of(compiled, problem)
         in_lanes = [] if steps_alone(problem) else compiled
         parts = "motion_jets" if problem.body.has_inertia else "rate_jets", "radii_in_lanes"

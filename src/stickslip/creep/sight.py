@@ -22,7 +22,7 @@ class Sight:
     @classmethod
     def of(cls, tree: Expression, parameters: tuple[str, ...], values: tuple[float, ...], reference: float) -> Self:
         """Return a formula with these values of its parameters; slips count from the reference (m)."""
-        formula = compile_formula(tree, parameters)
+        formula = compile_formula(tree, parameters, ())
         numbers, constants = np.array(values), np.zeros(formula.size)
         formula.fill(numbers, reference, constants)
         return cls(formula, constants)

@@ -50,7 +50,7 @@ class CompiledFormula:
     Each function is generated, compiled and loaded when it is first needed. What an earlier run compiled comes from the disk.
     """
 
-    def __init__(self, formula: Expression, parameters: tuple[str, ...], state_rates: tuple[Expression, ...] = ()) -> None:
+    def __init__(self, formula: Expression, parameters: tuple[str, ...], state_rates: tuple[Expression, ...]) -> None:
         self._writer = FormulaWriter(formula, parameters, ORDER, state_rates)
         self._functions: dict[str, Any] = {}
         self.size = self._writer.size
@@ -94,7 +94,7 @@ _DOUBLE = ctypes.POINTER(ctypes.c_double)
 
 
 @cache
-def compile_formula(formula: Expression, parameters: tuple[str, ...], state_rates: tuple[Expression, ...] = ()) -> CompiledFormula:
+def compile_formula(formula: Expression, parameters: tuple[str, ...], state_rates: tuple[Expression, ...]) -> CompiledFormula:
     """Return the compiled functions of a formula; equal formulas share one object in all problems.
 
     `state_rates` are the formulas of the time derivatives of the law's states.
