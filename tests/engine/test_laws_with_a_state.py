@@ -17,6 +17,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import stickslip as ss
+from tests.engine.examples import example_problem
 
 Floats = NDArray[np.float64]
 CLOSE = 1e-7
@@ -260,3 +261,14 @@ def test_a_massless_contact_whose_friction_falls_with_slip_rate_ends_in_words() 
         ss.simulate(problem, 1.0)
     with_mass = ss.ElasticSlab(2800.0, 3500.0, 100.0, 1e7, contact_mass=1e3)
     assert ss.simulate(ss.Problem(with_mass, law, initial_load=0.61e7), 0.1).status.ok
+
+
+@pytest.mark.parametrize("kind", ["lugre", "dahl"])
+def test_a_slab_that_hangs_in_its_bristles_finishes_at_loose_tolerances(kind: str) -> None:
+    """Forces that nearly balance have no direction. Slip after twenty round trips: rel 10 rtol of that at 1e-10."""
+    problem = example_problem(kind, "slab")
+    exact = float(ss.simulate(problem, 3.0).slip(3.0))
+    for rtol in np.geomspace(1e-6, 1e-8, 5):
+        run = ss.simulate(problem, 3.0, rtol=float(rtol))
+        assert run.status.ok
+        assert float(run.slip(3.0)) == pytest.approx(exact, rel=10.0 * rtol, abs=0.0)

@@ -288,8 +288,10 @@ def turn_with_bristles(run: Run, left: float) -> None:
         if abs(force) <= rounding:
             run.load[0] -= run.counts.mode * force  # The stages must see the forces balance here, too.
     if force < -rounding or (force <= rounding and later < -rounding):
-        run.counts.mode = -run.counts.mode
+        run.counts.mode, force = -run.counts.mode, -force
         turn_states(run, run.state.state_now)
+    if run.counts.has_inertia == 0 and force < 0.0:
+        run.load[0] -= run.counts.mode * force  # Slip begins at rate zero: its rounding must not be a step in the slip rate.
 
 
 @kernel
