@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from stickslip.bodies import ElasticSlab, as_slab
 from stickslip.contact.along_slip import regimes_along_slip
 from stickslip.contact.critical import critical_normal_stress
@@ -171,17 +173,18 @@ def _derived(problem: Problem) -> list[Fact]:
 
 
 def _steady(problem: Problem) -> list[Fact]:
-    """Return friction and state of steady sliding at the pull rate, for a rate-and-state law."""
+    """Return friction and states of steady sliding at the pull rate, for a law that knows them."""
     law, rate = problem.friction, problem.first_pull_rate
-    if not isinstance(law, RateAndState) or rate <= 0.0:
+    steady, states = getattr(law, "steady_coefficient", None), law.steady_state(rate) if rate > 0.0 else None
+    if steady is None or states is None:
         return []
-    pull = "first pull rate" if problem.varies else "pull rate"
-    friction, state = problem.normal * float(law.steady_coefficient(rate)), float(law.steady_state(rate))
-    return [
-        Fact("steady friction", friction, problem.load_unit, f"friction of steady sliding at the {pull}"),
-        Fact("steady state", state, "s", f"state theta of steady sliding at the {pull}"),
-        Fact("b - a", law.b - law.a, "1", "steady friction falls with slip rate where this is positive"),
-    ]
+    sliding = f"in steady sliding at the {'first pull rate' if problem.varies else 'pull rate'}"
+    facts = [Fact("steady friction", problem.normal * float(steady(rate)), problem.load_unit, f"friction {sliding}")]
+    for name, state, value in zip(STATE_NAMES, law.states, np.ravel(states), strict=False):
+        facts.append(Fact(f"steady {name.replace('_', ' ')}", float(value), state.unit, f"state {state.name} {sliding}"))
+    if isinstance(law, RateAndState):
+        facts.append(Fact("b - a", law.b - law.a, "1", "steady friction falls with slip rate where this is positive"))
+    return facts
 
 
 def _pulses(problem: Problem) -> list[Fact]:

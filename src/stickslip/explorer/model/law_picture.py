@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from stickslip.explorer.model.answer import CurveName, Floats, LawPicture, Motion
-from stickslip.friction import FrictionLaw, LaggedFriction, RateAndState
+from stickslip.friction import FrictionLaw, LaggedFriction
 from stickslip.friction.contract import one_argument
 from stickslip.problem.problem import Problem
 from stickslip.solution.solution import Solution
@@ -107,8 +107,8 @@ def _thinned(path: Floats) -> Floats:
 def _coefficient(problem: Problem, rate: Floats) -> tuple[CurveName, Floats]:
     """Return the coefficient at slip rates, at the slip of the start for a law of slip, in steady sliding for one with a state."""
     law = problem.friction
-    if isinstance(law, RateAndState):
-        return "steady state", law.steady_coefficient(rate)
+    if (steady := getattr(law, "steady_coefficient", None)) is not None:
+        return "steady state", steady(rate)
     if isinstance(law, LaggedFriction):
         return "steady state", law.coefficient(problem.law_slip, rate, rate)
     name: CurveName = "law" if not law.states else "law at the state of the start"
