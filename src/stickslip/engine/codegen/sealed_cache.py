@@ -8,6 +8,7 @@ from __future__ import annotations
 import hashlib
 import os
 import pickle
+import time
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -112,7 +113,7 @@ class SealedCache(FunctionCache):
 
     def __init__(self, function: Callable[..., Any]) -> None:
         super().__init__(function)
-        self._name = function.__name__
+        self._name, self._began = function.__name__, 0.0
         locator = self._impl.locator
         self._cache_file = _SealedFile(self._cache_path, self._impl.filename_base, locator.get_source_stamp())
 
@@ -130,10 +131,13 @@ class SealedCache(FunctionCache):
             return None
         if found is None and self._name in SLOW:
             cache.announce(SLOW[self._name])
+            self._began = time.monotonic()
         return found
 
     def save_overload(self, signature: Any, data: Any) -> None:
-        """Store a compiled function for later starts; say so on standard error if it cannot be written."""
+        """Store a compiled function for later starts, and say how long a long wait was, or that the function cannot be written."""
+        if self._began:
+            cache.announce(f"compiled in {time.monotonic() - self._began:.0f} s")
         if CACHE is None:
             return
         try:
