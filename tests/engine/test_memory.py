@@ -15,6 +15,7 @@ from scipy.optimize import brentq
 import stickslip as ss
 from stickslip.reference.method_of_steps import method_of_steps
 from tests.engine import problems
+from tests.sampling import some
 
 F = ss.friction
 BLOCK = ss.SpringBlock(2.0, 50.0, 10.0)
@@ -102,7 +103,7 @@ def healing_problem(kind: str, seed: int) -> tuple[ss.Problem, float]:
     return replace(made, pull_rate=0.03 * problems.rate_scale(body)), problems.duration(body, 4.3)
 
 
-@pytest.mark.parametrize(("kind", "seed"), [*itertools.product(HEALING, SEEDS), ("slab", 16)])
+@pytest.mark.parametrize(("kind", "seed"), some([*itertools.product(HEALING, SEEDS), ("slab", 16)], 2))
 def test_random_problems_that_heal_agree_with_scipy(kind: str, seed: int) -> None:
     """In slab 16 a step reaches a knot of the law, and far beyond it, but for arrest, would go back over it."""
     problem, duration = healing_problem(kind, seed)

@@ -23,6 +23,7 @@ from stickslip.trajectory.checkpoint import Checkpoint
 from stickslip.trajectory.status import UNDER_WAY
 from tests.long_runs.problems import RUNS, differences, differences_of_files
 from tests.long_runs.processes import killed
+from tests.sampling import some
 
 
 def steps_of(problem: ss.Problem, duration: float) -> int:
@@ -93,7 +94,7 @@ def test_those_stops_meet_the_engine_in_every_state(tmp_path: Path) -> None:
     assert expected <= met, expected - met
 
 
-@pytest.mark.parametrize("name", RUNS)
+@pytest.mark.parametrize("name", some(list(RUNS), 3))
 def test_a_finished_run_continues_as_if_it_had_not_ended(name: str, tmp_path: Path) -> None:
     problem, duration = RUNS[name]
     whole, path = ss.simulate(problem, duration), tmp_path / "run.nc"

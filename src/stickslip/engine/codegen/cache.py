@@ -106,7 +106,7 @@ def tidy() -> None:
 
 
 SLOW = {
-    "run_until": "compiling the engine for this machine: about 10 s, once",
+    "run_until": "compiling the engine for this machine: about 15 s, once",
     "implicit_steps": "compiling implicit steps, for stiff contacts and laws with a state: about 5 s, once",
     "run_group": "compiling what batches add to the engine: a few seconds, once",
 }
