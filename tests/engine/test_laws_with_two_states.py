@@ -222,6 +222,7 @@ def test_a_run_with_two_states_is_saved_resumed_and_drawn(tmp_path: Any) -> None
     assert (again.second_state(t[:30]) == half.second_state(t[:30])).all()
     assert (ss.resume(tmp_path / "run.nc", 60.0).second_state(t) == whole.second_state(t)).all()
     assert again.curves[-2:] == ("state", "second_state")
+    assert again.plot.second_state().axes[0].get_ylabel() == "second state (s)"
     assert again.to_dataset(t[:30])["second_state"].attrs["units"] == "s"
     assert read_scenario(Scenario(problem, 60.0).to_toml(), "again").problem == problem
 

@@ -77,6 +77,10 @@ class Plots(Generic[Run]):
         """Draw the state variable of the friction law against time. Raises InputError if the law has none."""
         return self._curve("state", start, end, place)
 
+    def second_state(self, start: float | None = None, end: float | None = None, **place: Unpack[Place]) -> Figure | Axes:
+        """Draw the second state variable of a law that has two, as `state` does the first."""
+        return self._curve("second_state", start, end, place)
+
     def _curve(self, name: Curve, start: float | None, end: float | None, place: Place) -> Figure | Axes:
         from stickslip.figures.runs import curves
 
