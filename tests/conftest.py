@@ -1,11 +1,13 @@
-"""Readable names for the cases of parametrised tests, no deadline for drawn ones, and no terminal's width for printed tables."""
+"""Names and samples of the cases of parametrised tests, no deadline for drawn ones, and no terminal's width for printed tables."""
 
 from __future__ import annotations
 
 import os
+from collections import Counter
 from collections.abc import Mapping
 
 import numpy as np
+import pytest
 from hypothesis import settings
 
 import stickslip as ss
@@ -16,6 +18,20 @@ LONGEST = 60
 os.environ.pop("COLUMNS", None)  # test runners set it, and tables are as wide as it says
 settings.register_profile("stickslip", deadline=None)  # a slow machine is no failure
 settings.load_profile("stickslip")
+
+
+@pytest.hookimpl(tryfirst=True)  # before slow tests are left out
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark the cases of a test with `sampled(every=N)` as slow, but for each N-th one from the first on."""
+    cases: Counter[str] = Counter()
+    for item in items:
+        sampled = item.get_closest_marker("sampled")
+        if sampled is None:
+            continue
+        test = item.nodeid.partition("[")[0]
+        if cases[test] % sampled.kwargs["every"]:
+            item.add_marker(pytest.mark.slow)
+        cases[test] += 1
 
 
 def pytest_make_parametrize_id(val: object) -> str | None:

@@ -167,6 +167,7 @@ except ss.InputError as error:
 """
 
 
+@pytest.mark.sampled(every=3)
 @POSIX
 @pytest.mark.parametrize("room", [0, 3000, 30_000])
 def test_a_full_disk_gives_one_line_and_keeps_the_file_before(tmp_path: Path, room: int) -> None:

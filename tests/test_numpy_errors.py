@@ -36,6 +36,7 @@ def test_uniqueness_and_check_need_no_setting_of_numpy(body: str, law: str) -> N
     assert (str(ss.uniqueness(given)), str(examine(given))) == expected
 
 
+@pytest.mark.sampled(every=9)
 @pytest.mark.parametrize(("body", "law"), CASES)
 def test_a_run_and_its_tables_need_no_setting_of_numpy(body: str, law: str) -> None:
     given = scenario(body, law)

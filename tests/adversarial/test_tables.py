@@ -23,7 +23,6 @@ from stickslip.friction.formula.expression import evaluate
 from stickslip.friction.formula.parse import parse
 from stickslip.scenarios.scenario import Scenario
 from tests.adversarial.walk import Place, walk
-from tests.sampling import some
 
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)
 NORMAL, EXCESS, DURATION = 1e8, 1.2e7, 3.0
@@ -78,6 +77,7 @@ def problem(barrier: Barrier, excess: float = EXCESS) -> ss.Problem:
     return ss.Problem(SLAB, ss.friction.FromExpression(barrier.formula), initial_excess=excess)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("name", BARRIERS)
 def test_slip_stops_at_a_hidden_barrier(name: str) -> None:
     barrier = BARRIERS[name]
@@ -125,7 +125,8 @@ def law_of_plain_numbers(formula: str) -> ss.friction.FrictionLaw:
     return Hidden(0.0)
 
 
-@pytest.mark.parametrize("name", some(list(BARRIERS | STEEP), 3))
+@pytest.mark.sampled(every=5)
+@pytest.mark.parametrize("name", list(BARRIERS | STEEP))
 def test_members_of_a_batch_stop_where_single_runs_do(name: str) -> None:
     """Eight loads side by side; slip to 1e-7 of truth and to 1e-12 of the single run, with the same status."""
     barrier = (BARRIERS | STEEP)[name]

@@ -52,6 +52,7 @@ def test_jitcdde_agrees_with_the_reference() -> None:
         assert error(jitcdde_peer, DRIVEN, 1e-8) < 5e-7
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_the_same_algorithm_in_c_takes_the_same_steps(case: Case) -> None:
     """Step by step the same: as many steps, the same slip to rounding (which the problem amplifies)."""

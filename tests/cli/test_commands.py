@@ -153,6 +153,7 @@ def test_help_is_fast_because_it_compiles_and_validates_nothing():
     assert done.returncode == 0
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(
     "arguments", [["run", "fig6-slab"], ["check", "fig6-slab"], ["new", "slab"], ["new", "--list"]], ids=" ".join
 )

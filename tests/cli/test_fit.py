@@ -44,6 +44,7 @@ def test_parameters_are_shown_with_uncertainty_and_unit(command, points):
     assert re.search(r"^alpha +1 +s/m \(fixed\)", held.out, re.MULTILINE)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("how", [["--law", "hyperbolic-rate"], ["--smooth", "auto"], ["--smooth", "1e-4", "--monotone"], []])
 def test_the_scenario_is_checked_and_run_as_it_is(command, points, how):
     shown = command("fit", "data.csv", *how, "--out", "mine.toml", "--figure", "fit.png")

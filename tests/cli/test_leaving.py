@@ -25,6 +25,7 @@ main({arguments!r})
 """
 
 
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize(
     ("module", "arguments"),
     [
@@ -66,6 +67,7 @@ def run_unheard(arguments: list[str], folder: Path) -> subprocess.CompletedProce
         os.close(writing)
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize(
     "arguments", [["--help"], ["run", "--help"], ["--version"], ["new", "--list"], ["new", "slab"], ["check", "fig6-slab"]]
 )

@@ -124,6 +124,7 @@ def heeds_ctrl_c() -> Iterator[None]:
     signal.signal(signal.SIGINT, before)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.usefixtures("heeds_ctrl_c")
 @pytest.mark.parametrize("option", [["--out", "run.nc"], ["--catalogue", "run.csv"]])
 def test_ctrl_c_leaves_a_file_that_continues(command, monkeypatch: pytest.MonkeyPatch, option: list[str]):

@@ -154,6 +154,7 @@ def with_features(seed: int) -> tuple[ss.Problem, np.ndarray]:
     return slab_problem(FromExpression(text)), together[together >= 0.0]
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("seed", range(40))
 def test_laws_with_narrow_features_have_the_folds_of_a_dense_scan(seed):
     problem, rates = with_features(seed)

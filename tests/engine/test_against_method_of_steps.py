@@ -12,6 +12,7 @@ from tests.engine.problems import KINDS
 from tests.engine.shocks import away_from_jumps
 
 
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("kind", KINDS)
 def test_slip_and_rate_of_random_problems_agree_with_scipy(kind: str, seed: int) -> None:

@@ -74,6 +74,7 @@ def test_the_tolerance_follows_rtol(rtol: float, tolerance: float) -> None:
     assert creep_tolerance(printed(1), 0.0, rtol) == 0.0
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("share", [0.004, 0.5, 0.99])
 def test_a_resumed_run_leaps_as_if_it_had_not_stopped(tmp_path: Path, share: float) -> None:
     """Stopped before the first leap, in it, and behind it."""
@@ -115,6 +116,7 @@ def test_nothing_is_lumped_before_a_round_trip_is_full() -> None:
     assert exact.lumping_note == ""
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("alpha", [0.1, 0.15])
 def test_lumping_keeps_slip_and_energy(alpha: float) -> None:
     """Five round trips later: slip of the run that resolves every event within 4 %, energy to 1e-9 of the heat."""

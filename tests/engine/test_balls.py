@@ -17,7 +17,6 @@ from stickslip.friction.formula import expression as e
 from stickslip.friction.formula.text import to_text
 from tests.engine.balls import Disc, Drawn, drawn_disc, drawn_formula, exact_distance, farthest, radius_of
 from tests.engine.formulas import FORMULAS, JET, compiled
-from tests.sampling import some
 
 MANY = 600
 FRICTION = Ball.places["friction"].first
@@ -119,7 +118,8 @@ def test_compiled_balls_are_those_of_the_text(seed: int) -> None:
         assert float(ball.change[n]) == pytest.approx(expected, rel=1e-9, abs=0.0, nan_ok=True)
 
 
-@pytest.mark.parametrize("name", some(list(FORMULAS), 2))
+@pytest.mark.sampled(every=5)
+@pytest.mark.parametrize("name", list(FORMULAS))
 def test_radii_after_a_series_are_the_same_in_lanes_and_floats_and_hold(name: str) -> None:
     """`radii` uses what the series has left. Relative 1e-14: a processor may fuse products and sums otherwise in lanes."""
     functions, constants = compiled(FORMULAS[name], 0.0)

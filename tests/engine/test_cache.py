@@ -14,7 +14,6 @@ import pytest
 from numba.core.caching import FunctionCache
 
 from stickslip.engine.codegen.private_folder import NotPrivateError, private_folder
-from tests.sampling import some
 
 SCRIPT = """
 import stickslip as ss
@@ -113,7 +112,8 @@ DAMAGE: dict[str, Callable[[bytes], bytes]] = {
 }
 
 
-@pytest.mark.parametrize("damage", some(DAMAGE, 2))
+@pytest.mark.sampled(every=2)
+@pytest.mark.parametrize("damage", DAMAGE.values(), ids=DAMAGE)
 def test_damaged_files_are_compiled_again(tmp_path: Path, damage: Callable[[bytes], bytes]) -> None:
     value, hits, folder, said = twice(tmp_path)
     assert (value, hits, said) == (42.0, 0, "")

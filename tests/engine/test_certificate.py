@@ -125,6 +125,7 @@ def duration(problem: ss.Problem) -> float:
     return 5.5 if isinstance(problem.body, ss.ElasticSlab) else 1.5
 
 
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("make", RUNS)
 def test_no_step_lacks_more_than_its_bound(make: Callable[[int], ss.Problem]) -> None:
     """Less the rounding of terms; a bound a million times smaller would be exceeded somewhere."""
@@ -165,6 +166,7 @@ def off_the_law(solution: ss.Solution, times: Floats) -> float:
     return float(np.max(np.where(rate != 0.0, miss, 0.0)))
 
 
+@pytest.mark.sampled(every=7)
 @pytest.mark.parametrize(
     "formula",
     [

@@ -63,6 +63,7 @@ def test_the_first_pulse_of_the_printed_slab_comes_when_a_grid_method_says() -> 
     assert len(solution.history) < 50_000
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("tolerance", [2e-5, 1e-4, 1e-3])
 def test_slip_stays_within_the_bound_of_each_leap(tolerance: float) -> None:
     """A hundred times faster: averaged slip within the bound where a leap lands, within the tolerance all along."""
@@ -114,6 +115,7 @@ def test_no_leap_passes_over_a_feature_of_the_law() -> None:
 # ---- other laws, the other direction --------------------------------------------------------------------------------------------
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize(
     ("law", "excess", "pull", "trips"),
     [

@@ -13,6 +13,7 @@ from stickslip.reference.method_of_steps import method_of_steps
 from tests.engine.examples import BODIES, SLAB, example_problem
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("kind", LAWS)
 @pytest.mark.parametrize("body", BODIES)
 def test_every_law_under_every_body_balances_energy_and_agrees_with_scipy(kind: str, body: str) -> None:

@@ -122,6 +122,7 @@ LAWS = {
 MASS, STIFFNESS, NORMAL, EXCESS = 2.8e12, 3.43e13, 1e14, 5e12
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("name", LAWS)
 def test_whole_runs_agree_with_scipy(name: str) -> None:
     """Slip and time of the first arrest of a block, to 1e-9 relative, against DOP853 with numpy's functions."""

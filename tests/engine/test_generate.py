@@ -73,6 +73,7 @@ def layout_of_k(rate: float, mass: float = 0.7, bend: float = 0.0, speed: float 
     return np.array([1.3, 0.9, 1.0, speed, bend, 0.0, 0.0, mass, 0.8, rate, 1.0, 0.0])
 
 
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("bend", [0.0, 0.03])
 @pytest.mark.parametrize("name", FORMULAS)
 def test_rate_jet_solves_the_contact_equation(name: str, bend: float) -> None:
@@ -94,6 +95,7 @@ def test_rate_jet_solves_the_contact_equation(name: str, bend: float) -> None:
     assert np.abs(jet[1:]).max() > 1e-4
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("bend", [0.0, 0.03])
 @pytest.mark.parametrize("name", FORMULAS)
 def test_motion_jet_solves_the_equation_of_motion(name: str, bend: float) -> None:

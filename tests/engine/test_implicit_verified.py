@@ -139,6 +139,7 @@ def drawn(seed: int) -> Slide:
     return Slide(expression, variable, width, 0.0 if lagged and draw.random() < 0.5 else mass, lag)
 
 
+@pytest.mark.sampled(every=9)
 @pytest.mark.parametrize("seed", range(24))
 def test_implicit_steps_meet_random_features_of_the_law(seed: int) -> None:
     check(drawn(seed))

@@ -34,6 +34,7 @@ EACH_BODY = pytest.mark.parametrize("name", BODIES)
 BOTH_WAYS = pytest.mark.parametrize("way", [1, -1])
 
 
+@pytest.mark.sampled(every=7)
 @EACH_BODY
 @BOTH_WAYS
 @pytest.mark.parametrize("evolution", ["ageing", "slip", "prz"])
@@ -85,6 +86,7 @@ def test_load_and_state_start_it_at_the_rate_at_which_they_balance(share: float,
     assert float(ss.simulate(damped, 1e-6).slip_rate(0.0)) == damped.rate
 
 
+@pytest.mark.sampled(every=2)
 @BOTH_WAYS
 def test_a_block_out_of_balance_agrees_with_scipy_from_the_start(way: int) -> None:
     """A block that is launched ten times too fast, against Radau on ln v from t = 0: 1e-8 of the slip, 1e-7 of ln v."""
@@ -244,6 +246,7 @@ duration = "0.2 s"
 """
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("initial", ["", 'rate = "1 mm/s"', 'rate = "1 mm/s"\nload = "60 MN"\nstate = "0.2 s"'])
 def test_scenario_and_file_keep_the_initial_rate_bit_for_bit(initial: str, tmp_path: Path) -> None:
     path = tmp_path / "start.toml"

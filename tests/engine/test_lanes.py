@@ -89,6 +89,7 @@ def test_multiplying_by_powers_has_the_same_bits_in_lanes() -> None:
         assert out[:, n].tolist() == own.tolist()
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("name", FORMULAS)
 def test_series_have_the_same_bits_in_lanes_and_floats(name: str) -> None:
     part = "motion_jet" if name in WITH_MASS else "rate_jet"

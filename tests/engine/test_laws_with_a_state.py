@@ -106,6 +106,7 @@ def swing(t: float) -> float:
     return 2e-3 / w * (1.0 - math.cos(w * t))
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("one", [LUGRE, TYPED_LUGRE, DAHL], ids=["lugre", "typed-lugre", "dahl"])
 @pytest.mark.parametrize("way", [1.0, -1.0], ids=["forward", "backward"])
 def test_a_reversing_axis_follows_its_hysteresis_loop(one: Truth, way: float) -> None:
@@ -243,6 +244,7 @@ def slab_truth(one: Truth, problem: Any, t: Floats) -> tuple[Floats, Floats]:
     return values[:, 0], values[:, 1]
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(("one", "load"), [(LUGRE, 2.0e6), (LUGRE, -2.0e6), (DAHL, 1.5e6), (FLASH, 7.2e6)])
 def test_a_slab_follows_the_method_of_steps(one: Truth, load: float) -> None:
     state = {} if one is not FLASH else {"initial_state": float(FLASH.law.steady_state(1e-6))}

@@ -83,6 +83,7 @@ def differences(run: Any, t: Floats, slip: Floats, states: Floats) -> list[float
     return [float(np.abs(ours - truth).max() / np.abs(truth).max()) for ours, truth in found]
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize(
     "one", [two_state("ageing"), two_state("slip"), two_state("ageing", -0.003)], ids=["ageing", "slip", "b < 0"]
 )
@@ -97,6 +98,7 @@ def test_a_block_follows_two_states(one: Truth, way: float) -> None:
     assert way * slip[-1] > 1e-3
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("way", [1.0, -1.0], ids=["forward", "backward"])
 def test_bristles_that_warm_up_follow_their_loop(way: float) -> None:
     pull = ss.loading.Sinusoidal(0.0, way * 2e-3, 0.2)

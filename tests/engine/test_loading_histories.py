@@ -113,6 +113,7 @@ LAWS = {
 SLIDING = ("slow tone", "fast tone", "steps", "piecewise linear", "hold and slide")
 
 
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("law", LAWS)
 @pytest.mark.parametrize("body", BODIES)
 def test_runs_under_every_history_agree_with_the_method_of_steps(body: str, law: str) -> None:
@@ -139,6 +140,7 @@ FAR = {
 }
 
 
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("impedance", [0.0, 4e6, 9.8e6, 3e7])
 @pytest.mark.parametrize("name", FAR)
 def test_a_varying_far_stress_agrees_with_the_method_of_steps(name: str, impedance: float) -> None:

@@ -135,6 +135,7 @@ def sampled(run: ss.Solution, points: int) -> list[tuple[float, float, float]]:
     return list(zip(slips.tolist(), np.abs(run.slip_rate(times)).tolist(), loads.tolist(), strict=True))
 
 
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("driver", [math.inf, 0.5 * Z])
 @pytest.mark.parametrize("law", [WEAKENING, WAVY, PRODUCT, FREE, KINKED], ids=["weakening", "wavy", "product", "free", "kinked"])
 def test_perfect_delay_keeps_a_stable_root_until_it_ends(law: ss.friction.FrictionLaw, driver: float) -> None:
@@ -230,6 +231,7 @@ LOSSY = replace(SLAB, driver_impedance=5 * Z)
 """Echoes come back with a third less: loads that rise and fall, and jumps both ways."""
 
 
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("selection", ["minimal", "maximal", "maxwell"])
 @pytest.mark.parametrize("law", [WEAKENING, WAVY, PRODUCT, FREE, KINKED], ids=["weakening", "wavy", "product", "free", "kinked"])
 def test_compiled_levels_agree_with_the_table(

@@ -81,6 +81,7 @@ def both_ways(code: str, cache: Path) -> tuple[str, str, str]:
     return python(code).stdout, plain.stdout, plain.stderr
 
 
+@pytest.mark.slow
 def test_folds_are_the_same_bit_for_bit(tmp_path: Path) -> None:
     ours, plain, said = both_ways(FOLDS, tmp_path)
     assert ours == plain

@@ -20,6 +20,7 @@ COMPILED_ANEW = ("table", "expression", "product", "sum")
 """Laws of which every example is a new formula, compiled for seconds: other tests run them."""
 
 
+@pytest.mark.sampled(every=7)
 @pytest.mark.parametrize("kind", [kind for kind in LAWS if kind not in COMPILED_ANEW])
 @given(data=st.data())
 @few
@@ -70,6 +71,7 @@ def obeys(run: ss.Solution) -> None:
     assert float(np.abs(energy.balance).max()) <= 1e-8 * size + rounding
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("kind", ["coulomb", "hyperbolic-rate", "exponential-stribeck", "power-stribeck", "piecewise-linear-rate"])
 @given(data=st.data())
 @few

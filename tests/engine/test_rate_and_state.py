@@ -100,6 +100,7 @@ def test_a_slab_grows_at_the_rate_of_its_dispersion_relation(share: float) -> No
     assert growth(run, period, slab.two_way_time) == pytest.approx(root.real, rel=0.0, abs=2e-4 * abs(root.imag))
 
 
+@pytest.mark.sampled(every=3)
 @EVOLUTIONS
 def test_a_block_agrees_with_scipy(evolution: str) -> None:
     """A whole stick-slip event, against Radau on ln v. Absolute 1e-6 of the slip and of the state's logarithm."""

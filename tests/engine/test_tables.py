@@ -207,6 +207,7 @@ def run(request: pytest.FixtureRequest) -> ss.Solution:
     return ss.simulate(*CASES[request.param])
 
 
+@pytest.mark.sampled(every=7)
 @pytest.mark.parametrize("rate", RATES.values(), ids=RATES)
 def test_every_column_of_every_event_agrees_with_a_plain_walk(run: ss.Solution, rate: Callable[[ss.Solution], float]) -> None:
     history, threshold = run.history, rate(run)

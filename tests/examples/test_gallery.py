@@ -200,6 +200,7 @@ def name_of(path: Path) -> str:
     return path.stem.partition("_")[2]
 
 
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("path", EXAMPLES, ids=name_of)
 def test_example_computes_what_its_check_says_and_draws_a_figure(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     names, figures = run_by_blocks(path)

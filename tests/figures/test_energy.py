@@ -33,6 +33,7 @@ def drawn(name: str) -> tuple[ss.Solution, xr.Dataset]:
     return run, energy.data(run)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("name", DRAWN)
 def test_areas_stack_up_to_the_total(name: str) -> None:
     """What is drawn, to 1e-9 of the total; no part is negative, none is hidden."""

@@ -82,6 +82,7 @@ def test_characteristics_leave_with_shocks_and_bounce(run: ss.Solution) -> None:
     assert dataset.front_x.values.tolist() == [0.0, 1e4] * 3
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize(("driver", "corners"), [(1.0, 2), (0.98, 2), (0.0, 5)])
 def test_characteristics_end_where_the_driver_lets_them_out(driver: float, corners: int) -> None:
     """A matched driver swallows a wave whole, a nearly matched one all but a hundredth, a dead load nothing."""
@@ -112,6 +113,7 @@ def test_a_long_run_is_shown_around_an_event() -> None:
     assert float(asked.contact_time[-1]) == 3.0
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("name", ["rate law", "pulses", "laboratory"])
 def test_space_time_has_units_and_all_of_the_slab(name: str, run: ss.Solution) -> None:
     shown = {"rate law": run, "pulses": ss.simulate(PULSES), "laboratory": ss.simulate(LABORATORY)}[name]

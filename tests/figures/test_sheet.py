@@ -38,6 +38,7 @@ def plot(name: str, **place: Any) -> Any:
 # ---- where ---------------------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("name", ONE_PANEL + PANELS)
 def test_a_new_figure_is_one_that_pyplot_shows(name: str) -> None:
     figure = plot(name)
@@ -63,6 +64,7 @@ def test_several_panels_do_not_fit_into_axes(name: str) -> None:
     assert len(pyplot.get_fignums()) == 1  # the user's own
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("name", ONE_PANEL + PANELS)
 def test_a_figure_of_the_user_is_drawn_in_and_keeps_its_size(name: str) -> None:
     mine = pyplot.figure(figsize=(8, 9))
@@ -75,6 +77,7 @@ def test_a_figure_of_the_user_is_drawn_in_and_keeps_its_size(name: str) -> None:
     assert len(pyplot.get_fignums()) == 1
 
 
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("name", ONE_PANEL + PANELS)
 def test_size_and_dpi_are_those_asked_for(name: str, tmp_path: Path) -> None:
     figure = plot(name, size=(4.0, 5.0), dpi=150)
@@ -184,6 +187,7 @@ class Notebook:
         return pictures
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("formats", [{}, {"png": b"P"}, {"png": (b"P", {"width": 3})}, {"png": None, "svg+xml": "<svg>"}])
 def test_a_notebook_shows_the_result_of_a_cell_once(formats: dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> None:
     notebook = Notebook(monkeypatch, **formats)

@@ -99,6 +99,7 @@ def test_parameters_and_uncertainties_are_those_of_scipys_curve_fit(kind: str, s
     np.testing.assert_allclose(found.correlation, covariance / np.outer(sizes, sizes), rtol=0, atol=1e-3)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("kind", ["hyperbolic-rate", "linear-slip-weakening", "exponential-stribeck", "sinusoidal-slip"])
 def test_intervals_of_one_uncertainty_hold_the_truth_as_often_as_they_should(kind: str) -> None:
     """Nominal 0.683 of all draws; the count of 60 lies within what the binomial distribution gives in all but 1e-5 of cases."""

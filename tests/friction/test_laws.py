@@ -103,6 +103,7 @@ def test_the_tree_is_the_formula_and_its_slopes_are_derivatives(kind: str, data:
         np.testing.assert_allclose(law.slopes(slip, rate), (by_slip, by_rate), rtol=1e-4, atol=wiggle)
 
 
+@pytest.mark.sampled(every=7)
 @KINDS
 @given(data=st.data())
 @settings(quick, max_examples=10)
@@ -117,6 +118,7 @@ def test_compiled_code_is_the_formula(kind: str, data: st.DataObject) -> None:
     np.testing.assert_allclose(out[:0:-1], law.slopes(slip, rate), rtol=1e-9, atol=1e-11)
 
 
+@pytest.mark.sampled(every=2)
 @KINDS
 @given(data=st.data())
 @quick

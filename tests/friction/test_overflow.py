@@ -60,6 +60,7 @@ def test_a_law_that_overflows_harmlessly_has_its_value_and_slope_at_every_rate(n
             assert slope[i] == pytest.approx(float(rise), rel=1e-9, abs=1e-12)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("text", ["0.6 + 0.2/cosh(v/1e-6)", "0.6 + 0.2/(1 + 2*expm1(v/1e-6) + (v/1e-6)**8)"])
 def test_a_run_whose_law_overflows_at_each_event_is_that_of_the_law_with_a_step(text: str) -> None:
     """Friction falls from 0.8 to 0.6 within some um/s; above 0.7 mm/s the exponential overflows."""

@@ -37,6 +37,7 @@ def same(one: pd.DataFrame, other: pd.DataFrame) -> None:
     pd.testing.assert_frame_equal(one, other, check_exact=True)
 
 
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("name", RUNS)
 @pytest.mark.parametrize("capacity", [64, 512])
 def test_the_catalogue_is_the_table_of_the_whole_run(name: str, capacity: int, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -75,6 +76,7 @@ def test_netcdf_names_the_units_of_energies(name: str, unit: str, tmp_path: Path
         assert {file[name].attrs["units"] for name in ENERGY_COLUMNS} == {unit}
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("suffix", SUFFIXES)
 def test_a_finished_catalogue_continues(suffix: str, tmp_path: Path) -> None:
     """Also where the end of the first run cut an event, whose row is made again."""
@@ -88,6 +90,7 @@ def test_a_finished_catalogue_continues(suffix: str, tmp_path: Path) -> None:
         same(ss.resume(tmp_path / "events.checkpoint.nc"), whole)
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("name", ["rate law, fragments", "slab that heals", "block that heals"])
 def test_energies_survive_a_forgotten_history(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """As those of the whole run, and taken up too: relative 1e-12 of the largest, for sums run over other pieces."""
@@ -164,6 +167,7 @@ ss.catalogue(problem, 1e9, "events.{suffix}", checkpoint_every=0.0, progress=lam
 """
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.skipif(os.name != "posix", reason="needs SIGKILL")
 @pytest.mark.parametrize(("suffix", "with_signal"), [("csv", "SIGKILL"), ("nc", "SIGKILL"), ("csv", "SIGINT"), ("nc", "SIGINT")])
 def test_a_killed_or_interrupted_catalogue_ends_with_the_same_rows(suffix: str, with_signal: str, tmp_path: Path) -> None:

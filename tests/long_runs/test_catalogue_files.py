@@ -75,6 +75,7 @@ def test_two_runs_do_not_write_into_one_catalogue(tmp_path: Path, other: str) ->
     ss.resume(checkpoint, DURATION)
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("left", ["", "start,end\n1.0,", "begun"])
 def test_a_catalogue_killed_while_it_lengthens_a_table_continues(tmp_path: Path, left: str) -> None:
     """Whatever is in the growing file: its rows are made again from the table."""

@@ -85,6 +85,7 @@ def around_leaps(name: str) -> list[int]:
     return sorted(stops | {steps})
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("name", RUNS)
 def test_a_run_stopped_around_leaps_resumes_bit_for_bit(name: str, tmp_path: Path) -> None:
     whole, path, duration = whole_run(name), tmp_path / "run.nc", RUNS[name][1]
@@ -97,6 +98,7 @@ def test_a_run_stopped_around_leaps_resumes_bit_for_bit(name: str, tmp_path: Pat
         assert differences(gone_on(path, duration), whole) == [], f"after {stop} steps"
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("name", RUNS)
 def test_a_run_that_ended_within_a_leap_continues_as_if_it_had_not(name: str, tmp_path: Path) -> None:
     """The end of the first run cuts a leap, or allows none: a longer one takes it whole."""

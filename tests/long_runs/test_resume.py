@@ -23,7 +23,6 @@ from stickslip.trajectory.checkpoint import Checkpoint
 from stickslip.trajectory.status import UNDER_WAY
 from tests.long_runs.problems import RUNS, differences, differences_of_files
 from tests.long_runs.processes import killed
-from tests.sampling import some
 
 
 def steps_of(problem: ss.Problem, duration: float) -> int:
@@ -56,6 +55,7 @@ def continued(path: Path, duration: float | None = None) -> ss.Solution:
     return resume_run(found, path, RunOptions.to_continue(found, duration, None))
 
 
+@pytest.mark.sampled(every=7)
 @pytest.mark.parametrize("name", RUNS)
 def test_a_run_stopped_anywhere_resumes_bit_for_bit(name: str, tmp_path: Path) -> None:
     problem, duration = RUNS[name]
@@ -94,7 +94,8 @@ def test_those_stops_meet_the_engine_in_every_state(tmp_path: Path) -> None:
     assert expected <= met, expected - met
 
 
-@pytest.mark.parametrize("name", some(list(RUNS), 3))
+@pytest.mark.sampled(every=7)
+@pytest.mark.parametrize("name", list(RUNS))
 def test_a_finished_run_continues_as_if_it_had_not_ended(name: str, tmp_path: Path) -> None:
     problem, duration = RUNS[name]
     whole, path = ss.simulate(problem, duration), tmp_path / "run.nc"
@@ -117,6 +118,7 @@ def test_the_comparison_shows_a_state_that_is_not_restored(tmp_path: Path) -> No
     assert "pieces" in differences(ss.resume(path), whole)
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("events", [1, 7, 30])
 def test_events_stop_a_run_where_the_last_one_is_known(events: int, tmp_path: Path) -> None:
     problem, duration = RUNS["slab that heals"]

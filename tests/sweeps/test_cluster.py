@@ -75,6 +75,7 @@ def square(number: int) -> int:
     return number**2
 
 
+@pytest.mark.slow
 def test_chunks_that_kill_their_workers_hold_up_no_others(two_workers: Client, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(two_workers.cluster.scheduler, "allowed_failures", 0)
     found: dict[int, int] = {}

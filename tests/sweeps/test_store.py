@@ -141,6 +141,7 @@ sweep(Path(sys.argv[1]))
 """
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.skipif(os.name != "posix", reason="needs SIGKILL")
 @pytest.mark.parametrize("writes", [7, 14, 16])
 def test_a_sweep_killed_while_it_writes_continues_to_the_same_files(tmp_path: Path, whole: dict[str, bytes], writes: int) -> None:
@@ -167,6 +168,7 @@ main(sys.argv[1:])
 """
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.skipif(os.name != "posix", reason="needs signals")
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGKILL])
 def test_a_command_stopped_at_any_moment_continues(tmp_path: Path, sent: signal.Signals) -> None:

@@ -43,19 +43,22 @@ def over(
     nodes: int = FULL,
 ) -> Floats:
     """Integrate over the part [low, high] (in xi) of each piece, or of its echo `leaped` whole rows later if those are given."""
-    places, weights = _gauss(nodes)
     leaped = np.zeros(len(piece)) if leaped is None else leaped
-    if len(piece) > BLOCK:
-        cuts = [slice(n, n + BLOCK) for n in range(0, len(piece), BLOCK)]
-        return np.concatenate(
-            [over(history, piece[cut], low[cut], high[cut], integrand, leaped=leaped[cut], nodes=nodes) for cut in cuts]
-        )
+    cuts = [slice(n, n + BLOCK) for n in range(0, max(len(piece), 1), BLOCK)]
+    parts = (places_in(history, piece[cut], low[cut], high[cut], leaped[cut], nodes=nodes) for cut in cuts)
+    return np.concatenate([(integrand(at).reshape(weights.shape) * weights).sum(axis=1) for at, weights in parts])
+
+
+def places_in(
+    history: History, piece: NDArray[np.intp], low: Floats, high: Floats, leaped: Floats, *, nodes: int = FULL
+) -> tuple[Positions, Floats]:
+    """Return the places of the rule in the part [low, high] (in xi) of each piece, and their weights (s), shape (pieces, nodes)."""
+    places, weights = _gauss(nodes)
     xi = low[:, None] + (high - low)[:, None] * places
     pieces = np.repeat(piece, nodes)
     at = Positions(pieces, xi.ravel(), np.repeat(leaped, nodes), np.zeros(xi.size, bool), pieces)
-    values = integrand(at).reshape(xi.shape)
     speed, bend = history.store.speed[piece], history.store.bend[piece]
-    return np.asarray(((speed[:, None] + 2.0 * bend[:, None] * xi) * values) @ weights * (high - low))
+    return at, (speed[:, None] + 2.0 * bend[:, None] * xi) * weights * (high - low)[:, None]
 
 
 def up_to(

@@ -8,9 +8,10 @@ before then; the load is beta0 + G (V - v0) t / h up to h/c.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import cached_property, partial
+from collections.abc import Callable, Iterable, Iterator
+from functools import cached_property
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,11 +19,34 @@ from numpy.typing import NDArray
 from stickslip.bodies import ElasticSlab
 from stickslip.engine_input.forcing import inflow_of, wave_before
 from stickslip.foundation.errors import InputError
-from stickslip.observables.quadrature import NODES, WEIGHTS, over
+from stickslip.observables.quadrature import NODES, WEIGHTS, over, places_in
 from stickslip.trajectory.history import START, Epoch, Floats, History, Positions
 
 OfWave = Callable[[Floats, Floats], Floats]
 """A density as a function of a wave (Pa, plus or minus the reference) and of a time (s)."""
+
+
+class Sampled(NamedTuple):
+    """A wave at the places of a quadrature."""
+
+    wave: Floats
+    """Pa, plus or minus the reference."""
+    time: Floats
+    """s."""
+    weight: Floats
+    """s."""
+
+    def integral(self, density: OfWave) -> float:
+        """Integrate a density in time."""
+        return float(density(self.wave, self.time) @ self.weight)
+
+    @classmethod
+    def joined(cls, parts: Iterable[Sampled]) -> Sampled:
+        """Return several parts as one."""
+        return cls(*(np.concatenate(arrays) for arrays in zip(NOWHERE, *parts, strict=True)))
+
+
+NOWHERE = Sampled(np.empty(0), np.empty(0), np.empty(0))
 
 
 class Waves:
@@ -35,6 +59,7 @@ class Waves:
         self.slope = body.impedance * (history.problem.first_pull_rate - history.problem.rate) / self.half  # G (V - v0) / h
         self.before: float = wave_before(history.problem)
         self.inflow = inflow_of(history.problem)
+        self._seen: tuple[Epoch, Sampled, Sampled] | None = None  # the waves at the last moment that was asked for
 
     def leaving(self, at: Positions) -> Floats:
         """Return w plus the reference, Pa."""
@@ -64,7 +89,10 @@ class Waves:
     def stored(self, now: Epoch) -> float:
         """Return the elastic and kinetic energy inside the slab, up to a constant."""
         doubled = 2.0 * self.reference
-        both = self._inside(now, lambda load, _: load * (doubled + load), lambda leaving, _: leaving * (leaving - doubled))
+        down, up = self._inside(now)
+        both = down.integral(lambda load, _: load * (doubled + load)) + up.integral(
+            lambda leaving, _: leaving * (leaving - doubled)
+        )
         return both / (4.0 * self.body.impedance)
 
     def trapped(self, now: Epoch) -> float:
@@ -72,17 +100,14 @@ class Waves:
 
         With a rigid driver the state of comparison is sheared at the pull rate (v = V x / h) instead of at rest.
         """
-        mean = self._inside(now, lambda load, _: load, lambda leaving, _: -leaving) / (2.0 * self.half)
+        down, up = self._inside(now)
+        mean = (float(down.wave @ down.weight) - float(up.wave @ up.weight)) / (2.0 * self.half)
         rate = float(self.history.problem.pull_rate_at(self.begun(now))) if self.body.is_driven_rigidly else 0.0
         drift = self.body.impedance * rate / self.half
 
-        def down(load: Floats, away: Floats) -> Floats:
-            return (load - mean - drift * away) ** 2
-
-        def up(leaving: Floats, away: Floats) -> Floats:
-            return (leaving + mean - drift * away) ** 2
-
-        return self._inside(now, down, up) / (4.0 * self.body.impedance)
+        both = down.integral(lambda load, away: (load - mean - drift * away) ** 2)
+        both += up.integral(lambda leaving, away: (leaving + mean - drift * away) ** 2)
+        return both / (4.0 * self.body.impedance)
 
     def driver_rate(self, leaving: Floats, left: Floats) -> Floats:
         """Return the velocity (m/s) of the slab at the driver h/c after a wave left the contact.
@@ -105,14 +130,14 @@ class Waves:
         """Return the work of the driver since the start of the run."""
         end = Epoch(now.trip, now.offset - self.half) if now.offset >= self.half else Epoch(now.trip - 1, now.offset + self.half)
         if end.trip < 0:
-            return self._before(-self.half, end.offset - self.round, self.power)
-        total = self._before(-self.half, 0.0, self.power)
+            return self._before(-self.half, end.offset - self.round).integral(self.power)
+        total = self._before(-self.half, 0.0).integral(self.power)
         if self.history.problem.varies:
-            return total + self._row_by_row(end.trip) + self._in_row(end.trip, 0.0, end.offset, self._of(self.power))
+            return total + self._row_by_row(end.trip) + self._in_row(end.trip, 0.0, end.offset).integral(self.power)
         total += float(self._passed[int(np.searchsorted(self.history.store.trip, end.trip, side="right"))])
         piece, low, high = self.standing(end.trip)
         total += float(self._work_of(piece, low, high, end.trip - self.history.store.trip[piece]).sum())
-        return total + self._in_row(end.trip, 0.0, end.offset, self._of(self.power))
+        return total + self._in_row(end.trip, 0.0, end.offset).integral(self.power)
 
     def _row_by_row(self, past: int) -> float:
         """Return the work of all waves that left the contact before a row, for a loading that varies.
@@ -128,7 +153,7 @@ class Waves:
     def _of_rows(self) -> Floats:
         """The work of all waves that left before the end of each stored row, after a 0 for the start."""
         rows = np.unique(self.history.store.trip)
-        own = [self._in_row(int(row), 0.0, self.round, self._of(self.power)) for row in rows]
+        own = [self._in_row(int(row), 0.0, self.round).integral(self.power) for row in rows]
         rest = [self._at_rest(int(row) + 1, int(following)) for row, following in pairwise(rows)]
         return np.cumsum([0.0, *(sum(both) for both in zip(own, [0.0, *rest], strict=True))])
 
@@ -139,17 +164,19 @@ class Waves:
         """
         if past <= first:
             return 0.0
-        of_row = partial(self._in_row, high=self.round, integrand=self._of(self.power))
         if self.body.is_driven_rigidly:
-            return self.stored(Epoch(past, 0.0)) - self.stored(Epoch(first, self.half)) + of_row(past - 1, low=self.half)
+            last = self._in_row(past - 1, self.half, self.round).integral(self.power)
+            return self.stored(Epoch(past, 0.0)) - self.stored(Epoch(first, self.half)) + last
         # all these rows are alike, but the waves of the last one may meet another loading at the driver
-        return (past - first - 1) * of_row(first, low=0.0) + of_row(past - 1, low=0.0)
+        one, last = (self._in_row(row, 0.0, self.round).integral(self.power) for row in (first, past - 1))
+        return (past - first - 1) * one + last
 
     def work_between(self, first: Epoch, last: Epoch) -> float:
         """Return the work of the driver from one moment to a later one, not long after; nothing outside this interval enters."""
         lasting = (last.trip - first.trip) * self.round + (last.offset - first.offset)
         begun = self.begun(last)
-        return self._between(last, -self.half - lasting, -self.half, lambda w, since: self.power(w, begun + since))
+        left = self._between(last, -self.half - lasting, -self.half)
+        return left.integral(lambda leaving, since: self.power(leaving, begun + since))
 
     @cached_property
     def _passed(self) -> Floats:
@@ -189,69 +216,75 @@ class Waves:
 
     # ---- integrals ----------------------------------------------------------------------------------------------------------
 
-    def _inside(self, now: Epoch, down: OfWave, up: OfWave) -> float:
-        """Integrate over the waves inside the slab.
+    def _inside(self, now: Epoch) -> tuple[Sampled, Sampled]:
+        """Return the waves on their way to the contact, as loads minus the reference, and those on their way to the driver.
 
-        `down` is the density of waves on their way to the contact (as a load minus the reference), `up` that of waves that left
-        it. The second argument of each is the travel time (s) between the wave's place and the contact.
+        Their times are the travel times (s) between the place of a wave and the contact.
         """
+        if self._seen is None or self._seen[0] != now:
+            self._seen = now, self._coming(now), self._left(now)
+        return self._seen[1:]
+
+    def _left(self, now: Epoch) -> Sampled:
+        """Return the waves that left the contact and have not reached the driver."""
+        left = self._between(now, -self.half, 0.0)
+        return left._replace(time=-left.time)
+
+    def _coming(self, now: Epoch) -> Sampled:
+        """Return the waves on their way to the contact."""
         begun = self.begun(now)
+        back = self._between(now, max(-self.round, -self.half - begun), -self.half)
+        arriving = back._replace(wave=self.arriving(back.wave, begun + back.time), time=back.time + self.round)
+        if begun >= self.half:
+            return arriving
+        away = (self.half - begun) * NODES  # from the initial state, before any wave has come back
+        return Sampled.joined([Sampled(self.first_load(begun + away), away, (self.half - begun) * WEIGHTS), arriving])
 
-        def back(leaving: Floats, since: Floats) -> Floats:
-            return down(self.arriving(leaving, begun + since), since + self.round)
+    def _of(self, density: OfWave) -> Callable[[Positions], Floats]:
+        """Return the density as a function of positions, with the time counted from the start."""
+        return lambda at: density(self.leaving(at), self._time(at, START))
 
-        total = self._between(now, -self.half, 0.0, lambda leaving, since: up(leaving, -since))
-        if begun < self.half:  # part of the load still comes from the initial state, before any wave has come back
-            away = (self.half - begun) * NODES
-            total += (self.half - begun) * float(down(self.first_load(begun + away), away) @ WEIGHTS)
-        return total + self._between(now, max(-self.round, -self.half - begun), -self.half, back)
+    def _time(self, at: Positions, since: Epoch) -> Floats:
+        """Return the time of positions after an epoch, s."""
+        store = self.history.store
+        theta = store.phase_from[at.piece] + at.xi * (store.speed[at.piece] + at.xi * store.bend[at.piece])
+        return np.asarray((store.trip[at.piece] + at.leaped - since.trip) * self.round + (theta - since.offset))
 
-    def _of(self, density: OfWave, since: Epoch = START) -> Callable[[Positions], Floats]:
-        """Return the density as a function of positions, with the time counted from an epoch."""
-
-        def integrand(at: Positions) -> Floats:
-            store = self.history.store
-            theta = store.phase_from[at.piece] + at.xi * (store.speed[at.piece] + at.xi * store.bend[at.piece])
-            time = (store.trip[at.piece] + at.leaped - since.trip) * self.round + (theta - since.offset)
-            return density(self.leaving(at), time)
-
-        return integrand
-
-    def _before(self, start: float, end: float, density: OfWave, begun: float = 0.0) -> float:
-        """Integrate over waves that left at times (s) before the run began.
-
-        The density's time counts from `begun` s after the start.
-        """
+    def _before(self, start: float, end: float, begun: float = 0.0) -> Sampled:
+        """Return the waves that left at times (s) before the run began. Their times count from `begun` s after the start."""
         if end <= start:
-            return 0.0
+            return NOWHERE
         edges = np.concatenate([[start], self.inflow.edges(start + self.round, end + self.round) - self.round, [end]])
-        left, lasting = edges[:-1, None] + np.diff(edges)[:, None] * NODES, np.diff(edges)
-        values = density(self.left_before(left.ravel()), left.ravel() - begun)
-        return float(lasting @ (values.reshape(left.shape) @ WEIGHTS))
+        lasting = np.diff(edges)[:, None]
+        left = (edges[:-1, None] + lasting * NODES).ravel()
+        return Sampled(self.left_before(left), left - begun, (lasting * WEIGHTS).ravel())
 
-    def _between(self, now: Epoch, low: float, high: float, density: OfWave) -> float:
-        """Integrate a density over the waves that left between two times relative to `now` (s, not positive)."""
+    def _between(self, now: Epoch, low: float, high: float) -> Sampled:
+        """Return the waves that left between two times relative to `now` (s, not positive)."""
         begun = self.begun(now)
-        total = self._before(begun + low, min(begun + high, 0.0), density, begun)
-        low = max(low, -begun)
-        first_row, last_trip = (now.trip + int((now.offset + time) // self.round) for time in (low, high))
-        for row in range(max(first_row, 0), last_trip + 1):
+        return Sampled.joined(
+            [self._before(begun + low, min(begun + high, 0.0), begun), *self._in_rows(now, max(low, -begun), high)]
+        )
+
+    def _in_rows(self, now: Epoch, low: float, high: float) -> Iterator[Sampled]:
+        """Yield the waves that left in each row between two times relative to `now` (s, not positive), in the run."""
+        first_row, last_row = (now.trip + int((now.offset + time) // self.round) for time in (low, high))
+        for row in range(max(first_row, 0), last_row + 1):
             start = (row - now.trip) * self.round - now.offset
             begin, end = max(low - start, 0.0), min(high - start, self.round)
-            if end <= begin:
-                continue
-            total += self._in_row(row, begin, end, self._of(density, now))
-        return total
+            if end > begin:
+                yield self._in_row(row, begin, end, now)
 
-    def _in_row(self, row: int, low: float, high: float, integrand: Callable[[Positions], Floats]) -> float:
-        """Integrate over the offsets from low to high (s) of a row."""
+    def _in_row(self, row: int, low: float, high: float, since: Epoch = START) -> Sampled:
+        """Return the waves that left between the offsets low and high (s) of a row. Their times count from an epoch."""
         piece, begin, end = self.standing(row)
         inside = (end > low) & (begin < high)
         piece, begin, end = piece[inside], np.maximum(begin[inside], low), np.minimum(end[inside], high)
         if self.history.problem.varies:
             piece, begin, end = self._cut(piece, begin, end, row)
         leaped = (row - self.history.store.trip[piece]).astype(float)
-        return float(over(self.history, piece, *self._places(piece, begin, end), integrand, leaped=leaped).sum())
+        at, weights = places_in(self.history, piece, *self._places(piece, begin, end), leaped)
+        return Sampled(self.leaving(at), self._time(at, since), weights.ravel())
 
     def _cut(self, piece: NDArray[np.intp], begin: Floats, end: Floats, row: int) -> tuple[NDArray[np.intp], Floats, Floats]:
         """Cut pieces (offsets in a row, s) into parts whose echo meets the same segment of the loading throughout."""

@@ -262,6 +262,7 @@ def test_measured_points_are_dropped_in_and_a_broken_file_is_refused_in_one_line
     assert shown.said("slip event") == sentence
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("size", SIZES)
 def test_nothing_runs_out_of_the_page_at_any_size(shown: Shown, size: str) -> None:
     width, height = SIZES[size]

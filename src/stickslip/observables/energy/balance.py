@@ -12,7 +12,6 @@ interval they are smooth functions of s up to its ends.
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -156,7 +155,8 @@ def _slab(history: History, at: Positions) -> dict[str, Floats]:
     body = as_slab(history.problem.body)
     waves, radiation, now = Waves(history, body), Radiation(history, body), epochs(history, at)
     contact = 0.5 * body.contact_mass * history.rate(at) ** 2
-    stored, moving = (np.array([of(epoch) for epoch in now]) + contact for of in (waves.stored, partial(kinetic, waves)))
+    each = np.array([(waves.stored(epoch), waves.trapped(epoch), kinetic(waves, epoch)) for epoch in now]).reshape(-1, 3)
+    stored, trapped, moving = each[:, 0] + contact, each[:, 1], each[:, 2] + contact
     return {
         "work": np.array([waves.work(epoch) for epoch in now]),
         "stored": stored,
@@ -165,7 +165,7 @@ def _slab(history: History, at: Positions) -> dict[str, Floats]:
         "heat": heat(history, at),
         "damped": np.zeros(len(now)),
         "radiated": np.array([radiation.work(epoch) for epoch in now]),
-        "trapped": np.array([waves.trapped(epoch) for epoch in now]),
+        "trapped": trapped,
     }
 
 
