@@ -80,7 +80,7 @@ NAMED = (
     ),
     Named(
         "no-proof-of-implicit-steps",
-        "engine/implicit_step/radau_step.py",
+        "engine/radau/step.py",
         "    if passes_zero(run):",
         "    if True:",
     ),

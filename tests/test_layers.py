@@ -47,7 +47,7 @@ ROOMS = {
         ("enclosure", "state"),
         ("series",),
         ("contact",),
-        ("folds", "implicit_step"),
+        ("folds", "radau"),
         ("contact_step",),
         ("waves",),
         ("on_demand",),

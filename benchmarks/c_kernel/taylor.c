@@ -28,7 +28,7 @@ typedef struct {
     double load[TERMS], local[TERMS], load_along_slip[TERMS], jet[2 * TERMS], powers[TERMS];
     LawValue value;
     Friction friction;
-    Series k;
+    SeriesInput k;
     Ball ball;
 } Run;
 
@@ -184,11 +184,11 @@ static double rate_on_branch(Run *r, double load, double guess) {
     double low = r->branch[branch].rate_from, high = r->branch[branch].rate_to;
     if (load <= r->branch[branch].excess_from) return low;
     if (load >= r->branch[branch].excess_to) return high;
-    high = fmin(high, (load + r->params->largest_drop) / r->params->impedance * (1.0 + 1e-12));
+    high = fmin(high, (load + r->params->largest_drop) / r->params->damping * (1.0 + 1e-12));
     double s = low < guess && guess < high ? guess : 0.5 * (low + high);
     for (int i = 0; i < 200; i++) {
         friction_at(r, r->state->law_slip, s);
-        double error = r->params->impedance * s + r->friction.stress - load, slope = r->params->impedance + r->friction.by_rate;
+        double error = r->params->damping * s + r->friction.stress - load, slope = r->params->damping + r->friction.by_rate;
         if (error > 0.0) high = s;
         else if (error < 0.0) low = s;
         else return s;
@@ -351,14 +351,14 @@ static double usable_length(const double *jet, double tolerance) {
 
 static void series(Run *r, double guess) {
     int64_t direction = r->count->mode, n = r->count->degree;
-    Series *k = &r->k;
+    SeriesInput *k = &r->k;
     double xi = r->state->xi;
     if (n <= 1) r->local[0] = r->load[0] + xi * r->load[1], r->local[1] = guess * r->load[1], n = 1;
     else restrict_low(r->load, n, xi, guess, r->local);
     for (int i = 1; i <= n; i++) r->load_along_slip[i] = direction * r->local[i];
     r->load_along_slip[0] = towards(r, r->local[0], direction);
     int edge = r->count->leaving_rest != 0;
-    k->impedance = r->params->impedance, k->normal = r->params->normal, k->inertia = r->params->inertia;
+    k->damping = r->params->damping, k->normal = r->params->normal, k->inertia = r->params->inertia;
     k->stiffness = r->params->stiffness;
     k->chi = r->params->counts_net == 1.0 ? direction : 1.0;
     k->speed = (r->state->speed + 2.0 * r->state->bend * xi) * guess, k->bend = 2.0 * r->state->bend * guess * guess;
@@ -389,12 +389,12 @@ static double share_on_disc(Run *r, double length, int64_t disc) {
     Ball *ball = &r->ball;
     ball->rate = rate, ball->slip = powers[1] * (fabs(r->k.speed) * straight + fabs(r->k.bend) * powers[1] * bent);
     radii(r->c, r->jet, (double *)ball);
-    double force = 1.01 * (r->k.impedance * ball->rate + r->k.normal * ball->friction + r->k.stiffness * ball->slip + load);
+    double force = 1.01 * (r->k.damping * ball->rate + r->k.normal * ball->friction + r->k.stiffness * ball->slip + load);
     double square = length * length, size = fmax(fabs(r->jet[0]), length * first);
     size = fmax(size, fmax(square * fabs(r->jet[2]), square * length * fabs(r->jet[3])));
     if (r->count->has_inertia) missed = length * (fabs(r->k.speed) / r->k.inertia * force + slopes) * pow(ratio, 1 - TERMS);
     else {
-        double now[4], resistance = r->k.impedance;
+        double now[4], resistance = r->k.damping;
         if (r->count->is_algebraic) value(r->c, r->k.slip, r->jet[0], now), resistance += fmax(r->k.normal * now[1], 0.0);
         missed = force / resistance * pow(ratio, -TERMS);
     }
@@ -424,13 +424,13 @@ static int obeys_contact(Run *r, const double *rate, double length, double grown
         unbalanced = r->load_along_slip[0] - r->params->normal * (now[0] + r->law->offset) - r->k.force;
     }
     value(r->c, dx, rate_end, now);
-    double friction = now[0] + r->law->offset, normal = r->params->normal, impedance = r->params->impedance;
-    double missing = load - impedance * rate_end - normal * friction - unbalanced;
+    double friction = now[0] + r->law->offset, normal = r->params->normal, damping = r->params->damping;
+    double missing = load - damping * rate_end - normal * friction - unbalanced;
     double terms = r->params->reference + fabs(load) + normal * (fabs(friction) + fabs(now[1] * rate_end) + fabs(now[2] * dx));
     double largest = fmax(fmax(fabs(rate[0]), fabs(rate_end)), fmax(fabs(rate[1]), fmax(fabs(rate[2]), fabs(rate[3]))));
     double size = (r->count->has_inertia ? 300.0 : 10.0) * r->params->tolerance * largest;
     if (!r->count->has_inertia) {
-        double resistance = impedance + normal * fmax(now[1], 0.0);
+        double resistance = damping + normal * fmax(now[1], 0.0);
         return fabs(missing) / resistance <= size + 1e-14 * terms / resistance;
     }
     for (int k = 1; k < TERMS; k++) slope += k * rate[k];

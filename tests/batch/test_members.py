@@ -222,7 +222,7 @@ def test_a_storm_ends_before_nearly_every_piece_costs_a_clearing(monkeypatch: py
         return clear(watch, session)
 
     monkeypatch.setattr(run, "LARGEST_CAPACITY", 512)
-    monkeypatch.setattr(long_member, "LARGEST", 3000)
+    monkeypatch.setattr(long_member, "LARGEST_HISTORY", 3000)
     monkeypatch.setattr(long_member.Folding, "make_room", make_room)
     members = run_members(replace(load_scenario("fig6-slab"), duration=3e9), {"friction.alpha": np.array([0.2])}, ["events"])
     assert members.status.tolist() == [FULL_HISTORY]

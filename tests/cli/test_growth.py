@@ -10,7 +10,7 @@ import stickslip as ss
 from stickslip.cli.long_run import Growth
 from stickslip.cli.output.files import file_size
 from stickslip.io.netcdf import history_dataset, piece_size
-from stickslip.run.progress import MANY, Report
+from stickslip.run.progress import LONG_RUN, Report
 from tests.cli.conftest import Outcome
 
 Command = Callable[..., Outcome]
@@ -38,9 +38,9 @@ def test_a_law_with_a_state_adds_its_series_to_a_piece():
 
 
 def test_growth_is_told_once_and_at_every_doubling(capsys: pytest.CaptureFixture[str]):
-    growth = Growth(PROBLEM, Path("run.nc"), 10 * MANY, is_given=True)
+    growth = Growth(PROBLEM, Path("run.nc"), 10 * LONG_RUN, is_given=True)
     told = []
-    for pieces in (MANY - 1, MANY, MANY + 1, 2 * MANY - 1, 2 * MANY, 3 * MANY, 4 * MANY):
+    for pieces in (LONG_RUN - 1, LONG_RUN, LONG_RUN + 1, 2 * LONG_RUN - 1, 2 * LONG_RUN, 3 * LONG_RUN, 4 * LONG_RUN):
         growth.look(report(pieces, 500.0))
         told.append(bool(capsys.readouterr().err))
     assert told == [False, True, False, False, True, False, True]
@@ -49,23 +49,23 @@ def test_growth_is_told_once_and_at_every_doubling(capsys: pytest.CaptureFixture
 @pytest.mark.parametrize(
     ("most", "is_given", "time", "message"),
     [
-        (10 * MANY, True, 500.0, "at this rate {whole} at the end of the run; --catalogue FILE instead keeps slip events only"),
+        (10 * LONG_RUN, True, 500.0, "at this rate {whole} at the end of the run; --catalogue FILE instead keeps slip events only"),
         (
-            3 * MANY,
+            3 * LONG_RUN,
             False,
             100.0,
             "at this rate the run ends too early, at 0.6 million pieces and is not written, unless",
         ),
-        (3 * MANY, True, 100.0, "at this rate the run ends too early, at 0.6 million pieces, unless --max-pieces allows more"),
-        (3 * MANY, True, 0.0, "at this rate the run ends too early, at 0.6 million pieces, unless --max-pieces allows more"),
+        (3 * LONG_RUN, True, 100.0, "at this rate the run ends too early, at 0.6 million pieces, unless --max-pieces allows more"),
+        (3 * LONG_RUN, True, 0.0, "at this rate the run ends too early, at 0.6 million pieces, unless --max-pieces allows more"),
     ],
 )
 def test_what_a_long_run_will_need_is_told(
     capsys: pytest.CaptureFixture[str], most: int, is_given: bool, time: float, message: str
 ):
-    Growth(PROBLEM, Path("run.nc"), most, is_given).look(report(MANY, time))
+    Growth(PROBLEM, Path("run.nc"), most, is_given).look(report(LONG_RUN, time))
     shown = capsys.readouterr()
-    now, whole = (file_size(pieces * piece_size(PROBLEM)) for pieces in (MANY, 2 * MANY))
+    now, whole = (file_size(pieces * piece_size(PROBLEM)) for pieces in (LONG_RUN, 2 * LONG_RUN))
     assert shown.out == ""
     assert shown.err.startswith(f"run.nc grows large: {now} so far, 0.2 million pieces; ")
     assert message.format(whole=whole) in shown.err
@@ -102,7 +102,7 @@ def test_a_long_run_says_how_large_its_file_becomes_before_it_is_written(
 
 
 def test_progress_counts_pieces_when_they_are_many():
-    assert "million" not in str(report(MANY - 1, 1.0))
+    assert "million" not in str(report(LONG_RUN - 1, 1.0))
     assert "1.5 million pieces" in str(report(1_500_000, 1.0))
 
 

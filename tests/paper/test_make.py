@@ -44,6 +44,7 @@ def test_tables_reopen(folder: Path) -> None:
     assert "start [s]" in events.columns
 
 
+@pytest.mark.slow
 def test_a_second_run_writes_the_same_bytes(folder: Path, tmp_path: Path) -> None:
     make(tmp_path)
     for path in folder.iterdir():

@@ -125,6 +125,7 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.slow
 def test_a_killed_sweep_continues(undisturbed: dict[str, bytes], tmp_path: Path) -> None:
     """kill -9 while a local cluster works: its worker goes with it, and the rest is done in one process."""
     out, script = tmp_path / "map.zarr", tmp_path / "suicidal.py"

@@ -23,13 +23,13 @@ from stickslip.trajectory.status import INTERRUPTED
 if TYPE_CHECKING:
     import pandas as pd
 
-LARGEST = 500_000
+LARGEST_HISTORY = 500_000
 """Largest number of pieces of history: those of one event, and those whose waves are still in the body. They take 250 MB."""
 LARGEST_SHARE = 0.75
-"""Largest share of LARGEST that a member may need once all other history is discarded; a member that needs more fails.
+"""Largest share of LARGEST_HISTORY that a member may need once all other history is discarded; a member that needs more fails.
 
-In a storm of events each piece that is discarded leaves less room than the one before. Near LARGEST the run would discard, which
-takes a second, for every few pieces.
+In a storm of events each piece that is discarded leaves less room than the one before. Near LARGEST_HISTORY the run would discard,
+which takes a second, for every few pieces.
 """
 FIRST = ("start", "end", "duration", "slip", "traction_drop", "static_drop")
 """Columns of an event table that are kept of the first event, as fields `first_...` of `reduction.Reduced`."""
@@ -67,14 +67,14 @@ class Folding:
         self.add(look.table())
         look.tell()
         if run.before_end is not None:
-            return run.grow(LARGEST)
+            return run.grow(LARGEST_HISTORY)
         dropped = run.forget_before(self.stream.needed(run.history()))
         if dropped > 0:
             self.stream.forget(dropped)
             self.counted -= dropped
-        if run.length > LARGEST_SHARE * LARGEST:
+        if run.length > LARGEST_SHARE * LARGEST_HISTORY:
             return False
-        return run.length < len(run.store.pieces) // 2 or run.grow(LARGEST)
+        return run.length < len(run.store.pieces) // 2 or run.grow(LARGEST_HISTORY)
 
     def count_shocks(self, store: Store, length: int) -> None:
         """Count the shocks of the pieces that were added since the last count."""

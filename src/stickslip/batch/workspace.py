@@ -15,7 +15,7 @@ from stickslip.engine.codegen.simd import WIDTH
 from stickslip.engine.on_demand import lend_parts_of_batch
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, EchoNode, Floats, Integers, Params, Setup, Store
-from stickslip.engine.state.workspace import ADDRESSES, PLACES, Run, lend
+from stickslip.engine.state.workspace import ADDRESSES, RUN_SIZE, Run, lend
 from stickslip.engine_input.prepare import NOT_VARYING
 
 FIRST_CAPACITY, LARGEST_CAPACITY = 512, 32_768
@@ -36,7 +36,7 @@ class Workspace(NamedTuple):
     waits: Integers  # (WIDTH,): what the lane waits for, see `kernels.lanes`
     member: Integers  # (WIDTH,): index of the member in the lane
     code: Integers  # (WIDTH,): what the engine returned last for this member
-    table: Integers  # (WIDTH, PLACES): the memory of its run, see `engine.state.workspace.Run`
+    table: Integers  # (WIDTH, RUN_SIZE): the memory of its run, see `engine.state.workspace.Run`
     upcoming: Integers  # (1,): index of the next member to start
 
     @property
@@ -98,7 +98,7 @@ def new_workspace() -> Workspace:
         waits,
         member,
         code,
-        apart(WIDTH, PLACES, dtype=np.int64),
+        apart(WIDTH, RUN_SIZE, dtype=np.int64),
         apart(1, dtype=np.int64),
     )
 

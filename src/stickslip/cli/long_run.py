@@ -14,7 +14,7 @@ from stickslip.cli.output.files import CATALOGUES, Target, check_targets, file_s
 from stickslip.cli.overrides import load_with, read
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import number
-from stickslip.run.progress import MANY
+from stickslip.run.progress import LONG_RUN
 from stickslip.run.progress_line import progress_line
 from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.schema import check_events, read_duration
@@ -40,11 +40,11 @@ class Growth:
     file: Path | None
     most: int
     is_given: bool
-    next_at: int = MANY
+    next_at: int = LONG_RUN
 
     def tell_limit(self) -> None:
         """Say how large the file can become, if the given limit allows a long history."""
-        if self.file is not None and self.is_given and self.most > MANY:
+        if self.file is not None and self.is_given and self.most > LONG_RUN:
             typer.echo(f"{self.file}: up to {self._size(self.most)}, {_many(self.most)}; {CURE}", err=True)
 
     def look(self, report: Report) -> None:

@@ -22,7 +22,7 @@ from stickslip.scenarios.entries import read_typed, typed_number
 from stickslip.scenarios.parameter_paths import with_values
 from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
 from stickslip.scenarios.schema import check_events, check_rule, read_duration
-from stickslip.scenarios.text_of_files import LARGEST, text_of
+from stickslip.scenarios.text_of_files import LARGEST_SCENARIO_FILE, text_of
 
 if TYPE_CHECKING:
     from stickslip.contact.regime_map import Axis
@@ -49,7 +49,9 @@ def _load(scenario: str) -> Scenario:
         return load_scenario(scenario)
     if sys.stdin.isatty():
         typer.echo("the scenario is read from the terminal; its end is Ctrl-D on a line of its own", err=True)
-    return read_scenario(text_of(sys.stdin.buffer.read(LARGEST + 1), "standard input"), "standard input", "stdin", Path.cwd())
+    return read_scenario(
+        text_of(sys.stdin.buffer.read(LARGEST_SCENARIO_FILE + 1), "standard input"), "standard input", "stdin", Path.cwd()
+    )
 
 
 def load_with(command: str, scenario: str, changes: Sequence[str] | None = None, **typed: Any) -> Scenario:

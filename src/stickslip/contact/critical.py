@@ -71,7 +71,7 @@ def margin(problem: Problem, law_slip: float | None = None) -> float:
     g = resistance(problem, law_slip)
     if not g.law.depends_on_rate:
         return 1.0
-    return -math.inf if g.law.static_excess > 0.0 else steepest_fall(g)[1] / g.impedance
+    return -math.inf if g.law.static_excess > 0.0 else steepest_fall(g)[1] / g.damping
 
 
 def check_no_contact_mass(problem: Problem, where: str) -> None:
@@ -88,8 +88,8 @@ def critical_normal_stress(g: Resistance) -> float | None:
     """
     if g.law.static_excess > 0.0 or not g.law.depends_on_rate:
         return None
-    weakening = (g.impedance - steepest_fall(g)[1]) / g.normal
-    return g.impedance / weakening if weakening > 1e-12 * g.impedance / g.normal else None
+    weakening = (g.damping - steepest_fall(g)[1]) / g.normal
+    return g.damping / weakening if weakening > 1e-12 * g.damping / g.normal else None
 
 
 def critical_value(problem: Problem, name: str, law_slip: float | None = None) -> Critical:

@@ -38,18 +38,18 @@ class Plateau:
 
 @dataclass(frozen=True)
 class Resistance:
-    """The function g of one contact at one law slip: impedance Z (Pa s/m), normal stress S (Pa), law_slip (m).
+    """The function g of one contact at one law slip: damping Z (Pa s/m), normal stress S (Pa), law_slip (m).
 
     The contact equation, paper eqs (12)-(13), reads excess(s) = load - S mu_static, where s >= 0 is the magnitude of the slip rate
     (m/s). For backward slip the load changes sign.
     """
 
     law: FrictionLaw
-    impedance: float
+    damping: float
     normal: float
     law_slip: float
 
-    units: ClassVar = {"impedance": "Pa s/m", "normal": "Pa", "law_slip": "m"}
+    units: ClassVar = {"damping": "Pa s/m", "normal": "Pa", "law_slip": "m"}
     __repr__ = brief_repr
 
     @property
@@ -90,7 +90,7 @@ class Resistance:
             change, slope[chosen] = difference(tree, numbers, self.law_slip, 0.0, rate[chosen])
             offset = np.where(piece[chosen] == first, 0.0, self._at_rest(tree, numbers) - home)
             step[chosen] = change + offset
-        return self.impedance * rate + self.normal * step + self.start, self.impedance + self.normal * slope
+        return self.damping * rate + self.normal * step + self.start, self.damping + self.normal * slope
 
     @cached_property
     def rate_knots(self) -> tuple[float, ...]:
@@ -111,9 +111,9 @@ class Resistance:
         rates = np.linspace(edges[:-1], edges[1:], 9, axis=1)
         pieces = self.law.piece_at(self.law_slip, edges[:-1])
         excess, slope = self._by_formula(np.repeat(pieces[:, None], 9, axis=1), rates)
-        size = abs(self.strength) + np.max(np.abs(excess), axis=1) + self.impedance * edges[1:]
+        size = abs(self.strength) + np.max(np.abs(excess), axis=1) + self.damping * edges[1:]
         still = np.ptp(excess, axis=1) <= 8.0 * np.finfo(float).eps * size
-        for k in np.flatnonzero(still & (np.max(np.abs(slope), axis=1) <= _FLAT * self.impedance)).tolist():
+        for k in np.flatnonzero(still & (np.max(np.abs(slope), axis=1) <= _FLAT * self.damping)).tolist():
             before = levels[pieces[k - 1]] if k > 0 else np.nan
             levels[pieces[k]] = excess[k, 0] if np.isnan(before) else before
         return levels
@@ -158,14 +158,14 @@ class Resistance:
 
         Scales of the law that exceed the first by the factor `_FASTEST` are left out: g rises there whatever the law does.
         """
-        own = self.normal * self.law.variation / self.impedance
+        own = self.normal * self.law.variation / self.damping
         found = (own, *(scale for scale in self.law.rate_scales if scale <= _FASTEST * own))
         return tuple(scale for scale in found if scale > 0.0 and np.isfinite(scale)) or (1.0,)
 
     def fastest(self, excess: float) -> float:
         """Return a slip rate (m/s) at which g certainly exceeds the given excess (Pa), because friction is bounded below."""
         fall = self.strength - self.normal * self.law.range()[0]
-        bound = max(excess + fall, 0.0) / self.impedance
+        bound = max(excess + fall, 0.0) / self.damping
         return 2.0 * bound + float(np.finfo(float).tiny)
 
 

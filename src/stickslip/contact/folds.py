@@ -98,7 +98,7 @@ def bounds_of(g: Resistance) -> turns.Resistance:
     values = np.array([g.law.piece_values(i) for i in range(len(g.trees))]).reshape(len(g.trees), -1)
     formulas = formulas_of(g.trees, g.law.parameters(), values)
     return turns.Resistance(
-        formulas, knots, pieces.astype(np.int64), g.impedance, g.normal, min(g.scales), max(g.scales), new_cells()
+        formulas, knots, pieces.astype(np.int64), g.damping, g.normal, min(g.scales), max(g.scales), new_cells()
     )
 
 
@@ -134,7 +134,7 @@ def lowest_slope(g: Resistance, tolerance: float = _TOLERANCE) -> Lowest:
     bounds = bounds_of(g)
     found = find_lowest(bounds, g.law_slip, tolerance, turns.MOST_EVALUATIONS)
     rate, slope = polished(bounds, g.law_slip, found)
-    near = found.at_most - found.at_least <= _NEAR * tolerance * max(g.impedance, abs(found.at_most))
+    near = found.at_most - found.at_least <= _NEAR * tolerance * max(g.damping, abs(found.at_most))
     return Lowest("proven" if near else "not decided", found.at_least, found.at_most, slope, rate)
 
 
@@ -146,10 +146,10 @@ def critical_stress_between(g: Resistance) -> Interval | None:
     if not g.law.depends_on_rate or g.law.static_excess > 0.0:
         return None
     lowest = lowest_slope(g)
-    steepest, at_least = ((g.impedance - bound) / g.normal for bound in (lowest.at_least, lowest.at_most))
+    steepest, at_least = ((g.damping - bound) / g.normal for bound in (lowest.at_least, lowest.at_most))
     if not (at_least > 0.0 and math.isfinite(steepest)):
         return None
-    return g.impedance / steepest * (1.0 - _ROUNDING), g.impedance / at_least * (1.0 + _ROUNDING)
+    return g.damping / steepest * (1.0 - _ROUNDING), g.damping / at_least * (1.0 + _ROUNDING)
 
 
 def sentence(g: Resistance, proof: Certificate, folds: tuple[Fold, ...]) -> str:

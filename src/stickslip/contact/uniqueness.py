@@ -237,7 +237,7 @@ def _determined(problem: Problem, slip: float | None) -> Uniqueness:
     stable = branches_of(g, proof)
     table, folds = table_of(problem, g, stable), _folds(g, stable, proof)
     between = critical_stress_between(g)
-    check_critical(problem, g.impedance, between)
+    check_critical(problem, g.damping, between)
     window, critical = _window(stable), _critical(problem, g)
     jumps = jumps_of(g, stable, table) if window else ()
     return Uniqueness(
@@ -265,7 +265,7 @@ _kept = lru_cache(maxsize=16)(_determined)
 
 def _critical(problem: Problem, g: Resistance) -> tuple[str, float] | None:
     """Return a parameter and its critical value, from the law's closed form if there is one, otherwise the normal stress."""
-    closed = problem.friction.critical_value(g.impedance, g.normal)
+    closed = problem.friction.critical_value(g.damping, g.normal)
     if closed is not None:
         return closed
     stress = critical_normal_stress(g)

@@ -39,7 +39,7 @@ from stickslip.engine.state.layout import Floats
 from stickslip.engine_input.branch_table import strength_change
 from stickslip.problem.problem import Problem
 
-PLACES = 65
+SLIPS_LOOKED_AT = 65
 """Number of slips at which the lowest friction of a stride is looked for, and again around the lowest of them."""
 IN_SIGHT = 10.0
 """Largest factor by which friction may be proven to change more than its slopes suggest: the bound of a smooth law is larger by a
@@ -87,9 +87,9 @@ class Strength:
         law = self.problem.friction
         if not law.can_be_negative:
             return False
-        slips = self.problem.law_slip + self.law_slip + self.sign * np.linspace(x, end, PLACES)
+        slips = self.problem.law_slip + self.law_slip + self.sign * np.linspace(x, end, SLIPS_LOOKED_AT)
         lowest = int(np.argmin(law.piece_coefficient(self.piece, slips, 0.0)))
-        near = np.linspace(slips[max(lowest - 1, 0)], slips[min(lowest + 1, PLACES - 1)], PLACES)
+        near = np.linspace(slips[max(lowest - 1, 0)], slips[min(lowest + 1, SLIPS_LOOKED_AT - 1)], SLIPS_LOOKED_AT)
         return bool(np.min(law.piece_coefficient(self.piece, near, 0.0)) < -NEGLIGIBLE)
 
     @cached_property

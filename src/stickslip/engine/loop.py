@@ -41,15 +41,15 @@ from __future__ import annotations
 import math
 
 from stickslip.engine.codegen.compiler import kernel
-from stickslip.engine.contact.append_segment import xi_at
 from stickslip.engine.contact.contact_equation import needs_branches
+from stickslip.engine.contact.pieces import xi_at
 from stickslip.engine.contact.stiffness import is_implicit
 from stickslip.engine.contact_step.implicit_step import evolves_at_rest, slip_implicitly, stick_with_state
-from stickslip.engine.contact_step.stick import arrive, stick
+from stickslip.engine.contact_step.stick_or_slip import arrive, stick
 from stickslip.engine.contact_step.taylor_step import slip
 from stickslip.engine.folds.fold import leave_fold_piece, leave_moving_branch
 from stickslip.engine.series.polynomial import total
-from stickslip.engine.state.layout import Incoming, Integers, NearFold, Part, Stop
+from stickslip.engine.state.layout import EnginePart, Incoming, Integers, NearFold, Stop
 from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.incoming_load import next_piece
 from stickslip.engine.waves.round_trip import close_round_trip
@@ -79,10 +79,10 @@ def run_until(table: Integers, last_trip: int, last_phase: float, passes: int) -
     `table` is the memory that `workspace.lend` has filled. Its scratch space must be kept between calls.
     """
     run = borrow(table)
-    run.k.impedance, run.k.normal = run.params.impedance, run.params.normal
+    run.k.damping, run.k.normal = run.params.damping, run.params.normal
     run.k.inertia, run.k.stiffness = run.params.inertia, run.params.stiffness
     run.missing = missing_part(run)
-    if run.missing != Part.NONE:
+    if run.missing != EnginePart.NONE:
         return Stop.NEED_PART
     for _ in range(passes):
         code = make_pass(run, last_trip, last_phase)
@@ -127,10 +127,10 @@ def obstacle(run: Run) -> int:
 def missing_part(run: Run) -> int:
     """Return a part that the run needs now, as its problem or its checkpoint says, and that has not been lent; or Part.NONE."""
     if run.loading_history == 0 and run.counts.varies == 1:
-        return Part.LOADING_HISTORY
+        return EnginePart.LOADING_HISTORY
     if run.moving_folds == 0 and run.counts.folds_move == 1:
-        return Part.MOVING_FOLDS
-    return Part.ECHO_QUEUE if run.echo_queue == 0 and run.counts.sparse == 1 else Part.NONE
+        return EnginePart.MOVING_FOLDS
+    return EnginePart.ECHO_QUEUE if run.echo_queue == 0 and run.counts.sparse == 1 else EnginePart.NONE
 
 
 @kernel
@@ -168,7 +168,7 @@ def take_step(run: Run, xi_to: float) -> int:
     """Stick or slip for one step, up to the place xi_to at most. A step that must not be kept is taken back and ends the run."""
     length, xi = run.counts.length, run.state.xi
     if run.implicit_steps == 0 and is_implicit(run):
-        run.missing = Part.IMPLICIT_STEPS
+        run.missing = EnginePart.IMPLICIT_STEPS
         return Stop.NEED_PART
     if run.counts.mode == 0:
         if evolves_at_rest(run):

@@ -11,8 +11,8 @@ from typing import Any
 from stickslip.engine.codegen.compiler import PART, address_of, kernel
 from stickslip.engine.codegen.uncompiled import UNCOMPILED, handle_of
 from stickslip.engine.folds.fold_ahead import way_to_fold
-from stickslip.engine.implicit_step.radau_step import collocate
-from stickslip.engine.state.layout import Counts, Integers, Params, Part, Task
+from stickslip.engine.radau.step import collocate
+from stickslip.engine.state.layout import Counts, EnginePart, Integers, Params, Task
 from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.echo_queue import build_queue, end_trip, next_echo
 from stickslip.engine.waves.varying_forcing import take_loading, trips_withstood
@@ -61,22 +61,22 @@ def part_at(part: Any) -> int:
 
 
 PARTS = {
-    Part.IMPLICIT_STEPS: implicit_steps,
-    Part.LOADING_HISTORY: loading_history,
-    Part.ECHO_QUEUE: echo_queue,
-    Part.MOVING_FOLDS: moving_folds,
+    EnginePart.IMPLICIT_STEPS: implicit_steps,
+    EnginePart.LOADING_HISTORY: loading_history,
+    EnginePart.ECHO_QUEUE: echo_queue,
+    EnginePart.MOVING_FOLDS: moving_folds,
 }
 """The function of each part; its address is the field of the same name in `workspace.Run`."""
 
 
-_at_hand: dict[Part, int] = {}
+_at_hand: dict[EnginePart, int] = {}
 """Addresses of the parts that this process has compiled or loaded so far."""
 
 
-def lend_part(memory: Integers, part: Part | None = None) -> None:
+def lend_part(memory: Integers, part: EnginePart | None = None) -> None:
     """Write the address of a part into a run's memory, by default of the part for which the engine has asked."""
     run = Run(memory)
-    part = Part(run.missing) if part is None else part
+    part = EnginePart(run.missing) if part is None else part
     _at_hand[part] = part_at(PARTS[part])
     setattr(run, part.name.lower(), _at_hand[part])
 
@@ -93,8 +93,8 @@ def lend_parts_of_batch(memory: Integers, params: Params, counts: Counts) -> Non
 
     A massless contact rarely needs implicit steps: they are lent if they are there, and otherwise when it asks for them.
     """
-    Run(memory).implicit_steps = _at_hand.get(Part.IMPLICIT_STEPS, 0)
+    Run(memory).implicit_steps = _at_hand.get(EnginePart.IMPLICIT_STEPS, 0)
     if counts.has_inertia == 1 or counts.states > 0:
-        lend_part(memory, Part.IMPLICIT_STEPS)
+        lend_part(memory, EnginePart.IMPLICIT_STEPS)
     if params.reflection == -1.0 and counts.is_block == 0:
-        lend_part(memory, Part.ECHO_QUEUE)
+        lend_part(memory, EnginePart.ECHO_QUEUE)

@@ -23,8 +23,8 @@ from stickslip.engine.folds.moving_branches import Search, new_search
 from stickslip.engine.folds.moving_levels import (
     COMPILED_RULES,
     EXACT,
+    LEVEL_ROUNDING,
     NEXT,
-    ROUNDING,
     SHORTEST,
     crossing_in,
     set_maxwell_levels,
@@ -38,7 +38,7 @@ from stickslip.problem.problem import Problem
 
 AT_A_TIME = 100
 """Number of steps that are checked before the caller gets a chance to report progress."""
-PLACES = (0.5, 1.0)
+CHECKED_AT = (0.5, 1.0)
 """Places in a step, on [0, 1], at which a user's own rule is checked."""
 STORM_OF, STORM_IN = 30, 1e-6
 """An event storm: this many crossings within this share of a round trip."""
@@ -143,8 +143,8 @@ class Step:
 
     def crossing(self) -> float | None:
         """Return the place at which the load first leaves that interval, or None if it stays in it."""
-        before, slack = 0.0, ROUNDING * self.problem.strength
-        for place in PLACES:
+        before, slack = 0.0, LEVEL_ROUNDING * self.problem.strength
+        for place in CHECKED_AT:
             if self.room(place) < -slack:
                 starts_outside = self.room(before) <= slack and self.room(before + NEXT * (place - before)) <= 0.0
                 return before if starts_outside else root_between(self.room, before, place, EXACT * self.problem.strength)

@@ -80,7 +80,8 @@ def parameters_of(problem: Problem) -> Params:
     params.can_be_negative = 1.0 if law.can_be_negative else 0.0
     lowest, _ = law.range()
     params.largest_drop = np.maximum(problem.strength - problem.normal * lowest, 0.0)
-    params.impedance, params.inertia, params.reflection = body.damping, body.inertia, body.reflection
+    params.damping, params.impedance, params.reflection = body.damping, body.impedance, body.reflection
+    params.inertia = body.inertia
     if body.has_waves:
         params.smallest_jump = 1e-14 * problem.normal / body.impedance
     else:

@@ -14,7 +14,7 @@ import numpy as np
 from stickslip.foundation.formatting import brief
 from stickslip.foundation.quantities import NamedNumbers, Part, Quantity, Series, fields_of, in_units
 
-MOST = 6
+MOST_SHOWN = 6
 """Largest number of entries of a series that are all shown."""
 
 
@@ -69,8 +69,8 @@ def _text(value: Any, declared: Any) -> str:
 
 
 def _several(values: tuple[Any, ...], declared: Any) -> str:
-    texts = [_text(one, declared) for one in (values if len(values) <= MOST else (values[0], values[-1]))]
-    if len(values) > MOST:
+    texts = [_text(one, declared) for one in (values if len(values) <= MOST_SHOWN else (values[0], values[-1]))]
+    if len(values) > MOST_SHOWN:
         return f"<{len(values)} values, {texts[0]} to {texts[1]}>"
     return f"[{', '.join(texts)}]" if isinstance(declared, Series) else f"({', '.join(texts)}{',' * (len(texts) == 1)})"
 

@@ -16,7 +16,7 @@ from stickslip.solution.window import Window
 
 Floats = NDArray[np.float64]
 
-MOST = 20_000_000
+MOST_VALUES = 20_000_000
 """Largest number of values computed for a series: one for each sample or, with the filter, some FINER len(NODES) = 64."""
 FINER = 8
 """Number of averages for each sample, from which the filter keeps one."""
@@ -28,7 +28,7 @@ BLOCK = 1 << 17
 
 
 @dataclass(frozen=True)
-class Series:
+class SampledRun:
     """A run at evenly spaced times.
 
     Attributes
@@ -70,7 +70,7 @@ def sample(
     end: float | None = None,
     antialias: bool = False,
     x: float = 0.0,
-) -> Series:
+) -> SampledRun:
     """Sample a run, or a window on it, at evenly spaced times.
 
     Without the filter, the values are those of the solution at the times of the samples, right limits at shocks.
@@ -106,11 +106,11 @@ def sample(
     if not run.history.span[0] <= first < last <= run.history.span[1]:
         low, high = run.history.span
         raise InputError(f"samples must lie within the run, {low:g} to {high:g} s, got {first:g} to {last:g} s")
-    count = _count((last - first) * sampling_rate, MOST // (FINER * len(NODES)) if antialias else MOST)
+    count = _count((last - first) * sampling_rate, MOST_VALUES // (FINER * len(NODES)) if antialias else MOST_VALUES)
     if antialias:
         fine = first + np.arange((count - 1) * FINER + 1) / (FINER * sampling_rate)
-        return Series(first, sampling_rate, *(_thinned(one) for one in _means(run, fine, 1.0 / (FINER * sampling_rate), x)))
-    return Series(first, sampling_rate, *_values(run, np.minimum(first + np.arange(count) / sampling_rate, last), x))
+        return SampledRun(first, sampling_rate, *(_thinned(one) for one in _means(run, fine, 1.0 / (FINER * sampling_rate), x)))
+    return SampledRun(first, sampling_rate, *_values(run, np.minimum(first + np.arange(count) / sampling_rate, last), x))
 
 
 def _count(wanted: float, most: int) -> int:

@@ -16,7 +16,7 @@ import numpy as np
 import stickslip
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
-from stickslip.io.sampling import Floats, Sampling, Series, sample
+from stickslip.io.sampling import Floats, SampledRun, Sampling, sample
 from stickslip.problem.problem import Problem
 from stickslip.scenarios.entries import to_table
 from stickslip.solution.evaluation import Readings
@@ -80,7 +80,7 @@ def write_scec(
     return write_atomically(Path(path), lambda draft: draft.write_text(text, encoding="utf-8", newline="\n"))
 
 
-def _columns(series: Series, problem: Problem, components: bool) -> list[tuple[str, str, Floats]]:
+def _columns(series: SampledRun, problem: Problem, components: bool) -> list[tuple[str, str, Floats]]:
     """Return the name, the meaning and the numbers of each column.
 
     The vertical components of the three-dimensional benchmarks are zero here, because slip has one direction.
@@ -99,7 +99,7 @@ def _columns(series: Series, problem: Problem, components: bool) -> list[tuple[s
     return [time, *along, *across, ("n-stress", "normal stress (MPa)", np.full_like(zero, -1e-6 * problem.normal))]
 
 
-def _about(run: Readings, series: Series, problem: str, station: str, meanings: list[str]) -> Iterator[str]:
+def _about(run: Readings, series: SampledRun, problem: str, station: str, meanings: list[str]) -> Iterator[str]:
     solution = run.solution if isinstance(run, Window) else run
     yield f"problem={problem}"
     yield "code=stickslip"

@@ -8,7 +8,7 @@ from typing import Any, Literal, Unpack
 
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.io.sampling import Sampling, Series, sample
+from stickslip.io.sampling import SampledRun, Sampling, sample
 from stickslip.solution.evaluation import Readings
 
 Quantity = Literal["slip", "slip_rate", "traction"]
@@ -109,7 +109,7 @@ def band(sampling_rate: float) -> str:
     return next((letter for least, letter in BANDS if sampling_rate >= least), "U")
 
 
-def _trace(series: Series, one: Quantity, force: str, header: dict[str, Any]) -> Any:
+def _trace(series: SampledRun, one: Quantity, force: str, header: dict[str, Any]) -> Any:
     letter, kind, unit = HEADERS[one]
     header = header | {"channel": f"{band(series.rate)}X{letter}", "sampling_rate": series.rate}
     trace = import_obspy().Trace(getattr(series, one), header)

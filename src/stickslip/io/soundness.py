@@ -25,7 +25,7 @@ from stickslip.solution.solution import Solution
 from stickslip.trajectory.checkpoint import Checkpoint
 from stickslip.trajectory.history import History
 
-ROUNDING = 1e-9
+ROW_ROUNDING = 1e-9
 """Share of the length of a row by which rounding may carry an offset beyond its end; also the tolerance of xi around 0 and 1."""
 LAST_CAUSE = Cause.HEALING
 """Largest code for the cause of a shock."""
@@ -146,7 +146,7 @@ def _outside(values: NDArray[Any], low: float, high: float) -> bool:
 
 def _no_interval(begin: Any, end: Any, row: float) -> bool:
     """Return True unless each interval of offsets (s) lies in a row of length `row` and does not end before it begins."""
-    return not bool(np.all((begin >= 0.0) & (begin <= end) & (end <= row * (1.0 + ROUNDING))))
+    return not bool(np.all((begin >= 0.0) & (begin <= end) & (end <= row * (1.0 + ROW_ROUNDING))))
 
 
 def check_checkpoint(solution: Solution, path: Path) -> None:
@@ -222,7 +222,7 @@ def _faults_of_state(checkpoint: Checkpoint, history: History) -> Iterator[Fault
     state, row = State(checkpoint.state), history.round_trip_time
     finite = _places(state, *(name for name in State.places if name not in FREE))
     yield "engine_state: a number that is not finite", not np.isfinite(finite).all()
-    yield "engine_state xi", not -ROUNDING <= state.xi <= 1.0 + ROUNDING
+    yield "engine_state xi", not -ROW_ROUNDING <= state.xi <= 1.0 + ROW_ROUNDING
     yield "engine_state: times", _no_interval(state.phase_from, state.phase_to, row)
     yield "engine_state last_step", not state.last_step > 0.0
     rows = history.store.trip[: checkpoint.length]

@@ -20,14 +20,14 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-class Place(NamedTuple):
+class HistoryPlace(NamedTuple):
     """A place in the history: a piece, and xi in it."""
 
     piece: int
     xi: float
 
 
-BEFORE = Place(-1, 0.0)
+BEFORE = HistoryPlace(-1, 0.0)
 """A place before the first piece, for a stream that has reported no event yet."""
 WAVES_OF = 3
 """Number of round trips before an event whose waves are in the slab when it begins, or have just left it."""
@@ -43,7 +43,7 @@ class EventStream:
 
     threshold: float
     first: int = 0
-    last_start: Place = BEFORE  # of the last event that was reported
+    last_start: HistoryPlace = BEFORE  # of the last event that was reported
     told: int = 0
     energies: bool = False
     """True if the rows also hold the energies of the events."""
@@ -69,7 +69,7 @@ class EventStream:
     def forget(self, pieces: int) -> None:
         """Shift the piece numbers after the given number of pieces was removed from the start of the history."""
         self.first -= pieces
-        self.last_start = Place(self.last_start.piece - pieces, self.last_start.xi)
+        self.last_start = HistoryPlace(self.last_start.piece - pieces, self.last_start.xi)
         assert self.first >= 0
 
 
@@ -102,5 +102,5 @@ class Look:
             return
         stream, last = self.stream, self.old + len(self.known_by) - 1
         stream.first = int(self.events.piece[0, last])
-        stream.last_start = Place(stream.first, float(self.events.xi[0, last]))
+        stream.last_start = HistoryPlace(stream.first, float(self.events.xi[0, last]))
         stream.told += len(self.known_by)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 Doing = Literal["stuck", "creeping", "slipping"]
 
 
-MANY = 200_000
+LONG_RUN = 200_000
 """Number of pieces of history from which a run is called long: some 0.1 GB in memory, and in a file."""
 
 
@@ -59,7 +59,7 @@ class Report(NamedTuple):
             f"{self.events}{wanted} slip event{'' if self.events == 1 and not wanted else 's'}",
             self.doing,
         ]
-        if self.pieces >= MANY:
+        if self.pieces >= LONG_RUN:
             parts.append(f"{number(self.pieces / 1e6, 3)} million pieces")
         if self.pace > 0.0:
             parts.append(f"{about_time(self.pace)} a second")

@@ -13,7 +13,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.io.catalogue_rows import Rows, check_catalogue
 from stickslip.io.netcdf import CATALOGUE, is_catalogue, open_solution, read, to_solution
 from stickslip.io.soundness import check_checkpoint, check_place
-from stickslip.observables.event_stream import Place
+from stickslip.observables.event_stream import HistoryPlace
 from stickslip.run.catalogue import Catalogue, alone_with, checkpoint_of, follow
 from stickslip.run.monitor import run_to_end
 from stickslip.run.options import CHECKPOINT_EVERY, RunOptions
@@ -134,7 +134,7 @@ class PausedCatalogue:
         check_catalogue(rows.path)
         run.forgotten = about["forgotten"]
         fresh = run.events(about["event_rate"], bool(about["energies"]))
-        start = Place(about["last_piece"], about["last_xi"])
+        start = HistoryPlace(about["last_piece"], about["last_xi"])
         stream = replace(fresh, first=about["first"], last_start=start, told=about["told"])
         with alone_with(rows):
             rows.take_up(about["told"], about["bytes"], about["digest"])

@@ -37,7 +37,7 @@ def key_of(name: str, entry: Field) -> str:
     return entry.key if isinstance(entry, NamedNumbers) else name
 
 
-class Place(NamedTuple):
+class DocumentPlace(NamedTuple):
     """The place of a value in a document: a table, which may be inside another as "friction.slip", and a key in it."""
 
     source: Source
@@ -66,7 +66,7 @@ def read_typed(text: str, declared: Quantity, where: str, name: str) -> float:
     return declared.check(where, name, typed_number(text))
 
 
-def read_entry(value: Any, entry: Field, place: Place, law: Callable[[dict[str, Any], Source, str], Any]) -> Any:
+def read_entry(value: Any, entry: Field, place: DocumentPlace, law: Callable[[dict[str, Any], Source, str], Any]) -> Any:
     """Return a value of a scenario in the form that its field takes, with numbers in SI.
 
     Texts, choices, and the length and order of a series are checked by the law that has the field. `law` is the function that reads
@@ -89,7 +89,7 @@ def read_entry(value: Any, entry: Field, place: Place, law: Callable[[dict[str, 
     return value
 
 
-def _named(value: Any, place: Place) -> tuple[Named, ...]:
+def _named(value: Any, place: DocumentPlace) -> tuple[Named, ...]:
     file, table = place.source.file, f"[{place.inner}]"
     if not isinstance(value, dict):
         raise InputError(f"{file}: {table} must be a table of names and values, got {shown(value)}")
@@ -130,7 +130,7 @@ def _written(value: Any, entry: Field) -> Any:
     return to_table(value) if isinstance(entry, Part) else value
 
 
-LARGEST = 5_000_000
+LARGEST_DATA_FILE = 5_000_000
 """Size (bytes) of the largest data file that is read: scenarios are untrusted."""
 ANYWHERE = "STICKSLIP_FILES_ANYWHERE"
 """Environment variable whose value 1 allows data files outside the folder of the scenario."""
@@ -193,7 +193,7 @@ def _text(name: str, folder: Path | None) -> str:
             raise InputError(f"the file must be in the folder of the scenario; {hint}")
         if not path.is_file():
             raise InputError("no such file beside the scenario")
-        return read_bounded(path, LARGEST).decode("utf-8-sig")
+        return read_bounded(path, LARGEST_DATA_FILE).decode("utf-8-sig")
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:

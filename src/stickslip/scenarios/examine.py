@@ -198,7 +198,7 @@ def _pulses(problem: Problem) -> list[Fact]:
     beyond, swing = problem.load - law.mean * problem.normal, abs(law.amplitude) * problem.normal
     if not (beyond > swing and law.wavenumber):
         return []
-    train = PulseTrain(body.impedance, problem.load, problem.normal, law.mean, abs(law.amplitude), abs(law.wavenumber))
+    train = PulseTrain(body.damping, problem.load, problem.normal, law.mean, abs(law.amplitude), abs(law.wavenumber))
     return [Fact("pulse period", train.period, "s", "time between pulses under the load of the start, until the first echo")]
 
 

@@ -24,7 +24,7 @@ from stickslip.problem.problem import LOAD, MAY_VARY, Problem
 from stickslip.problem.run_quantities import CREEP_RTOL, DURATION, RTOL, SHORTEST_EVENT
 from stickslip.problem.selection_rule import SELECTION_RULES, names, unknown
 from stickslip.problem.start import STEADY
-from stickslip.scenarios.entries import Place, Source, describe, key_of, read_entry, read_points, read_typed
+from stickslip.scenarios.entries import DocumentPlace, Source, describe, key_of, read_entry, read_points, read_typed
 
 KINDS: dict[str, Mapping[str, type]] = {"body": BODIES, "friction": LAWS}
 """Tables that must have a key `kind`, each with the classes that it may name."""
@@ -41,18 +41,18 @@ NO_STATE = {"state": Quantity("1", "state variable of the friction law, if it ha
 class Key(NamedTuple):
     """A key of a table: the function that converts and checks its value, its default (MISSING if it must be given), its meaning."""
 
-    read: Callable[[Any, Place], Any]
+    read: Callable[[Any, DocumentPlace], Any]
     default: Any = MISSING
     meaning: str = ""
 
 
-def _read_text(value: Any, place: Place) -> str:
+def _read_text(value: Any, place: DocumentPlace) -> str:
     if not isinstance(value, str):
         raise InputError(f"{place.source.file}: {place.key} must be text in quotes, got {shown(value)}")
     return value
 
 
-def _read_inner(value: Any, place: Place) -> dict[str, Any]:
+def _read_inner(value: Any, place: DocumentPlace) -> dict[str, Any]:
     if not isinstance(value, dict):
         raise InputError(f"{place.source.file}: [{place.key}] must be a table, got {shown(value)}")
     return value
@@ -111,7 +111,7 @@ def keys_of(table: str, kind: type, states: tuple[StateVariable, ...] = ()) -> M
     return keys
 
 
-def _read_entry(declared: Declared, value: Any, place: Place) -> Any:
+def _read_entry(declared: Declared, value: Any, place: DocumentPlace) -> Any:
     """Return a value converted and checked for its field; a table in place of a number that may vary is a loading history."""
     if value == STEADY and place.table == "initial" and place.key in STATE_NAMES:
         return value
@@ -226,7 +226,7 @@ def _read_keys(keys: Mapping[str, Key], raw: Mapping[str, Any], source: Source, 
         if name not in keys:
             place = f"[{table}] {_named(name)}" if table else f"[{_named(name)}]" if isinstance(value, dict) else _named(name)
             raise InputError(f"{source.file}: {place} is unknown; {_belongs(name, table) or nearest(name, keys)}")
-    found = {name: key.read(raw[name], Place(source, table, name)) for name, key in keys.items() if name in raw}
+    found = {name: key.read(raw[name], DocumentPlace(source, table, name)) for name, key in keys.items() if name in raw}
     for name, key in keys.items():
         if found.setdefault(name, key.default) is MISSING:
             place = f"[{table}] {name}" if table else f"[{name}]"

@@ -35,7 +35,7 @@ def start_of(problem: Problem) -> str:
         return "creeps from the start, from rest: friction with a state of its own never sticks"
     excess, unit, pulled = problem.excess, problem.load_unit, problem.first_pull_rate > 0
     rate = first_rate(problem)
-    rate = resolved(rate, problem.load, problem.body.impedance)
+    rate = resolved(rate, problem.load, problem.body.damping)
     jump = f"; the slip rate jumps to {rate:.9g} m/s" if rate > 0.0 else ""
     if problem.load < -problem.strength:
         return f"slips backwards at once: the load is {-problem.load - problem.strength:.6g} {unit} beyond the static strength"

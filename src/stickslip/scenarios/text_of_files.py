@@ -13,7 +13,7 @@ from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.netcdf_file import MAGIC
 from stickslip.scenarios import library
 
-LARGEST = 1_000_000
+LARGEST_SCENARIO_FILE = 1_000_000
 """Size (bytes) of the largest scenario file that is read: scenarios are untrusted."""
 _SHOW = "a file of results, not a scenario: `stickslip show` summarises it, and `stickslip run --resume` continues a run"
 _TABLE = "a table, not a scenario: a scenario names it, as [friction] file, or `stickslip sweep --list` reads it"
@@ -37,7 +37,7 @@ def read_text(path: Path, file: str) -> str:
     try:
         if path.is_dir():
             raise InputError(f"{file}: {_about_folder(path, file)}")
-        return text_of(read_bounded(path, LARGEST), file)
+        return text_of(read_bounded(path, LARGEST_SCENARIO_FILE), file)
     except FileNotFoundError:
         raise InputError(f"{file}: no such file, and no bundled scenario of that name; {_hint(path)}") from None
     except OSError as error:
@@ -50,8 +50,8 @@ def read_text(path: Path, file: str) -> str:
 
 def text_of(content: bytes, file: str) -> str:
     """Return the text in the content of a scenario file, called `file` in messages. Raises InputError if it is no text."""
-    if len(content) > LARGEST:
-        raise InputError(f"{file}: larger than {LARGEST} bytes: not a scenario")
+    if len(content) > LARGEST_SCENARIO_FILE:
+        raise InputError(f"{file}: larger than {LARGEST_SCENARIO_FILE} bytes: not a scenario")
     other = next((what for start, what in _STARTS if content.startswith(start)), None)
     if other:
         raise InputError(f"{file}: {other}")

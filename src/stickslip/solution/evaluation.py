@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 Curve = Literal["slip", "slip_rate", "traction", "load", "state", "second_state", "event_slip"]
-MANY = 100_000
+LONG_HISTORY = 100_000
 """Number of pieces from which on fewer values of each are looked at for a curve."""
 TIME = Quantity("s", "time")
 CURVES: tuple[Curve, ...] = ("slip", "slip_rate", "traction", "load")
@@ -209,7 +209,7 @@ class Readings:
         breaks = self.breaks[(self.breaks >= start) & (self.breaks <= end)]
         breaks = np.union1d(breaks, self.history.echo_edges(start, end, points - len(breaks)))
         many = len(breaks) > points
-        inside = np.linspace(breaks[:-1], breaks[1:], 8 if len(breaks) < MANY else 3).ravel() if len(breaks) else breaks
+        inside = np.linspace(breaks[:-1], breaks[1:], 8 if len(breaks) < LONG_HISTORY else 3).ravel() if len(breaks) else breaks
         right = np.unique(np.concatenate([np.linspace(start, end, points), breaks, inside]))
         time = np.concatenate([breaks, right])
         order = np.argsort(time, kind="stable")  # stable: puts the left limits first

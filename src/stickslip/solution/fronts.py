@@ -12,7 +12,7 @@ from stickslip.trajectory.tables import shocks_table
 
 FAINT = 0.1
 """A characteristic ends when reflections at the driver leave less than this share of the wave: a fainter one cannot be seen."""
-MANY = 60
+MOST_FRONTS = 60
 """If more fronts than this leave the contact none is returned: they could not be told apart."""
 
 
@@ -29,7 +29,7 @@ def origins_of(readings: Readings, start: float, end: float) -> Floats:
     """Return the times (s) of shocks, starts and ends of slip at the contact, from one round trip before `start` on.
 
     One that is a whole number of round trips after an earlier one is left out: it is taken for its echo, and lies on the same
-    characteristic. The result is empty if more than `MANY` remain, which could not be told apart.
+    characteristic. The result is empty if more than `MOST_FRONTS` remain, which could not be told apart.
     """
     history, round_trip = readings.history, slab_of(readings.problem).two_way_time
     run = readings.solution if isinstance(readings, Window) else readings
@@ -44,7 +44,7 @@ def origins_of(readings: Readings, start: float, end: float) -> Floats:
         phases = (time - np.array(kept)) / round_trip
         if not (np.abs(phases - np.round(phases)) < 1e-6).any():
             kept.append(float(time))
-    return np.array(kept if len(kept) <= MANY else [])
+    return np.array(kept if len(kept) <= MOST_FRONTS else [])
 
 
 def bounces_of(time: float, end: float, round_trip: float, reflection: float) -> Floats:

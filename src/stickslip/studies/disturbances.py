@@ -12,7 +12,7 @@ from stickslip.problem.problem import Problem
 from stickslip.problem.start import written_out
 from stickslip.trajectory.history import Floats
 
-SMALLEST, LARGEST = 1e-15, 1e-2
+LEAST_DISTURBANCE, LARGEST_DISTURBANCE = 1e-15, 1e-2
 """Allowed sizes of a disturbance, as shares of the strength: rounding hides smaller ones, and larger ones make another problem."""
 MOST_MEMBERS = 1000
 """Largest number of members of an ensemble; each is a full run."""
@@ -37,8 +37,8 @@ def drawn(problem: Problem, members: int, size: float, seed: int) -> Floats:
     Their magnitudes lie between size/2 and size times the static strength, or the initial load for a law that never sticks.
     """
     check_whole("ensemble: members", members, 1, MOST_MEMBERS)
-    if not SMALLEST <= size <= LARGEST:
-        raise InputError(f"ensemble: size must lie between {SMALLEST:g} and {LARGEST:g}, got {size!r}")
+    if not LEAST_DISTURBANCE <= size <= LARGEST_DISTURBANCE:
+        raise InputError(f"ensemble: size must lie between {LEAST_DISTURBANCE:g} and {LARGEST_DISTURBANCE:g}, got {size!r}")
     check_whole("ensemble: seed", seed, 0)
     scale = abs(problem.strength if problem.friction.sticks else problem.load)
     if scale == 0.0:

@@ -21,7 +21,7 @@ No interval is shorter than the two-way travel time (block: its period).
 """
 LATE = 0.1
 """Share of the times of an interval that is discarded, because shocks that come a little earlier or later spoil them."""
-ROUNDING = 16.0 * float(np.finfo(float).eps)
+NOISE_SHARE = 16.0 * float(np.finfo(float).eps)
 """Share of the largest load (as a difference from the strength) below which separations are rounding noise."""
 SAME_SHARE = 0.1
 """Largest difference in start of two equal events, as a share of the time to the nearer of the neighbouring events."""
@@ -61,7 +61,7 @@ def separation(reference: Solution, runs: Sequence[Solution], until: float) -> S
     gaps = np.abs([_load(run, times) - undisturbed for run in runs])
     apart = np.asarray(np.quantile(gaps, 1.0 - LATE, axis=2), np.float64)
     ends = np.asarray(until * np.arange(1, count + 1) / count, np.float64)
-    return Separation(ends, apart, LOST * float(np.ptp(undisturbed)), ROUNDING * float(np.abs(undisturbed).max()))
+    return Separation(ends, apart, LOST * float(np.ptp(undisturbed)), NOISE_SHARE * float(np.abs(undisturbed).max()))
 
 
 def _load(run: Solution, times: Floats) -> Floats:

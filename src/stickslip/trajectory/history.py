@@ -49,7 +49,7 @@ class Epoch(NamedTuple):
     offset: float
 
 
-ROUNDING = 1e-13
+OFFSET_ROUNDING = 1e-13
 """Rounding of the offsets of consecutive pieces, relative to the length of a row."""
 
 BLOCK = 1024
@@ -242,7 +242,9 @@ class History:
         row, start, end = self.store.trip, self.store.phase_from, self.store.phase_to
         follows = np.diff(row) * self.round_trip_time + (start[1:] - end[:-1])
         last = row[-1:] * self.round_trip_time + end[-1:]
-        return np.append(follows, self.duration - last) > ROUNDING * np.append(np.full(len(follows), self.round_trip_time), last)
+        return np.append(follows, self.duration - last) > OFFSET_ROUNDING * np.append(
+            np.full(len(follows), self.round_trip_time), last
+        )
 
     def placed(self, at: Positions) -> tuple[Integers, Floats]:
         """Return the rows and offsets (s) of positions."""

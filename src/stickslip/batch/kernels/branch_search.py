@@ -43,7 +43,7 @@ class Resistance(NamedTuple):
 
     address: int  # of the formula's compiled `value`
     constants: Any  # pointer to the formula's constants
-    impedance: float  # Z, Pa s/m
+    damping: float  # Z, Pa s/m, or that of a block, N s/m
     normal: float  # S, Pa
     start: float  # g(0+) minus the static strength, Pa
     out: Any  # pointer to room for what `value` returns
@@ -54,7 +54,7 @@ class Resistances(NamedTuple):
 
     address: int  # of the formula's compiled `value`
     constants: Floats  # (members or 1, 1, size)
-    impedance: Floats  # Z, Pa s/m
+    damping: Floats  # the same
     normal: Floats  # S, Pa
     start: Floats  # g(0+) minus the static strength, Pa
     slowest: Floats  # slowest and fastest scale of the contact, m/s
@@ -77,14 +77,14 @@ class Found(NamedTuple):
 def slope_at(g: Resistance, rate: float) -> float:
     """Return g'(s), in Pa s/m, at a slip rate (m/s) and the reference slip."""
     call_value(g.address, g.constants, 0.0, rate, g.out)
-    return g.impedance + g.normal * g.out[1]
+    return g.damping + g.normal * g.out[1]
 
 
 @kernel
 def excess_at(g: Resistance, rate: float) -> float:
     """Return g(s) minus the static strength (Pa) at a slip rate (m/s)."""
     call_value(g.address, g.constants, 0.0, rate, g.out)
-    return g.impedance * rate + g.normal * g.out[0] + g.start
+    return g.damping * rate + g.normal * g.out[0] + g.start
 
 
 @kernel
@@ -150,7 +150,7 @@ def turns_once(g: Resistance, slowest: float, fastest: float, near: float, ends:
 def turns_of(of: Resistances, n: int, ends: Floats, table: Turns, cells: Floats) -> int:
     """Write the ends of the branches (m/s) of member n into `ends`; return their number, NEVER_RISES or TOO_MANY."""
     knots, pieces = np.zeros(0), np.full(1, n)
-    g = Bounded(of.formulas, knots, pieces, of.impedance[n], of.normal[n], of.slowest[n], of.fastest[n], cells)
+    g = Bounded(of.formulas, knots, pieces, of.damping[n], of.normal[n], of.slowest[n], of.fastest[n], cells)
     found = find_turns(g, of.slip[n], FASTEST, MOST_EVALUATIONS, table)
     if found.intervals >= 0 and found.at_end < 0:
         return NEVER_RISES
@@ -200,7 +200,7 @@ def search_branches(of: Resistances, one_way: bool, rule: int, work: Floats, fou
     out, size = floats(work.ctypes.data), of.constants.shape[1] * of.constants.shape[2] if len(of.constants) > 1 else 0
     for n in range(len(found.table)):
         c = ahead(floats(of.constants.ctypes.data), n * size)
-        g = Resistance(of.address, c, of.impedance[n], of.normal[n], of.start[n], out)
+        g = Resistance(of.address, c, of.damping[n], of.normal[n], of.start[n], out)
         if one_way:
             count = turns_once(g, of.slowest[n], of.fastest[n], of.near[n], ends)
         else:

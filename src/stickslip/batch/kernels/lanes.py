@@ -40,14 +40,14 @@ from stickslip.engine.contact_step.taylor_step import first_guess, length_to, no
 from stickslip.engine.loop import ROOM
 from stickslip.engine.series.polynomial import NONE, bound_below, fill, moment, multiply, powers_of, total
 from stickslip.engine.series.step_size import FAR_FROM_GUESS, length_at, usable_length
-from stickslip.engine.state.layout import TERMS, Ball, Floats, Integers, Series
-from stickslip.engine.state.workspace import PLACES, Run, borrow
+from stickslip.engine.state.layout import TERMS, Ball, Floats, Integers, SeriesInput
+from stickslip.engine.state.workspace import RUN_SIZE, Run, borrow
 
 
 class Block(Record):
     """Hold the numbers of a step in lanes; each place holds one number for every lane."""
 
-    k: Series = inside(Series)  # input of the series
+    k: SeriesInput = inside(SeriesInput)  # input of the series
     load_along_slip: Floats = floats_inside(TERMS)  # as in `engine.state.workspace.Run`
     local: Floats = floats_inside(TERMS)
     jet: Floats = floats_inside(TERMS)  # the law's functions write `centres` right after it
@@ -108,7 +108,7 @@ def step_side_by_side(table: Integers, waits: Integers, jets: Integers, block: i
 @inlined
 def piece_of(table: Integers, lane: int) -> int:
     """Return the piece of the law under which the member in a lane slips."""
-    return borrow(ahead(table, lane * PLACES)).counts.piece
+    return borrow(ahead(table, lane * RUN_SIZE)).counts.piece
 
 
 @kernel
@@ -120,22 +120,22 @@ def step_under(formula: Integers, table: Integers, waits: Integers, jets: Intege
     rows, lane_0, taking, moves = block_in_all_lanes(block), block_in_one_lane(block), 0, False
     for lane in range(WIDTH):
         if waits[lane] < 0 and jets[2 * piece_of(table, lane)] == formula[0]:
-            moves = borrow(ahead(table, lane * PLACES)).counts.has_inertia == 1
-            put_in(borrow(ahead(table, lane * PLACES)), lane_0[lane], -waits[lane] == Waits.FRESH)
+            moves = borrow(ahead(table, lane * RUN_SIZE)).counts.has_inertia == 1
+            put_in(borrow(ahead(table, lane * RUN_SIZE)), lane_0[lane], -waits[lane] == Waits.FRESH)
             waits[lane], taking = Waits.SLIPPING, taking | 1 << lane
     call_jet(formula[0], floats_of(rows.constants), floats_of(rows.k), floats_of(rows.load_along_slip), floats_of(rows.jet))
     rows.length = length_at(rows.jet, rows.tolerance, 0.5)
     for lane in range(WIDTH):
         if taking >> lane & 1:
-            take_length(borrow(ahead(table, lane * PLACES)), lane_0[lane])
+            take_length(borrow(ahead(table, lane * RUN_SIZE)), lane_0[lane])
     prove(rows, formula[1], moves)
     for lane in range(WIDTH):
         if taking >> lane & 1:
-            settle(borrow(ahead(table, lane * PLACES)), lane_0[lane])
+            settle(borrow(ahead(table, lane * RUN_SIZE)), lane_0[lane])
     calculate(rows)
     for lane in range(WIDTH):
         if taking >> lane & 1:
-            waits[lane] = take_out(borrow(ahead(table, lane * PLACES)), lane_0[lane])
+            waits[lane] = take_out(borrow(ahead(table, lane * RUN_SIZE)), lane_0[lane])
 
 
 @inlined
@@ -147,7 +147,7 @@ def put_in(run: Run, own: Block, fresh: bool) -> None:
     own.k.speed, own.k.bend, own.k.slip = k.speed, k.bend, k.slip
     own.k.rate, own.k.free, own.k.force = k.rate, k.free, k.force
     if fresh:
-        own.k.impedance, own.k.normal, own.k.chi = k.impedance, k.normal, k.chi
+        own.k.damping, own.k.normal, own.k.chi = k.damping, k.normal, k.chi
         own.k.offset, own.k.inertia, own.k.stiffness = k.offset, k.inertia, k.stiffness
         own.tolerance, last = run.params.tolerance, TERMS - 1
         constants = constants_of(run, run.counts.piece)
@@ -182,7 +182,7 @@ def prove(rows: Block, radii: int, moves: bool) -> None:
     if moves:
         missed = rows.length * (abs(rows.k.speed) / rows.k.inertia * force + slope_on_disc(rows.jet, powers)) * rows.shrunk
     else:
-        missed = force / rows.k.impedance * rows.shrunk
+        missed = force / rows.k.damping * rows.shrunk
     rows.share = missed / max(rows.tolerance * size_of_rate(rows.jet, rows.length), SMALLEST)
 
 

@@ -17,7 +17,7 @@ from stickslip.engine.contact.contact_equation import friction_of
 from stickslip.engine.series.polynomial import evaluate, integral
 from stickslip.engine.state.layout import Floats, HistoryPiece, Integers, Stop
 from stickslip.engine.state.workspace import Run, pieces_in
-from stickslip.trajectory.history import ROUNDING
+from stickslip.trajectory.history import OFFSET_ROUNDING
 from stickslip.trajectory.slip_events import rises_over
 from stickslip.trajectory.turning_points import starts_from_rest
 
@@ -103,7 +103,7 @@ def reached(run_end: float, code: int, round_trip_time: float, history: HistoryP
 def rests_at(history: HistoryPiece, length: int, round_trip_time: float, end: float) -> bool:
     """Return True if the contact is at rest at the end of the run (s), in the last piece or after it, where nothing is recorded."""
     recorded = time_at(history, round_trip_time, length - 1, 1.0)
-    return history[length - 1].mode == 0 or end - recorded > ROUNDING * recorded
+    return history[length - 1].mode == 0 or end - recorded > OFFSET_ROUNDING * recorded
 
 
 @kernel
@@ -133,7 +133,7 @@ def friction_in(run: Run, piece: int, xi: float) -> float:
     kept = run.history[piece]
     excess, rate, mode = evaluate(kept.load, xi), evaluate(kept.rate, xi), kept.mode
     if run.counts.has_inertia == 0:
-        return excess - run.params.impedance * rate
+        return excess - run.params.damping * rate
     if mode == 0:
         return excess
     walked = grown(run.history, piece, xi) * (1 if run.params.counts_net == 1.0 else mode)
@@ -200,7 +200,7 @@ def place_just_before(run: Run, piece: int) -> tuple[int, float, int]:
 @kernel
 def rests_before(history: HistoryPiece, round_trip_time: float, piece: int) -> bool:
     """Return True if the contact rests, unrecorded, between the previous piece and this one, which is not the first."""
-    return time_between(history, round_trip_time, (piece - 1, 1.0), (piece, 0.0)) > ROUNDING * round_trip_time
+    return time_between(history, round_trip_time, (piece - 1, 1.0), (piece, 0.0)) > OFFSET_ROUNDING * round_trip_time
 
 
 @kernel

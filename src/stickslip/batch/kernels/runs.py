@@ -23,7 +23,7 @@ from stickslip.engine.codegen.records import numbers_of, whole_numbers_of
 from stickslip.engine.codegen.simd import WIDTH
 from stickslip.engine.loop import run_until
 from stickslip.engine.state.layout import Floats, Integers, Stop
-from stickslip.engine.state.workspace import ADDRESSES, PLACES, Run, borrow
+from stickslip.engine.state.workspace import ADDRESSES, RUN_SIZE, Run, borrow
 from stickslip.trajectory.slip_events import NOT_YET
 from stickslip.trajectory.status import BAD_PARAMETERS
 
@@ -153,7 +153,7 @@ def first_lane(work: Workspace, base: Integers, stride: Integers) -> Lane:
 @kernel
 def nth(lane: Lane, n: int) -> Lane:
     """Return the lane n places after the given one."""
-    table, base = ahead(lane.table, n * PLACES), ahead(lane.base, n * ADDRESSES)
+    table, base = ahead(lane.table, n * RUN_SIZE), ahead(lane.base, n * ADDRESSES)
     stage, waits, member, code = ahead(lane.stage, n), ahead(lane.waits, n), ahead(lane.member, n), ahead(lane.code, n)
     return Lane(table, base, lane.stride, stage, waits, member, code)
 
@@ -186,7 +186,7 @@ def start_member(run: Run, setups: Setups, n: int) -> None:
 @kernel
 def advance_member(group: Group, lane: Lane) -> None:
     """Run the lane's member until its next step is to be taken side by side, it ends or pauses, lacks room, or `stop` is set."""
-    n, table, code = lane.member[0], carray(lane.table, (PLACES,)), -1  # Stop.NONE
+    n, table, code = lane.member[0], carray(lane.table, (RUN_SIZE,)), -1  # Stop.NONE
     last_trip, last_phase = group.setups.last_trip[n], group.setups.last_phase[n]
     if lane.waits[0] == Waits.ALONE:
         counts = borrow(lane.table).counts

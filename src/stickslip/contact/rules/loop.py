@@ -77,14 +77,14 @@ def _jump(g: Resistance, stable: tuple[Branch, ...], way: tuple[int, int], exces
     """Return the jump from one branch to another (-1: stick) at an excess (Pa)."""
     before, after = (0.0 if i < 0 else rate_on(g, stable[i], excess) for i in way)
     load = g.strength + excess
-    before, after = (resolved(rate, load, g.impedance) for rate in (before, after))
-    sides = (load - g.impedance * before, load - g.impedance * after)
+    before, after = (resolved(rate, load, g.damping) for rate in (before, after))
+    sides = (load - g.damping * before, load - g.damping * after)
     return Jump(before, after, load, "up" if way[1] > way[0] else "down", *sides)
 
 
-def resolved(rate: float, load: float, impedance: float) -> float:
+def resolved(rate: float, load: float, damping: float) -> float:
     """Return a slip rate (m/s), or 0, rest, if Z v is lost in the rounding of the load (Pa; block: N)."""
-    return 0.0 if load - impedance * rate == load else rate
+    return 0.0 if load - damping * rate == load else rate
 
 
 def loop_of(g: Resistance, stable: tuple[Branch, ...], table: SelectionTable) -> Loop:

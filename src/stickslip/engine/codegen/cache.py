@@ -29,7 +29,7 @@ from stickslip.engine.codegen.sources import remembered_key
 from stickslip.engine.codegen.uncompiled import UNCOMPILED
 from stickslip.foundation.errors import InputError
 
-LARGEST = 500_000_000
+LARGEST_CACHE = 500_000_000
 """Size (bytes) of all functions in the cache above which the least recently used are removed; a formula takes up to 2 MB."""
 
 if UNCOMPILED:
@@ -79,7 +79,7 @@ CACHE = cache_folder()
 """The folder of compiled code, or None if this process has to compile for itself."""
 
 
-def make_room(largest: int = LARGEST) -> None:
+def make_room(largest: int = LARGEST_CACHE) -> None:
     """Remove the least recently used functions from the caches of all versions until they take at most `largest` bytes together."""
     files: dict[tuple[Path, str], list[Path]] = {}
     for path in cache_root().glob("compiled-*/*/*.nb[ic]"):  # NAME.nbi is the index of a function, NAME.1.nbc its code

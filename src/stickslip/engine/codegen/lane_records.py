@@ -14,7 +14,7 @@ from numba import types
 from numba.extending import intrinsic, lower_builtin, lower_getattr_generic, lower_setattr_generic, models, register_model
 
 from stickslip.engine.codegen.numba_privates import AbstractTemplate, AttributeTemplate, infer_getattr, infer_global, signature
-from stickslip.engine.codegen.records import FLOATS, Place, Record
+from stickslip.engine.codegen.records import FLOATS, Record, Slot
 from stickslip.engine.codegen.simd import LANES, POINTER, VECTOR, WIDTH
 
 NUMBER = ir.DoubleType()
@@ -60,7 +60,7 @@ class _NumberPointer(models.PrimitiveModel):  # type: ignore[misc]
         super().__init__(manager, kind, NUMBER.as_pointer())
 
 
-def _type_of(place: Place, of: type[types.Type], number: Any, row: Any) -> Any:
+def _type_of(place: Slot, of: type[types.Type], number: Any, row: Any) -> Any:
     """Return the type of a field: a number, a row, or a record that is seen in the same way (`of`)."""
     if place.kind is float:
         return number
@@ -78,7 +78,7 @@ def _define(of: type[types.Type], number: Any, row: Any, stride: int) -> None:
             place = kind.record.places.get(name)
             return None if place is None else _type_of(place, of, number, row)
 
-    def address(builder: Any, pointer: Any, place: Place) -> Any:
+    def address(builder: Any, pointer: Any, place: Slot) -> Any:
         return builder.gep(pointer, [ir.Constant(ir.IntType(64), stride * place.first)])
 
     @lower_getattr_generic(of)

@@ -19,7 +19,7 @@ from stickslip.engine.codegen.numba_privates import JITCodeLibrary
 from stickslip.engine.codegen.sealed_cache import SealedCache
 
 
-class Part(JITCodeLibrary):  # type: ignore[misc] # numba is untyped
+class FunctionCode(JITCodeLibrary):  # type: ignore[misc] # numba is untyped
     """The code of one function that others call. It is not linked, not optimised and not turned into machine code."""
 
     def finalize(self) -> None:
@@ -101,13 +101,13 @@ def set_linkage(module: Any, before: Any, after: Any) -> None:
             function.linkage = after
 
 
-def parts_below(libraries: list[Any]) -> Iterator[Part]:
+def parts_below(libraries: list[Any]) -> Iterator[FunctionCode]:
     """Yield the parts among the given libraries and all parts that they call, directly or indirectly, each once."""
     seen: set[int] = set()
     waiting = list(libraries)
     while waiting:
         library = waiting.pop()
-        if isinstance(library, Part) and id(library) not in seen:
+        if isinstance(library, FunctionCode) and id(library) not in seen:
             seen.add(id(library))
             yield library
             waiting += library._linking_libraries
@@ -115,15 +115,15 @@ def parts_below(libraries: list[Any]) -> Iterator[Part]:
 
 def others_of(libraries: list[Any]) -> list[Any]:
     """Return the libraries that the given ones link and that are not parts (numba's own functions), each once."""
-    needed = [one for library in libraries for one in vars(library)["_linking_libraries"] if not isinstance(one, Part)]
+    needed = [one for library in libraries for one in vars(library)["_linking_libraries"] if not isinstance(one, FunctionCode)]
     return list({id(one): one for one in needed}.values())
 
 
 class PartCompiler(LeanCompiler):
-    """Compiles a function into a `Part`."""
+    """Compiles a function into a `FunctionCode`."""
 
     def __init__(self, typingctx: Any, targetctx: Any, library: Any, *rest: Any) -> None:
-        super().__init__(typingctx, targetctx, library or Part(targetctx.codegen(), "part"), *rest)
+        super().__init__(typingctx, targetctx, library or FunctionCode(targetctx.codegen(), "part"), *rest)
 
 
 class WholeCompiler(LeanCompiler):
@@ -136,7 +136,7 @@ class WholeCompiler(LeanCompiler):
 
 
 def dispatchers(function: Callable[..., Any], entry: dict[str, Any], part: dict[str, Any]) -> tuple[Any, Any]:
-    """Return what compiled code calls, a `Part`, and what Python calls, a `Whole` that is kept in the cache."""
+    """Return what compiled code calls, a `FunctionCode`, and what Python calls, a `Whole` that is kept in the cache."""
     called: Any = njit(pipeline_class=PartCompiler, no_cpython_wrapper=True, **entry, **part)(function)
     whole: Any = njit(pipeline_class=WholeCompiler, **entry)(function)
     whole._cache = SealedCache(function)

@@ -30,7 +30,7 @@ FLOATS, INTEGERS = types.CPointer(types.float64), types.CPointer(types.int64)
 
 
 @dataclass(frozen=True)
-class Place:
+class Slot:
     """The position of a field in its record and its size, both in places of 8 bytes, and its type."""
 
     first: int
@@ -75,7 +75,7 @@ class Record:
     holds the bits of its floats.
     """
 
-    places: ClassVar[dict[str, Place]] = {}
+    places: ClassVar[dict[str, Slot]] = {}
     """The place of each field, by name."""
     total: ClassVar[int] = 0
     """Number of 8-byte places of a record."""
@@ -88,7 +88,7 @@ class Record:
             if name in ("places", "total", "memory_type"):
                 continue
             wanted = cls.__dict__.get(name, _Wanted(kind, 1, False))
-            cls.places[name] = Place(first, wanted.size, wanted.kind, wanted.inside)
+            cls.places[name] = Slot(first, wanted.size, wanted.kind, wanted.inside)
             first += wanted.size
         cls.total = first
         has_only_floats = all(place.kind is float or (place.inside and place.kind is FLOATS) for place in cls.places.values())
@@ -152,7 +152,7 @@ class _FloatAmongIntegers(_Number):
 class _Inside:
     """Python's access to a row of floats or a record that lies inside another record; the view is made once and kept."""
 
-    def __init__(self, place: Place, name: str) -> None:
+    def __init__(self, place: Slot, name: str) -> None:
         self.place, self.name = place, name
 
     def __get__(self, record: Record | None, owner: type[Record]) -> Any:
@@ -176,7 +176,7 @@ class _Inside:
 class _Address:
     """Python's access to an address in a record: a pointer into the array that was lent (see `uncompiled.lend_memory`)."""
 
-    def __init__(self, place: Place) -> None:
+    def __init__(self, place: Slot) -> None:
         self.place = place.first
         self.record: type[Record] | None = place.kind if isinstance(place.kind, type) else None
         self.kind = self.record.memory_type if self.record else np.float64 if place.kind is FLOATS else np.int64
@@ -191,7 +191,7 @@ class _Address:
         record.numbers[self.place] = pointer.address
 
 
-def _descriptor(place: Place, name: str, memory_type: type) -> Any:
+def _descriptor(place: Slot, name: str, memory_type: type) -> Any:
     """Return the object through which Python reads and writes a field."""
     if place.kind is float and memory_type is np.int64:
         return _FloatAmongIntegers(place.first)
@@ -216,7 +216,7 @@ class _PointerModel(models.PrimitiveModel):  # type: ignore[misc]
         super().__init__(manager, kind, ir.IntType(64).as_pointer())
 
 
-def _type_of(place: Place) -> Any:
+def _type_of(place: Slot) -> Any:
     """Return the type that a field has in compiled code."""
     if place.kind is float:
         return types.float64
@@ -237,7 +237,7 @@ class _Fields(AttributeTemplate):  # type: ignore[misc]
         return None if place is None else _type_of(place)
 
 
-def _address(builder: Any, pointer: Any, place: Place) -> Any:
+def _address(builder: Any, pointer: Any, place: Slot) -> Any:
     """Write the calculation of a field's address from that of its record."""
     return builder.gep(pointer, [ir.Constant(ir.IntType(64), place.first)], inbounds=True)
 

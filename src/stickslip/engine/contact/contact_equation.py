@@ -6,7 +6,7 @@ import math
 
 from stickslip.engine.codegen.compiler import ahead, call_state_value, call_value, kernel
 from stickslip.engine.codegen.records import numbers_of
-from stickslip.engine.contact.append_segment import note_jump
+from stickslip.engine.contact.pieces import note_jump
 from stickslip.engine.series.polynomial import NONE, evaluate, first_descent, restrict, restrict_low
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Branch, Cause, Floats, Incoming, Stop
@@ -134,18 +134,18 @@ def rate_on_branch(run: Run, load: float, guess: float) -> float:
         return low
     if load >= branch.excess_to:
         return high
-    high = min(high, (load + run.params.largest_drop) / run.params.impedance * (1.0 + 1e-12))
+    high = min(high, (load + run.params.largest_drop) / run.params.damping * (1.0 + 1e-12))
     s = guess if low < guess < high else 0.5 * (low + high)
     for _ in range(200):
         friction_at(run, run.state.law_slip, s)
-        error = run.params.impedance * s + run.friction.stress - load
+        error = run.params.damping * s + run.friction.stress - load
         if error > 0.0:
             high = s
         elif error < 0.0:
             low = s
         else:
             return s
-        slope = run.params.impedance + run.friction.by_rate
+        slope = run.params.damping + run.friction.by_rate
         step = s - error / slope if slope > 0.0 else 0.5 * (low + high)
         if not low < step < high:
             step = 0.5 * (low + high)
@@ -165,8 +165,8 @@ def rate_from_here(run: Run, load: float, guess: float) -> float:
     least = math.inf
     for _ in range(20):
         friction_at(run, run.state.law_slip, s)
-        error = run.params.impedance * s + run.friction.stress - load
-        slope = run.params.impedance + run.friction.by_rate
+        error = run.params.damping * s + run.friction.stress - load
+        slope = run.params.damping + run.friction.by_rate
         if abs(error) >= least:
             return best
         best, least = s, abs(error)

@@ -23,7 +23,7 @@ def settle_piece(run: Run, rate: float) -> None:
         piece = piece_at(run, rate)
     if run.counts.is_algebraic == 1 and is_knot(run, rate):
         friction_of(run, piece, run.state.law_slip, rate)
-        if run.params.impedance + run.friction.by_rate <= 0.0:
+        if run.params.damping + run.friction.by_rate <= 0.0:
             piece += 1 if abs(run.law[piece].knot - rate) <= NEAR_KNOT * rate else -1
     run.counts.piece = piece
 
@@ -69,7 +69,7 @@ def pass_rate_knot(run: Run, turn: int) -> bool:
     run.state.rate_now = run.counts.mode * knot
     if run.counts.folds_move == 1:
         friction_of(run, piece + turn, run.state.law_slip, knot)
-        if run.params.impedance + run.friction.by_rate <= 0.0:
+        if run.params.damping + run.friction.by_rate <= 0.0:
             return False
     run.counts.piece = piece + turn
     return True

@@ -80,7 +80,7 @@ def is_implicit(run: Run) -> bool:
 def settling_rate(run: Run) -> float:
     """Return the rate (1/s) at which the slip rate settles: (Z + S dmu/dv) / M with mass, S dmu/du / (Z + S dmu/dv) without."""
     contact_at(run, run.state.law_slip, abs(run.state.rate_now), run.state.state_now)
-    resistance = run.params.impedance + run.params.normal * run.value.by_rate
+    resistance = run.params.damping + run.params.normal * run.value.by_rate
     if run.counts.has_inertia == 1:
         return resistance / run.params.inertia
     return run.k.chi * run.params.normal * run.value.by_slip / resistance
@@ -119,7 +119,7 @@ def hanging_rate(run: Run) -> float:
     contact_at(run, run.state.law_slip, 0.0, run.state.state_now)
     # Bristles that are bent as far as they go yield in this direction, but not in the other.
     stiffest = max(against, abs(stiffness_of_states(run)))
-    resistance = params.impedance + math.sqrt(params.inertia * params.normal * stiffest)
+    resistance = params.damping + math.sqrt(params.inertia * params.normal * stiffest)
     return HANGING * params.tolerance * params.normal * abs(value.mu) / resistance if resistance > 0.0 else 0.0
 
 

@@ -24,7 +24,7 @@ from stickslip.engine.codegen.compiler import call_radii, call_value, inlined, k
 from stickslip.engine.codegen.records import numbers_of
 from stickslip.engine.contact.contact_equation import constants_of
 from stickslip.engine.series.polynomial import RECIPROCAL, powers_of
-from stickslip.engine.state.layout import TERMS, Ball, Floats, Series, Stop
+from stickslip.engine.state.layout import TERMS, Ball, Floats, SeriesInput, Stop
 from stickslip.engine.state.workspace import Run
 
 ALLOWED, ALLOWED_SLOPE = 100.0, 1000.0
@@ -48,7 +48,7 @@ HOPELESS = 1e100
 """Share (1) from which on a disc counts as too large for the law, which has a singularity on it."""
 SHORTEST, LONGEST = 0.2, 0.9
 """Smallest and largest factor (1) by which a step without a proof is shortened at a time."""
-ROUNDING = 1e-14
+TERM_ROUNDING = 1e-14
 """Rounding of the terms of the contact equation (1), relative to the largest of them."""
 NEGLIGIBLE = 1e-9
 """Size of a friction coefficient (1) that may be below zero by rounding."""
@@ -73,7 +73,7 @@ def moved_on_disc(c: Floats, powers: Floats, first: int) -> float:
 
 
 @inlined
-def put_discs(k: Series, jet: Floats, powers: Floats, ball: Ball) -> None:
+def put_discs(k: SeriesInput, jet: Floats, powers: Floats, ball: Ball) -> None:
     """Put radii and centres of slip (m) and slip rate (m/s) on a disc into `ball`, from the powers of its radius (in guesses).
 
     With a bend, the integral of a term of order n >= 1 is at most a third of the term times the square of the radius.
@@ -99,9 +99,9 @@ def load_on_disc(load: Floats, powers: Floats, degree: int) -> float:
 
 
 @inlined
-def force_on_disc(k: Series, ball: Ball, load: float) -> float:
+def force_on_disc(k: SeriesInput, ball: Ball, load: float) -> float:
     """Return a bound (Pa or N) on a disc of what load, spring, radiation and friction add up to, less its value at the centre."""
-    return MARGIN * (k.impedance * ball.rate + k.normal * ball.friction + k.stiffness * ball.slip + load)
+    return MARGIN * (k.damping * ball.rate + k.normal * ball.friction + k.stiffness * ball.slip + load)
 
 
 @inlined
@@ -144,7 +144,7 @@ def share_on_disc(run: Run, length: float, disc: int) -> float:
 @inlined
 def resistance(run: Run) -> float:
     """Return Z, or g'(v) on a branch where friction grows with the slip rate (Pa s/m): it turns a missing load into a slip rate."""
-    return run.k.impedance + (max(run.friction.by_rate, 0.0) if run.counts.is_algebraic == 1 else 0.0)
+    return run.k.damping + (max(run.friction.by_rate, 0.0) if run.counts.is_algebraic == 1 else 0.0)
 
 
 @inlined
@@ -259,7 +259,7 @@ def missing_at_end(run: Run, grown: float, rate_end: float) -> float:
     piece, value = run.counts.piece, run.value
     call_value(run.law[piece].value_at, constants_of(run, piece), run.k.slip + run.k.chi * grown, rate_end, numbers_of(value))
     friction = run.params.normal * (value.mu + run.law[piece].offset)
-    return load_at_end(run) - run.params.impedance * rate_end - friction - run.state.unbalanced
+    return load_at_end(run) - run.params.damping * rate_end - friction - run.state.unbalanced
 
 
 @inlined
@@ -276,7 +276,7 @@ def measure_rounding(run: Run, rate: Floats, length: float, grown: float, rate_e
         pace = (run.k.speed + run.k.bend * length) * length / params.inertia
         missed = abs((missing - params.stiffness * grown) * pace - slope_at_end(rate))
     else:
-        missed = abs(missing) / (params.impedance + params.normal * max(value.by_rate, 0.0))
+        missed = abs(missing) / (params.damping + params.normal * max(value.by_rate, 0.0))
     if missed > rough(run) * params.tolerance * size:
         note_rounding(run, missed, size, length)
 
@@ -293,13 +293,13 @@ def note_rounding(run: Run, missed: float, size: float, length: float) -> None:
     terms = params.reference + abs(run.load_along_slip[0]) + params.normal * (abs(friction) + abs(value.by_rate * size))
     terms += params.normal * abs(value.by_slip * slip)
     if run.counts.has_inertia == 1:
-        known = ROUNDING * terms * abs(run.k.speed) * length / params.inertia
+        known = TERM_ROUNDING * terms * abs(run.k.speed) * length / params.inertia
     else:
-        known = ROUNDING * terms / (params.impedance + params.normal * max(value.by_rate, 0.0))
+        known = TERM_ROUNDING * terms / (params.damping + params.normal * max(value.by_rate, 0.0))
     if missed > known + rough(run) * params.tolerance * size:
         run.counts.rough += 1
         run.state.roughest = max(run.state.roughest, missed / size)
-        if missed * ROUNDING > LOST * known:
+        if missed * TERM_ROUNDING > LOST * known:
             run.counts.breach = Stop.OFF_THE_LAW
 
 

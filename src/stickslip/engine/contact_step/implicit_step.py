@@ -8,9 +8,9 @@ from __future__ import annotations
 import math
 
 from stickslip.engine.codegen.compiler import ahead, call_part, kernel
-from stickslip.engine.contact.append_segment import record
 from stickslip.engine.contact.contact_equation import onset_of_slip
 from stickslip.engine.contact.law_knots import settle_piece
+from stickslip.engine.contact.pieces import record
 from stickslip.engine.contact.stiffness import contact_at, forgotten, is_no_longer_stiff, states_at_point
 from stickslip.engine.contact_step.certificate import NEGLIGIBLE
 from stickslip.engine.contact_step.keep_step import keep_step

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from stickslip.engine.codegen.compiler import inlined, kernel
-from stickslip.engine.contact.append_segment import record
 from stickslip.engine.contact.contact_equation import friction_at
+from stickslip.engine.contact.pieces import record
 from stickslip.engine.contact_step.step_events import growth
 from stickslip.engine.series.polynomial import RECIPROCAL, evaluate, multiply, total
 from stickslip.engine.state import layout as at
@@ -54,7 +54,7 @@ def note_gain(run: Run, rate: Floats) -> None:
     """
     if run.counts.is_algebraic == 1 and run.counts.folds_move == 0:
         friction_at(run, run.state.law_slip, abs(evaluate(rate, 0.5)))
-        run.state.gain = abs(2.0 * run.params.impedance / (run.params.impedance + run.friction.by_rate) - 1.0)
+        run.state.gain = abs(2.0 * run.params.impedance / (run.params.damping + run.friction.by_rate) - 1.0)
     else:
         run.state.gain = math.nan
 

@@ -14,7 +14,7 @@ from stickslip.engine.series.polynomial import NONE, RECIPROCAL, bound_below, ev
 from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.engine.state.workspace import Run
 
-PLACES = 16
+PARTS_OF_STEP = 16
 """Number of parts into which a step is divided to look for minima of friction: a step covers about one oscillation of a law at
 most, because its series must see it."""
 CLOSER = 8.0
@@ -43,10 +43,10 @@ def is_clearly_positive(run: Run, rate: Floats, duration: float) -> bool:
     """Return True if a bound proves that friction is clearly above zero over an explicit step of the given duration (s)."""
     params, friction = run.params, run.spare
     for k in range(TERMS):
-        friction[k] = -params.impedance * rate[k]
+        friction[k] = -params.damping * rate[k]
     for k in range(run.counts.degree + 1):
         friction[k] += run.load_along_slip[k] * run.powers[k]
-    allowed = rough(run) * params.tolerance * params.impedance * abs(rate[0])
+    allowed = rough(run) * params.tolerance * params.damping * abs(rate[0])
     if run.counts.has_inertia == 1:
         for k in range(TERMS - 1):
             friction[k + 1] -= params.stiffness * duration * RECIPROCAL[k + 1] * rate[k]
@@ -65,13 +65,13 @@ def place_below_zero(run: Run, rate: Floats, length: float) -> float:
     """
     if run.params.can_be_negative == 0.0:
         return NONE
-    width = 1.0 / PLACES
+    width = 1.0 / PARTS_OF_STEP
     before, here = friction_in_step(run, rate, length, 0.0), friction_in_step(run, rate, length, width)
-    for k in range(2, PLACES + 1):
+    for k in range(2, PARTS_OF_STEP + 1):
         after = friction_in_step(run, rate, length, k * width)
         if here < FLOOR:
             return (k - 1) * width
-        if (here <= before or k == 2) and (here <= after or k == PLACES):  # at the ends the minimum may be next to them
+        if (here <= before or k == 2) and (here <= after or k == PARTS_OF_STEP):  # at the ends the minimum may be next to them
             lowest = place_of_minimum(run, rate, length, (k - 1) * width)
             if friction_in_step(run, rate, length, lowest) < FLOOR:
                 return lowest
@@ -82,7 +82,7 @@ def place_below_zero(run: Run, rate: Floats, length: float) -> float:
 @kernel
 def place_of_minimum(run: Run, rate: Floats, length: float, place: float) -> float:
     """Return the place on [0, 1] of a step near `place` at which friction is lowest, by two parabolas."""
-    width = 1.0 / PLACES
+    width = 1.0 / PARTS_OF_STEP
     for _ in range(2):
         here = friction_in_step(run, rate, length, place)
         before, after = friction_in_step(run, rate, length, place - width), friction_in_step(run, rate, length, place + width)

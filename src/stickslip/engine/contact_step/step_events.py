@@ -7,7 +7,7 @@ from typing import NamedTuple
 from stickslip.engine.codegen.compiler import inlined, kernel
 from stickslip.engine.contact.contact_equation import TIE
 from stickslip.engine.contact.law_knots import pass_rate_knot, rate_knot_crossing
-from stickslip.engine.contact_step.stick import come_to_rest
+from stickslip.engine.contact_step.stick_or_slip import come_to_rest
 from stickslip.engine.folds.fold import reach_end
 from stickslip.engine.series.polynomial import NONE, first_descent, integral, magnitude, multiply, powers_of
 from stickslip.engine.state.layout import Floats, StepEvent

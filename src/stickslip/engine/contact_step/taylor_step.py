@@ -10,9 +10,9 @@ import math
 
 from stickslip.engine.codegen.compiler import call_jet, inlined, kernel
 from stickslip.engine.codegen.records import numbers_of
-from stickslip.engine.contact.append_segment import note_jump
 from stickslip.engine.contact.contact_equation import TIE, constants_of, load_ahead, rate_from_here, rate_on_branch
 from stickslip.engine.contact.law_knots import settle_piece
+from stickslip.engine.contact.pieces import note_jump
 from stickslip.engine.contact.stiffness import judge_stiffness
 from stickslip.engine.contact_step.certificate import begin_step, bound_straight_bit, is_negative, measure_rounding, proven_length
 from stickslip.engine.contact_step.keep_step import move
@@ -80,7 +80,7 @@ def slip(run: Run, xi_to: float) -> None:
         if plan.is_over:
             return
     note_shock(run)
-    take_step(run, plan, guess)
+    take_planned_step(run, plan, guess)
     if run.counts.is_algebraic == 0:
         judge_stiffness(run)
 
@@ -119,7 +119,7 @@ def note_shock(run: Run) -> None:
 
 
 @kernel
-def take_step(run: Run, plan: StepPlan, guess: float) -> None:
+def take_planned_step(run: Run, plan: StepPlan, guess: float) -> None:
     """Take an explicit step: choose its length, prove it, cut it at the first event, and keep it.
 
     `guess` (in xi) is the unit of the series. A step in which friction falls below zero is halved until it does not, or until

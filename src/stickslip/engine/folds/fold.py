@@ -6,8 +6,8 @@ import math
 
 from stickslip.engine.codegen.compiler import kernel
 from stickslip.engine.codegen.records import numbers_of
-from stickslip.engine.contact.append_segment import note_degree, phase_at
 from stickslip.engine.contact.contact_equation import end_branch, friction_at, is_knot, rate_on_branch, towards
+from stickslip.engine.contact.pieces import note_degree, phase_at
 from stickslip.engine.series.polynomial import copy, evaluate, fill, restrict, total
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Cause, Floats, NearFold
@@ -17,7 +17,7 @@ SHORTEST_FOLD = 1e-9
 """Way (in xi) below which the square root makes no difference, so that no side piece is made."""
 AT_THE_FOLD = 1e-14
 """Share of the reference strength (1) within which the load counts as being at the fold: the rounding of a load."""
-ROUNDING = 1e-14
+SAME_LOAD = 1e-14
 """Relative difference (1) at which two loads are certainly not the same one."""
 LAST_TO_FOLD = 1e-4
 """Share (1) of the root of time before a fold that does not move, taken as a straight line: a series in so short a bit is all
@@ -132,7 +132,7 @@ def depart_from_fold(run: Run, left: float) -> None:
     """
     width, forwards = DEPARTURE * left, run.part
     restrict(run.load, run.state.xi, width, forwards)
-    rise, seen = run.counts.mode * forwards[1], ROUNDING * abs(run.branch_table[run.counts.branch].excess_from)
+    rise, seen = run.counts.mode * forwards[1], SAME_LOAD * abs(run.branch_table[run.counts.branch].excess_from)
     if 0.0 < rise < seen:  # By rounding, the load at the end of the bit would still be the fold's.
         width = min(width * seen / rise, left)
         restrict(run.load, run.state.xi, width, forwards)

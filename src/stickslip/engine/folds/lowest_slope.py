@@ -105,7 +105,7 @@ def lowest_in(find: Finder, piece: int, first: Ends) -> None:
         cell = Ends(g.cells[waiting, 0], g.cells[waiting, 1], g.cells[waiting, 2], g.cells[waiting, 3])
         found[LEFT] -= 2
         seen = slopes_on(g, piece, cell.low, cell.high)
-        enough = found[AT_MOST] - find.tolerance * max(g.impedance, abs(found[AT_MOST]))
+        enough = found[AT_MOST] - find.tolerance * max(g.damping, abs(found[AT_MOST]))
         is_monotone = seen.bend_low > 0.0 or seen.bend_high < 0.0
         least = max(seen.low, min(cell.at_low, cell.at_high)) if is_monotone else seen.low
         if not (is_monotone or least >= enough):

@@ -71,8 +71,8 @@ def friction_there(contact: Contact, rate: float) -> None:
 def level_at(contact: Contact, rate: float) -> float:
     """Return g (Pa, minus the reference strength) at a slip rate >= 0, where 0 means 0+, and leave g' in run.friction.by_rate."""
     friction_there(contact, rate)
-    contact.run.friction.by_rate += contact.run.params.impedance
-    return contact.run.params.impedance * rate + contact.run.friction.stress
+    contact.run.friction.by_rate += contact.run.params.damping
+    return contact.run.params.damping * rate + contact.run.friction.stress
 
 
 @kernel

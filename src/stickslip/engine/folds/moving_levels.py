@@ -31,7 +31,7 @@ from stickslip.engine.state.workspace import Run, borrow
 COMPILED_RULES = {"minimal": Rule.MINIMAL, "maximal": Rule.MAXIMAL, "maxwell": Rule.MAXWELL}
 """Rules whose levels are calculated here. Perfect delay needs none; others are followed by their tables (`branch_table.Step`)."""
 
-ROUNDING = 1e-11
+LEVEL_ROUNDING = 1e-11
 """Distance of a load from a level, relative to the reference strength (1), up to which it has not crossed the level."""
 EXACT, SHORTEST = 1e-14, 1e-15
 """Tolerances of a crossing (1): distance of the load from the level, relative to the reference strength, and width of the bracket
@@ -60,7 +60,7 @@ class View(NamedTuple):
 @kernel
 def fastest(run: Run, load: float) -> float:
     """Return a slip rate (m/s) that no solution of the contact equation at this load exceeds."""
-    return (load + run.params.largest_drop) / run.params.impedance * (1.0 + 1e-12)
+    return (load + run.params.largest_drop) / run.params.damping * (1.0 + 1e-12)
 
 
 @kernel
@@ -151,7 +151,7 @@ def crossing_in(places: Integers, step: int, rule: int, search: Search) -> float
     """
     view = View(borrow(places), step, rule, search)
     contact = contact_of(view.run, view.run.history[step].law_piece, 0.0, search)
-    slack, shortest = ROUNDING * view.run.params.reference, SHORTEST_IN_WINDOW if rule == Rule.MAXWELL else SHORTEST_SLICE
+    slack, shortest = LEVEL_ROUNDING * view.run.params.reference, SHORTEST_IN_WINDOW if rule == Rule.MAXWELL else SHORTEST_SLICE
     low, length, open_ = 0.0, 1.0, 0.0
     for k in range(MOST_SLICES):
         if low >= 1.0:

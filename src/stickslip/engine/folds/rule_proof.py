@@ -91,9 +91,9 @@ def slope_and_level(contact: Contact, piece: int, low: float, high: float) -> tu
     """Bound g' from below and g (Pa, minus the reference strength) from both sides on a cell; g' also from above."""
     g, friction = contact.search.resistance, bound_friction(contact.search.resistance.formulas, piece, low, high)
     slope = multiply(g.normal, g.normal, friction[2], friction[3])
-    slope = add(g.impedance, g.impedance, slope[0], slope[1])
+    slope = add(g.damping, g.damping, slope[0], slope[1])
     level = multiply(g.normal, g.normal, friction[0], friction[1])
-    viscous = multiply(g.impedance, g.impedance, low, high)
+    viscous = multiply(g.damping, g.damping, low, high)
     level = add(level[0], level[1], viscous[0], viscous[1])
     reference = contact.run.params.reference
     return slope[0], slope[1], level[0] - reference, level[1] - reference
@@ -124,7 +124,7 @@ def rule_is_kept(contact: Contact, rule: int, n: int, low: float, high: float) -
 def top_of(contact: Contact, seen: Slice) -> float:
     """Return a slip rate (m/s) beyond which g exceeds every load of the slice."""
     params = contact.run.params
-    return max((seen.load_high + params.largest_drop) / params.impedance, seen.rate_high) * ABOVE_ALL
+    return max((seen.load_high + params.largest_drop) / params.damping, seen.rate_high) * ABOVE_ALL
 
 
 @kernel

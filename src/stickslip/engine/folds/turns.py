@@ -48,7 +48,7 @@ class Resistance(NamedTuple):
     formulas: Formulas
     knots: Floats  # m/s, ascending: slip rates above 0 at which the law changes its formula
     pieces: Integers  # (knots + 1,): the piece of the law below each knot, and above the last
-    impedance: float  # Z, Pa s/m
+    damping: float  # Z, Pa s/m, or that of a block, N s/m
     normal: float  # S, Pa
     slowest: float  # slowest and fastest scale of the contact, m/s
     fastest: float
@@ -123,7 +123,7 @@ def slopes_on(g: Resistance, piece: int, low: float, high: float) -> Slopes:
     """Bound g' and g'' at slip rates (m/s) between two, under a piece of the law and at the slips of `bound_at_slips`."""
     friction, normal = bound_friction(g.formulas, piece, low, high), g.normal
     least, most = multiply(normal, normal, friction[2], friction[3])
-    least, most = add(g.impedance, g.impedance, least, most)
+    least, most = add(g.damping, g.damping, least, most)
     bend = multiply(2.0 * normal, 2.0 * normal, friction[4], friction[5])
     return Slopes(least, most, bend[0], bend[1])
 

@@ -20,7 +20,7 @@ maths: Any = MATHS if UNCOMPILED else math
 
 TO_TWO = 1.0 / math.log(2.0)
 """log2(e)."""
-LARGEST = 1000.0
+LARGEST_EXPONENT = 1000.0
 """Exponent of 2 (1) above which `exp_above` is infinite."""
 TINIEST = 1e-300
 """Number that replaces zero where a disc reaches a singularity, or where a value underflows."""
@@ -30,10 +30,10 @@ MARGIN = 1.005
 
 @njit(error_model="numpy")
 def exp_above(x: float) -> float:
-    """Return a number between exp(x) and 1.01 exp(x); above 2^LARGEST it is infinite, or soon becomes so."""
-    y = max(TO_TWO * x, -LARGEST)
-    over = 1e308 * max(y - LARGEST, 0.0)
-    y = min(y, LARGEST)
+    """Return a number between exp(x) and 1.01 exp(x); above 2^LARGEST_EXPONENT it is infinite, or soon becomes so."""
+    y = max(TO_TWO * x, -LARGEST_EXPONENT)
+    over = 1e308 * max(y - LARGEST_EXPONENT, 0.0)
+    y = min(y, LARGEST_EXPONENT)
     whole = np.floor(y)
     part = y - whole
     return MARGIN * power_of_two(whole) * (1.0 + part * (0.6565 + 0.3435 * part)) + over

@@ -18,7 +18,7 @@ BITS = 33
 """Bits (1) of each part of pi but the last: its product with a whole number of 20 bits is then exact."""
 ROUNDER = 1.5 * 2.0**52
 """Number (1) that rounds a float to the nearest whole number if it is added and subtracted again."""
-MANY = 2.0**20
+SPLIT = 2.0**20
 """Unit (1) by which the number of multiples of pi is split into a high and a low part: products with parts of pi are exact."""
 
 
@@ -49,7 +49,7 @@ def half_angle(e: float) -> float:
     """Return e / 2 minus a whole multiple of pi (rad), in [-pi/2, pi/2], to rounding for |e| < 1e12 rad."""
     half = 0.5 * e
     times = _nearest(half * (1.0 / math.pi))
-    many = _nearest(times * (1.0 / MANY)) * MANY
+    many = _nearest(times * (1.0 / SPLIT)) * SPLIT
     few = times - many
     rest = half - many * PI_1 - few * PI_1
     rest = rest - many * PI_2 - few * PI_2

@@ -33,7 +33,8 @@ class Params(Record):
     round_trip_time: (
         float  # s: two-way travel time of a slab; length of a round trip of a block (a period, or longer where it never sticks)
     )
-    impedance: float  # Pa s/m: wave impedance Z of a slab; N s/m: damping of a block
+    damping: float  # force over slip rate in the contact equation, Pa s/m: radiation damping Z of a slab; N s/m: damping of a block
+    impedance: float  # Pa s/m: wave impedance Z of a slab, whose contact sends and receives waves; N s/m: sqrt(K m) of a block
     normal: float  # Pa: normal stress on a slab; N: normal force on a block
     inertia: float  # kg/m^2: mass of a slab's contact, 0 if it has none; kg: mass of a block
     stiffness: float  # N/m: stiffness of a block's spring; 0 for a slab
@@ -156,10 +157,10 @@ class Counts(Record):
     degree: int  # degree of the present piece of load: its coefficients beyond are zero
 
 
-class Series(Record):
+class SeriesInput(Record):
     """Hold the input of a law's compiled series (`codegen.taylor_series`); generated code reads it by number, k[0], k[1], ..."""
 
-    impedance: float  # k[0], Pa s/m or N s/m: as in `Params`
+    damping: float  # k[0], Pa s/m or N s/m: as in `Params`
     normal: float  # k[1], Pa or N: as in `Params`
     chi: float  # k[2], +1 or -1: change of the law's slip over the slip q in the direction of motion
     speed: float  # k[3], s: A in dt/deta = A + B eta, where eta is the distance in xi in units of the guess
@@ -248,7 +249,7 @@ class Rule(IntEnum):
     MAXWELL = 3
 
 
-class Part(IntEnum):
+class EnginePart(IntEnum):
     """Name the parts of the engine that are compiled apart (`on_demand`)."""
 
     NONE = 0

@@ -29,7 +29,7 @@ from stickslip.engine.state.layout import (
     LawValue,
     LoadingSegment,
     Params,
-    Series,
+    SeriesInput,
     Setup,
     State,
     Store,
@@ -75,7 +75,7 @@ class Run(Record):
     jet: Floats = floats_inside(TERMS)  # m/s: series of the magnitude of the slip rate, in units of the guess
     centres: Floats = floats_inside(TERMS)  # what the series writes right after itself, for `radii`
     powers: Floats = floats_inside(TERMS)  # powers of the length of the step, in guesses
-    k: Series = inside(Series, TERMS)  # input of the series
+    k: SeriesInput = inside(SeriesInput, TERMS)  # input of the series
     value: LawValue = inside(LawValue, TERMS)  # what the law's formula returned last
     ball: Ball = inside(Ball, TERMS)  # discs of slip, slip rate and state, and the radius of friction on them
     friction: Friction = inside(Friction, TERMS)  # friction at the contact, as last evaluated
@@ -92,7 +92,7 @@ class Run(Record):
     matrix: Floats = floats_inside(MATRIX_ROWS * TERMS)  # equations of an implicit step
 
 
-PLACES = Run.total
+RUN_SIZE = Run.total
 """Length of the memory of a run, in places of 8 bytes."""
 ADDRESSES = Run.places["pieces"].first
 """Number of places that hold addresses; the lengths of the tables follow them."""
@@ -104,7 +104,7 @@ PARAMS, STATE, COUNTS = (
 """Places of the problem's numbers, of the state and of the counts."""
 SCRATCH = Run.places["load"].first
 """First place of scratch space in a run's memory; it extends to the end."""
-WORK_ROWS = (PLACES - SCRATCH) // TERMS
+WORK_ROWS = (RUN_SIZE - SCRATCH) // TERMS
 """Length of scratch space, in rows of TERMS numbers."""
 
 borrow: Any = record_at(Run)
@@ -117,7 +117,7 @@ pieces_in: Any = record_at(HistoryPiece)
 
 def memory_of(params: Params, state: State, counts: Counts) -> Integers:
     """Return the memory of a run with these numbers, state and counts; its tables must still be lent."""
-    memory = np.zeros(PLACES, np.int64)
+    memory = np.zeros(RUN_SIZE, np.int64)
     params_in(memory).numbers[:], state_in(memory).numbers[:] = params.numbers, state.numbers
     counts_in(memory).numbers[:] = counts.numbers
     return memory

@@ -26,8 +26,8 @@ LONGEST_SEARCH = 4096
 """Largest number of round trips (1) that are tried one by one: near 2^62, floats are 512 to 1024 apart."""
 NEARLY = 2e-15
 """Share of the reference strength (1), for rounding of the load, by which a piece is met early rather than late."""
-MANY = 16
-"""Least number of pieces in a round trip with slip (1) for which the trees pay off; at most one in `MANY // 4` of them may slip."""
+LEAST_PIECES = 16
+"""Least number of pieces in a round trip with slip (1) for which the trees pay off; at most one in `LEAST_PIECES // 4` may slip."""
 
 
 # ---- trees ------------------------------------------------------------------------------------------------------------------
@@ -282,7 +282,7 @@ def worth_building(run: Run) -> bool:
     slipping, pieces = 0, run.counts.length - run.counts.trip_from
     for n in range(run.counts.trip_from, run.counts.length):
         slipping += 1 if run.history[n].mode != 0 else 0
-    return slipping == 0 or (pieces >= MANY and slipping <= pieces // (MANY // 4))
+    return slipping == 0 or (pieces >= LEAST_PIECES and slipping <= pieces // (LEAST_PIECES // 4))
 
 
 @kernel

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from stickslip.engine.codegen.compiler import call_part, kernel
-from stickslip.engine.contact.append_segment import note_degree
+from stickslip.engine.contact.pieces import note_degree
 from stickslip.engine.series.polynomial import fill, mean_of
 from stickslip.engine.state.layout import TERMS, Cause, Incoming, Task
 from stickslip.engine.state.workspace import Run

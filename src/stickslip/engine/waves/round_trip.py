@@ -7,7 +7,7 @@ import math
 from stickslip.engine.codegen.compiler import call_part, kernel
 from stickslip.engine.contact.contact_equation import rest_limit
 from stickslip.engine.series.polynomial import maximum, total
-from stickslip.engine.state.layout import NEVER, Part, Stop, Task
+from stickslip.engine.state.layout import NEVER, EnginePart, Stop, Task
 from stickslip.engine.state.workspace import Run
 from stickslip.engine.waves.echo_queue import worth_building
 from stickslip.engine.waves.varying_forcing import has_faded
@@ -67,7 +67,7 @@ def close_round_trip(run: Run, last_trip: int) -> int:
         run.counts.lumps, run.counts.lumped_since = 1, run.counts.trip + 1
     if worth_building(run):
         if run.echo_queue == 0:
-            run.missing = Part.ECHO_QUEUE
+            run.missing = EnginePart.ECHO_QUEUE
             return Stop.NEED_PART
         call_part(run.echo_queue, run, Task.BUILD_QUEUE, 0.0)
         return Stop.NONE

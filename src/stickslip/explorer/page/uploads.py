@@ -13,7 +13,7 @@ from stickslip.foundation.errors import InputError, gathered
 from stickslip.friction.custom.measured import table_in_text
 from stickslip.scenarios import library
 from stickslip.scenarios.scenario import read_scenario
-from stickslip.scenarios.text_of_files import LARGEST, text_of
+from stickslip.scenarios.text_of_files import LARGEST_SCENARIO_FILE, text_of
 
 TABLES = (".csv", ".txt", ".tsv", ".dat")
 """Suffixes of files that hold points."""
@@ -25,8 +25,8 @@ LONGEST_NAME = 80
 
 def content_of(encoded: str) -> bytes:
     """Return the content of a file from the browser's text in base64. Raises InputError if it is too large or broken."""
-    if len(encoded) > 4 * (LARGEST // 3 + 2):
-        raise InputError(f"the file is larger than {LARGEST} bytes")
+    if len(encoded) > 4 * (LARGEST_SCENARIO_FILE // 3 + 2):
+        raise InputError(f"the file is larger than {LARGEST_SCENARIO_FILE} bytes")
     try:
         return base64.b64decode(encoded, validate=True)
     except (binascii.Error, ValueError):

@@ -152,7 +152,7 @@ def _fastest(contact: Uniqueness, path: Floats) -> float:
     rates += [rate for jump in contact.jumps for rate in (jump.rate_before, jump.rate_after)]
     found = max([*rates, *np.abs(path).tolist()], default=0.0)
     assert contact.resistance is not None
-    return _ROOM * found if found > 0.0 else 0.25 * contact.resistance.strength / contact.resistance.impedance
+    return _ROOM * found if found > 0.0 else 0.25 * contact.resistance.strength / contact.resistance.damping
 
 
 @styled

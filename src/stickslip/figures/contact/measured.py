@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 CURVE = 801
 """Number of places at which the law is evaluated."""
-MANY = 5000
+MANY_POINTS = 5000
 """Number of points above which they are drawn as an image, so that vector files stay small."""
 SHADES = ("#F8D9C4", "#F0A879")
 """Colours of the band of two standard errors, and of the band of one above it."""
@@ -132,7 +132,7 @@ def _draw_band(axes: Axes, along: Floats, law: Floats, error: Floats) -> None:
 def _draw_points(axes: Axes, place: Floats, values: Floats, text: str = "") -> None:
     few = len(place) <= 200
     look: dict[str, Any] = {"color": GREY, "markersize": 3.5 if few else 2.0, "alpha": 0.9 if few else 0.5, "markeredgewidth": 0}
-    axes.plot(place, values, "o", label=text or None, rasterized=len(place) > MANY, zorder=2, **look)
+    axes.plot(place, values, "o", label=text or None, rasterized=len(place) > MANY_POINTS, zorder=2, **look)
 
 
 def _scale(axes: Axes, place: Floats) -> None:

@@ -48,7 +48,7 @@ COLOURS: dict[str, str] = {
     "friction": VERMILLION,
 }
 """Colour of each curve, the same in all figures."""
-MANY = 60
+MOST_SHOCKS = 60
 """If there are more shocks than this, they are not marked: the marks would hide the curves."""
 BRIEF = 0.01
 """The start from rest is left out if it takes less than this share of the time that is shown."""
@@ -172,7 +172,7 @@ def mark_shocks(panels: Sequence[Axes], readings: Readings, span: Span) -> None:
     times = times[(times >= span[0]) & (times <= span[1])]
     size = time_unit(span[1] - span[0])[1]
     for panel in panels:
-        for k, at in enumerate(times if times.size <= MANY else ()):
+        for k, at in enumerate(times if times.size <= MOST_SHOCKS else ()):
             name = "shock (jump of the slip rate)" if k == 0 and panel is panels[-1] else None
             panel.axvline(at / size, color=GREY, linewidth=0.7, linestyle=":", zorder=0, label=name)
 

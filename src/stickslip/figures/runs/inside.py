@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 
     from stickslip.solution.evaluation import Curve, Readings
 
-ROUNDING = 64.0
+DISPLACEMENT_ROUNDING = 64.0
 """Bound on the rounding error of a difference of two displacements, in units in their last place."""
 TIMES, CELLS = 900, 300
 """Numbers of cells of the images, in time and across the slab."""
@@ -203,7 +203,7 @@ def means(readings: Readings, time: Floats, x: Floats) -> dict[str, xr.Variable]
 def _slope(displacement: Floats, step: Floats, axis: int, middle: Floats, size: float) -> Floats:
     """Return mean slopes along an axis, replaced by the slope in the `middle` wherever rounding could explain their difference."""
     mean = np.diff(displacement, axis=axis) / step
-    rounding = ROUNDING * np.spacing(max(float(np.abs(displacement).max()), size)) / step
+    rounding = DISPLACEMENT_ROUNDING * np.spacing(max(float(np.abs(displacement).max()), size)) / step
     return np.where(np.abs(mean - middle) <= rounding, middle, mean)
 
 

@@ -19,7 +19,7 @@ from stickslip.figures.style import INK, PALE, TWO, shown, styled
 from stickslip.solution.place import Place
 from stickslip.studies.analogy import QUANTITIES, Analogy
 
-LARGEST = 10.0
+LARGEST_RATIO = 10.0
 """The scale of colours ends at this ratio and at its inverse."""
 TICKS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
 """Ratios that are marked on the scale of colours."""
@@ -56,7 +56,7 @@ def data(found: Analogy) -> xr.Dataset:
 def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw three maps of ratios in one scale of colours, and a map of the points at which the block can stand for the slab."""
     figure, axes = panels(2, 2, (7.2, 6.8), place, sharex=True, sharey=True)
-    ratios = {"cmap": "RdBu_r", "norm": LogNorm(1.0 / LARGEST, LARGEST)}
+    ratios = {"cmap": "RdBu_r", "norm": LogNorm(1.0 / LARGEST_RATIO, LARGEST_RATIO)}
     for panel, one in zip(axes.flat, QUANTITIES, strict=False):
         image = draw_map(panel, dataset, dataset[f"{one}_ratio"].values, **ratios)
     marks = _draw_stands(axes[1, 1], dataset)

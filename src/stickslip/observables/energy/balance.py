@@ -37,7 +37,7 @@ LONG_NAMES = {
     "trapped": "energy of the waves inside the slab, beyond a state of uniform stress",
 }
 """Long names of the energies in a dataset."""
-PLACES = NODES**2 * (3.0 - 2.0 * NODES)
+CURVED_PLACES = NODES**2 * (3.0 - 2.0 * NODES)
 """Places of the quadrature in an interval of length 1: s^2 (3 - 2 s) at the nodes s of the Gauss-Legendre rule."""
 SHARES = 6.0 * NODES * (1.0 - NODES) * WEIGHTS
 """Weights of these places: the derivative of s^2 (3 - 2 s) times the weights of the rule."""
@@ -266,7 +266,7 @@ class _BothWaves:
         fronts = np.concatenate([-self.start, self.start + self.waves.round, [self.begun, half - self.begun], comes])
         edges = np.unique(np.concatenate([[0.0, half], fronts[(fronts > 0.0) & (fronts < half)]]))
         lengths = np.diff(edges)[:, None]
-        away = edges[:-1, None] + lengths * PLACES
+        away = edges[:-1, None] + lengths * CURVED_PLACES
         both = self._coming(away.ravel()) + self._left(-away.ravel())
         return float((both.reshape(away.shape) ** 2 * SHARES * lengths).sum()) / (8.0 * self.waves.body.impedance)
 

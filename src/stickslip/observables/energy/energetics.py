@@ -47,7 +47,7 @@ ENERGETICS_COLUMNS = {
 }
 """Columns of `Solution.energetics`: unit ("load" is Pa or N, "energy" J m-2 or J) and meaning."""
 
-ROUNDING = 1e-12
+DROP_ROUNDING = 1e-12
 """Rounding of a stress drop, relative to the normal stress (block: force)."""
 
 
@@ -108,7 +108,7 @@ def extreme_tractions(history: History, events: SlipEvents, pulses: Pulses) -> t
 
 
 def _ratios(history: History, columns: dict[str, Floats]) -> dict[str, Floats]:
-    drop, rounding = columns["dynamic_drop"], ROUNDING * history.problem.normal
+    drop, rounding = columns["dynamic_drop"], DROP_ROUNDING * history.problem.normal
     with np.errstate(invalid="ignore", divide="ignore"):
         waves = columns["waves"]
         return {

@@ -67,7 +67,7 @@ TIME = "time"
 
 
 @dataclass(frozen=True, eq=False)
-class Series:
+class KeptCurves:
     """The curves of a solution that are kept, and the sampling times (s). Samples at a shock are right limits."""
 
     curves: tuple[str, ...]
@@ -100,7 +100,7 @@ class Work:
     text: str
     parameters: tuple[ParameterPath, ...]
     quantities: tuple[Summary, ...]
-    series: Series | None = None
+    series: KeptCurves | None = None
     defers: bool = False
 
     @cached_property

@@ -22,7 +22,7 @@ from stickslip.solution.evaluation import CURVES
 from stickslip.sweeps.design.axis import Values
 from stickslip.sweeps.design.design import GRID, Design, read_design
 from stickslip.sweeps.design.quantities import DEFAULT, Wanted, quantities_named
-from stickslip.sweeps.execution.chunk import Series, Work
+from stickslip.sweeps.execution.chunk import KeptCurves, Work
 
 CHUNKS, SMALLEST_CHUNK, LARGEST_CHUNK, LARGEST_BATCH = 64, 16, 4096, 65_536
 """Number of chunks into which a sweep is divided if no chunk size is given, and limits of their size (members).
@@ -109,7 +109,7 @@ def scenario_to_vary(given: Problem | Scenario | str | Path, duration: float | s
     return read_scenario(Scenario(given, DURATION.check("sweep", "duration", duration)).to_toml(), "problem")
 
 
-def read_series(scenario: Scenario, design: Design, curves: Sequence[str], samples: int) -> Series | None:
+def read_series(scenario: Scenario, design: Design, curves: Sequence[str], samples: int) -> KeptCurves | None:
     """Return the series of these curves, or None if there are no curves.
 
     `samples` is the number of times, evenly spaced from 0 s to the longest duration of any member. Raises InputError for an
@@ -126,7 +126,7 @@ def read_series(scenario: Scenario, design: Design, curves: Sequence[str], sampl
     check_whole("sweep: samples", samples, 2, MOST_SAMPLES)
     durations = dict(zip(design.names, design.columns, strict=True)).get("run.duration")
     last = scenario.duration if durations is None else float(durations.max())
-    return Series(tuple(curves), np.linspace(0.0, last, samples))
+    return KeptCurves(tuple(curves), np.linspace(0.0, last, samples))
 
 
 def tile_of(shape: tuple[int, ...], size: int) -> tuple[int, ...]:

@@ -19,7 +19,7 @@ FOLDER = ".checksums"
 """Name of the folder of lists inside a store."""
 LAYOUT = "layout"
 """Name of the list of the files that exist from the start; the other lists have the number of a chunk as their name."""
-LARGEST = 10_000_000
+LARGEST_LIST = 10_000_000
 """Size (bytes) of the largest list that is read."""
 ABSENT = "-"
 """Text in place of the SHA-256 of a file that does not exist."""
@@ -82,7 +82,7 @@ def _checked(store: Path, name: str) -> Iterator[str]:
 def _lines(path: Path) -> list[str]:
     """Return the lines of a list except the last. Raises InputError if the last line is not the checksum of the others."""
     try:
-        content = read_bounded(path, LARGEST)
+        content = read_bounded(path, LARGEST_LIST)
         lines, last = content[:-65], content[-65:]
         if last == hashlib.sha256(lines).hexdigest().encode() + b"\n":
             return lines.decode().splitlines()

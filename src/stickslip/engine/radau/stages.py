@@ -48,22 +48,22 @@ def rate_at_load(run: Run, load: float, guess: float) -> float:
 
     Friction of such a law does not fall with the rate, so the solution is unique.
     """
-    impedance, normal = run.params.impedance, run.params.normal
-    low, high = 0.0, (load + run.params.reference) / impedance
+    damping, normal = run.params.damping, run.params.normal
+    low, high = 0.0, (load + run.params.reference) / damping
     if run.counts.reverses != 0:  # friction at rest is that of the state alone
         contact_at(run, run.state.law_slip, 0.0, run.state.state_now)
-        high = (load - normal * run.value.mu) / impedance
+        high = (load - normal * run.value.mu) / damping
     if high <= 0.0:
         return 0.0
     s = guess if low < guess < high else 0.5 * high
     for _ in range(200):
         contact_at(run, run.state.law_slip, s, run.state.state_now)
-        error = impedance * s + normal * run.value.mu - load
+        error = damping * s + normal * run.value.mu - load
         if error > 0.0:
             high = s
         else:
             low = s
-        step = s - error / (impedance + normal * run.value.by_rate)
+        step = s - error / (damping + normal * run.value.by_rate)
         if not low < step < high:
             step = math.sqrt(low * high) if low > 0.0 else 1e-3 * high
         if abs(step - s) <= 1e-15 * abs(s) or high <= low:
@@ -89,11 +89,11 @@ def assemble(run: Run, h: float, force: float) -> None:
             change += DERIVATIVE[i, j] * v[j]
         contact_at(run, run.state.law_slip + chi * walked, v[i], states_at_point(run, i))
         value = run.value
-        resisted = params.impedance * v[i] + params.normal * value.mu + params.stiffness * h * walked
+        resisted = params.damping * v[i] + params.normal * value.mu + params.stiffness * h * walked
         by_walk = params.stiffness * h + params.normal * value.by_slip * chi
         for j in range(1, POINTS):
             row[j - 1] = mass * DERIVATIVE[i, j] + by_walk * INTEGRAL[i, j] if moving else 0.0
-        row[i - 1] += params.impedance + params.normal * value.by_rate if moving else 1.0
+        row[i - 1] += params.damping + params.normal * value.by_rate if moving else 1.0
         row[size] = evaluate(run.load_along_slip, POINT[i]) - force - resisted - mass * change if moving else 0.0
         for n in range(states):
             assemble_state(run, h, i, n)
@@ -198,7 +198,7 @@ def correct(run: Run, size: int, rounding: float) -> float:
     if rounding > 0.0:
         # run.value is still that of the last stage.
         rounding += NEWTON_ROUNDING * rounding_of_slip(run)
-        moved = max(moved - rounding / abs(run.params.impedance + run.params.normal * run.value.by_rate), 0.0)
+        moved = max(moved - rounding / abs(run.params.damping + run.params.normal * run.value.by_rate), 0.0)
     return max(moved / fastest, evolved)
 
 
@@ -276,7 +276,7 @@ def yielding(run: Run, h: float) -> float:
 
     What is missing of a derivative changes its sign at every point: it adds up over a share 1 / STAGES of the step, at most.
     """
-    resistance = abs(run.params.impedance + run.params.normal * run.value.by_rate) + STAGES * run.params.inertia / h
+    resistance = abs(run.params.damping + run.params.normal * run.value.by_rate) + STAGES * run.params.inertia / h
     return 1.0 / resistance if run.counts.mode != 0 else 0.0
 
 
@@ -297,7 +297,7 @@ def defects(run: Run, h: float, force: float) -> float:
     for i in range(STAGES):
         middle = between(run, i)
         contact_between(run, i, h, 0.0)
-        resisted = params.impedance * middle.rate + params.normal * value.mu + params.stiffness * h * middle.walked
+        resisted = params.damping * middle.rate + params.normal * value.mu + params.stiffness * h * middle.walked
         missing = evaluate(run.load_along_slip, MIDDLE[i]) - force - resisted - params.inertia / h * middle.acceleration
         missed = larger(missed, abs(missing) * yielding(run, h))
         for n in range(run.counts.states):

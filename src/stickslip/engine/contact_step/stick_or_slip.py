@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 from stickslip.engine.codegen.compiler import ahead, kernel
-from stickslip.engine.contact.append_segment import note_jump, record
 from stickslip.engine.contact.contact_equation import (
     SAME_LEVEL,
     TIE,
@@ -16,6 +15,7 @@ from stickslip.engine.contact.contact_equation import (
     rest_limit,
     towards,
 )
+from stickslip.engine.contact.pieces import note_jump, record
 from stickslip.engine.contact.stiffness import turn_states
 from stickslip.engine.series.polynomial import evaluate, fill, restrict, scale
 from stickslip.engine.state import layout as at
@@ -96,7 +96,7 @@ def heal(run: Run, load: float) -> None:
         elif beyond > 0.0:
             run.counts.mode = direction
             if run.counts.has_inertia == 0:
-                note_jump(run, direction * beyond / run.params.impedance, Cause.HEALING)
+                note_jump(run, direction * beyond / run.params.damping, Cause.HEALING)
 
 
 @kernel

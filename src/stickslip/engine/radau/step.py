@@ -10,8 +10,8 @@ import math
 from stickslip.engine.codegen.compiler import ahead, kernel
 from stickslip.engine.contact.contact_equation import TIE, load_ahead
 from stickslip.engine.contact.stiffness import contact_at, hanging_rate, states_at_point, states_in_step, turn_states
-from stickslip.engine.implicit_step.proof import passes_zero, prove_step
-from stickslip.engine.implicit_step.radau_stages import (
+from stickslip.engine.radau.proof import passes_zero, prove_step
+from stickslip.engine.radau.stages import (
     defects,
     larger,
     rate_at_load,
@@ -31,7 +31,7 @@ DOUBLINGS = 2000
 """Largest number of doublings (1) that lead from any rate to any other."""
 LONGEST_GROWTH = 4.0
 """Largest growth (as an exponent, 1) of a disturbance over a step."""
-ROUNDING = 1e-15
+NUMBER_ROUNDING = 1e-15
 """Rounding of a number in double precision (1), relative to its terms."""
 LOAD_ROUNDING = 1e-14
 """Share (1) of the load's coefficients below which a load is zero: rounding where it passes through zero."""
@@ -66,7 +66,7 @@ def growth_rate(run: Run, least: float) -> float:
     """
     params, value = run.params, run.value
     contact_at(run, run.state.law_slip, run.stage_rate[0], states_at_point(run, 0))
-    resistance = params.impedance + params.normal * value.by_rate
+    resistance = params.damping + params.normal * value.by_rate
     if run.counts.states > 1:
         faster = least
         for _ in range(DOUBLINGS):
@@ -140,7 +140,7 @@ def start_of_step(run: Run) -> float:
         run.stage_rate[0] = rate_at_load(run, run.load_along_slip[0], abs(state.rate_now))
         for rate in (0.0, run.stage_rate[0]):
             contact_at(run, state.law_slip, rate, state.state_now)
-            if run.counts.states > 0 and run.params.impedance + run.params.normal * run.value.by_rate <= 0.0:
+            if run.counts.states > 0 and run.params.damping + run.params.normal * run.value.by_rate <= 0.0:
                 run.counts.breach = Stop.OFF_THE_LAW  # several slip rates may balance the load, and nothing selects one
     return force
 
@@ -152,7 +152,7 @@ def strength_ahead(run: Run) -> float:
     Returns by how much it misses the law between the points, or its last terms if they are larger, in units of the tolerance.
     """
     params = run.params
-    largest, missed = ROUNDING / params.tolerance * params.reference + abs(run.load_along_slip[0]), 0.0
+    largest, missed = NUMBER_ROUNDING / params.tolerance * params.reference + abs(run.load_along_slip[0]), 0.0
     for i in range(POINTS):
         contact_at(run, run.state.law_slip, 0.0, states_at_point(run, i))
         run.stage_rate[i] = params.normal * run.value.mu
@@ -180,8 +180,8 @@ def error_of(run: Run, force: float, lost: float) -> float:
     for i in range(POINTS):
         fastest = max(fastest, abs(run.stage_rate[i]))
     # run.value is from the latest evaluation, at or near the end of the step.
-    resistance = params.impedance + params.normal * value.by_rate + params.inertia / h
-    noise = ROUNDING * (size_of_load(run) + rounding_of_slip(run)) / resistance if resistance > 0.0 else 0.0
+    resistance = params.damping + params.normal * value.by_rate + params.inertia / h
+    noise = NUMBER_ROUNDING * (size_of_load(run) + rounding_of_slip(run)) / resistance if resistance > 0.0 else 0.0
     for n in range(run.counts.states):
         settles = value.change_by_state[STATES * n + n]
         run.state_noise[n] += noise * abs(value.change_by_rate[n] / settles) if settles != 0.0 else noise
@@ -198,7 +198,7 @@ def error_of(run: Run, force: float, lost: float) -> float:
         return error
     missed = prove_step(run, h, force)
     if run.counts.mode == 0:
-        noise, fastest = ROUNDING * params.reference / params.tolerance, params.reference + abs(run.load_along_slip[0])
+        noise, fastest = NUMBER_ROUNDING * params.reference / params.tolerance, params.reference + abs(run.load_along_slip[0])
     proven = larger(0.0, UNPROVEN * missed / (params.tolerance * fastest + noise + lost))
     for n in range(run.counts.states):
         allowed = params.tolerance * farthest_state(run, n) + run.state_noise[n]
@@ -237,7 +237,7 @@ def settle_start(run: Run) -> bool:
     for k in range(1, POINTS):
         if run.jet[k] >= 0.0:
             return True
-        if run.jet[k] < -ROUNDING * TO_POWERS_SUM[k] * fastest:
+        if run.jet[k] < -NUMBER_ROUNDING * TO_POWERS_SUM[k] * fastest:
             return False
         run.jet[k] = 0.0
     return True
@@ -282,7 +282,7 @@ def turn_with_bristles(run: Run, left: float) -> None:
     load_ahead(run, left * LITTLE)
     held = run.params.normal * run.value.mu
     force, later = run.load_along_slip[0] - held, total(run.load_along_slip) - held
-    rounding = LOAD_ROUNDING * size_of_load(run) + run.state.hanging * run.params.impedance
+    rounding = LOAD_ROUNDING * size_of_load(run) + run.state.hanging * run.params.damping
     if run.counts.has_inertia == 1:
         rounding = max(run.params.tolerance * abs(held), BALANCED * abs(later))
         if abs(force) <= rounding:

@@ -20,7 +20,7 @@ from stickslip.engine.codegen.compiler import ahead, call_radii, kernel
 from stickslip.engine.codegen.records import numbers_of
 from stickslip.engine.contact.contact_equation import constants_of
 from stickslip.engine.contact.stiffness import contact_at
-from stickslip.engine.implicit_step.radau_stages import WIDTH, yielding, yielding_of_state
+from stickslip.engine.radau.stages import WIDTH, yielding, yielding_of_state
 from stickslip.engine.series.polynomial import RECIPROCAL, integral, restrict
 from stickslip.engine.series.radau_nodes import POINT, STAGES
 from stickslip.engine.state.layout import TERMS, Floats
@@ -101,7 +101,7 @@ def prove_step(run: Run, h: float, force: float) -> float:
         ball.at_state[n], run.state_error[n] = state[0], math.inf
     contact_at(run, law_slip, at_rate, ball.at_state)
     if slips:
-        missing = load[0] - force - params.impedance * rate[0] - params.normal * value.mu - params.stiffness * walked
+        missing = load[0] - force - params.damping * rate[0] - params.normal * value.mu - params.stiffness * walked
         missing -= params.inertia / h * rate[1]
     else:
         missing = rate[0] - params.normal * value.mu
@@ -115,7 +115,7 @@ def prove_step(run: Run, h: float, force: float) -> float:
             ball.state[n] = size_on_disc(state_from_middle(run, n), radius)
         call_radii(run.law[piece].balls_at, constants_of(run, piece), run.jet, numbers_of(ball))
         if slips:
-            moved = size_on_disc(load, radius) + params.impedance * ball.rate + params.stiffness * ball.slip
+            moved = size_on_disc(load, radius) + params.damping * ball.rate + params.stiffness * ball.slip
             moved += params.inertia / h * slope_on_disc(rate, radius)
             least = min(least, AT_STAGES[disc] * (abs(missing) + params.normal * ball.friction + moved))
         else:
