@@ -21,6 +21,7 @@ from stickslip.engine.codegen.uncompiled import UNCOMPILED
 from stickslip.engine.state.layout import Floats
 from stickslip.engine_input.branch_table import folds_move, is_algebraic
 from stickslip.engine_input.lumping_limits import LARGEST_SHARE, check_shortest_event
+from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import nearest
 from stickslip.foundation.quantities import Quantity, quantities_of
 from stickslip.problem.problem import Problem
@@ -168,7 +169,8 @@ def are_fine(scenario: Scenario, values: Values) -> Booleans:
 def driven_rigidly(body: ElasticSlab) -> Booleans:
     """Return True for the slabs whose driver reflects everything with the opposite sign (reflection coefficient r = -1)."""
     driver = np.asarray(body.driver_impedance)
-    return np.isinf(driver) | (body.impedance - driver == -(body.impedance + driver))
+    with np.errstate(invalid="ignore"):  # inf / inf
+        return np.isinf(driver) | ((body.impedance - driver) / (body.impedance + driver) == RIGID)
 
 
 def groups(scenario: Scenario, values: Values) -> Iterator[tuple[int, Places, dict[str, Floats]]]:

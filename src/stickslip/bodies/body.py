@@ -11,7 +11,7 @@ from stickslip.foundation.errors import InputError
 
 
 class Body(Protocol):
-    """A body that slides on the contact. Its loads are stresses (Pa) on a slab and forces (N) on a block.
+    """What every body that slides on a contact has, whoever solves its motion. Its loads are stresses (Pa) or forces (N).
 
     Units below are those of a slab; for a block read N for Pa, and kg for kg/m^2.
     """
@@ -24,8 +24,6 @@ class Body(Protocol):
     """Unit of loads and tractions."""
     energy_unit: ClassVar[str]
     """Unit of energies, in the form that files store."""
-    has_waves: ClassVar[bool]
-    """True if slip sends waves into the body, which come back as load one round trip later; False if the body is rigid."""
 
     @property
     def normal_load(self) -> float:
@@ -57,6 +55,16 @@ class Body(Protocol):
         """True if a mass slips with the contact, so that its slip rate cannot jump."""
         ...
 
+
+class BodyOnCharacteristics(Body, Protocol):
+    """What the exact solver needs beyond that: how slip acts on the contact again, after a round trip, along characteristics.
+
+    Units are those of `Body`.
+    """
+
+    has_waves: ClassVar[bool]
+    """True if slip sends waves into the body, which come back as load one round trip later; False if the body is rigid."""
+
     @property
     def driver_impedance(self) -> float:
         """The impedance of the driver (Pa s/m), inf for a driver that prescribes its displacement."""
@@ -78,7 +86,7 @@ class Body(Protocol):
         ...
 
 
-def as_slab(body: Body, refusal: str = "needs an elastic slab") -> ElasticSlab:
+def as_slab(body: BodyOnCharacteristics, refusal: str = "needs an elastic slab") -> ElasticSlab:
     """Return a body that must be a slab.
 
     Parameters
@@ -103,7 +111,7 @@ def as_slab(body: Body, refusal: str = "needs an elastic slab") -> ElasticSlab:
     return body
 
 
-def as_block(body: Body) -> SpringBlock:
+def as_block(body: BodyOnCharacteristics) -> SpringBlock:
     """Return a body that must be a block; raise InputError for any other body."""
     if not isinstance(body, SpringBlock):
         raise InputError("needs a spring-block")

@@ -12,6 +12,7 @@ import numpy as np
 from stickslip.bodies.spring_block import SpringBlock
 from stickslip.foundation.arguments import CheckedArguments
 from stickslip.foundation.brief_repr import brief_repr
+from stickslip.foundation.constants import RIGID
 from stickslip.foundation.conversion import Number, OptionalNumber
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import check_fields, quantity
@@ -128,13 +129,13 @@ class ElasticSlab(CheckedArguments):
         It is -1 for a rigid driver, 0 for a matched half-space and +1 for a dead load.
         """
         if np.all(np.isinf(self.driver_impedance)):
-            return -1.0
+            return RIGID
         return (self.impedance - self.driver_impedance) / (self.impedance + self.driver_impedance)
 
     @cached_property
     def is_driven_rigidly(self) -> bool:
         """True if the driver reflects the whole wave with its sign reversed, r = -1."""
-        return bool(np.all(self.reflection == -1.0))
+        return bool(np.all(self.reflection == RIGID))
 
     @property
     def stiffness(self) -> float:

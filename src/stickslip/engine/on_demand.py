@@ -16,6 +16,7 @@ from stickslip.engine.state.layout import Counts, EnginePart, Integers, Params, 
 from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.echo_queue import build_queue, end_trip, next_echo
 from stickslip.engine.waves.varying_forcing import take_loading, trips_withstood
+from stickslip.foundation.constants import RIGID
 
 
 @kernel
@@ -96,5 +97,5 @@ def lend_parts_of_batch(memory: Integers, params: Params, counts: Counts) -> Non
     Run(memory).implicit_steps = _at_hand.get(EnginePart.IMPLICIT_STEPS, 0)
     if counts.has_inertia == 1 or counts.states > 0:
         lend_part(memory, EnginePart.IMPLICIT_STEPS)
-    if params.reflection == -1.0 and counts.is_block == 0:
+    if params.reflection == RIGID and counts.is_block == 0:
         lend_part(memory, EnginePart.ECHO_QUEUE)

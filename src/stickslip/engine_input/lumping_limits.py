@@ -12,7 +12,7 @@ sign. No computation can follow that for long, and the events that are lumped th
 
 from __future__ import annotations
 
-from stickslip.bodies import Body
+from stickslip.bodies import BodyOnCharacteristics
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 
@@ -55,6 +55,6 @@ def lumps_by_itself(problem: Problem) -> bool:
     )
 
 
-def automatic_length(body: Body) -> float:
+def automatic_length(body: BodyOnCharacteristics) -> float:
     """Return the shortest event (s) of automatic lumping."""
     return AUTOMATIC_SHARE * body.round_trip_time

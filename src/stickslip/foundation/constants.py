@@ -2,3 +2,5 @@
 
 YEAR = 31_557_600.0
 """Length of the Julian year, in s."""
+RIGID, DEAD_LOAD = -1.0, 1.0
+"""Reflection coefficients (1) of a driver that prescribes its displacement and of one that prescribes its traction."""

@@ -20,6 +20,7 @@ from stickslip.engine.state.layout import Branch, Cause, Counts, HistoryPiece, I
 from stickslip.engine.state.workspace import WORK_ROWS, counts_in
 from stickslip.engine_input.branch_table import STORM_OF, folds_move, has_levels_to_set, table_of_branches
 from stickslip.engine_input.prepare import prepare
+from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import InputError
 from stickslip.solution.solution import Solution
 from stickslip.trajectory.checkpoint import Checkpoint
@@ -194,7 +195,7 @@ def _faults_of_places(count: Counts, setup: Setup, pieces: int, leaps: int) -> I
         yield "engine_count previous_from", count.previous_from > count.previous_to
     else:
         yield "engine_count new_from", not 1 <= count.new_from <= length
-        echoes = setup.params.reflection == -1.0 and count.is_block == count.states == count.varies == 0
+        echoes = setup.params.reflection == RIGID and count.is_block == count.states == count.varies == 0
         yield "engine_count sparse", not (echoes and count.sticks == 1)
     yield "engine_count echo_of", not -1 <= count.echo_of < length
     yield "engine_count piece", not 0 <= count.piece < len(setup.law)

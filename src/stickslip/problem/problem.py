@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.bodies import BODIES, Body
+from stickslip.bodies import BODIES, BodyOnCharacteristics
 from stickslip.foundation.arguments import CheckedArguments, check_type, is_number, shown
 from stickslip.foundation.brief_repr import brief_repr, fields_in, shown_fields
 from stickslip.foundation.conversion import Converted, Number, OptionalNumber, WithUnit
@@ -100,7 +100,7 @@ class Problem(CheckedArguments):
     linear in x, from the initial rate, or rest, at the contact to the pull rate at 0 s at the driver.
     """
 
-    body: Body
+    body: BodyOnCharacteristics
     friction: Converted[FrictionLaw, FrictionLaw | Callable[..., Any] | str] = _required()  # noqa: RUF009 - makes a field
     pull_rate: Converted[float | LoadingHistory, float | str | WithUnit | LoadingHistory] = quantity(
         "m/s", "rate V at which the driver is pulled", default=0.0

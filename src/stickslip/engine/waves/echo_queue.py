@@ -19,6 +19,7 @@ from stickslip.engine.contact.contact_equation import rest_limit
 from stickslip.engine.series.polynomial import copy, fill, maximum, mean_of, restrict
 from stickslip.engine.state.layout import NEVER, TERMS, EchoNode, HistoryPiece, Integers
 from stickslip.engine.state.workspace import Run, borrow
+from stickslip.foundation.constants import RIGID
 
 NOTHING = -1
 """Index of no piece and of an empty tree."""
@@ -275,7 +276,7 @@ def worth_building(run: Run) -> bool:
     The round trip must have been at rest, or almost so if it had many pieces. The body must be a slab with a rigid driver, the
     loading steady, the law one that knows rest and has no state variable, and no pause for leaps over creep may be due.
     """
-    if run.params.reflection != -1.0 or run.counts.is_block == 1 or run.counts.states > 0:
+    if run.params.reflection != RIGID or run.counts.is_block == 1 or run.counts.states > 0:
         return False
     if run.counts.sticks == 0 or run.counts.varies == 1 or run.counts.pause_at != NEVER:
         return False

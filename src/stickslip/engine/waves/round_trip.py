@@ -11,6 +11,7 @@ from stickslip.engine.state.layout import NEVER, EnginePart, Stop, Task
 from stickslip.engine.state.workspace import Run
 from stickslip.engine.waves.echo_queue import worth_building
 from stickslip.engine.waves.varying_forcing import has_faded
+from stickslip.foundation.constants import DEAD_LOAD, RIGID
 
 
 @kernel
@@ -42,7 +43,7 @@ def is_ramp(run: Run) -> bool:
     """Return True if each of the next round trips at rest has the load of the one before it plus the ramp."""
     if run.counts.is_block == 1:
         return True
-    if run.params.reflection == -1.0:
+    if run.params.reflection == RIGID:
         return True
     return has_faded(run)
 
@@ -50,7 +51,9 @@ def is_ramp(run: Run) -> bool:
 @kernel
 def swings_for_ever(run: Run) -> bool:
     """Return True if a contact at rest has seen every load to come: under a dead load every second round trip is the same."""
-    return run.counts.varies == 0 and run.params.reflection == 1.0 and run.params.ramp == 0.0 and run.counts.trips_at_rest >= 2
+    return (
+        run.counts.varies == 0 and run.params.reflection == DEAD_LOAD and run.params.ramp == 0.0 and run.counts.trips_at_rest >= 2
+    )
 
 
 @kernel

@@ -15,6 +15,7 @@ from stickslip.engine.contact.pieces import xi_at
 from stickslip.engine.series.polynomial import RECIPROCAL, copy, maximum, restrict, total
 from stickslip.engine.state.layout import NEVER, TERMS, Cause
 from stickslip.engine.state.workspace import Run
+from stickslip.foundation.constants import RIGID
 
 AT_EDGE = 1e-13
 """Distance, as a share of a round trip (1), within which a break of the loading lies on the edge of a piece: it is rounding."""
@@ -83,7 +84,7 @@ def add_loading(run: Run) -> None:
         pull_block(run)
     elif row > 0.0 or run.state.phase_from >= 0.5 * run.params.round_trip_time:
         leaped = 0.0
-        if row > 0.0 and run.params.reflection == -1.0:
+        if row > 0.0 and run.params.reflection == RIGID:
             leaped = row - 1.0 - run.history[run.counts.echo_of].trip
         if leaped > 0.0:
             add_inflow(run, leaped, row - 0.5 * (leaped + 1.0), run.counts.trip_segment)
@@ -183,7 +184,7 @@ def trips_withstood(run: Run, limit: float) -> int:
     following = segment + 1
     room = run.loading[following].trip - run.counts.trip - 1.0 if following < run.segments else float(NEVER)
     is_dead = run.loading[segment].slope == 0.0 and run.params.tone == 0.0
-    if run.counts.is_block == 0 and run.params.reflection != -1.0:
+    if run.counts.is_block == 0 and run.params.reflection != RIGID:
         return int(max(room, 0.0)) if is_dead and has_faded(run) else 0
     if is_dead and run.loading[segment].value == 0.0:
         return int(max(room, 0.0))
