@@ -7,9 +7,11 @@ allows. A block is integrated by DOP853, whose steps are halved until friction i
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.integrate import DOP853
 from scipy.optimize import brentq
 
@@ -22,7 +24,8 @@ SHORTEST = 3e-15
 """Length of a piece (m) that is not halved any more."""
 FINEST = 1e-9
 """Length of a piece (m) that is not halved any more for the sake of its integral: rounding of v decides there."""
-MOST_PIECES, MOST_STEPS = 40_000, 1500
+MOST_PIECES, MOST_STEPS, AHEAD = 40_000, 6000, 48
+"""Limits; and the number of steps of a block that are looked at together."""
 DISTURBANCE, DECIDED = 1e-12, 1e-8
 """An answer is left out where a load changed by DISTURBANCE of the normal load changes it by more than DECIDED of itself."""
 POINTS, WEIGHTS = np.polynomial.legendre.leggauss(16)
@@ -165,37 +168,57 @@ def _of_block(one: Composed, excess: float) -> Answer:
     rest = float(law(0.0, 0.0))
 
     def right(t: float, y: Floats) -> list[float]:
-        return [y[1], (excess - BLOCK.stiffness * y[0] - normal * (float(law(y[0], y[1])) - rest)) / BLOCK.mass]
+        slip, rate = y.tolist()
+        return [rate, (excess - BLOCK.stiffness * slip - normal * (law.at(slip, rate) - rest)) / BLOCK.mass]
 
-    y = np.zeros(2)
-    t = 0.0
-    solver = DOP853(right, t, y, one.duration, rtol=1e-12, atol=1e-15, first_step=1e-9)
-    for _ in range(MOST_STEPS):
-        solver.step()
-        if solver.status == "failed":
-            raise UndecidedError("stiff")
-        dense = solver.dense_output()
-        times = np.linspace(t, solver.t, 9)
-        if not _is_narrow(law, dense(times)):
-            if solver.t - t < 1e-13:
-                raise UndecidedError("steep")
-            solver = DOP853(right, t, y, one.duration, rtol=1e-12, atol=1e-15, first_step=0.4 * (solver.t - t))
-            continue
-        if solver.y[1] <= 0.0 and t > 0.0:
-            end = float(brentq(lambda x, d=dense: float(d(x)[1]), t, solver.t, xtol=1e-16, rtol=1e-15))  # type: ignore[misc]
-            return Answer(float(dense(end)[0]), end)
-        t, y = float(solver.t), solver.y.copy()
-        if solver.status == "finished":
+    t, y, longest, taken = 0.0, np.zeros(2), np.inf, 0
+    while taken < MOST_STEPS:
+        ahead = _ahead(DOP853(right, t, y, one.duration, longest, rtol=1e-12, atol=1e-15, first_step=min(1e-9, longest)), t)
+        narrow = _are_narrow(law, np.array([step.dense(np.linspace(step.begin, step.end, 9)) for step in ahead]))
+        for step, is_narrow in zip(ahead, narrow, strict=True):
+            if not is_narrow:
+                longest = 0.4 * (step.end - step.begin)
+                break
+            if step.rate <= 0.0 and step.begin > 0.0:
+                end = float(brentq(lambda x, d=step.dense: float(d(x)[1]), step.begin, step.end, xtol=1e-16, rtol=1e-15))  # type: ignore[misc]
+                return Answer(float(step.dense(end)[0]), end)
+            t, y, taken = step.end, step.dense(step.end), taken + 1
+        else:
+            longest *= 8.0
+        if t >= one.duration:
             return Answer(float(y[0]), None)
+        if longest < 1e-13:
+            raise UndecidedError("steep")
     raise UndecidedError("too many steps")
 
 
-def _is_narrow(law: Law, path: Floats) -> bool:
-    """Return True if friction is enclosed to NARROW in eight boxes around a step; `path` has a row of slips and one of rates."""
-    boxes = []
-    for row in path:
-        low, high = np.minimum(row[:-1], row[1:]), np.maximum(row[:-1], row[1:])
-        spare = 0.1 * (high - low)
-        boxes.append(Interval(np.maximum(low - spare, 0.0), np.maximum(high + spare, 0.0)))
-    mu = law.over(boxes[0], boxes[1])
-    return bool(((mu.high - mu.low) <= NARROW).all())
+class _Step(NamedTuple):
+    """A step of the integration: its ends (s), the slip rate at its end (m/s), and slip and slip rate along it."""
+
+    begin: float
+    end: float
+    rate: float
+    dense: Callable[[Any], Floats]
+
+
+def _ahead(solver: DOP853, begin: float) -> list[_Step]:
+    """Take a few steps, which are looked at together."""
+    found: list[_Step] = []
+    while len(found) < AHEAD and solver.status == "running":
+        solver.step()
+        if solver.status == "failed":
+            raise UndecidedError("stiff")
+        found.append(_Step(begin, float(solver.t), float(solver.y[1]), solver.dense_output()))
+        begin = float(solver.t)
+        if found[-1].rate <= 0.0:
+            break
+    return found
+
+
+def _are_narrow(law: Law, path: Floats) -> NDArray[np.bool_]:
+    """Return where friction is enclosed to NARROW in eight boxes around a step; `path` has shape (steps, 2, 9)."""
+    low, high = np.minimum(path[..., :-1], path[..., 1:]), np.maximum(path[..., :-1], path[..., 1:])
+    spare = 0.1 * (high - low)
+    low, high = np.maximum(low - spare, 0.0), np.maximum(high + spare, 0.0)
+    mu = law.over(Interval(low[:, 0], high[:, 0]), Interval(low[:, 1], high[:, 1]))
+    return ((mu.high - mu.low) <= NARROW).all(axis=1)

@@ -5,6 +5,7 @@ Shares no code with the package, whose answers are compared with what is found b
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -200,11 +201,19 @@ class Law:
     def __init__(self, text: str) -> None:
         self._code = compile(text, "law", "eval")
         self._numbers = {name: getattr(np, name) for name in FUNCTIONS} | {"pi": np.pi}
+        self._plain = {name: getattr(math, "asinh" if name == "arcsinh" else name) for name in FUNCTIONS} | {"pi": np.pi}
         self._boxes: dict[str, Any] = {name: _of_anything(rule) for name, rule in FUNCTIONS.items()} | {"pi": np.pi}
 
     def __call__(self, u: Any, v: Any) -> Any:
         """The coefficient of friction at slips (m) and slip rates (m/s)."""
         return eval(self._code, self._numbers, {"u": u, "v": v})
+
+    def at(self, u: float, v: float) -> float:
+        """The coefficient of friction at one slip (m) and slip rate (m/s), several times faster."""
+        try:
+            return float(eval(self._code, self._plain, {"u": u, "v": v}))
+        except (ArithmeticError, ValueError):  # where numpy has an infinity or no number
+            return float(self(np.float64(u), np.float64(v)))
 
     def over(self, u: Interval, v: Interval) -> Interval:
         """An enclosure of the coefficient over boxes: the plain one, or that of the mean value theorem where it is tighter."""

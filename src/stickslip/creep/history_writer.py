@@ -37,8 +37,8 @@ class HistoryWriter:
     state: State  # where the leap begins
     count: Counts
 
-    def write_way(self, n: int, row: int, averaged: AveragedCreep, plan: Plan, last_slip: float) -> int:
-        """Write the averaged slip from `row` on, as cubics from state to state, up to `last_slip` (m).
+    def write_way(self, n: int, trip: int, averaged: AveragedCreep, plan: Plan, last_slip: float) -> int:
+        """Write the averaged slip from `trip` on, as cubics from state to state, up to `last_slip` (m).
 
         Load and traction are means over a round trip, so that their work and heat are those of the round trips that the pieces
         replace. Returns the next free piece.
@@ -51,9 +51,9 @@ class HistoryWriter:
             load[:4] = -unload * grown
             load[0] += whole / width + averaged.gain * (t0 / self.round_trip_time - 0.5) - unload * x0
             load[1] += averaged.gain * (t1 - t0) / self.round_trip_time
-            self._write(n, row, Piece(True, t0, t1 - t0, 0.0, x0, load + averaged.impedance * rate, rate))
+            self._write(n, trip, Piece(True, t0, t1 - t0, 0.0, x0, load + averaged.impedance * rate, rate))
             n += 1
-        self.store.phase_to[n - 1] += np.spacing((row + plan.trips) * self.round_trip_time)  # no gap before the next row
+        self.store.phase_to[n - 1] += np.spacing((trip + plan.trips) * self.round_trip_time)  # no gap before the next round trip
         return n
 
     def _nodes(self, plan: Plan, last_slip: float) -> list[tuple[float, float, float]]:
@@ -69,17 +69,17 @@ class HistoryWriter:
             (plan.trips * self.round_trip_time, last_slip, (last.rate - 0.5 * last.bend) / self.round_trip_time),
         ]
 
-    def write_landing(self, n: int, row: int, pieces: list[Piece]) -> None:
+    def write_landing(self, n: int, trip: int, pieces: list[Piece]) -> None:
         """Write the round trip on which the leap lands, from piece n on."""
         for k, piece in enumerate(pieces):
-            self._write(n + k, row, piece)
+            self._write(n + k, trip, piece)
             self.store.phase_to[n + k] = pieces[k + 1].phase_from if k + 1 < len(pieces) else self.round_trip_time
 
-    def _write(self, n: int, row: int, piece: Piece) -> None:
+    def _write(self, n: int, trip: int, piece: Piece) -> None:
         store, state = self.store, self.state
         slip, law_slip = state.slip_now + self.direction * piece.slip, state.law_slip + self.sign * piece.slip
         kept = HistoryPiece(store.pieces[n])
-        kept.trip, kept.mode, kept.law_piece = row, self.direction * piece.slips, self.count.piece
+        kept.trip, kept.mode, kept.law_piece = trip, self.direction * piece.slips, self.count.piece
         kept.jump, kept.cause, kept.echo_of = 0, 0, -1
         kept.phase_from, kept.phase_to, kept.speed, kept.bend = piece.phase_from, piece.phase_to, piece.speed, piece.bend
         kept.slip, kept.law_slip, kept.amplified, kept.gain = slip, law_slip, np.nan, np.nan

@@ -51,30 +51,30 @@ class Inflow:
         frequency = self.tone.frequency
         return np.asarray(straight + 2.0 / frequency * np.sin(0.5 * frequency * (high - low)) * self._swing(middle))
 
-    def gathered(self, row: Floats, offset: Floats, rows: Floats) -> Floats:
-        """Return the growth of a load at rest over the given number of whole rows, in which nothing but the tone changes.
+    def gathered(self, trip: Floats, offset: Floats, trips: Floats) -> Floats:
+        """Return the growth of a load at rest over the given number of whole round trips, in which nothing but the tone changes.
 
-        On a slab it is the sum of F over these rows: their number times the mean of F, with Dirichlet's kernel for the tone.
+        On a slab it is the sum of F over these round trips: their number times the mean of F, with Dirichlet's kernel for the tone.
         """
-        time = row * self.round_trip_time + offset
+        time = trip * self.round_trip_time + offset
         if self.is_block:
-            return self.total(time, time + rows * self.round_trip_time)
+            return self.total(time, time + trips * self.round_trip_time)
         if not self.is_rigid:
-            return np.zeros(len(rows))
-        n = self.segment((row + 1.0) * self.round_trip_time)
-        middle = time + 0.5 * (rows + 1.0) * self.round_trip_time
-        straight = rows * (self.value[n] + self.slope[n] * (middle - self.start[n]))
+            return np.zeros(len(trips))
+        n = self.segment((trip + 1.0) * self.round_trip_time)
+        middle = time + 0.5 * (trips + 1.0) * self.round_trip_time
+        straight = trips * (self.value[n] + self.slope[n] * (middle - self.start[n]))
         if self.tone is SILENT:
             return np.asarray(straight)
-        return np.asarray(straight + self._summed(rows) * self._swing(middle))
+        return np.asarray(straight + self._summed(trips) * self._swing(middle))
 
     def breaks(self) -> list[tuple[int, float]]:
-        """Return the rows and offsets (s) at which segments begin; an edge between rows is offset 0 of the later one."""
-        rows = np.floor(self.start / self.round_trip_time)
-        offsets = self.start - rows * self.round_trip_time
+        """Return the round trips and offsets (s) at which segments begin; an edge between two is offset 0 of the later one."""
+        trips = np.floor(self.start / self.round_trip_time)
+        offsets = self.start - trips * self.round_trip_time
         late, early = offsets > (1.0 - EDGE) * self.round_trip_time, offsets < EDGE * self.round_trip_time
         offsets[late | early] = 0.0
-        return list(zip((rows + late).astype(int).tolist(), offsets.tolist(), strict=True))
+        return list(zip((trips + late).astype(int).tolist(), offsets.tolist(), strict=True))
 
     def edges(self, low: float, high: float) -> Floats:
         """Return the times (s) between two others at which segments arrive or a tone has turned by about 1 rad."""
@@ -92,16 +92,16 @@ class Inflow:
         since = time - self.start[n]
         return np.asarray(whole[n] + since * (self.value[n] + 0.5 * self.slope[n] * since))
 
-    def _summed(self, rows: Floats) -> Floats:
-        """Return the sum of the tone over the given number of rows, divided by the tone at their mean time."""
-        return np.array([dirichlet(count, self.tone.frequency * self.round_trip_time) for count in rows.tolist()])
+    def _summed(self, trips: Floats) -> Floats:
+        """Return the sum of the tone over the given number of round trips, divided by the tone at their mean time."""
+        return np.array([dirichlet(count, self.tone.frequency * self.round_trip_time) for count in trips.tolist()])
 
     def _swing(self, time: Floats) -> Floats:
         return np.asarray(self.tone.amplitude * np.sin(self.tone.frequency * time + self.tone.phase))
 
 
 EDGE = 1e-13
-"""Distance from the edge of a row, as a share of it, within which a break lies on the edge."""
+"""Distance from the edge of a round trip, as a share of it, within which a break lies on the edge."""
 
 
 def wave_before(problem: Problem) -> Any:

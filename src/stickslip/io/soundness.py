@@ -26,8 +26,8 @@ from stickslip.solution.solution import Solution
 from stickslip.trajectory.checkpoint import Checkpoint
 from stickslip.trajectory.history import History
 
-ROW_ROUNDING = 1e-9
-"""Share of the length of a row by which rounding may carry an offset beyond its end; also the tolerance of xi around 0 and 1."""
+ROUND_TRIP_ROUNDING = 1e-9
+"""Share of a round trip by which rounding may carry an offset beyond its end; also the tolerance of xi around 0 and 1."""
 LAST_CAUSE = Cause.HEALING
 """Largest code for the cause of a shock."""
 FINITE = ("phase_from", "phase_to", "speed", "bend", "slip", "law_slip", "load", "rate")
@@ -50,7 +50,7 @@ NOT_NEGATIVE = (
     "lumped_since",
     "rough",
 )
-"""Counts of rows or steps, from 0 to NEVER."""
+"""Counts of round trips or steps, from 0 to NEVER."""
 FREE = ("last_step", "fold_rate", "amplified", "gain", "target", "unbalanced", "rounded", "roughest", "exit")
 """Numbers of the state that may be infinite or NaN."""
 Fault = tuple[str, Any]
@@ -127,8 +127,8 @@ def _is(array: NDArray[Any], shape: tuple[int, ...], kind: str) -> bool:
 
 
 def _faults_of_history(history: History) -> Iterator[Fault]:
-    store, pieces, row = history.store, len(history), history.problem.round_trip_time
-    yield "round_trip_time", not math.isclose(history.round_trip_time, row, rel_tol=1e-9)
+    store, pieces, round_trip = history.store, len(history), history.problem.round_trip_time
+    yield "round_trip_time", not math.isclose(history.round_trip_time, round_trip, rel_tol=1e-9)
     yield "ramp or reached", not (math.isfinite(history.ramp) and math.isfinite(history.duration) and history.duration >= 0.0)
     yield "row of a piece", (store.trip < 0).any() or (np.diff(store.trip) < 0).any() or store.trip[-1] >= at.NEVER
     yield "mode of a piece", _outside(store.mode, -1, 1)
@@ -136,7 +136,8 @@ def _faults_of_history(history: History) -> Iterator[Fault]:
     yield "jump of a piece", _outside(store.jump, 0, 1)
     yield "cause of a piece", _outside(store.cause, 0, LAST_CAUSE)
     yield "echo of a piece", (store.echo_of < -1).any() or (store.echo_of >= np.arange(pieces)).any()
-    yield "times of a piece", _no_interval(store.phase_from, store.phase_to, math.inf)  # a leap over creep may span many rows
+    # a leap over creep may span many round trips
+    yield "times of a piece", _no_interval(store.phase_from, store.phase_to, math.inf)
     numbers = (*(getattr(store, name) for name in FINITE), store.state, history.creep)
     yield "numbers of a piece, which are not finite,", not all(np.isfinite(table).all() for table in numbers)
 
@@ -145,9 +146,9 @@ def _outside(values: NDArray[Any], low: float, high: float) -> bool:
     return bool(((values < low) | (values > high)).any())
 
 
-def _no_interval(begin: Any, end: Any, row: float) -> bool:
-    """Return True unless each interval of offsets (s) lies in a row of length `row` and does not end before it begins."""
-    return not bool(np.all((begin >= 0.0) & (begin <= end) & (end <= row * (1.0 + ROW_ROUNDING))))
+def _no_interval(begin: Any, end: Any, round_trip: float) -> bool:
+    """Return True unless each interval of offsets (s) lies in a round trip (s) and does not end before it begins."""
+    return not bool(np.all((begin >= 0.0) & (begin <= end) & (end <= round_trip * (1.0 + ROUND_TRIP_ROUNDING))))
 
 
 def check_checkpoint(solution: Solution, path: Path) -> None:
@@ -205,11 +206,11 @@ def _faults_of_places(count: Counts, setup: Setup, pieces: int, leaps: int) -> I
 
 
 def _faults_of_codes(count: Counts, fresh: Counts) -> Iterator[Fault]:
-    """Yield a check of each number that the engine uses as a code, a flag or a number of rows."""
+    """Yield a check of each number that the engine uses as a code, a flag or a number of round trips."""
     yield "engine_count: what follows from the problem", (_places(count, *SAME) != _places(fresh, *SAME)).any()
     yield "engine_count: a flag", _outside(_places(count, *FLAGS), 0, 1)
     yield "engine_count: a direction", _outside(_places(count, *SIGNS), -1, 1)
-    yield "engine_count: a number of rows or steps", _outside(_places(count, *NOT_NEGATIVE), 0, at.NEVER)
+    yield "engine_count: a number of round trips or steps", _outside(_places(count, *NOT_NEGATIVE), 0, at.NEVER)
     yield "engine_count trips_at_rest", not -1 <= count.trips_at_rest <= at.NEVER
     yield "engine_count creep_in or LUMP_ABOVE", _outside(_places(count, "creep_in", "lump_above"), -at.NEVER, at.NEVER)
     yield "engine_count: a cause", _outside(_places(count, "cause", "arriving"), 0, LAST_CAUSE)
@@ -220,14 +221,14 @@ def _faults_of_codes(count: Counts, fresh: Counts) -> Iterator[Fault]:
 
 
 def _faults_of_state(checkpoint: Checkpoint, history: History) -> Iterator[Fault]:
-    state, row = State(checkpoint.state), history.round_trip_time
+    state, round_trip = State(checkpoint.state), history.round_trip_time
     finite = _places(state, *(name for name in State.places if name not in FREE))
     yield "engine_state: a number that is not finite", not np.isfinite(finite).all()
-    yield "engine_state xi", not -ROW_ROUNDING <= state.xi <= 1.0 + ROW_ROUNDING
-    yield "engine_state: times", _no_interval(state.phase_from, state.phase_to, row)
+    yield "engine_state xi", not -ROUND_TRIP_ROUNDING <= state.xi <= 1.0 + ROUND_TRIP_ROUNDING
+    yield "engine_state: times", _no_interval(state.phase_from, state.phase_to, round_trip)
     yield "engine_state last_step", not state.last_step > 0.0
-    rows = history.store.trip[: checkpoint.length]
-    yield "engine_count trip, before the end of the history,", bool((rows[-1:] > Counts(checkpoint.count).trip).any())
+    trips = history.store.trip[: checkpoint.length]
+    yield "engine_count trip, before the end of the history,", bool((trips[-1:] > Counts(checkpoint.count).trip).any())
 
 
 def _faults_of_branch(checkpoint: Checkpoint, setup: Setup, solution: Solution) -> Iterator[Fault]:

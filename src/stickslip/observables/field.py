@@ -135,7 +135,7 @@ class WaveInterval:
         middle = 0.5 * (breaks + np.append(breaks[1:], self.high))
         at = self.history.find(middle, "right")
         another = np.append(True, (np.diff(at.piece) != 0) | (np.diff(at.leaped) != 0.0))
-        if any(self.history.is_averaged(row) for row in np.unique(self.history.store.trip[at.piece])):
+        if any(self.history.is_averaged(trip) for trip in np.unique(self.history.store.trip[at.piece])):
             raise InputError("the field is not known here: the waves in the slab left the contact in a leap over creep")
         self.start: Floats = breaks[another]
         """Times (s) from which on another piece of the history holds, or the same one a number of whole round trips later."""
@@ -154,7 +154,7 @@ class WaveInterval:
         phases = np.unique(np.concatenate([[0.0], store.phase_from[:known], store.phase_to[:known]]))
         epoch = history.epoch
         first, last = (epoch.trip + int((time + epoch.offset) // history.round_trip_time) for time in (low, high))
-        times = np.concatenate([history.seconds(np.full(len(phases), row), phases) for row in range(first, last + 1)])
+        times = np.concatenate([history.seconds(np.full(len(phases), trip), phases) for trip in range(first, last + 1)])
         return np.unique(times[(times > low) & (times < high)])
 
     def leaving(self, time: Floats, side: Side) -> Floats:

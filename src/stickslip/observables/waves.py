@@ -133,42 +133,42 @@ class Waves:
             return self._before(-self.half, end.offset - self.round).integral(self.power)
         total = self._before(-self.half, 0.0).integral(self.power)
         if self.history.problem.varies:
-            return total + self._row_by_row(end.trip) + self._in_row(end.trip, 0.0, end.offset).integral(self.power)
+            return total + self._trip_by_trip(end.trip) + self._in_trip(end.trip, 0.0, end.offset).integral(self.power)
         total += float(self._passed[int(np.searchsorted(self.history.store.trip, end.trip, side="right"))])
         piece, low, high = self.standing(end.trip)
         total += float(self._work_of(piece, low, high, end.trip - self.history.store.trip[piece]).sum())
-        return total + self._in_row(end.trip, 0.0, end.offset).integral(self.power)
+        return total + self._in_trip(end.trip, 0.0, end.offset).integral(self.power)
 
-    def _row_by_row(self, past: int) -> float:
-        """Return the work of all waves that left the contact before a row, for a loading that varies.
+    def _trip_by_trip(self, past: int) -> float:
+        """Return the work of all waves that left the contact before a round trip, for a loading that varies.
 
-        The echoes of rows at rest then differ by more than a ramp, and the sum in closed form over them does not hold.
+        The echoes of round trips at rest then differ by more than a ramp, and the sum in closed form over them does not hold.
         """
-        rows = np.unique(self.history.store.trip)
-        rows, of_rows = rows[rows < past], self._of_rows
-        last = int(rows[-1]) if len(rows) else -1
-        return float(of_rows[len(rows)]) + self._at_rest(last + 1, past)
+        trips = np.unique(self.history.store.trip)
+        trips, of_trips = trips[trips < past], self._of_trips
+        last = int(trips[-1]) if len(trips) else -1
+        return float(of_trips[len(trips)]) + self._at_rest(last + 1, past)
 
     @cached_property
-    def _of_rows(self) -> Floats:
-        """The work of all waves that left before the end of each stored row, after a 0 for the start."""
-        rows = np.unique(self.history.store.trip)
-        own = [self._in_row(int(row), 0.0, self.round).integral(self.power) for row in rows]
-        rest = [self._at_rest(int(row) + 1, int(following)) for row, following in pairwise(rows)]
+    def _of_trips(self) -> Floats:
+        """The work of all waves that left before the end of each stored round trip, after a 0 for the start."""
+        trips = np.unique(self.history.store.trip)
+        own = [self._in_trip(int(trip), 0.0, self.round).integral(self.power) for trip in trips]
+        rest = [self._at_rest(int(trip) + 1, int(following)) for trip, following in pairwise(trips)]
         return np.cumsum([0.0, *(sum(both) for both in zip(own, [0.0, *rest], strict=True))])
 
     def _at_rest(self, first: int, past: int) -> float:
-        """Return the work of the waves that left in whole rows that were leaped over.
+        """Return the work of the waves that left in whole round trips that were leaped over.
 
         The contact dissipates nothing in them, so the work of a rigid driver is the growth of the energy that the slab stores.
         """
         if past <= first:
             return 0.0
         if self.body.is_driven_rigidly:
-            last = self._in_row(past - 1, self.half, self.round).integral(self.power)
+            last = self._in_trip(past - 1, self.half, self.round).integral(self.power)
             return self.stored(Epoch(past, 0.0)) - self.stored(Epoch(first, self.half)) + last
-        # all these rows are alike, but the waves of the last one may meet another loading at the driver
-        one, last = (self._in_row(row, 0.0, self.round).integral(self.power) for row in (first, past - 1))
+        # all these round trips are alike, but the waves of the last one may meet another loading at the driver
+        one, last = (self._in_trip(trip, 0.0, self.round).integral(self.power) for trip in (first, past - 1))
         return (past - first - 1) * one + last
 
     def work_between(self, first: Epoch, last: Epoch) -> float:
@@ -185,21 +185,21 @@ class Waves:
         echo = np.flatnonzero(store.echo_of >= 0)
         source, work = store.echo_of[echo], np.zeros(len(store.trip))
         work[echo] = self._work_of(source, store.phase_from[echo], store.phase_to[echo], store.trip[echo] - store.trip[source])
-        for row, trips in self.history.creep[:, :2]:  # averages have the same work as the round trips that they replace
-            way, landing = (np.searchsorted(store.trip, when) for when in (row, row + trips))
+        for trip, trips in self.history.creep[:, :2]:  # averages have the same work as the round trips that they replace
+            way, landing = (np.searchsorted(store.trip, when) for when in (trip, trip + trips))
             own = np.arange(way, landing)
             work[landing] = self._work_of(own, store.phase_from[own], store.phase_to[own], np.ones(len(own), np.int64)).sum()
-            before = self.history.standing(int(row) - 1)
-            work[way] = self._work_of(*before, row - store.trip[before[0]]).sum()
+            before = self.history.standing(int(trip) - 1)
+            work[way] = self._work_of(*before, trip - store.trip[before[0]]).sum()
         return np.append(0.0, np.cumsum(work))
 
-    def _work_of(self, piece: NDArray[np.intp], low: Floats, high: Floats, rows: NDArray[np.int64]) -> Floats:
-        """Return the work of parts of pieces between two offsets (s) and of their echoes, over `rows` round trips in all."""
-        come = rows > 0
-        piece, low, high, rows = piece[come], low[come], high[come], rows[come]
+    def _work_of(self, piece: NDArray[np.intp], low: Floats, high: Floats, trips: NDArray[np.int64]) -> Floats:
+        """Return the work of parts of pieces between two offsets (s) and of their echoes, over `trips` round trips in all."""
+        come = trips > 0
+        piece, low, high, trips = piece[come], low[come], high[come], trips[come]
         part = piece, *self._places(piece, low, high)
         once, growth = (over(self.history, *part, self._of(density)) for density in (self.power, self.power_growth))
-        return rows * once + growth * rows * (rows - 1.0) / 2.0
+        return trips * once + growth * trips * (trips - 1.0) / 2.0
 
     def _places(self, piece: NDArray[np.intp], low: Floats, high: Floats) -> tuple[Floats, Floats]:
         """Return the places (xi) in pieces of two offsets (s)."""
@@ -207,12 +207,12 @@ class Waves:
         first, last = (history.xi(piece, np.maximum(offset - start, 0.0)) for offset in (low, high))
         return first, np.where(high >= end, 1.0, last)
 
-    def standing(self, row: int) -> tuple[NDArray[np.intp], Floats, Floats]:
-        """Return `History.standing`. Raises InputError for a row in a leap over creep, which holds averages."""
-        last = int(np.searchsorted(self.history.store.trip, row, side="right")) - 1
+    def standing(self, trip: int) -> tuple[NDArray[np.intp], Floats, Floats]:
+        """Return `History.standing`. Raises InputError for one in a leap over creep, which holds averages."""
+        last = int(np.searchsorted(self.history.store.trip, trip, side="right")) - 1
         if self.history.is_averaged(int(self.history.store.trip[last])):
-            raise InputError(f"the waves of round trip {row} are not known: they left the contact in a leap over creep")
-        return self.history.standing(row)
+            raise InputError(f"the waves of round trip {trip} are not known: they left the contact in a leap over creep")
+        return self.history.standing(trip)
 
     # ---- integrals ----------------------------------------------------------------------------------------------------------
 
@@ -263,32 +263,32 @@ class Waves:
         """Return the waves that left between two times relative to `now` (s, not positive)."""
         begun = self.begun(now)
         return Sampled.joined(
-            [self._before(begun + low, min(begun + high, 0.0), begun), *self._in_rows(now, max(low, -begun), high)]
+            [self._before(begun + low, min(begun + high, 0.0), begun), *self._in_trips(now, max(low, -begun), high)]
         )
 
-    def _in_rows(self, now: Epoch, low: float, high: float) -> Iterator[Sampled]:
-        """Yield the waves that left in each row between two times relative to `now` (s, not positive), in the run."""
-        first_row, last_row = (now.trip + int((now.offset + time) // self.round) for time in (low, high))
-        for row in range(max(first_row, 0), last_row + 1):
-            start = (row - now.trip) * self.round - now.offset
+    def _in_trips(self, now: Epoch, low: float, high: float) -> Iterator[Sampled]:
+        """Yield the waves that left in each round trip between two times relative to `now` (s, not positive), in the run."""
+        first_trip, last_trip = (now.trip + int((now.offset + time) // self.round) for time in (low, high))
+        for trip in range(max(first_trip, 0), last_trip + 1):
+            start = (trip - now.trip) * self.round - now.offset
             begin, end = max(low - start, 0.0), min(high - start, self.round)
             if end > begin:
-                yield self._in_row(row, begin, end, now)
+                yield self._in_trip(trip, begin, end, now)
 
-    def _in_row(self, row: int, low: float, high: float, since: Epoch = START) -> Sampled:
-        """Return the waves that left between the offsets low and high (s) of a row. Their times count from an epoch."""
-        piece, begin, end = self.standing(row)
+    def _in_trip(self, trip: int, low: float, high: float, since: Epoch = START) -> Sampled:
+        """Return the waves that left between the offsets low and high (s) of a round trip. Their times count from an epoch."""
+        piece, begin, end = self.standing(trip)
         inside = (end > low) & (begin < high)
         piece, begin, end = piece[inside], np.maximum(begin[inside], low), np.minimum(end[inside], high)
         if self.history.problem.varies:
-            piece, begin, end = self._cut(piece, begin, end, row)
-        leaped = (row - self.history.store.trip[piece]).astype(float)
+            piece, begin, end = self._cut(piece, begin, end, trip)
+        leaped = (trip - self.history.store.trip[piece]).astype(float)
         at, weights = places_in(self.history, piece, *self._places(piece, begin, end), leaped)
         return Sampled(self.leaving(at), self._time(at, since), weights.ravel())
 
-    def _cut(self, piece: NDArray[np.intp], begin: Floats, end: Floats, row: int) -> tuple[NDArray[np.intp], Floats, Floats]:
-        """Cut pieces (offsets in a row, s) into parts whose echo meets the same segment of the loading throughout."""
-        breaks = np.array([offset for other, offset in self.inflow.breaks() if other == row + 1])
+    def _cut(self, piece: NDArray[np.intp], begin: Floats, end: Floats, trip: int) -> tuple[NDArray[np.intp], Floats, Floats]:
+        """Cut pieces (offsets in a round trip, s) into parts whose echo meets the same segment of the loading throughout."""
+        breaks = np.array([offset for other, offset in self.inflow.breaks() if other == trip + 1])
         edges = np.unique(np.concatenate([begin, breaks[(breaks > begin[:1]) & (breaks < end[-1:])] if len(piece) else breaks[:0]]))
         which = np.searchsorted(begin, edges, side="right") - 1
         return piece[which], edges, np.minimum(np.append(edges[1:], end[-1:]), end[which])

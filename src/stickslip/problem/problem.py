@@ -29,13 +29,13 @@ from stickslip.problem.start import INITIAL_STATES, STEADY, Start, check_rate, s
 MAY_VARY = ("pull_rate", "far_stress")
 """Fields of a problem that may be a loading history instead of a number."""
 DAY = 86_400.0
-"""A day, s: the length of a row of the history of a block that never sticks."""
+"""A day, s: what is called a round trip of a block that never sticks."""
 A_HISTORY = "; what varies in time is one of stickslip.loading, such as Steps([0.0, 10.0], [1e-6, 1e-5])"
 """Hint for a value that is no number."""
 LOAD = "Pa or N"
 """Unit of a load: Pa on a slab, N on a block."""
-LONGEST_ROW = 1e6
-"""Largest number of periods of a block in one row of its history (1)."""
+LONGEST_ROUND_TRIP = 1e6
+"""Largest number of periods of a block (1) in what is called its round trip."""
 
 
 def _required() -> Any:
@@ -259,18 +259,18 @@ class Problem(CheckedArguments):
 
     @property
     def round_trip_time(self) -> float:
-        """The length of a row of the history, s: the slab's two-way travel time, or the block's period of free oscillation.
+        """The length of a round trip of the history, s: the slab's two-way travel time, or the block's period of free oscillation.
 
-        A block that never sticks may creep for years without a rest to leap over, so its row lasts a day. It is no longer than the
-        period of a tone in its loading, nor than LONGEST_ROW of its own periods, because times in a longer row would not resolve
-        them; but it never is shorter than one period of the block.
+        A block that never sticks may creep for years without a rest to leap over, so its round trip lasts a day. It is no longer
+        than the period of a tone in its loading, nor than LONGEST_ROUND_TRIP of its own periods, because times in a longer one
+        would not resolve them; but it never is shorter than one period of the block.
         """
         period = self.body.round_trip_time
         if self.body.has_waves or self.friction.sticks:
             return period
         tone = self.pull_rate.tone if isinstance(self.pull_rate, LoadingHistory) else SILENT
         swing = 2.0 * math.pi / tone.frequency if tone.amplitude != 0.0 else math.inf
-        return max(period, min(DAY, LONGEST_ROW * period, swing))
+        return max(period, min(DAY, LONGEST_ROUND_TRIP * period, swing))
 
     @property
     def parameters(self) -> Parameters:

@@ -1,7 +1,6 @@
 """A run in progress, called a session: the arrays on which the compiled engine works, and what is done with them between its calls.
 
-A piece of history is an interval on which load and slip rate are polynomials. A row is a round trip of a slab or a period of a
-block.
+A piece of history is an interval on which load and slip rate are polynomials. A block's round trip is a period of its oscillation.
 """
 
 from __future__ import annotations
@@ -138,9 +137,9 @@ class Session:
 
     def history(self) -> History:
         """Return the history so far, without the leaps over creep."""
-        kept, row = at.trimmed(self.store, self.length), self.problem.round_trip_time
-        reached = float(kept.trip[-1] * row + kept.phase_to[-1]) if len(kept.pieces) else 0.0
-        return History(kept, self.problem, row, float(self.setup.params.ramp), reached)
+        kept, round_trip = at.trimmed(self.store, self.length), self.problem.round_trip_time
+        reached = float(kept.trip[-1] * round_trip + kept.phase_to[-1]) if len(kept.pieces) else 0.0
+        return History(kept, self.problem, round_trip, float(self.setup.params.ramp), reached)
 
     def solution(self, code: int) -> Solution:
         """Return the solution computed so far, with the status that belongs to this code."""
@@ -266,22 +265,23 @@ class Session:
         self._rebuild_queue()
 
 
-def check_round_trips(duration: float, row: float, where: str) -> None:
-    """Refuse a run of more than 2^53 round trips of `row` seconds, which cannot be counted exactly. Raises InputError."""
-    if not duration <= MOST_ROUND_TRIPS * row:
+def check_round_trips(duration: float, round_trip: float, where: str) -> None:
+    """Refuse a run of more than 2^53 round trips of `round_trip` seconds, which cannot be counted exactly. Raises InputError."""
+    if not duration <= MOST_ROUND_TRIPS * round_trip:
         raise InputError(
-            f"{where}: duration must be at most {MOST_ROUND_TRIPS * row:.3g} s, 2^53 round trips of {row:.3g} s, got {duration:g} s"
+            f"{where}: duration must be at most {MOST_ROUND_TRIPS * round_trip:.3g} s, 2^53 round trips of {round_trip:.3g} s, "
+            f"got {duration:g} s"
         )
 
 
-def split_time(time: float, row: float) -> tuple[int, float]:
-    """Return a positive time (s) as (whole rows, offset in (0, row]). Raises InputError for too many rows.
+def split_time(time: float, round_trip: float) -> tuple[int, float]:
+    """Return a positive time (s) as (whole round trips, offset in (0, round trip]). Raises InputError for too many round trips.
 
-    A row is a round trip of a slab or a period of a block; `row` is its length, s.
+    A block's round trip is a period; `round_trip` is its length, s.
     """
-    check_round_trips(time, row, "run")
-    rows = math.floor(time / row)
-    offset = time - rows * row
-    if offset <= 0.0 and rows > 0:
-        return rows - 1, row
-    return rows, min(offset, row)
+    check_round_trips(time, round_trip, "run")
+    trips = math.floor(time / round_trip)
+    offset = time - trips * round_trip
+    if offset <= 0.0 and trips > 0:
+        return trips - 1, round_trip
+    return trips, min(offset, round_trip)

@@ -43,14 +43,14 @@ def add_up(values: Floats, past: Integers, sums: Floats) -> None:
 
 
 class Epoch(NamedTuple):
-    """A moment without rounding: whole rows (round trips of a slab, periods of a block) since t = 0, and an offset in s."""
+    """A moment without rounding: whole round trips (a block's are periods) since t = 0, and an offset in s."""
 
     trip: int
     offset: float
 
 
 OFFSET_ROUNDING = 1e-13
-"""Rounding of the offsets of consecutive pieces, relative to the length of a row."""
+"""Rounding of the offsets of consecutive pieces, relative to the length of a round trip."""
 
 BLOCK = 1024
 """Number of pieces that are integrated together: it keeps the memory bounded, and the data in the cache."""
@@ -66,7 +66,7 @@ NO_LEAPS = np.empty((0, 4))
 class Positions:
     """Times located in the history: each lies in a piece, at a place xi in it, or in a rest over which nothing was recorded.
 
-    At rest the load is an echo of `piece`: `leaped` is the number of whole rows since then (0 within a recorded piece), and
+    At rest the load is an echo of `piece`: `leaped` is the number of whole round trips since then (0 within a recorded piece), and
     `last` is the last piece before the position.
     """
 
@@ -121,9 +121,9 @@ class History:
         """Return the same history with its times counted from another epoch."""
         return replace(self, epoch=epoch)
 
-    def seconds(self, row: Integers | Floats, offset: Floats) -> Floats:
-        """Return the times (s since the epoch) of offsets (s) in whole rows."""
-        return np.asarray((row - self.epoch.trip) * self.round_trip_time + (offset - self.epoch.offset))
+    def seconds(self, trip: Integers | Floats, offset: Floats) -> Floats:
+        """Return the times (s since the epoch) of offsets (s) in whole round trips."""
+        return np.asarray((trip - self.epoch.trip) * self.round_trip_time + (offset - self.epoch.offset))
 
     @cached_property
     def start(self) -> Floats:
@@ -149,9 +149,9 @@ class History:
     def __len__(self) -> int:
         return len(self.store.pieces)
 
-    def is_averaged(self, row: int) -> bool:
-        """Return True if a stored row is a leap over creep, whose pieces are averages over round trips."""
-        return bool((self.creep[:, 0] == row).any())
+    def is_averaged(self, trip: int) -> bool:
+        """Return True if a stored round trip is a leap over creep, whose pieces are averages over round trips."""
+        return bool((self.creep[:, 0] == trip).any())
 
     def find(self, time: Floats, side: Side) -> Positions:
         """Locate times (s, one-dimensional) in the history; `side` picks the piece at a boundary.
@@ -175,18 +175,18 @@ class History:
 
     def _find_echoes(self, found: Positions, n: NDArray[np.intp], time: Floats, side: Side) -> None:
         """Set the piece whose echo is the load, for those times (s) that lie in a rest: entries n of `found`."""
-        row = (self.store.trip[found.last[n]] - self.epoch.trip).astype(float)
-        rows = row + np.floor((time + self.epoch.offset - row * self.round_trip_time) / self.round_trip_time)
-        phase = time + self.epoch.offset - rows * self.round_trip_time
+        trip = (self.store.trip[found.last[n]] - self.epoch.trip).astype(float)
+        trips = trip + np.floor((time + self.epoch.offset - trip * self.round_trip_time) / self.round_trip_time)
+        phase = time + self.epoch.offset - trips * self.round_trip_time
         if side == "left":
-            rows, phase = np.where(phase <= 0.0, rows - 1.0, rows), np.where(phase <= 0.0, self.round_trip_time, phase)
-        self._set_echoes(found, n, rows + self.epoch.trip, phase, side)
+            trips, phase = np.where(phase <= 0.0, trips - 1.0, trips), np.where(phase <= 0.0, self.round_trip_time, phase)
+        self._set_echoes(found, n, trips + self.epoch.trip, phase, side)
 
-    def _set_echoes(self, found: Positions, n: NDArray[np.intp], row: Floats, phase: Floats, side: Side) -> None:
+    def _set_echoes(self, found: Positions, n: NDArray[np.intp], trip: Floats, phase: Floats, side: Side) -> None:
         piece = self.phases.latest(phase, found.last[n], side)
         known = piece >= 0
-        n, piece, row, phase = n[known], piece[known], row[known], phase[known]
-        found.piece[n], found.leaped[n] = piece, row - self.store.trip[piece]
+        n, piece, trip, phase = n[known], piece[known], trip[known], phase[known]
+        found.piece[n], found.leaped[n] = piece, trip - self.store.trip[piece]
         found.xi[n] = self.xi(piece, phase - self.store.phase_from[piece])
 
     def just_before(self, piece: Integers) -> Positions:
@@ -195,9 +195,9 @@ class History:
         found = Positions(last.copy(), np.where(piece > 0, 1.0, 0.0), np.zeros(len(piece)), piece == 0, last)
         n = np.flatnonzero(self.rests[last] & (piece > 0))
         if n.size:
-            row, phase = self.store.trip[piece[n]].astype(float), self.store.phase_from[piece[n]]
+            trip, phase = self.store.trip[piece[n]].astype(float), self.store.phase_from[piece[n]]
             at_edge = phase == 0.0
-            self._set_echoes(found, n, row - at_edge, np.where(at_edge, self.round_trip_time, phase), "left")
+            self._set_echoes(found, n, trip - at_edge, np.where(at_edge, self.round_trip_time, phase), "left")
         return found
 
     @cached_property
@@ -205,12 +205,12 @@ class History:
         """The index of the pieces by phase."""
         return Phases.of(self.store, self.round_trip_time)
 
-    def standing(self, row: int) -> tuple[NDArray[np.intp], Floats, Floats]:
-        """Return the pieces whose waves are in the body at the end of a row.
+    def standing(self, trip: int) -> tuple[NDArray[np.intp], Floats, Floats]:
+        """Return the pieces whose waves are in the body at the end of a round trip.
 
-        The pieces are in order of phase; the other arrays hold the offsets (s) in the row from which and up to which each holds.
+        The pieces are in order of phase; the other arrays hold the offsets (s) from which and up to which each holds.
         """
-        first, past = (int(np.searchsorted(self.store.trip, row, side=side)) for side in ("left", "right"))
+        first, past = (int(np.searchsorted(self.store.trip, trip, side=side)) for side in ("left", "right"))
         own = np.arange(first, past)
         low, high = self.store.phase_from[own], self.store.phase_to[own]
         if len(own) and low[0] == 0.0 and high[-1] == self.round_trip_time and not self.rests[own[:-1]].any():
@@ -239,23 +239,23 @@ class History:
     @cached_property
     def rests(self) -> NDArray[np.bool_]:
         """True for each piece after which the contact rests, unrecorded, until the next piece or the end of the run."""
-        row, start, end = self.store.trip, self.store.phase_from, self.store.phase_to
-        follows = np.diff(row) * self.round_trip_time + (start[1:] - end[:-1])
-        last = row[-1:] * self.round_trip_time + end[-1:]
+        trip, start, end = self.store.trip, self.store.phase_from, self.store.phase_to
+        follows = np.diff(trip) * self.round_trip_time + (start[1:] - end[:-1])
+        last = trip[-1:] * self.round_trip_time + end[-1:]
         return np.append(follows, self.duration - last) > OFFSET_ROUNDING * np.append(
             np.full(len(follows), self.round_trip_time), last
         )
 
     def placed(self, at: Positions) -> tuple[Integers, Floats]:
-        """Return the rows and offsets (s) of positions."""
+        """Return the round trips and offsets (s) of positions."""
         store, piece, xi = self.store, at.piece, at.xi
         inside = store.phase_from[piece] + xi * (store.speed[piece] + xi * store.bend[piece])
         return store.trip[piece] + at.leaped.astype(np.int64), np.where(xi == 1.0, store.phase_to[piece], inside)
 
     def lasting(self, begin: Positions, end: Positions) -> Floats:
         """Return the time between pairs of positions (s), without the rounding of either."""
-        (row, offset), (later_row, later_offset) = self.placed(begin), self.placed(end)
-        return np.asarray((later_row - row) * self.round_trip_time + (later_offset - offset))
+        (trip, offset), (later_trip, later_offset) = self.placed(begin), self.placed(end)
+        return np.asarray((later_trip - trip) * self.round_trip_time + (later_offset - offset))
 
     def xi(self, piece: NDArray[np.intp], local: Floats) -> Floats:
         """Return the place xi in [0, 1] of a time `local` s after the start of a piece."""
@@ -275,7 +275,7 @@ class History:
         return np.where(at.before, self.problem.excess, value + self._gained(at))
 
     def _gained(self, at: Positions) -> Floats:
-        """Return the growth of the load over the rows at rest since it was recorded."""
+        """Return the growth of the load over the round trips at rest since it was recorded."""
         if not self.problem.varies or not at.at_rest.any():
             return at.leaped * self.ramp
         offset = self.store.phase_from[at.piece] + at.xi * (self.store.speed[at.piece] + at.xi * self.store.bend[at.piece])

@@ -96,9 +96,9 @@ class Phases:
 
     @classmethod
     def of(cls, store: Store, round_trip_time: float) -> Self:
-        """Index the pieces of a history whose rows last `round_trip_time` (s).
+        """Index the pieces of a history whose round trips last `round_trip_time` (s).
 
-        Leaps over creep are longer than a row; they are averages, not waves in the body, and are left out.
+        Leaps over creep are longer than a round trip; they are averages, not waves in the body, and are left out.
         """
         stands = store.phase_to <= round_trip_time
         edges = np.unique(np.concatenate([store.phase_from[stands], store.phase_to[stands]]))

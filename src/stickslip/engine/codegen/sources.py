@@ -23,6 +23,7 @@ COMPILED_FOLDERS = ("engine", "batch/kernels")
 """Folders of the package whose files all enter the hash, because they hold compiled functions."""
 COMPILED_FILES = (
     "engine_input/branch_table.py",
+    "foundation/constants.py",
     "friction/formula/expression.py",
     "trajectory/history.py",
     "trajectory/phase_index.py",

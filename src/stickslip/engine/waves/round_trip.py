@@ -34,8 +34,8 @@ def trips_certain_at_rest(run: Run, limit: float) -> int:
     if ramp == 0.0:
         return NEVER
     room = limit - top if ramp > 0.0 else limit - (bottom - 2.0 * params.reference)
-    rows = math.floor(room / abs(ramp)) - 1.0
-    return min(max(int(rows), 0), NEVER) if rows < 9e18 else NEVER
+    trips = math.floor(room / abs(ramp)) - 1.0
+    return min(max(int(trips), 0), NEVER) if trips < 9e18 else NEVER
 
 
 @kernel

@@ -79,31 +79,31 @@ def cut(run: Run, begin: float, end: float, phase: float, phase_to: float) -> No
 @kernel
 def add_loading(run: Run) -> None:
     """Add to the piece of load what the driver has sent since the load that it comes from was recorded."""
-    row = float(run.counts.trip)
+    trip = float(run.counts.trip)
     if run.counts.is_block == 1:
         pull_block(run)
-    elif row > 0.0 or run.state.phase_from >= 0.5 * run.params.round_trip_time:
+    elif trip > 0.0 or run.state.phase_from >= 0.5 * run.params.round_trip_time:
         leaped = 0.0
-        if row > 0.0 and run.params.reflection == RIGID:
-            leaped = row - 1.0 - run.history[run.counts.echo_of].trip
+        if trip > 0.0 and run.params.reflection == RIGID:
+            leaped = trip - 1.0 - run.history[run.counts.echo_of].trip
         if leaped > 0.0:
-            add_inflow(run, leaped, row - 0.5 * (leaped + 1.0), run.counts.trip_segment)
-        add_inflow(run, 1.0, row, run.counts.segment)
+            add_inflow(run, leaped, trip - 0.5 * (leaped + 1.0), run.counts.trip_segment)
+        add_inflow(run, 1.0, trip, run.counts.segment)
 
 
 @kernel
-def add_inflow(run: Run, rows: float, mean_row: float, segment: int) -> None:
-    """Add to a slab's load the inflow of `rows` round trips, with the mean index `mean_row`, at the phases of the piece of load."""
-    since = (mean_row - run.loading[segment].trip) * run.params.round_trip_time + (
+def add_inflow(run: Run, trips: float, mean_trip: float, segment: int) -> None:
+    """Add to a slab's load the inflow of `trips` round trips, of mean index `mean_trip`, at the phases of the piece of load."""
+    since = (mean_trip - run.loading[segment].trip) * run.params.round_trip_time + (
         run.state.phase_from - run.loading[segment].offset
     )
-    slope = rows * run.loading[segment].slope
-    run.load[0] += rows * run.loading[segment].value + slope * since
+    slope = trips * run.loading[segment].slope
+    run.load[0] += trips * run.loading[segment].value + slope * since
     run.load[1] += slope * run.state.speed
     run.load[2] += slope * run.state.bend
     if run.params.tone != 0.0:
-        weight = dirichlet(rows, run.params.tone_frequency * run.params.round_trip_time)
-        tone_series(run, weight * run.params.tone, mean_row * run.params.round_trip_time + run.state.phase_from)
+        weight = dirichlet(trips, run.params.tone_frequency * run.params.round_trip_time)
+        tone_series(run, weight * run.params.tone, mean_trip * run.params.round_trip_time + run.state.phase_from)
         for k in range(TERMS):
             run.load[k] += run.spare[k]
 
@@ -141,9 +141,9 @@ def pull_block(run: Run) -> None:
     n = run.counts.length - 1
     if n >= 0:
         run.load[0] = total(run.history[n].load)
-        rows = float(run.counts.trip - run.history[n].trip - 1)
-        if rows > 0.0:
-            run.load[0] += pulled_in_rows(run, rows)
+        trips = float(run.counts.trip - run.history[n].trip - 1)
+        if trips > 0.0:
+            run.load[0] += pulled_in_trips(run, trips)
     segment, pace = run.counts.segment, run.state.speed
     since = (run.counts.trip - run.loading[segment].trip) * run.params.round_trip_time
     since += run.state.phase_from - run.loading[segment].offset
@@ -157,11 +157,11 @@ def pull_block(run: Run) -> None:
 
 
 @kernel
-def pulled_in_rows(run: Run, rows: float) -> float:
+def pulled_in_trips(run: Run, trips: float) -> float:
     """Return the force (N) that the pull adds to a block's spring in a number of round trips at rest before this one."""
-    segment, lasting = run.counts.trip_segment, rows * run.params.round_trip_time
-    middle = (run.counts.trip - 0.5 * rows) * run.params.round_trip_time
-    since = (run.counts.trip - 0.5 * rows - run.loading[segment].trip) * run.params.round_trip_time - run.loading[segment].offset
+    segment, lasting = run.counts.trip_segment, trips * run.params.round_trip_time
+    middle = (run.counts.trip - 0.5 * trips) * run.params.round_trip_time
+    since = (run.counts.trip - 0.5 * trips - run.loading[segment].trip) * run.params.round_trip_time - run.loading[segment].offset
     gained = lasting * (run.loading[segment].value + run.loading[segment].slope * since)
     if run.params.tone != 0.0:
         frequency = run.params.tone_frequency
@@ -223,22 +223,22 @@ def tops(run: Run, sign: float) -> float:
 
 
 @kernel
-def withstands(run: Run, rows: float, top: float, bottom: float) -> bool:
-    """Return True if the load is certain to grow by less than `top` and fall by less than `bottom` (Pa or N) in the next rows."""
-    return growth_bound(run, rows, 1.0) < top and growth_bound(run, rows, -1.0) < bottom
+def withstands(run: Run, trips: float, top: float, bottom: float) -> bool:
+    """Return True if the load will certainly grow by less than `top` and fall by less than `bottom` (Pa or N) in the next ones."""
+    return growth_bound(run, trips, 1.0) < top and growth_bound(run, trips, -1.0) < bottom
 
 
 @kernel
-def growth_bound(run: Run, rows: float, sign: float) -> float:
-    """Return a bound (Pa or N) on the growth of sign * load at rest over the next rows, up to the given number of them."""
+def growth_bound(run: Run, trips: float, sign: float) -> float:
+    """Return a bound (Pa or N) on the growth of sign * load at rest over the next round trips, up to the given number of them."""
     segment, period, frequency = run.counts.segment, run.params.round_trip_time, run.params.tone_frequency
     begin = run.counts.trip * period
-    end = begin + (rows + 2.0) * period
+    end = begin + (trips + 2.0) * period
     since = (run.counts.trip - run.loading[segment].trip) * period - run.loading[segment].offset
     value, slope = sign * run.loading[segment].value, sign * run.loading[segment].slope
-    largest = max(value + slope * since, value + slope * (since + (rows + 2.0) * period), 0.0)
+    largest = max(value + slope * since, value + slope * (since + (trips + 2.0) * period), 0.0)
     is_block = run.counts.is_block == 1
-    lasting = rows * period if is_block else rows
+    lasting = trips * period if is_block else trips
     bound = lasting * largest
     if run.params.tone != 0.0:
         amplitude, phase = sign * run.params.tone, run.params.tone_phase

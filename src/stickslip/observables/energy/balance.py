@@ -138,7 +138,7 @@ def trapped_note(history: History) -> str:
 
 def epochs(history: History, at: Positions) -> list[Epoch]:
     """Return positions as epochs, without rounding."""
-    return [Epoch(int(row), float(offset)) for row, offset in zip(*history.placed(at), strict=True)]
+    return [Epoch(int(trip), float(offset)) for trip, offset in zip(*history.placed(at), strict=True)]
 
 
 def energies(history: History, at: Positions, nodes: int = FULL) -> dict[str, Floats]:
@@ -192,8 +192,8 @@ def _pulling(history: History) -> Integrand:
     problem = history.problem
 
     def power(at: Positions) -> Floats:
-        row, offset = history.placed(at)
-        rate = problem.pull_rate_at(row * history.round_trip_time + offset)
+        trip, offset = history.placed(at)
+        rate = problem.pull_rate_at(trip * history.round_trip_time + offset)
         return np.asarray(rate * (problem.strength + history.excess(at)))
 
     return power
@@ -201,8 +201,8 @@ def _pulling(history: History) -> Integrand:
 
 def _at_rest(history: History, at: Positions) -> Floats:
     """Return the work of the block's driver up to each position in rests that were not recorded, J: the spring has stored it."""
-    row = history.store.trip
-    before = np.flatnonzero(np.diff(row) > 1)  # the last pieces before leaps
+    trip = history.store.trip
+    before = np.flatnonzero(np.diff(trip) > 1)  # the last pieces before leaps
     force, left = (history.excess(Positions.inside(*place)) for place in ((before, 1.0), (before + 1, 0.0)))
     whole = np.append(0.0, np.cumsum(_stretching(history, force, left)))
     last = history.excess(Positions.inside(at.last, 1.0))
@@ -250,14 +250,14 @@ class _BothWaves:
     def __init__(self, waves: Waves, now: Epoch) -> None:
         self.waves, self.begun = waves, waves.begun(now)
         low = max(-waves.round, -self.begun)
-        rows = range(max(now.trip + int((now.offset + low) // waves.round), 0), now.trip + 1)
-        standing = [waves.standing(row) for row in rows]
+        trips = range(max(now.trip + int((now.offset + low) // waves.round), 0), now.trip + 1)
+        standing = [waves.standing(trip) for trip in trips]
         piece, begin, end = (np.concatenate(parts) for parts in zip(*standing, strict=True))
-        row = np.repeat(rows, [len(pieces) for pieces, _, _ in standing])
-        start, store = (row - now.trip) * waves.round - now.offset, waves.history.store
+        trip = np.repeat(trips, [len(pieces) for pieces, _, _ in standing])
+        start, store = (trip - now.trip) * waves.round - now.offset, waves.history.store
         inside = (start + end > low) & (start + begin < 0.0)
         self.piece, self.start = piece[inside], (start + begin)[inside]
-        self.origin, self.leaped = (start + store.phase_from[piece])[inside], (row - store.trip[piece]).astype(float)[inside]
+        self.origin, self.leaped = (start + store.phase_from[piece])[inside], (trip - store.trip[piece]).astype(float)[inside]
 
     def kinetic(self) -> float:
         """Return the kinetic energy, J/m^2."""
