@@ -13,7 +13,7 @@ from stickslip.foundation.arguments import is_number, shown
 from stickslip.foundation.errors import InputError, InputWarning, nearest
 from stickslip.foundation.formatting import html_table, text_table
 from stickslip.friction.custom.measured import Points
-from stickslip.friction.custom.penalised_spline import Basis
+from stickslip.friction.custom.penalised_spline import PenalisedSpline
 from stickslip.friction.custom.table import FromTable
 from stickslip.friction.noise import SMALLEST, reversals
 
@@ -29,6 +29,8 @@ DIGITS = 12
 """Number of decimals of the law, so that rounding makes no reversals."""
 FINEST = 1025
 """Largest number of points by which the law follows the smooth curve."""
+FINE = 4 * (FINEST - 1) + 1
+"""Number of points at which the smooth curve is compared with the law."""
 FOLLOWS = 0.01
 """Largest distance between the law and the smooth curve, as a share of the residual."""
 
@@ -65,7 +67,7 @@ class Smooth:
     scale: str
     monotone: bool
     reversals: tuple[int, int]
-    _basis: Basis
+    _spline: PenalisedSpline
     _axis: _Axis
 
     def band(self, u: ArrayLike = 0.0, v: ArrayLike = 0.0) -> tuple[Floats, Floats]:
@@ -84,7 +86,7 @@ class Smooth:
         """
         slip, rate = np.broadcast_arrays(np.asarray(u, float), np.asarray(v, float))
         at = self._axis.forward(slip if self.points.has == ("slip",) else rate)
-        return self.law.coefficient(slip, rate), self._basis.standard_error(at, self.strength, self.residual)
+        return self.law.coefficient(slip, rate), self._spline.standard_error(at, self.strength, self.residual)
 
     @property
     def title(self) -> str:
@@ -129,16 +131,15 @@ class _Axis:
 
     def forward(self, places: ArrayLike) -> Floats:
         """Return where places are on the axis, in [0, 1]; those outside are put at its ends."""
-        clipped = np.clip(np.asarray(places, float), self.low, self.high)
-        scaled, (low, high) = self._scaled(clipped), self._ends
-        return np.clip((scaled - low) / (high - low), 0.0, 1.0)
-
-    def back(self, x: Floats) -> Floats:
-        """Return the places (m or m/s) at points x of the axis; 0 and 1 give the exact ends."""
         low, high = self._ends
-        scaled = low + x * (high - low)
+        return (self._scaled(np.clip(np.asarray(places, float), self.low, self.high)) - low) / (high - low)
+
+    def even(self, count: int) -> Floats:
+        """Return the places (m or m/s) of points that are evenly spaced on the axis, from one of its ends to the other."""
+        scaled = np.linspace(*self._ends, count)
         places = scaled if self.unit is None else self.unit * np.expm1(scaled)
-        return np.where(x <= 0.0, self.low, np.where(x >= 1.0, self.high, places))
+        places[[0, -1]] = self.low, self.high
+        return np.asarray(places)
 
     @property
     def scale(self) -> str:
@@ -146,8 +147,8 @@ class _Axis:
         return "linear" if self.unit is None else "log"
 
     @property
-    def _ends(self) -> tuple[float, float]:
-        return float(self._scaled(np.array(self.low))), float(self._scaled(np.array(self.high)))
+    def _ends(self) -> Floats:
+        return self._scaled(np.array([self.low, self.high]))
 
     def _scaled(self, places: Floats) -> Floats:
         return places if self.unit is None else np.log1p(places / self.unit)
@@ -161,7 +162,7 @@ def smooth(
     along: str | None = None,
     scale: Literal["auto", "linear", "log"] = "auto",
 ) -> Smooth:
-    """Smooth measured points to a law, by a penalised cubic spline.
+    """Smooth measured points to a law, by the cubic smoothing spline.
 
     Parameters
     ----------
@@ -171,7 +172,8 @@ def smooth(
         Strength of smoothing: the weight of the mean squared second derivative of the curve, along an axis on which the points
         reach from 0 to 1, beside the mean squared difference from the points. By default cross-validation chooses it.
     monotone : bool
-        If True, the curve rises throughout or falls throughout, whichever the points do on the whole.
+        If True, the law rises throughout or falls throughout, whichever the points do on the whole: it follows the curve of this
+        kind that is closest to the smooth one.
     along : {"slip", "slip_rate"}, optional
         The variable of the law, for points that have both.
     scale : {"auto", "linear", "log"}
@@ -191,23 +193,24 @@ def smooth(
     read = Points.read(points).along(along)
     given = _checked(strength)
     tried = [_fitted(read, axis, given) for axis in _axes(read, scale)]
-    axis, basis, chosen = min(tried, key=lambda one: one[1].score(one[2]))
-    coefficients, rises = basis.solved(chosen), 0
+    axis, spline, chosen = min(tried, key=lambda one: one[1].score(one[2]))
+    x, fine = axis.forward(read.places), np.linspace(0.0, 1.0, FINE)
+    curve = np.maximum(spline.curve(chosen)(fine), 0.0).round(DIGITS)
     if monotone:
-        rises = 1 if np.polyfit(axis.forward(read.places), read.friction, 1)[0] > 0.0 else -1
-        coefficients = basis.monotone(chosen, rises)
-    freedom = basis.freedom(chosen)
-    residual = float(np.sqrt(basis.sum_of_squares(coefficients) / max(len(read) - freedom, 1.0)))
-    law = _law(read, axis, _Curve(basis, coefficients, rises), residual)
+        curve = _monotone(curve, rises=bool(np.polyfit(x, read.friction, 1)[0] > 0.0))
+    freedom = spline.freedom(chosen)
+    rest = read.friction - np.interp(x, fine, curve)
+    residual = float(np.sqrt(np.sum(rest**2) / max(len(read) - freedom, 1.0)))
+    law = _law(read, axis.even(FINE), curve, residual)
     order = np.argsort(read.places, kind="stable")
     turns = reversals(read.friction[order]), reversals(law.friction)
-    return Smooth(read, law, residual, chosen, freedom, axis.scale, monotone, turns, basis, axis)
+    return Smooth(read, law, residual, chosen, freedom, axis.scale, monotone, turns, spline, axis)
 
 
-def _fitted(points: Points, axis: _Axis, given: float | None) -> tuple[_Axis, Basis, float]:
-    """Return an axis, the equations of the spline along it, and the strength: the given one, or that of cross-validation."""
-    basis = Basis.of(axis.forward(points.places), points.friction)
-    return axis, basis, basis.cross_validated() if given is None else given
+def _fitted(points: Points, axis: _Axis, given: float | None) -> tuple[_Axis, PenalisedSpline, float]:
+    """Return an axis, the splines along it, and the strength: the given one, or that of cross-validation."""
+    spline = PenalisedSpline.of(axis.forward(points.places), points.friction)
+    return axis, spline, spline.cross_validated() if given is None else given
 
 
 def _checked(strength: Any) -> float | None:
@@ -235,31 +238,20 @@ def _axes(points: Points, scale: str) -> list[_Axis]:
     return {"linear": linear, "log": log, "auto": linear + log}[scale]
 
 
-@dataclass(frozen=True)
-class _Curve:
-    """A spline as friction can follow it: never negative, and without rounding errors where it must only rise or only fall."""
+def _monotone(curve: Floats, rises: bool) -> Floats:
+    """Return the curve that only rises, or only falls, and is closest to a curve by the mean squared difference."""
+    from scipy.optimize import isotonic_regression
 
-    basis: Basis
-    coefficients: Floats
-    rises: int
-
-    def at(self, x: Floats) -> Floats:
-        """Return the friction coefficients at ascending places x in [0, 1]."""
-        values: Floats = np.maximum(self.basis.values_at(x, self.coefficients), 0.0).round(DIGITS)
-        if self.rises:
-            values = self.rises * np.maximum.accumulate(self.rises * values)
-        return values
+    return np.asarray(isotonic_regression(curve, increasing=rises).x)
 
 
-def _law(points: Points, axis: _Axis, curve: _Curve, residual: float) -> FromTable:
+def _law(points: Points, places: Floats, curve: Floats, residual: float) -> FromTable:
     """Return the law through the fewest points, evenly spaced on the axis, that follows the curve closely enough."""
-    fine = np.linspace(0.0, 1.0, 4 * FINEST)
-    places, wanted, near = axis.back(fine), curve.at(fine), max(FOLLOWS * residual, 1e-9)
-    for count in (2**k + 1 for k in range(3, 11)):
-        x = np.linspace(0.0, 1.0, count)
-        law = _table(points, axis.back(x), curve.at(x))
+    near = max(FOLLOWS * residual, 1e-9)
+    for step in (2**k for k in range(9, 1, -1)):
+        law = _table(points, places[::step], curve[::step])
         found = law.coefficient(places) if law.slip is not None else law.coefficient(0.0, places)
-        if np.abs(found - wanted).max() <= near:
+        if np.abs(found - curve).max() <= near:
             break
     return law
 
