@@ -13,8 +13,8 @@ from scipy.stats import binom
 import stickslip as ss
 from stickslip.foundation.formatting import with_uncertainty
 from stickslip.friction import LAWS, FromExpression, Points, fit, fit_each
+from stickslip.friction.custom.fit import misses_trend
 from stickslip.friction.custom.fit_parameters import leaves, rebuilt, slopes, template
-from stickslip.friction.custom.fit_statistics import misses_trend
 from tests.problems import RATE_LAW, measured
 
 F = ss.friction
@@ -197,6 +197,12 @@ def test_an_expression_is_fitted_with_its_own_names_and_units() -> None:
     assert found.values["drop"] == pytest.approx(wanted.values["static"] - wanted.values["dynamic"], rel=1e-6)
     assert found.uncertainty["d"] == pytest.approx(wanted.uncertainty["distance"], rel=1e-5)
     assert found.law.coefficient(0.3) == pytest.approx(wanted.law.coefficient(0.3), rel=1e-7)
+
+
+def test_a_start_at_which_the_formula_overflows_is_refused_in_one_line() -> None:
+    law = FromExpression("low + drop * exp(u/d)", {"low": 0.1, "drop": 0.1, "d": "1 m"}, counts="path")
+    with pytest.raises(ss.InputError, match="fit: expression is not a finite number where the search begins: give other values"):
+        fit(points_of(TRUE["linear-slip-weakening"]), law, start={"d": 1e-9})
 
 
 def test_a_law_uses_only_the_variable_it_depends_on() -> None:

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
 from itertools import product
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.foundation.errors import InputError
 from stickslip.friction.custom.fit_parameters import Leaf, leaves, rebuilt, slopes
 from stickslip.friction.custom.measured import Points
 from stickslip.friction.law import FrictionLaw
@@ -33,52 +32,32 @@ WHOLE = (1.0, 2.0, 3.0, 4.0)
 """Exponents that are tried."""
 
 
-@dataclass(frozen=True)
-class Model:
+class _Model:
     """A law with some free parameters, and the points that they are to fit.
 
     The search works on logarithms of parameters that must be positive, such as slip rates.
     """
 
-    law: FrictionLaw
-    free: list[str]
-    points: Points
+    def __init__(self, law: FrictionLaw, free: list[str], points: Points) -> None:
+        known = leaves(law)
+        self.law, self.free, self.points = law, free, points
+        self.leaves = [known[name] for name in free]
+        self.sizes = [_sizes(leaf, points) for leaf in self.leaves]
+        self.logarithmic = np.array([leaf.is_scale for leaf in self.leaves], bool)
+        ends = [_ends(leaf, sizes) for leaf, sizes in zip(self.leaves, self.sizes, strict=True)]
+        self.bounds = self.searched([low for low, _ in ends]), self.searched([high for _, high in ends])
 
-    @cached_property
-    def known(self) -> dict[str, Leaf]:
-        """All parameters of the law."""
-        return leaves(self.law)
+    def searched(self, natural: Sequence[float]) -> Floats:
+        """Return the searched numbers from the parameters."""
+        return np.log(natural, where=self.logarithmic, out=np.array(natural, float))
 
-    @cached_property
-    def logarithmic(self) -> NDArray[np.bool_]:
-        """Whether the search works on the logarithm of each free parameter."""
-        return np.array([self.known[name].is_scale for name in self.free], bool)
-
-    def bounds(self) -> tuple[Floats, Floats]:
-        """Return the smallest and the largest values of the searched numbers."""
-        low, high = np.full(len(self.free), -np.inf), np.full(len(self.free), np.inf)
-        for i, (name, log) in enumerate(zip(self.free, self.logarithmic, strict=True)):
-            sizes, least = _sizes(self.known[name], self.points), self.known[name].declared.at_least
-            if log:
-                low[i], high[i] = math.log(min(sizes) / FARTHEST), math.log(max(sizes) * FARTHEST)
-            elif least is not None:
-                low[i] = least
-        return low, high
-
-    def values(self, searched: Floats) -> dict[str, float]:
-        """Return the parameters by name from the searched numbers."""
-        natural = np.where(self.logarithmic, np.exp(np.where(self.logarithmic, searched, 0.0)), searched)
-        return dict(zip(self.free, natural.tolist(), strict=True))
-
-    def searched(self, values: Mapping[str, float]) -> Floats:
-        """Return the searched numbers from parameters by name."""
-        return np.array(
-            [math.log(values[name]) if log else values[name] for name, log in zip(self.free, self.logarithmic, strict=True)]
-        )
+    def natural(self, searched: Floats) -> Floats:
+        """Return the parameters from the searched numbers."""
+        return np.exp(searched, where=self.logarithmic, out=searched.copy())
 
     def at(self, searched: Floats) -> FrictionLaw:
         """Return the law, unchecked, at searched numbers."""
-        return rebuilt(self.law, self.values(searched), checked=False)
+        return rebuilt(self.law, dict(zip(self.free, self.natural(searched).tolist(), strict=True)), checked=False)
 
     def differences(self, searched: Floats) -> Floats:
         """Return the law minus the points, shape (n,)."""
@@ -87,63 +66,68 @@ class Model:
     def jacobian(self, searched: Floats) -> Floats:
         """Return the derivatives of `differences` with respect to the searched numbers, shape (n, number of free parameters)."""
         plain = slopes(self.at(searched), self.free, *self.points.variables)
-        return np.nan_to_num(plain) * np.where(self.logarithmic, list(self.values(searched).values()), 1.0)
+        return np.nan_to_num(plain) * np.where(self.logarithmic, self.natural(searched), 1.0)
+
+    def solved(self, start: Floats, **options: Any) -> Any:
+        """Return scipy's result of the least-squares problem from a start."""
+        from scipy.optimize import least_squares
+
+        return least_squares(self.differences, start, self.jacobian, self.bounds, x_scale="jac", **options)
 
 
-def search(model: Model, start: Mapping[str, float]) -> tuple[float, dict[str, float]]:
-    """Return the smallest sum of squares that was found, and the parameters there.
+def search(law: FrictionLaw, free: list[str], points: Points, start: Mapping[str, float]) -> tuple[float, dict[str, float]]:
+    """Return the smallest sum of squares that was found, and the free parameters there.
 
     `start` has values of some free parameters with which all searches begin; the others begin at values that follow from points.
+    Raises InputError if the law is not finite at any start.
     """
-    from scipy.optimize import least_squares
-
-    thin = _thinned(model)
-    begun = [_with_linear_part(thin, one) for one in starts(thin, start)]
+    model, thin = _Model(law, free, points), _Model(law, free, _thinned(points))
+    begun = [_with_linear_part(thin, one) for one in _starts(thin, start)]
     begun = sorted((one for one in begun if np.isfinite(one[0])), key=lambda one: one[0])
-    best: tuple[float, Floats] = (math.inf, model.searched({name: leaf.value for name, leaf in model.known.items()}))
-    for _, one in begun[:FOLLOWED]:
-        found = least_squares(thin.differences, one, thin.jacobian, thin.bounds(), x_scale="jac", xtol=1e-6, max_nfev=60)
-        if found.cost < best[0]:
-            best = found.cost, found.x
-    tight = {"xtol": 1e-13, "ftol": 1e-13, "gtol": 1e-13, "max_nfev": 200}
-    found = least_squares(model.differences, best[1], model.jacobian, model.bounds(), x_scale="jac", **tight)
+    if not begun:
+        raise InputError(f"fit: {law.kind} is not a finite number where the search begins: give other values with start")
+    best = min((thin.solved(one, xtol=1e-6, max_nfev=60) for _, one in begun[:FOLLOWED]), key=lambda found: found.cost)
+    found = model.solved(np.clip(best.x, *model.bounds), xtol=1e-13, ftol=1e-13, gtol=1e-13, max_nfev=200)
     idle = ~np.any(found.jac, axis=0)  # these have no effect, and may have gone anywhere
-    return 2.0 * float(found.cost), model.values(np.where(idle, begun[0][1], found.x))
+    values = model.natural(np.where(idle, begun[0][1], found.x))
+    return 2.0 * float(found.cost), dict(zip(free, values.tolist(), strict=True))
 
 
-def _with_linear_part(model: Model, searched: Floats) -> tuple[float, Floats]:
+def _with_linear_part(model: _Model, searched: Floats) -> tuple[float, Floats]:
     """Return the sum of squares at a start, and the start, after one step that solves for friction coefficients and viscosities.
 
     Most laws are linear in these, so that they follow from slips and slip rates of the law.
     """
-    low, high = model.bounds()
-    known = [model.known[name] for name in model.free]
-    linear = np.array([not leaf.is_scale and (leaf.declared.unit == "1" or leaf.optional) for leaf in known])
+    linear = np.array([not leaf.is_scale and (leaf.declared.unit == "1" or leaf.optional) for leaf in model.leaves])
     with np.errstate(all="ignore"):
         before, columns = model.differences(searched), model.jacobian(searched)[:, linear]
         if linear.any() and np.isfinite(before).all() and np.isfinite(columns).all():
             improved = searched.copy()
             improved[linear] -= np.linalg.lstsq(columns, before, rcond=1e-12)[0]
-            searched = np.clip(improved, low, high)
+            searched = np.clip(improved, *model.bounds)
         return float(np.sum(model.differences(searched) ** 2)), searched
 
 
-def _thinned(model: Model) -> Model:
-    points = model.points
-    if len(points) <= FEW:
-        return model
+def _thinned(points: Points) -> Points:
     every = slice(None, None, -(-len(points) // FEW))
     slip, rate = (None if one is None else one[every] for one in (points.slip, points.slip_rate))
-    return Model(model.law, model.free, Points(points.friction[every], slip, rate, points.name))
+    return Points(points.friction[every], slip, rate, points.name)
 
 
-def starts(model: Model, given: Mapping[str, float]) -> Iterator[Floats]:
+def _starts(model: _Model, given: Mapping[str, float]) -> Iterator[Floats]:
     """Yield searched numbers at which searches begin: all combinations of sizes that slips and slip rates of the law may have."""
-    choices = [[given[name]] if name in given else _sizes(model.known[name], model.points) for name in model.free]
+    choices = [[given[name]] if name in given else sizes for name, sizes in zip(model.free, model.sizes, strict=True)]
     combined = list(product(*choices))
-    low, high = model.bounds()
     for one in combined[:: -(-len(combined) // MOST_STARTS)]:
-        yield np.clip(model.searched(dict(zip(model.free, one, strict=True))), low, high)
+        yield np.clip(model.searched(one), *model.bounds)
+
+
+def _ends(leaf: Leaf, sizes: Sequence[float]) -> tuple[float, float]:
+    """Return the smallest and the largest value of a parameter for which a search may begin with some sizes."""
+    if leaf.is_scale:
+        return min(sizes) / FARTHEST, max(sizes) * FARTHEST
+    least = leaf.declared.at_least
+    return -np.inf if least is None else least, np.inf
 
 
 def _sizes(leaf: Leaf, points: Points) -> Sequence[float]:
