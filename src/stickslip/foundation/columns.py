@@ -71,6 +71,10 @@ class Table:
     lines: NDArray[np.intp] = field(repr=False)
     counted: str = "line"
     """What `lines` counts: the lines of a file, or the rows of a table in memory."""
+    header: Sequence[str] = ()
+    """All headings, as they are written."""
+    at_header: str = ""
+    """The place of the headings for a message."""
 
     def at(self, i: int) -> str:
         """Return the place of row i for a message."""
@@ -90,17 +94,16 @@ def read_text(text: str, wanted: Sequence[str], place: str, most: int) -> Table:
     """Return those of the wanted columns that a text has, as numbers in SI.
 
     The first line that is neither blank nor a comment (#) is the header. If it names none of the columns and exactly one of the
-    lines that follow names two of them, that line is the header, and those before it are notes. Columns
-    are separated by tabs, semicolons or commas,
-    whichever of them the header has, in this order. Raises InputError with a message of one line that names `place` and the line;
-    also for more than `most` rows.
+    lines that follow names two of them, that line is the header, and those before it are notes. Columns are separated by tabs,
+    semicolons or commas, whichever of them the header has, in this order. Raises InputError with a message of one line that names
+    `place` and the line; also for more than `most` rows.
     """
     lines, separator = _rows(text, place, wanted)
     number, header = next(lines, (1, [""]))
-    chosen = find(header, wanted, f"{place}, line {number}")
     at_header = f"{place}, line {number}"
-    if not chosen:
-        return Table({}, place, np.array([number]))  # the caller says what is missing
+    chosen = find(header, wanted, at_header)
+    if not chosen:  # the caller says what is missing
+        return Table({}, place, np.array([number]), "line", header, at_header)
     found: dict[str, list[float]] = {name: [] for name in chosen}
     numbers: list[int] = []
     for number, row in lines:
@@ -115,13 +118,14 @@ def read_text(text: str, wanted: Sequence[str], place: str, most: int) -> Table:
         numbers.append(number)
     columns = {name: _scaled(np.array(found[name], float), factor) for name, (_, factor) in chosen.items()}
     note_units(header, {name: i for name, (i, _) in chosen.items()}, columns, at_header)
-    return Table(columns, place, np.array(numbers or [number]))
+    return Table(columns, place, np.array(numbers or [number]), "line", header, at_header)
 
 
 def read_mapping(table: Any, wanted: Sequence[str], place: str) -> Table:
     """Return those of the wanted columns that a DataFrame, or another mapping of headings to numbers, has, as numbers in SI."""
     headings = list(table)
-    chosen = find([str(heading) for heading in headings], wanted, place)
+    header = [str(heading) for heading in headings]
+    chosen = find(header, wanted, place)
     columns: dict[str, Floats] = {}
     plain: dict[str, int] = {}
     for name, (i, factor) in chosen.items():
@@ -139,11 +143,11 @@ def read_mapping(table: Any, wanted: Sequence[str], place: str) -> Table:
     sizes = {name: len(numbers) for name, numbers in columns.items()}
     if len(set(sizes.values())) > 1:
         raise InputError(f"{place}: columns of different lengths: {', '.join(f'{n} has {size}' for n, size in sizes.items())}")
-    made = Table(columns, place, np.arange(max(sizes.values(), default=0)), "row")
+    made = Table(columns, place, np.arange(max(sizes.values(), default=0)), "row", header, place)
     for name, numbers in columns.items():
         for i in np.flatnonzero(~np.isfinite(numbers) | ((numbers < 0.0) & (not _signed(name))))[:1].tolist():
             _check(float(numbers[i]), name, made.at(i))
-    note_units([str(heading) for heading in headings], plain, columns, place)
+    note_units(header, plain, columns, place)
     return made
 
 
@@ -212,11 +216,6 @@ def _example(column: str) -> str:
     """Return a heading for a column as users may write it, with its unit."""
     unit = COLUMNS.get(column, Column("1")).unit
     return column if unit == "1" else f"{column} ({unit})"
-
-
-def header_of(text: str, place: str, wanted: Sequence[str]) -> tuple[int, list[str]]:
-    """Return line number and cells of the header of a text that is to have some of the wanted columns."""
-    return next(_rows(text, place, wanted)[0], (1, []))
 
 
 def _rows(text: str, place: str, wanted: Sequence[str]) -> tuple[Iterator[tuple[int, list[str]]], str]:

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.atomic_write import read_bounded
-from stickslip.foundation.columns import header_of, missing, read_text
+from stickslip.foundation.columns import missing, read_text
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import (
     LARGEST_SERIES,
@@ -165,14 +165,13 @@ def _points_in(text: str, columns: Mapping[str, str], file: str) -> dict[str, li
     `file` is the name of the text in messages.
     """
     *others, value = columns
-    number, header = header_of(text, file, tuple(columns))
     table = read_text(text, tuple(columns), file, LARGEST_SERIES)
-    place, found = f"{file}, line {number}", [column for column in others if column in table.columns]
+    found = [column for column in others if column in table.columns]
     if value not in table.columns:
-        raise InputError(f"{place}: no column '{value}' in the header; {missing(header, value)}")
+        raise InputError(f"{table.at_header}: no column '{value}' in the header; {missing(table.header, value)}")
     if len(found) != 1:
-        got = f'both; choose one with along = "{found[0]}"' if found else f"none; {missing(header, others[0])}"
-        raise InputError(f"{place}: the header needs a column {' or '.join(others)}, got {got}")
+        got = f'both; choose one with along = "{found[0]}"' if found else f"none; {missing(table.header, others[0])}"
+        raise InputError(f"{table.at_header}: the header needs a column {' or '.join(others)}, got {got}")
     count = len(table.columns[value])
     if count < 2:
         raise InputError(f"{table.at(-1)}: at least two rows of numbers are needed, got {count}")

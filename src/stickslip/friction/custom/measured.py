@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.foundation.arguments import as_path, shown
 from stickslip.foundation.atomic_write import read_bounded
-from stickslip.foundation.columns import COLUMNS, Table, header_of, missing, read_mapping, read_text
+from stickslip.foundation.columns import COLUMNS, Table, missing, read_mapping, read_text
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.friction.piecewise import PiecewiseLaw, note_percent
 
@@ -177,7 +177,7 @@ def _table_in(source: Any) -> Table:
         places, friction = source.points
         source = {"slip_rate" if source.knot_variable == "rate" else "slip": places, "friction": friction}
     if isinstance(source, Mapping) or hasattr(source, "columns"):
-        return _complete(read_mapping(source, WANTED, "points"), "points", [str(heading) for heading in source])
+        return _complete(read_mapping(source, WANTED, "points"))
     if not isinstance(source, str | os.PathLike):
         wanted = "a CSV file, a DataFrame, or a mapping of headings to numbers"
         raise InputError(f"points must be {wanted}, got {shown(source)}")
@@ -200,13 +200,12 @@ def _from_file(path: Path) -> Table:
 
 
 def _from_text(text: str, name: str) -> Table:
-    number, header = header_of(text, name, WANTED)
-    return _complete(read_text(text, WANTED, name, MOST_POINTS), f"{name}, line {number}", header)
+    return _complete(read_text(text, WANTED, name, MOST_POINTS))
 
 
-def _complete(table: Table, place: str, header: list[str]) -> Table:
-    """Return a table if it has all that points need. Raises InputError, beginning with `place`, if not."""
-    found = table.columns
+def _complete(table: Table) -> Table:
+    """Return a table if it has all that points need. Raises InputError if not."""
+    found, header, place = table.columns, table.header, table.at_header
     shear, normal = (found.pop(name, None) for name in STRESSES)
     if "friction" not in found and shear is not None and normal is not None:
         found["friction"] = _ratio(shear, normal, table)
