@@ -132,11 +132,13 @@ class _Axis:
     def forward(self, places: ArrayLike) -> Floats:
         """Return where places are on the axis, in [0, 1]; those outside are put at its ends."""
         low, high = self._ends
-        return (self._scaled(np.clip(np.asarray(places, float), self.low, self.high)) - low) / (high - low)
+        scaled = self._scaled(np.clip(np.asarray(places, float), self.low, self.high))
+        return np.asarray((scaled - low) / (high - low))
 
     def even(self, count: int) -> Floats:
         """Return the places (m or m/s) of points that are evenly spaced on the axis, from one of its ends to the other."""
-        scaled = np.linspace(*self._ends, count)
+        low, high = self._ends.tolist()
+        scaled = np.linspace(low, high, count)
         places = scaled if self.unit is None else self.unit * np.expm1(scaled)
         places[[0, -1]] = self.low, self.high
         return np.asarray(places)
