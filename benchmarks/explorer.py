@@ -18,9 +18,9 @@ from stickslip.explorer.model.answer import Answer
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.solve import solve
 from stickslip.explorer.model.strip import StripRange, strip_of
-from stickslip.explorer.page.heading import headings_of
 from stickslip.explorer.page.page import TITLES
 from stickslip.explorer.page.panels import view_of
+from stickslip.explorer.page.view import headings_of
 from stickslip.explorer.page.view_bytes import view_bytes
 
 CASES = (

@@ -11,9 +11,8 @@ import stickslip as ss
 from stickslip.explorer.model.answer import Answer, Floats
 from stickslip.explorer.model.energy_picture import energy_picture
 from stickslip.explorer.model.runs import MOST_PIECES, companion_of
-from stickslip.explorer.model.sampled_waves import SampledWaves
+from stickslip.explorer.model.sampled_waves import SampledWaves, Shown
 from stickslip.explorer.model.setting import Setting
-from stickslip.explorer.model.shown import Shown
 from stickslip.explorer.model.solve import solve
 from stickslip.explorer.model.stop import Stopped
 from stickslip.foundation.errors import InputError
@@ -267,7 +266,7 @@ def test_long_run_that_is_stopped_is_shown_up_to_there() -> None:
 def test_energy_of_a_long_run_is_that_of_a_short_one(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     exact = answer(name).energy
     shown = Shown.of(answer(name).solution)
-    monkeypatch.setattr("stickslip.explorer.model.energy_picture.MANY", 0)
+    monkeypatch.setattr("stickslip.explorer.model.energy_picture.LONG_HISTORY", 0)
     rough = energy_picture(shown, SampledWaves(shown) if "slab" in name else None)
     assert set(rough.parts) == set(exact.parts)
     for part, values in exact.parts.items():

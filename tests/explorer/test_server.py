@@ -6,9 +6,11 @@ import asyncio
 import gc
 import re
 import socket
+import sys
 import threading
 import time
 import weakref
+import webbrowser
 from collections.abc import Awaitable, Callable
 from functools import partial
 from pathlib import Path
@@ -26,11 +28,11 @@ from tornado.websocket import WebSocketClientConnection, websocket_connect
 
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.page.explorer import Explorer
-from stickslip.explorer.server import browser, sessions
 from stickslip.explorer.server import serve as serving
+from stickslip.explorer.server import sessions
 from stickslip.explorer.server.desk import ThreadDesk
-from stickslip.explorer.server.serve import ExplorerServer, Place
-from stickslip.explorer.server.start import start
+from stickslip.explorer.server.serve import Endpoint, ExplorerServer
+from stickslip.explorer.server.start import open_browser, start
 from stickslip.explorer.server.warm import Warming
 from stickslip.foundation.errors import InputError
 
@@ -41,7 +43,7 @@ TOKEN = re.compile(r'"token":"([^"]+)"')
 class Served:
     """A server with pages of one line, and a browser without a window that keeps cookies."""
 
-    def __init__(self, place: Place) -> None:
+    def __init__(self, place: Endpoint) -> None:
         self.explorers: list[weakref.ref[Explorer]] = []
         self.lines: list[WebSocketClientConnection] = []
         self.server = ExplorerServer(place, self._make, lambda explorer: pn.pane.HTML("a page"))
@@ -99,7 +101,7 @@ def with_server(test: Callable[[Served], Awaitable[None]], **place: Any) -> None
     """
 
     async def run() -> None:
-        served = Served(Place(**({"port": 0} | place)))
+        served = Served(Endpoint(**({"port": 0} | place)))
         try:
             await test(served)
             while served.lines:
@@ -363,8 +365,8 @@ def test_the_address_of_a_server_for_all_networks_names_the_computer() -> None:
 def test_no_browser_is_opened_where_there_are_no_windows(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     for name in ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER"):
         monkeypatch.delenv(name, raising=False)
-    monkeypatch.setattr(browser.sys, "platform", "linux")
-    assert not browser.open_browser(tmp_path / "page.html")
+    monkeypatch.setattr(sys, "platform", "linux")
+    assert not open_browser(tmp_path / "page.html")
 
 
 def test_the_browser_is_opened_without_the_token_on_its_command_line(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -378,9 +380,9 @@ def test_the_browser_is_opened_without_the_token_on_its_command_line(monkeypatch
 
     lines: list[str] = []
     monkeypatch.setenv("DISPLAY", ":0")
-    monkeypatch.setattr(browser.webbrowser, "open", note)
+    monkeypatch.setattr(webbrowser, "open", note)
     monkeypatch.setattr(ExplorerServer, "run", ExplorerServer.stop)
-    start(Setting.bundled("fig6-slab"), Place(port=0), browser=True, say=lines.append)
+    start(Setting.bundled("fig6-slab"), Endpoint(port=0), browser=True, say=lines.append)
     ((url, text, mode, folder),) = opened
     address = lines[0].removeprefix("explorer: ")
     token = address.partition("token=")[2]

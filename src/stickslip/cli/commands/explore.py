@@ -61,14 +61,14 @@ def explore(
         return
     loaded = load(scenario or FIRST, "explore", changes)
     from stickslip.explorer.model.setting import Setting
-    from stickslip.explorer.server.serve import Place
+    from stickslip.explorer.server.serve import Endpoint
     from stickslip.explorer.server.start import start
 
     for name in allow_origin or ():
         if not _HOST.fullmatch(name):
             raise InputError(f"explore: --allow-origin must be NAME or NAME:PORT, got {name[:60]!a}")
-    place = Place(address=address, port=port, origins=tuple(allow_origin or ()), sessions=sessions)
-    start(Setting.of(loaded), place, browser=not no_browser, say=typer.echo)
+    endpoint = Endpoint(address=address, port=port, origins=tuple(allow_origin or ()), sessions=sessions)
+    start(Setting.of(loaded), endpoint, browser=not no_browser, say=typer.echo)
 
 
 def _write(folder: Path, scenario: str | None, changes: list[str] | None) -> None:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from stickslip.contact.uniqueness import Uniqueness
 from stickslip.explorer.model.answer import ContactPicture, Floats, Motion
 
-POINTS = 500
+CURVE_POINTS = 500
 """Number of evenly spaced slip rates of the curve; as many in even ratios, folds and knots are added."""
 BEYOND = 1.15
 """The curve reaches this far beyond the fastest slip rate of the run, and of the jumps of the rule."""
@@ -23,7 +23,7 @@ def contact_picture(contact: Uniqueness, motion: Motion) -> ContactPicture | Non
     fastest += [2.0 * fold.rate for fold in contact.folds]
     top = BEYOND * max(fastest) or 2.0 * min(g.scales)
     own = [*(fold.rate for fold in contact.folds), *g.rate_knots]
-    grid = np.concatenate([np.linspace(0.0, top, POINTS), np.geomspace(1e-5 * top, top, POINTS), own])
+    grid = np.concatenate([np.linspace(0.0, top, CURVE_POINTS), np.geomspace(1e-5 * top, top, CURVE_POINTS), own])
     rate = np.unique(grid[grid <= top])
     excess, slope = g.excess_and_slope(rate)
     load, kind = g.strength + excess, np.sign(slope).astype(np.int64)

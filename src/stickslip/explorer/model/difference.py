@@ -17,7 +17,7 @@ SAME = 1e-9
 """Relative difference up to which two numbers count as equal."""
 TEXTS = ("title", "description")
 """Entries that change no number."""
-MOST = 6
+MOST_NAMED = 6
 """Largest number of changes, and of moved numbers, that the text names."""
 
 
@@ -65,13 +65,13 @@ class Difference:
         """One line that names them."""
         if not self.changes:
             return "the same setting"
-        named = "; ".join(str(one) for one in self.changes[:MOST]) + _more(len(self.changes))
-        numbers = "; ".join(str(one) for one in self.moved[:MOST]) + _more(len(self.moved))
+        named = "; ".join(str(one) for one in self.changes[:MOST_NAMED]) + _more(len(self.changes))
+        numbers = "; ".join(str(one) for one in self.moved[:MOST_NAMED]) + _more(len(self.moved))
         return f"{named}. {'Moved: ' + numbers if self.moved else 'No number moved'}."
 
 
 def _more(count: int) -> str:
-    return f"; and {count - MOST} more" if count > MOST else ""
+    return f"; and {count - MOST_NAMED} more" if count > MOST_NAMED else ""
 
 
 def difference(before: tuple[Setting, Answer], after: tuple[Setting, Answer]) -> Difference:

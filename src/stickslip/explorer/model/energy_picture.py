@@ -5,27 +5,26 @@ from __future__ import annotations
 import numpy as np
 
 from stickslip.explorer.model.answer import EnergyPicture, Floats
-from stickslip.explorer.model.sampled_waves import SampledWaves
-from stickslip.explorer.model.shown import Shown
+from stickslip.explorer.model.sampled_waves import SampledWaves, Shown
 from stickslip.observables.energy.balance import energies, heat
 from stickslip.observables.quadrature import FULL
 from stickslip.trajectory.history import History
 
-TIMES = 160
+SLAB_TIMES = 160
 """Number of times for a slab; for a block there are `BLOCK_TIMES`."""
 BLOCK_TIMES = 400
-MANY, FEW_NODES = 1_000, 4
+LONG_HISTORY, FEW_NODES = 1_000, 4
 """Number of pieces of a history from which on energies are integrated with fewer nodes on each: with all nodes they would take
 longer than the run, and a picture shows no difference.
 """
-PLACES = 240
+SLAB_PLACES = 240
 """Number of places in the slab at which the product of its two waves is added up."""
 
 
 def energy_picture(shown: Shown, waves: SampledWaves | None) -> EnergyPicture:
     """Return the parts of the energy; none where the waves in a slab are not known because the run leaped over creep."""
     body = shown.readings.problem.body
-    time = np.linspace(shown.start, shown.end, TIMES if body.has_waves else BLOCK_TIMES)
+    time = np.linspace(shown.start, shown.end, SLAB_TIMES if body.has_waves else BLOCK_TIMES)
     if body.has_waves and waves is None:
         return EnergyPicture(time + shown.begin, {}, body.energy_unit)
     found = _of_block(shown, time) if waves is None else _of_slab(waves, time)
@@ -44,7 +43,7 @@ def _of_block(shown: Shown, time: Floats) -> dict[str, Floats]:
 
 def _nodes(history: History) -> int:
     """Return the number of nodes on each piece."""
-    return FEW_NODES if len(history) > MANY else FULL
+    return FEW_NODES if len(history) > LONG_HISTORY else FULL
 
 
 def _of_slab(waves: SampledWaves, time: Floats) -> dict[str, Floats]:
@@ -55,7 +54,7 @@ def _of_slab(waves: SampledWaves, time: Floats) -> dict[str, Floats]:
         "work": waves.work(time),
         "heat": heat(waves.history, at, _nodes(waves.history)),
         "stored": waves.stored(time) + contact,
-        "kinetic": waves.kinetic(time, PLACES) + contact,
+        "kinetic": waves.kinetic(time, SLAB_PLACES) + contact,
         "radiated": waves.radiated(time),
         "damped": np.zeros(len(time)),
     }

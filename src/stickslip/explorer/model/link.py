@@ -29,7 +29,7 @@ LONGEST = 16_000
 """Largest number of characters of all parameters together: browsers and servers pass on about twice as many."""
 READABLE = 2_000
 """Largest number of characters of readable parameters; a longer link is compressed."""
-LARGEST = 1_000_000
+LARGEST_DOCUMENT = 1_000_000
 """Largest number of bytes of a document after it is unpacked."""
 LONGEST_NAME = 100
 """Largest number of characters in the name of a setting."""
@@ -133,7 +133,9 @@ def _unpacked(name: str, packed: str) -> Setting:
         raise InputError(f"link: the name of the scenario must have 1 to {LONGEST_NAME} printable characters")
     try:
         stream = zlib.decompressobj()
-        text = stream.decompress(base64.b64decode(packed + "=" * (-len(packed) % 4), altchars=b"-_", validate=True), LARGEST)
+        text = stream.decompress(
+            base64.b64decode(packed + "=" * (-len(packed) % 4), altchars=b"-_", validate=True), LARGEST_DOCUMENT
+        )
         document = json.loads(text)
     except (binascii.Error, zlib.error, ValueError, RecursionError):
         raise InputError("link: the document in it is broken or too large; was the link cut off?") from None

@@ -8,19 +8,41 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
 from stickslip.explorer.model.answer import Floats
-from stickslip.explorer.model.shown import Shown
 from stickslip.observables.field import WaveInterval, slab_of
 from stickslip.observables.waves import Radiation, Waves
+from stickslip.solution.evaluation import Readings
+from stickslip.solution.interval import choose_interval
+from stickslip.solution.solution import Solution
+from stickslip.solution.window import Window
+
+
+class Shown(NamedTuple):
+    """An interval of a run from `start` to `end` (s), in the time of `readings`, which counts from `begin` (s after the start)."""
+
+    readings: Readings
+    start: float
+    end: float
+    begin: float
+
+    @classmethod
+    def of(cls, solution: Solution) -> Shown:
+        """Return the interval to show of a run."""
+        readings, start, end = choose_interval(solution, None, None)
+        epoch = readings.history.epoch
+        begin = epoch.trip * readings.history.round_trip_time + epoch.offset if isinstance(readings, Window) else 0.0
+        return cls(readings, start, end, begin)
+
 
 EVEN = 3000
 """Number of evenly spaced samples."""
 INSIDE = 6
-"""Number of samples within each piece of the history, if there are not more than `MANY` pieces."""
-MANY = 600
+"""Number of samples within each piece of the history, if there are not more than `ENDS_ONLY` pieces."""
+ENDS_ONLY = 600
 """Number of pieces from which on only their ends are sampled besides."""
 OF_START = 500
 """Number of samples of the load that the initial state brings."""
@@ -97,7 +119,7 @@ class SampledWaves:
         breaks = np.unique(np.append(interval.start, self.first))
         breaks = breaks[(breaks >= begin) & (breaks <= end)]
         inside = np.diff(breaks) * np.linspace(0.0, 1.0, INSIDE + 2)[1:-1, None] + breaks[:-1]
-        within = np.ravel(inside) if len(breaks) <= MANY else breaks[:0]
+        within = np.ravel(inside) if len(breaks) <= ENDS_ONLY else breaks[:0]
         right = np.concatenate([np.linspace(begin, end, EVEN), breaks, within, edges - slack, edges + slack])
         time = np.concatenate([right, breaks - slack])
         value = np.concatenate([interval.leaving(right, "right"), interval.leaving(breaks, "left")])

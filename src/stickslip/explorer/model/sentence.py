@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from stickslip.contact.uniqueness import Uniqueness
-from stickslip.explorer.model.events import Found
+from stickslip.explorer.model.findings import Found
 from stickslip.explorer.model.words import several, short
 from stickslip.observables.rule_influence import RuleInfluence
 from stickslip.problem.problem import Problem

@@ -10,7 +10,7 @@ from stickslip.explorer.model.sampled_waves import SampledWaves
 from stickslip.solution.fronts import fronts_of
 from stickslip.solution.window import Window
 
-TIMES, PLACES = 240, 60
+COLUMNS, ROWS = 240, 60
 """Largest numbers of times and of places of the picture."""
 
 
@@ -21,7 +21,7 @@ def slab_picture(waves: SampledWaves) -> SlabPicture:
     so that the edge follows the characteristic, and a pulse that is shorter than a cell is not passed over.
     """
     shown, thickness = waves.shown, waves.body.thickness
-    time, place = np.linspace(shown.start, shown.end, TIMES), np.linspace(0.0, thickness, PLACES)
+    time, place = np.linspace(shown.start, shown.end, COLUMNS), np.linspace(0.0, thickness, ROWS)
     edges = np.concatenate([time[:1], 0.5 * (time[1:] + time[:-1]), time[-1:]])[:, None]
     velocity, stress = waves.velocity_and_stress(edges[:-1], edges[1:], place)
     displacement = waves.displacement(time[:, None], place, _slip(waves, time)[:, None])

@@ -9,15 +9,11 @@ from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
 from stickslip.explorer.model.answer import Answer, Motion
 from stickslip.explorer.model.contact_picture import contact_picture
 from stickslip.explorer.model.energy_picture import energy_picture
-from stickslip.explorer.model.events import Found
+from stickslip.explorer.model.findings import Found, key_numbers, marks_of
 from stickslip.explorer.model.law_picture import law_picture
-from stickslip.explorer.model.marks import marks_of
-from stickslip.explorer.model.motion import motion
-from stickslip.explorer.model.numbers import key_numbers
 from stickslip.explorer.model.runs import run, run_companion
-from stickslip.explorer.model.sampled_waves import SampledWaves
+from stickslip.explorer.model.sampled_waves import SampledWaves, Shown
 from stickslip.explorer.model.sentence import sentence
-from stickslip.explorer.model.shown import Shown
 from stickslip.explorer.model.slab_picture import slab_picture
 from stickslip.explorer.model.stop import Stopped, Told, silent
 from stickslip.foundation.errors import InputError
@@ -117,3 +113,24 @@ def notes_of(scenario: Scenario, solution: Solution, contact: Uniqueness) -> tup
     ended = [] if solution.status.ok else [str(solution.status)]
     of_run = (solution.creep_note, solution.lumping_note, solution.rounding_note)
     return (*ended, *(note for note in of_run if note), *warnings_of(scenario, contact))
+
+
+EVEN_TIMES = 400
+"""Number of evenly spaced times; the breaks of a run, and times between them, are added, so that there are some thousands."""
+
+
+def motion(solution: Solution, name: str = "") -> Motion:
+    """Return the motion of one body; `name` is what the legend calls it, by default "slab" or "block"."""
+    has_waves = solution.problem.body.has_waves
+    time, (slip, rate, traction, load) = solution.curves_together(("slip", "slip_rate", "traction", "load"), points=EVEN_TIMES)
+    return Motion(
+        body="slab" if has_waves else "block",
+        name=name or ("slab" if has_waves else "block"),
+        time=time,
+        slip=slip,
+        slip_rate=rate,
+        traction=traction,
+        load=load,
+        load_unit="Pa" if has_waves else "N",
+        normal_load=solution.problem.normal,
+    )

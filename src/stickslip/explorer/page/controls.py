@@ -9,7 +9,6 @@ from typing import Any
 
 from stickslip.explorer.model.controls import Control, Group, controls_of
 from stickslip.explorer.model.exchange import with_kind
-from stickslip.explorer.model.formula import with_expression
 from stickslip.explorer.model.scenario_list import offered
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.page.components import ControlRows
@@ -17,6 +16,8 @@ from stickslip.explorer.page.explorer import Explorer
 from stickslip.figures.names import GREEK, symbol
 from stickslip.figures.style import SPELLED
 from stickslip.foundation.errors import InputError
+from stickslip.friction import FromExpression
+from stickslip.friction.formula.parse import RESERVED
 
 FAULT = re.compile(r"\[(?P<table>[\w.]+)\] (?P<key>\w+)")
 """Where a message says which entry is wrong, as in "[friction] alpha must be at least 0"."""
@@ -153,3 +154,21 @@ def spelled(unit: str) -> str:
     """Return a unit as readers expect to see it."""
     unit = SPELLED.get(unit, unit)
     return re.sub(r"\bu(?=[mNPs])", "µ", unit).replace("/ m", "1/m") if unit.startswith(("u", "/")) else unit
+
+
+_NAME = re.compile(r"(?<![\w.])[A-Za-z_]\w*")
+"""A name in a formula; the e of 1e-3 is none."""
+
+
+def with_expression(setting: Setting, text: str) -> Setting:
+    """Return a setting whose friction law is a formula in u (slip, m), v (slip rate, m/s) and parameters.
+
+    Parameters that the setting already has keep their values, new ones are 1, and those that the formula no longer names go.
+    Whether the formula is allowed turns out when the scenario is read.
+    """
+    if setting.value("friction.kind") != FromExpression.kind:
+        setting = with_kind(setting, "friction", FromExpression.kind)
+    known = setting.value("friction.parameters") or {}
+    names = dict.fromkeys(name for name in _NAME.findall(text) if name not in RESERVED)
+    parameters = {name: known.get(name, 1.0) for name in names}
+    return setting.with_value("friction.expression", text).with_value("friction.parameters", parameters or None)

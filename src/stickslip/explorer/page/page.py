@@ -9,7 +9,6 @@ import panel as pn
 from stickslip.explorer.page.components import PlayerBar, asset
 from stickslip.explorer.page.controls import Controls
 from stickslip.explorer.page.explorer import Explorer
-from stickslip.explorer.page.heading import headings_of
 from stickslip.explorer.page.look import style_sheet
 from stickslip.explorer.page.panels import plots, view_of
 from stickslip.explorer.page.pin import PinnedRun
@@ -17,7 +16,7 @@ from stickslip.explorer.page.stage import Stage
 from stickslip.explorer.page.strip import StripView
 from stickslip.explorer.page.tools import Tools
 from stickslip.explorer.page.tour import Tour
-from stickslip.explorer.page.view import View
+from stickslip.explorer.page.view import View, headings_of
 from stickslip.explorer.page.view_bytes import view_bytes
 from stickslip.explorer.page.words import Words
 

@@ -8,7 +8,7 @@ from stickslip.explorer.model.difference import difference
 from stickslip.explorer.page.components import Markup, asset
 from stickslip.explorer.page.explorer import Explorer
 
-MOST = 8
+MOST_NAMED = 8
 """Largest number of changes, and of numbers, that the page names."""
 
 
@@ -38,8 +38,8 @@ class PinnedRun:
 
 
 def _list(heading: str, lines: list[str]) -> str:
-    more = [f"and {len(lines) - MOST} more"] * (len(lines) > MOST)
-    items = "".join(f"<li>{escape(line)}</li>" for line in [*lines[:MOST], *more])
+    more = [f"and {len(lines) - MOST_NAMED} more"] * (len(lines) > MOST_NAMED)
+    items = "".join(f"<li>{escape(line)}</li>" for line in [*lines[:MOST_NAMED], *more])
     return f'<p class="kind">{heading}</p><ul>{items}</ul>' if lines else ""
 
 

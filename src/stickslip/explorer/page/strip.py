@@ -26,10 +26,9 @@ from stickslip.explorer.model.strip import (
 )
 from stickslip.explorer.page.components import Markup, asset
 from stickslip.explorer.page.explorer import Explorer
-from stickslip.explorer.page.heading import heading
 from stickslip.explorer.page.look import paint
 from stickslip.explorer.page.stage import Stage
-from stickslip.explorer.page.view import Key, View, axis_label, limits
+from stickslip.explorer.page.view import Key, View, axis_label, heading, limits
 from stickslip.figures.style import SPELLED, unit_of
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity

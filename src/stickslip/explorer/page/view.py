@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from html import escape
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -135,3 +136,17 @@ def single(values: Any) -> NDArray[np.float32]:
 def plain(found: Mapping[str, Any]) -> dict[str, Any]:
     """Return columns as lists, with NaN as None, for JSON."""
     return {name: [None if x != x else x for x in np.asarray(values, float).tolist()] for name, values in found.items()}
+
+
+def heading(title: str, keys: Sequence[Key]) -> str:
+    """Return the heading of a panel as HTML."""
+    entries = "".join(
+        f'<li><span class="sample {key.style}" style="--role: var(--{key.role})" aria-hidden="true"></span>{escape(key.text)}</li>'
+        for key in keys
+    )
+    return f'<div class="heading"><h2>{escape(title)}</h2><ul role="list" aria-label="Legend">{entries}</ul></div>'
+
+
+def headings_of(view: View, titles: Mapping[str, str]) -> dict[str, str]:
+    """Return the heading of each panel as HTML; `titles` are used for panels of which the view says none."""
+    return {name: heading(view.titles.get(name, title), view.keys.get(name, ())) for name, title in titles.items()}

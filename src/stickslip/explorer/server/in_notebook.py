@@ -17,9 +17,11 @@ from stickslip.explorer.server.start import explorer_of
 from stickslip.foundation.errors import InputError
 from stickslip.scenarios.scenario import Scenario
 
-MOST = 8
+MOST_EXPLORERS = 8
 """Largest number of explorers that are at work in one notebook."""
-ENDED = f"This explorer has ended, because {MOST} newer ones are open in this notebook: run its cell again to go on with it."
+ENDED = (
+    f"This explorer has ended, because {MOST_EXPLORERS} newer ones are open in this notebook: run its cell again to go on with it."
+)
 
 
 def shown_in_notebook(scenario: Scenario) -> Any:
@@ -76,12 +78,12 @@ _AT_WORK: deque[tuple[Explorer, tuple[ThreadDesk, ...]]] = deque()
 
 
 def _keep(explorer: Explorer, *desks: ThreadDesk) -> None:
-    """Keep an explorer at work, and end the oldest if there are more than `MOST`.
+    """Keep an explorer at work, and end the oldest if there are more than `MOST_EXPLORERS`.
 
     A kernel does not tell when a cell is run again or deleted, and each explorer has a thread.
     """
     _AT_WORK.append((explorer, desks))
-    while len(_AT_WORK) > MOST:
+    while len(_AT_WORK) > MOST_EXPLORERS:
         oldest, ended = _AT_WORK.popleft()
         for desk in ended:
             desk.close()

@@ -44,7 +44,7 @@ Build = Callable[[Explorer], Any]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Place:
+class Endpoint:
     """Where a server listens, and for whom.
 
     Attributes
@@ -75,7 +75,7 @@ class ExplorerServer:
 
     Parameters
     ----------
-    place : Place
+    endpoint : Endpoint
         Where it listens.
     make : callable
         Function that makes the explorer of a new page, given its desk, and that on which files are written.
@@ -83,12 +83,12 @@ class ExplorerServer:
         Function that builds the page of an explorer.
     """
 
-    def __init__(self, place: Place, make: MakeExplorer, build: Build) -> None:
-        self.place, self._make, self._build = place, make, build
+    def __init__(self, endpoint: Endpoint, make: MakeExplorer, build: Build) -> None:
+        self.endpoint, self._make, self._build = endpoint, make, build
         self.warming = Warming()
-        self.sessions = Sessions(place.sessions)
-        names = frozenset((*LOOPBACK, place.address)) if place.is_loopback else None
-        self.access = Access(names, frozenset(one.lower() for one in place.origins), self.sessions.refusal)
+        self.sessions = Sessions(endpoint.sessions)
+        names = frozenset((*LOOPBACK, endpoint.address)) if endpoint.is_loopback else None
+        self.access = Access(names, frozenset(one.lower() for one in endpoint.origins), self.sessions.refusal)
         self._desks: set[ThreadDesk] = set()
         self._bokeh = self._bound()
         application = self._bokeh._tornado
@@ -107,7 +107,7 @@ class ExplorerServer:
     @property
     def url(self) -> str:
         """The address of the page, with the token."""
-        host = socket.gethostname() if self.place.address in EVERYWHERE else self.place.address
+        host = socket.gethostname() if self.endpoint.address in EVERYWHERE else self.endpoint.address
         return f"http://{f'[{host}]' if ':' in host else host}:{self.port}/?token={quote(self.access.token)}"
 
     def start(self) -> None:
@@ -139,15 +139,15 @@ class ExplorerServer:
 
     def _bound(self) -> Any:
         """Return a Bokeh server on the port that was asked for, or on the first one that is free. Raises InputError."""
-        first = FIRST_PORT if self.place.port is None else self.place.port
-        for port in range(first, first + (PORTS if self.place.port is None else 1)):
+        first = FIRST_PORT if self.endpoint.port is None else self.endpoint.port
+        for port in range(first, first + (PORTS if self.endpoint.port is None else 1)):
             try:
-                check_free(self.place.address, port)
+                check_free(self.endpoint.address, port)
                 return self._listening(port)
             except OSError as error:
                 if error.errno != errno.EADDRINUSE:
-                    raise InputError(f"explore: cannot listen on {self.place.address} port {port}: {error.strerror}") from None
-        if self.place.port is None:
+                    raise InputError(f"explore: cannot listen on {self.endpoint.address} port {port}: {error.strerror}") from None
+        if self.endpoint.port is None:
             raise InputError(f"explore: ports {first} to {first + PORTS - 1} are all taken: choose one with --port, or 0 for any")
         raise InputError(f"explore: port {first} is taken: choose another one with --port, or 0 for any that is free")
 
@@ -156,7 +156,7 @@ class ExplorerServer:
         server = pn.io.server.get_server(
             {"/": self._page},
             port=port,
-            address=self.place.address,
+            address=self.endpoint.address,
             title=TITLE,
             location=False,
             sign_sessions=True,

@@ -2,29 +2,43 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import os
+import sys
+import webbrowser
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import partial
+from html import escape
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.page.explorer import Explorer
-from stickslip.explorer.server.browser import open_browser, private_page
 from stickslip.explorer.server.desk import ThreadDesk
-from stickslip.explorer.server.serve import ExplorerServer, Place
+from stickslip.explorer.server.serve import Endpoint, ExplorerServer
 
 WARNING = (
     "warning: listening on {address}: whoever reaches this computer over a network, and has the address with the token, can use "
     "the explorer; nothing is encrypted"
 )
+LEADS_ON = """<!DOCTYPE html>
+<meta charset="utf-8">
+<meta name="referrer" content="no-referrer">
+<meta http-equiv="refresh" content="0; url={url}">
+<title>stickslip explorer</title>
+<p><a href="{url}">Open the explorer</a></p>
+"""
+"""A page that leads to an address at once, or by its link."""
 
 
-def start(setting: Setting, place: Place, *, browser: bool, say: Callable[[str], object]) -> None:
+def start(setting: Setting, endpoint: Endpoint, *, browser: bool, say: Callable[[str], object]) -> None:
     """Serve the explorer until Ctrl-C.
 
     Parameters
     ----------
     setting : Setting
         What a new page shows first.
-    place : Place
+    endpoint : Endpoint
         Where the server listens.
     browser : bool
         True to open the page in the user's browser.
@@ -38,9 +52,9 @@ def start(setting: Setting, place: Place, *, browser: bool, say: Callable[[str],
     """
     from stickslip.explorer.page.page import build
 
-    server = ExplorerServer(place, partial(explorer_of, setting), build)
-    if not place.is_loopback:
-        say(WARNING.format(address=place.address))
+    server = ExplorerServer(endpoint, partial(explorer_of, setting), build)
+    if not endpoint.is_loopback:
+        say(WARNING.format(address=endpoint.address))
     say(f"explorer: {server.url}")
     with private_page(server.url) as page:
         if not browser or not open_browser(page):
@@ -54,3 +68,19 @@ def explorer_of(setting: Setting, desk: ThreadDesk, files: ThreadDesk) -> Explor
     from stickslip.explorer.model.solve import solve  # imports the compiler, which takes a second
 
     return Explorer(setting, desk, solve, files)
+
+
+@contextmanager
+def private_page(url: str) -> Iterator[Path]:
+    """Give a file that leads to an address and that only this user can read, as Jupyter does; it is removed at the end."""
+    with TemporaryDirectory(prefix="stickslip-") as folder:  # only this user can enter it
+        path = Path(folder) / "explorer.html"
+        with os.fdopen(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w", encoding="utf-8") as file:
+            file.write(LEADS_ON.format(url=escape(url)))
+        yield path
+
+
+def open_browser(page: Path) -> bool:
+    """Open a file in the user's browser. Returns False if there is none that has a window."""
+    windows = sys.platform in ("win32", "darwin") or any(name in os.environ for name in ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER"))
+    return windows and webbrowser.open(page.as_uri())

@@ -19,7 +19,6 @@ from stickslip.explorer.model.solve import solve
 from stickslip.explorer.model.strip import setting_at, strip_of
 from stickslip.explorer.model.tour import TOUR, Step
 from stickslip.explorer.page.components import asset, look, player_script
-from stickslip.explorer.page.heading import headings_of
 from stickslip.explorer.page.look import style_sheet
 from stickslip.explorer.page.page import TITLES
 from stickslip.explorer.page.panels import plots, view_of
@@ -27,6 +26,7 @@ from stickslip.explorer.page.stage import Stage
 from stickslip.explorer.page.strip import place_of, view_of_strip
 from stickslip.explorer.page.strip import plots as strip_plots
 from stickslip.explorer.page.tour import told_steps
+from stickslip.explorer.page.view import headings_of
 from stickslip.explorer.page.words import words_of
 from stickslip.explorer.static.packing import packed_view, script
 from stickslip.figures.style import unit_of
@@ -34,7 +34,7 @@ from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import number
 
-PLACES = 25
+STRIP_PLACES = 25
 """Number of places of each strip at which an answer is kept, beside that of the step itself."""
 LIBRARY = "bokeh.min.js"
 """The script of Bokeh that draws the plots."""
@@ -56,7 +56,7 @@ class Written:
         return f"{self.folder}: {told}; open index.html in it"
 
 
-def write_tour(folder: Path, told: Callable[[str], object] = lambda text: None, places: int = PLACES) -> Written:
+def write_tour(folder: Path, told: Callable[[str], object] = lambda text: None, places: int = STRIP_PLACES) -> Written:
     """Write the tour into a new folder, under a temporary name until it is complete.
 
     Parameters

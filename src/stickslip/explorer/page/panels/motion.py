@@ -16,7 +16,7 @@ from stickslip.figures.runs.curves import after_start
 from stickslip.figures.style import CURVES, FORCES, unit_of
 
 TEXTS = {"slip": "Slip against time", "rate": "Slip rate against time", "traction": "Traction and load against time"}
-MANY = 30
+MOST_LINES = 30
 """More marks than this are not drawn as lines in the panels."""
 DRAWN = {"slip": "slip", "rate": "rate_at", "traction": "traction"}
 """The column that each panel draws: `rate_at` is the place of the slip rate on an axis that may be logarithmic."""
@@ -32,7 +32,7 @@ def data_of(answer: Answer, units: Units) -> View:
     """Return the curves of both bodies, and the times of the marks."""
     main, other = answer.motions[0], answer.motions[1:2]
     columns = {"motion": columns_of(main, units), "companion": _beside(main, other, units)}
-    columns["marks"] = {"time": [mark.time / units.time[1] for mark in answer.marks] if len(answer.marks) <= MANY else []}
+    columns["marks"] = {"time": [mark.time / units.time[1] for mark in answer.marks] if len(answer.marks) <= MOST_LINES else []}
     if main.body == "block":
         # The end of the spring that is pulled, from the law of the spring.
         stiffness = answer.scenario.problem.body.stiffness
