@@ -100,7 +100,7 @@ def kernel_table(console: Console) -> None:
             table.add_section()
     console.print(table)
     for note in dict.fromkeys(notes):
-        console.print(f"  not run: {note}", style="dim")
+        console.print(f"  not run: {note}", style="dim", markup=False)
 
 
 def main() -> None:

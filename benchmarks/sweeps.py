@@ -138,7 +138,7 @@ def show(members: int) -> None:
         gains = ", ".join(f"{gain:.2f}" for gain in found)
         console.print(f"two threads beside one, in between, of arithmetic that {name}: {gains}")
     for note in missing:
-        console.print(f"  not run: {note}", style="dim")
+        console.print(f"  not run: {note}", style="dim", markup=False)
 
 
 def million() -> None:

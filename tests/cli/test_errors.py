@@ -1,6 +1,8 @@
 """Every failure is one line on standard error and an exit code, and nothing is written."""
 
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -245,3 +247,13 @@ def test_a_run_that_fails_shows_what_it_has_and_says_so(command, monkeypatch: py
     assert shown.code == (130 if status.name == "interrupted" else 1)
     assert status.message in shown.out
     assert "1 slip event" in shown.out
+
+
+def test_a_typer_that_cannot_serve_gets_one_line() -> None:
+    spoilt = "import typer.core as m; del m.TyperArgument\nfrom stickslip.cli.main import main\nmain(['--version'])"
+    done = subprocess.run([sys.executable, "-c", spoilt], capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1
+    assert done.stderr.startswith("stickslip: typer ")
+    assert "cannot import name 'TyperArgument'" in done.stderr
+    assert "pip install 'typer>=0.29,<0.30'" in done.stderr

@@ -14,6 +14,7 @@ import webbrowser
 from collections.abc import Awaitable, Callable
 from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 from unittest.mock import patch
 from urllib.parse import urlsplit
@@ -402,3 +403,12 @@ def test_pages_are_told_that_the_compiler_is_being_warmed_and_when_it_is_warm(mo
     warming._warm()
     assert lines == ["The engine is being loaded: the first picture takes a moment longer.", ""]
     assert others == lines[:1]
+
+
+@pytest.mark.parametrize("name", ["_tornado", "_websocket_origins"])
+def test_a_bokeh_without_a_private_name_gets_one_line(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    application = SimpleNamespace(_websocket_origins=set())
+    server = SimpleNamespace(_tornado=application)
+    monkeypatch.delattr(server if name == "_tornado" else application, name)
+    with pytest.raises(InputError, match=r"^explore: bokeh .* does not suit; .*: pip install 'bokeh>=3.9,<3.11'$"):
+        serving.application_of(server)

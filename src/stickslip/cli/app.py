@@ -9,7 +9,6 @@ from textwrap import wrap
 from typing import Annotated, Any
 
 import typer
-from typer.core import TyperArgument, TyperCommand, TyperGroup
 
 from stickslip.cli.commands.analogy import analogy
 from stickslip.cli.commands.check import check
@@ -27,6 +26,12 @@ from stickslip.cli.commands.show import show
 from stickslip.cli.commands.sweep import sweep
 from stickslip.cli.options import CHOICES
 from stickslip.foundation.errors import InputError, nearest
+
+try:  # all names of typer that it does not document
+    from typer.core import TyperArgument, TyperCommand, TyperGroup
+    from typer.exceptions import TyperException as TyperException
+except ImportError as error:
+    raise InputError(f"typer {typer.__version__} does not suit ({error}); 0.29 does: pip install 'typer>=0.29,<0.30'") from None
 
 WIDEST_TERM = 28
 """Largest width (columns) of the terms of a list; the explanation of a longer one begins below it."""
@@ -207,7 +212,8 @@ def _bad_value(error: Any) -> str:
     """Return what a value must be and what was given, if both are known."""
     from stickslip.foundation.conversion import decimal_point  # imports numpy
 
-    kind = _KINDS.get(error.param.type_descriptor.annotation.__name__) if error.param else None
+    described = getattr(error.param, "type_descriptor", None)  # private to typer
+    kind = _KINDS.get(getattr(getattr(described, "annotation", None), "__name__", ""))
     faults = error.__cause__.errors() if hasattr(error.__cause__, "errors") else []
     if kind is None or not faults:
         return " ".join(str(error.format_message()).split())

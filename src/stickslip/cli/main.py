@@ -23,7 +23,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
         streams.enter_context(redirect_stdout(_Heard(sys.stdout)))
         streams.enter_context(redirect_stderr(_Heard(sys.stderr)))
         with _quiet_start():
-            import stickslip.cli.app  # noqa: F401  # takes long: all that follows needs it
+            from stickslip.foundation.errors import InputError
+
+            try:
+                import stickslip.cli.app  # noqa: F401  # takes long: all that follows needs it
+            except InputError as error:  # typer does not suit
+                sys.exit(_fail(str(error)))
         code = _code(arguments)
         sys.stdout.flush()
     sys.exit(code)
@@ -83,9 +88,8 @@ def _quiet_start() -> Iterator[None]:
 def _code(arguments: Sequence[str] | None) -> int:
     """Run the command line, and return the exit code."""
     from typer import Abort
-    from typer.exceptions import TyperException
 
-    from stickslip.cli.app import app, explain
+    from stickslip.cli.app import TyperException, app, explain
     from stickslip.foundation.errors import InputError, InputWarning
 
     try:

@@ -7,12 +7,14 @@ import signal
 import socket
 from collections import deque
 from collections.abc import Callable, Mapping
+from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
 from urllib.parse import quote
 from weakref import ref
 
+import bokeh
 import panel as pn
 from tornado.ioloop import IOLoop, PeriodicCallback
 
@@ -91,10 +93,7 @@ class ExplorerServer:
         self.access = Access(names, frozenset(one.lower() for one in endpoint.origins), self.sessions.refusal)
         self._desks: set[ThreadDesk] = set()
         self._bokeh = self._bound()
-        application = self._bokeh._tornado
-        application._websocket_origins = {
-            "*"
-        }  # `Access` compares each origin with the address that was asked for, which is stricter
+        application = application_of(self._bokeh)
         self.access.guard(application)
         self.sessions.contexts = application.applications.values()
         self._looking = PeriodicCallback(self.sessions.look, LOOK_EVERY_MS)
@@ -193,11 +192,22 @@ class ExplorerServer:
         pn.state.on_session_destroyed(gone)
         pn.config.exception_handler = lambda error: explorer.refuse(str(unforeseen(error)))
         page = self._build(explorer)
-        with (
-            document.models.freeze()
-        ):  # otherwise Bokeh looks through all models again for each one that is added: 1 s in place of 0.2
+        freeze = getattr(document.models, "freeze", nullcontext)
+        with freeze():  # otherwise Bokeh looks through all models again for each one that is added: 1 s in place of 0.2
             page.server_doc(document, title=TITLE, location=False)
         begin(explorer, arguments_of(pn.state.session_args))
+
+
+def application_of(server: Any) -> Any:
+    """Return the Tornado application of a Bokeh server, through private names of Bokeh. Raises InputError if they are missing.
+
+    The application accepts all origins of websockets, because `Access` is stricter: it compares each with the address of the page.
+    """
+    application = getattr(server, "_tornado", None)
+    if not hasattr(application, "_websocket_origins"):
+        raise InputError(f"explore: bokeh {bokeh.__version__} does not suit; 3.9 and 3.10 do: pip install 'bokeh>=3.9,<3.11'")
+    application._websocket_origins = {"*"}
+    return application
 
 
 def check_free(address: str, port: int) -> None:

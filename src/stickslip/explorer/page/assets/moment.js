@@ -36,7 +36,7 @@ class Models {
 
   /** The names of all axes of the panels, which a view can hide. */
   get axes() {
-    this.named ??= [...(this.bokeh.all_models ?? this.bokeh._all_models.values())].map(({ name }) => name).filter((name) => name?.startsWith("axis:") && !name.includes("@strip_"));
+    this.named ??= [...(this.bokeh.all_models ?? this.bokeh._all_models?.values() ?? [])].map(({ name }) => name).filter((name) => name?.startsWith("axis:") && !name.includes("@strip_"));
     return this.named;
   }
 }

@@ -271,7 +271,7 @@ function together(marks, near) {
 
 /** Keep changes that are meant for the browser alone from Python. Bokeh's server does so; what Panel puts into a notebook does not. */
 function keepFromKernel(bokeh) {
-  for (const manager of bokeh.roots().filter((root) => root.client_comm_id !== undefined)) {
+  for (const manager of bokeh.roots().filter((root) => root.client_comm_id !== undefined && root._document_changed)) {
     const tell = manager._document_changed.bind(manager);
     manager._document_changed = (event) => { if (event.sync !== false) tell(event); };
   }

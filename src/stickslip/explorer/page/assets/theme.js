@@ -20,7 +20,7 @@ function chooseGround(ground) {
 /** Give all models of a Bokeh document the colours of their roles, and sizes that follow the size of the page's type. */
 function paintModels(bokeh, look, ground) {
   const scale = parseFloat(getComputedStyle(document.documentElement).fontSize) / 16;
-  for (const model of bokeh.all_models ?? bokeh._all_models.values()) {
+  for (const model of bokeh.all_models ?? bokeh._all_models?.values() ?? []) {
     for (const tag of model.tags ?? []) {
       const changes = {};
       for (const [key, role] of Object.entries(tag?.paint ?? {})) changes[key] = look.colours[ground][role];
