@@ -54,7 +54,7 @@ def test_a_run_stops_after_the_requested_events(command, tmp_path: Path):
 
 
 REFUSED = [
-    (["run"], "run: what is to be run is missing: a SCENARIO, or --resume FILE"),
+    (["run"], "run: nothing to run: give a SCENARIO, or --resume FILE"),
     (["run", "cycles-block", "--events", "0"], "run: --events must be a whole number above 0, got 0"),
     (["run", "cycles-block", "--catalogue", "events.txt"], "--catalogue events.txt: the name must end in .csv or .parquet or .nc"),
     (["run", "cycles-block", "--catalogue", "no/events.csv"], "--catalogue no/events.csv: there is no folder no"),

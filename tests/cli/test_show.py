@@ -160,8 +160,8 @@ def test_a_catalogue_of_another_version_may_lack_columns(command: Command, resul
         (["run.nc", "--figure", "a.txt"], "--figure a.txt: the name must end in .png or .pdf or .svg"),
         (["run.nc", "--space-time", "a.png"], "show: --space-time needs a slab: a block is rigid"),
         (["run.nc", "--path", "a.png"], "show: --path needs a slab without contact mass"),
-        (["run.nc", "--figure", "a.png", "--energy-figure", "./a.png"], "--energy-figure a.png: is the file of --figure already"),
-        (["events.csv", "--figure", "a.png"], "events.csv: a catalogue keeps slip events only, no history: leave --figure away"),
+        (["run.nc", "--figure", "a.png", "--energy-figure", "./a.png"], "--energy-figure a.png: is already the file of --figure"),
+        (["events.csv", "--figure", "a.png"], "events.csv: a catalogue keeps slip events only, no history: leave out --figure"),
         (["map.zarr", "--energy-figure", "a.png"], "map.zarr: the results of a sweep have no --energy-figure: --figure draws"),
     ],
 )

@@ -210,7 +210,7 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
     ),
     "rest": (
         {"friction": ss.friction.Coulomb(0.6, 0.3), "initial_rate": 1e-3, "initial_load": 6e7},
-        "Coulomb has a rest, from which the contact starts: leave initial_rate out",
+        "under Coulomb the contact starts from rest: leave out initial_rate",
     ),
     "no unit": ({"initial_rate": "3 kg", "pull_rate": SPEED}, "initial_rate must be a number in m/s"),
 }

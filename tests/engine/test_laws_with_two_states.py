@@ -240,7 +240,7 @@ REFUSED: dict[str, tuple[Callable[[], Any], str]] = {
     ),
     "three states": (
         lambda: FromExpression("0.3 + x + y + z", evolution="dx/dt = -x; dy/dt = -y; dz/dt = -z"),
-        "a law has at most 2 states, this one 3",
+        "a law has at most 2 states, this one has 3",
     ),
     "one name twice": (
         lambda: FromExpression("0.3 + x", evolution="dx/dt = -x; dx/dt = -2*x"),
@@ -252,7 +252,7 @@ REFUSED: dict[str, tuple[Callable[[], Any], str]] = {
     ),
     "no second to keep": (
         lambda: FromExpression("0.3 + x", evolution="dx/dt = -x", at_reversal="first-changes-sign"),
-        "the law has no second state; changes-sign is for one",
+        "the law has no second state; changes-sign is for one state",
     ),
     "two numbers for two states": (
         lambda: FromFunction(lambda v, x, y: (0.3 + x + y, -x), state=("x", "y")),

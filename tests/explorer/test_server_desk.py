@@ -154,7 +154,7 @@ def test_a_fault_of_the_program_is_one_line_on_the_page_and_a_traceback_in_the_l
 ) -> None:
     page.ask(lambda told: {}["no such\nkey"])
     page.until(lambda: bool(page.faults))
-    assert page.faults == [r"this cannot be shown, through a fault of the program (KeyError: 'no such\nkey')"]
+    assert page.faults == [r"this cannot be shown, because of a program fault (KeyError: 'no such\nkey')"]
     assert "Traceback" in caplog.text
     page.ask(lambda told: "alive")
     page.until(lambda: bool(page.results))

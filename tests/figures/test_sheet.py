@@ -157,7 +157,7 @@ def test_keywords_that_are_none_are_as_if_not_given() -> None:
 
 
 def test_axes_bring_their_own_size() -> None:
-    with pytest.raises(ss.InputError, match="leave figure, size and dpi away"):
+    with pytest.raises(ss.InputError, match="leave out figure, size and dpi"):
         plot("slip", ax=pyplot.subplots()[1], dpi=300)
 
 

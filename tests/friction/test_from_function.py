@@ -139,7 +139,7 @@ REFUSED: list[tuple[Any, dict[str, Any], str]] = [
     (lambda u, **a: 0.5, {}, "without *args and **named"),
     (lambda u, v, a: a, {}, "parameter a has no value: give it a default, or FromFunction(..., a=...)"),
     (lambda u, v, width: width, {"widht": 1.0}, "has no parameter widht; did you mean 'width'?"),
-    (lambda u, a=0.5: a, {"v": 1.0}, "v is the slip rate, and no parameter that could have a value"),
+    (lambda u, a=0.5: a, {"v": 1.0}, "v is the slip rate, not a parameter: it takes no value"),
     (lambda u, v, a: a + v, {"a": "1 parsnip"}, "'parsnip' is not a unit"),
     (lambda u, v, a: a + v, {"a": None}, "'a' must be a number"),
     (lambda u, v, a: a + v, {"a": "0.7"}, "'0.7' is not a number with a unit: write a number without quotes"),

@@ -160,7 +160,7 @@ def test_an_own_history_runs_and_is_saved_once_it_is_known(tmp_path: Path, monke
     steady = ss.simulate(ss.Problem(BLOCK, LAW, pull_rate=1e-3, initial_excess=1e11), 5.0)
     times = np.linspace(0.0, 5.0, 301)
     np.testing.assert_allclose(mine.slip(times), steady.slip(times), rtol=1e-9, atol=1e-12)
-    with pytest.raises(ss.InputError, match=r'^save: Own is not known to files: stickslip.loading.HISTORIES\["own"\] = Own tells'):
+    with pytest.raises(ss.InputError, match=r'^save: files do not know Own: set stickslip.loading.HISTORIES\["own"\] = Own'):
         mine.to_netcdf(tmp_path / "mine.nc")
     monkeypatch.setitem(HISTORIES, "own", Own)
     loaded = ss.open_solution(mine.to_netcdf(tmp_path / "mine.nc"))

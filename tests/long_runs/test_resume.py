@@ -161,7 +161,7 @@ def test_another_engine_is_refused(tmp_path: Path) -> None:
         ss.resume(tmp_path / "run.nc", 2 * duration)
     assert "\n" not in str(said.value)
     replace(run, checkpoint=None).to_netcdf(tmp_path / "bare.nc")
-    with pytest.raises(ss.InputError, match=r"bare\.nc: cannot be resumed: it does not hold where the engine stood"):
+    with pytest.raises(ss.InputError, match=r"bare\.nc: cannot be resumed: it does not hold the state of the engine"):
         ss.resume(tmp_path / "bare.nc")
     with pytest.raises(ss.InputError, match=r"none\.nc: no such file"):
         ss.resume(tmp_path / "none.nc")

@@ -167,12 +167,12 @@ def test_a_data_file_is_read(tmp_path: Path) -> None:
         ("", ": 'pull.csv', line 1: no column 'pull_rate' in the header; write it as pull_rate (m/s)"),
         ("time,pull_rate\n1,1\n0,2\n", ": 'pull.csv', line 3: time must ascend, but 0 follows 1; sort the rows"),
         ("time,pull_rate\n-1,1\n0,2\n", ": 'pull.csv', line 2: time must not be negative, got -1"),
-        ("time,pull_rate\n0,nan\n1,2\n", ": 'pull.csv', line 2: pull_rate must be finite, got 'nan'; leave such rows out"),
-        ("time,pull_rate\nnan,1\n1,2\n", ": 'pull.csv', line 2: time must be finite, got 'nan'; leave such rows out"),
+        ("time,pull_rate\n0,nan\n1,2\n", ": 'pull.csv', line 2: pull_rate must be finite, got 'nan'; leave out such rows"),
+        ("time,pull_rate\nnan,1\n1,2\n", ": 'pull.csv', line 2: time must be finite, got 'nan'; leave out such rows"),
         ("time,pull_rate\n0\n1,2\n", ": 'pull.csv', line 2: pull_rate must be a number, got nothing"),
         (
             "time,pull_rate\n0,1 m/s\n",
-            ": 'pull.csv', line 2: pull_rate must be a number, got text; a unit belongs into the heading, as in pull_rate (m/s)",
+            ": 'pull.csv', line 2: pull_rate must be a number, got text; a unit belongs in the heading, as in pull_rate (m/s)",
         ),
         ("time,pull_rate\n0,1\n", ": 'pull.csv', line 2: at least two rows of numbers are needed, got 1"),
         (

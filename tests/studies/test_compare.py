@@ -103,7 +103,7 @@ def test_bad_comparisons_are_refused(fig6: Comparison) -> None:
     for arguments, options, message in (
         (("fig6-slab",), {}, "needs two"),
         (("fig6-slab", "fig6-slap"), {}, "did you mean 'fig6-slab'"),
-        (("fig6-slab", done), {"duration": 3.0}, "has been run: leave duration and rtol away"),
+        (("fig6-slab", done), {"duration": 3.0}, "has been run: leave out duration and rtol"),
         (FIG6, {"names": ["one"]}, "names: 2 are needed, got 1"),
         (FIG6, {"duration": -1.0}, "duration must be greater than 0 s, got -1"),
         (FIG6, {"rtol": 1.0}, "rtol must be at most"),

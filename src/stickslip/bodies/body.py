@@ -11,7 +11,7 @@ from stickslip.foundation.errors import InputError
 
 
 class Body(Protocol):
-    """What every body that slides on a contact has, whoever solves its motion. Its loads are stresses (Pa) or forces (N).
+    """What every body that slides on a contact has, whatever solves its motion. Its loads are stresses (Pa) or forces (N).
 
     Units below are those of a slab; for a block read N for Pa, and kg for kg/m^2.
     """
@@ -72,7 +72,7 @@ class BodyOnCharacteristics(Body, Protocol):
 
     @property
     def is_driven_rigidly(self) -> bool:
-        """True if the driver gives way by nothing, or by so little that it makes no difference to rounding."""
+        """True if the driver does not give way, or by less than rounding."""
         ...
 
     @property

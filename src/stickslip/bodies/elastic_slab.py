@@ -177,8 +177,8 @@ class ElasticSlab(CheckedArguments):
         At the angular frequency omega the load per unit displacement of the contact is G k cot(k h) = G/h - omega^2 rho h/3 + ...,
         with k = omega/c. The block matches the terms up to the order (omega h/c)^2.
 
-        It is not the block that matches the first mode: that one has m = rho h/2 and K = (pi^2/8) G/h and oscillates at the
-        frequency c/(4h) of the slab, whereas this block oscillates at sqrt(3) c/(2 pi h), which is 10 % higher.
+        It is not the block that matches the first mode, which has m = rho h/2 and K = (pi^2/8) G/h and oscillates at the frequency
+        c/(4h) of the slab. This block oscillates at sqrt(3) c/(2 pi h), which is 10 % higher.
 
         Source: Campillo et al. 1996 compare the two bodies; the equivalence follows from their eqs (7)-(13) as above.
         """

@@ -229,5 +229,5 @@ def _too_many(message: str, teach: str) -> str:
     if found is None:
         return message
     if "=" in found[1]:
-        return f"{ascii(found[1])[:60]} is too much; a value of the scenario is replaced by --set NAME=VALUE; {teach}"
-    return f'{ascii(found[1])[:60]} is too much; a text with spaces stands in quotes, as "480 years"; {teach}'
+        return f"{ascii(found[1])[:60]} is not expected; --set NAME=VALUE replaces a value of the scenario; {teach}"
+    return f'{ascii(found[1])[:60]} is not expected; put a text with spaces in quotes, as "480 years"; {teach}'

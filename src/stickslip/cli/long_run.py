@@ -99,14 +99,14 @@ class Request:
         )
         self.pictures.check()
         if self.scenario is None and self.resume is None:
-            raise InputError("run: what is to be run is missing: a SCENARIO, or --resume FILE")
+            raise InputError("run: nothing to run: give a SCENARIO, or --resume FILE")
         as_begun = [self.overrides[name] for name in ("rtol", "creep_rtol", "shortest_event", "selection")]
         if self.resume is not None and any(option is not None for option in (self.changes, self.catalogue, *as_begun)):
             options = "--set, --rtol, --creep-rtol, --shortest-event, --selection and --catalogue"
-            raise InputError(f"run: --resume goes on as the run began: leave {options} away")
+            raise InputError(f"run: --resume goes on as the run began: leave out {options}")
         if self.keeps_events_only:
             if self.out is not None:
-                raise InputError("run: a catalogue keeps slip events only, no history: leave --out away")
+                raise InputError("run: a catalogue keeps slip events only, no history: leave out --out")
             self.pictures.check_events("run")
         if self.energy and self.catalogue is None:
             raise InputError("run: --energy belongs to --catalogue FILE")

@@ -25,13 +25,14 @@ def explore(problem: Problem | Scenario | str | Path = "fig6-slab", duration: fl
     problem : Problem, Scenario, str or Path
         What to show first: a problem, a scenario, the name of a bundled scenario, or a scenario file.
     duration : float or str, optional
-        Duration of the run: a number in s, or a text with a unit such as "480 years". By default that of the scenario; for a
+        Duration of the run: a number in s, or a text with a unit such as "480 years". By default the scenario's duration; for a
         problem three round trips of the waves in a slab, or three periods of a block.
 
     Returns
     -------
     panel.viewable.Viewable
-        The explorer. As the last expression of a cell it is shown; its attribute `explorer` holds the setting and the answer.
+        The explorer. A notebook shows it as the last expression of a cell; its attribute `explorer` holds the setting and the
+        answer.
 
     Raises
     ------

@@ -113,7 +113,7 @@ def check_place(**place: Unpack[Place]) -> None:
         if given is not None and not hasattr(given, "plot" if name == "ax" else "subplots"):
             raise InputError(f"plot: {name} must be a matplotlib {kinds}, got {shown(given)}")
     if place.get("ax") is not None and any(place.get(name) is not None for name in KEYWORDS[1:]):
-        raise InputError("plot: axes have their figure, its size and its dpi: leave figure, size and dpi away, or leave ax away")
+        raise InputError("plot: axes already have a figure, its size and its dpi: leave out figure, size and dpi, or ax")
     size, dpi = (place.get("size"), place.get("dpi"))
     width, height = (1.0, 1.0) if size is None else read_size(size, (1.0, 1.0))
     if dpi is not None:

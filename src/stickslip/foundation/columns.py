@@ -53,7 +53,7 @@ PURE = ("", "-", "–", "1", "none", "no unit", "dimensionless")
 """What people write in place of a unit for a pure number."""
 DECIMAL_COMMA = (
     "decimal commas are not read, write points: `tr , . < OLD.csv > NEW.csv` replaces them, "
-    "or hand pandas.read_csv(FILE, sep=';', decimal=',') over in Python"
+    "or in Python pass pandas.read_csv(FILE, sep=';', decimal=',')"
 )
 """The cure for decimal commas in a file whose columns are not separated by commas."""
 _COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?")
@@ -301,14 +301,14 @@ def _number(text: str, column: str, place: str, first: bool) -> float:
     except ValueError:
         if _COMMA.fullmatch(text):
             raise InputError(f"{place}: {column} has a decimal comma; {DECIMAL_COMMA}") from None
-        hint = f"; a unit belongs into the heading, as in {_example(column)}" if first and text else ""
+        hint = f"; a unit belongs in the heading, as in {_example(column)}" if first and text else ""
         raise InputError(f"{place}: {column} must be a number, got {'text' if text else 'nothing'}{hint}") from None
     return _check(value, column, place)
 
 
 def _check(value: float, column: str, place: str) -> float:
     if not math.isfinite(value):
-        raise InputError(f"{place}: {column} must be finite, got '{value}'; leave such rows out")
+        raise InputError(f"{place}: {column} must be finite, got '{value}'; leave out such rows")
     if value < 0.0 and not _signed(column):
         raise InputError(f"{place}: {column} must not be negative, got {value:g}")
     return value

@@ -186,7 +186,7 @@ class LawContract(CheckedArguments, ABC):
 
     @property
     def state_rate(self) -> Formula | tuple[Formula, ...]:
-        """The function that gives dw/dt (1/s times the unit of w) from parameters, slip, slip rate and state, or a tuple of two."""
+        """The function for dw/dt (unit of w per s) from parameters, slip, slip rate and state; a tuple of two for two states."""
         raise TypeError(f"{type(self).__name__} has no state variable")
 
     def inner_state(self, value: Any) -> Any:
@@ -206,7 +206,7 @@ class LawContract(CheckedArguments, ABC):
 
     @property
     def healed_state(self) -> Any:
-        """The state, as users see it, of a contact that has been at rest for ever: where a law that sticks starts by default."""
+        """The state, as users see it, after endless rest: a contact under a law that sticks starts in it by default."""
         return 0.0 if len(self.states) < 2 else np.zeros(len(self.states))
 
     # ---------------------------------------------------------------------------------------------------------------------------

@@ -32,8 +32,8 @@ class RemembersSlip(FrictionLaw):
     An arrest is rest for a positive time: the contact can stay at rest under the friction that it has at that moment, before it
     heals. The counted slip is then set back to 0. If the healed strength is below the load, the contact slips again at once.
 
-    Passing through v = 0 directly into slip in the other direction is not an arrest. Touching v = 0 is not one either: with
-    inertia, a touch is rest that, without healing, would end within sqrt(rtol) times the period or the round trip.
+    Passing through v = 0 directly into slip in the other direction is not an arrest. Nor is a touch of v = 0: with inertia, rest
+    counts as a touch if without healing it would end within sqrt(rtol) times the period or the round trip.
 
     The start of the run counts as an arrest: with "since-arrest" the initial slip does not enter friction.
     """
@@ -76,7 +76,7 @@ class SlipWeakening(RemembersSlip):
 class Stribeck(FrictionLaw):
     """A law that falls from `static` to `dynamic` around the slip rate `rate`, and rises again with `viscosity`.
 
-    The exponent must be whole: with any other the curve has no derivatives at v = 0, where every slip begins.
+    The exponent must be whole: otherwise the curve has no derivatives at v = 0, where every slip begins.
     """
 
     static: float = quantity("1", "friction coefficient at rest", at_least=0)

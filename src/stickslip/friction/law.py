@@ -40,7 +40,7 @@ def _contain(trees: tuple[Expression, ...], variable: Expression) -> bool:
 class FrictionLaw(LawContract):
     """A friction law: the coefficient mu(u, v) of a contact that slips, and the static coefficient at rest.
 
-    Subclass this to add a law. What a law states about itself is in `stickslip.friction.contract`.
+    Subclass this to add a law; `stickslip.friction.contract` lists what a law states about itself.
     """
 
     def __post_init__(self) -> None:
@@ -58,7 +58,7 @@ class FrictionLaw(LawContract):
         return tuple(quantities_of(type(self)))
 
     def piece_values(self, i: int) -> tuple[float, ...]:
-        """Return the values of `parameters` in piece i: those of the law, unless its pieces have different ones."""
+        """Return the values of `parameters` in piece i: the values of the law, unless its pieces have different values."""
         return tuple(float(getattr(self, name)) for name in self.parameters())
 
     def numbers(self, i: int = 0) -> dict[str, float]:
@@ -121,8 +121,8 @@ class FrictionLaw(LawContract):
         v
             Magnitude of the slip rate (m/s), not negative; 0 means the limit v = 0+.
         w
-            State in the form that the formulas use (`inner_state`), for a law that has one; for a law with several states an array
-            with one more axis in front, that of the states.
+            State in the form that the formulas use (`inner_state`), for a law with a state; for several states an array with one
+            more axis in front, with one entry for each state.
 
         Returns
         -------

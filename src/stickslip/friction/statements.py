@@ -1,7 +1,7 @@
 """Check by samples what the class of a law states about it: its range, its curvature, its knots, its step at rest.
 
-Runs, proofs and searches for folds believe these statements. The laws of the package are tested for theirs; those of a law that a
-user has written as a class are compared with its formula when the law is made.
+Runs, proofs and searches for folds believe these statements. Tests check the statements of the package's laws. The statements of a
+user's class are compared with its formula when the law is made.
 """
 
 from __future__ import annotations

@@ -215,7 +215,7 @@ def history_dataset(solution: Solution) -> xr.Dataset:
     for loading in (getattr(solution.problem, name) for name in MAY_VARY):
         if isinstance(loading, LoadingHistory) and HISTORIES.get(loading.kind) is not type(loading):
             name, place = type(loading).__name__, f'stickslip.loading.HISTORIES["{loading.kind}"]'
-            raise InputError(f"save: {name} is not known to files: {place} = {name} tells them")
+            raise InputError(f"save: files do not know {name}: set {place} = {name}")
     if solution.checkpoint is None:
         return _history(solution)
     return xr.merge([_history(solution), _checkpoint(solution.checkpoint)], combine_attrs="no_conflicts")

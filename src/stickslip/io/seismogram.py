@@ -101,7 +101,7 @@ def _date(obspy: Any, text: str) -> Any:
     try:
         return obspy.UTCDateTime(text)
     except (TypeError, ValueError):
-        raise InputError(f"seismogram: origin must be a date as 1970-01-01T00:00:00, got {text!r}") from None
+        raise InputError(f"seismogram: origin must be a date such as 1970-01-01T00:00:00, got {text!r}") from None
 
 
 def band(sampling_rate: float) -> str:

@@ -71,7 +71,7 @@ SILENT = Tone(0.0, 1.0, 0.0)
 class LoadingHistory(CheckedArguments, ABC):
     """A pull rate (m/s) or far stress (Pa) as a function of time (s) since the start of the run.
 
-    Before the start of the run the value equals that at the start. A run meets the breaking points of the history exactly.
+    Before the start of the run the value is the one at the start. A run meets the breaking points of the history exactly.
 
     Subclass this to add a history. A subclass is a frozen dataclass with a `kind`. To be usable in scenario files and saved runs it
     also declares its fields with `quantity` or `declare`, has an `example`, and is listed in HISTORIES. Its fields and its `source`
@@ -149,7 +149,7 @@ class LoadingHistory(CheckedArguments, ABC):
         Returns
         -------
         array
-            Values (m/s or Pa), with the shape of `t`. At a jump it is the value after the jump; before 0 s it is that at 0 s.
+            Values (m/s or Pa), with the shape of `t`. At a jump it is the value after the jump; before 0 s it is the value at 0 s.
         """
         time = np.maximum(np.asarray(t, float), 0.0)
         start, value, slope = self._table

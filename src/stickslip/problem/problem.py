@@ -62,21 +62,21 @@ class Problem(CheckedArguments):
     initial_load
         Shear load on the contact at the start (Pa or N). Give either `initial_load` or `initial_excess`.
     initial_excess
-        Initial load minus static strength (Pa or N), stored without rounding. The strength is that against forward slip, also if
-        the load is negative. A law that never sticks has no strength to exceed: give its initial load.
+        Initial load minus static strength (Pa or N), stored without rounding. The strength is the strength against forward slip,
+        even if the load is negative. A law that never sticks has no strength to exceed: give its initial load.
     initial_state
-        Initial value of the state of a law that has one, in the unit of the law. The default for a law that sticks is 0, which is
-        healed; for any other law with a state the value must be given, unless the contact starts in steady sliding. "steady" is
-        the state of steady sliding at the (first) pull rate.
+        Initial value of the state of a law that has one, in the unit of the law. The default for a law that sticks is 0, the healed
+        state; any other law with a state needs the value, unless the contact starts in steady sliding. "steady" is the state of
+        steady sliding at the (first) pull rate.
     initial_second_state
-        The same for the second state of a law that has two.
+        The same for the second state of a law with two states.
     initial_rate
         Slip rate v0 at the start (m/s), of a contact with inertia under a law that never sticks. The default is the rate at which
         the initial load and friction in the initial state balance. If neither load nor state is given, the contact starts in
         steady sliding at this rate, by default at the pull rate.
     far_stress
         Shear stress (Pa) far beyond a driver of finite impedance, or a loading history of it. The default is the initial load,
-        less Z v0 if the contact starts at an initial rate.
+        minus Z v0 if the contact starts at an initial rate.
     far_stress_rate
         Rate of change of the far stress (Pa/s).
     selection
@@ -137,7 +137,7 @@ class Problem(CheckedArguments):
         self._check_far_side()
 
     def _shown(self) -> dict[str, str]:
-        """Return the texts of the fields that have not their default value, by name; those of body and friction come first."""
+        """Return the texts of the fields that differ from their defaults, by name; body and friction come first."""
         shown = dict(shown_fields(self, {LOAD: self.load_unit}))
         for name in self._varying:
             shown[name] = brief_repr(getattr(self, name), {VARYING: quantities_of(Problem)[name].unit})
@@ -305,7 +305,7 @@ class Problem(CheckedArguments):
 
     @property
     def has_initial_rate(self) -> bool:
-        """True if the contact starts at a slip rate of its own: it has inertia, so that the rate cannot jump, and never sticks."""
+        """True if the contact starts at a slip rate of its own: it never sticks, and has inertia, so that the rate cannot jump."""
         return not self.friction.sticks and self.body.has_inertia
 
     @cached_property
@@ -319,7 +319,7 @@ class Problem(CheckedArguments):
 
     @property
     def stress(self) -> float:
-        """The shear stress in a slab at t = 0 (Pa): the load, less Z v0, which leaves with the waves."""
+        """The shear stress in a slab at t = 0 (Pa): the load minus Z v0, which leaves with the waves."""
         return self.load - self.body.damping * self.rate
 
     @property
@@ -378,7 +378,7 @@ class Problem(CheckedArguments):
 
 
 def check_problem(who: str, problem: Any, wanted: str = "a Problem") -> None:
-    """Raise InputError, beginning with `who`, if what should be a problem is none; hint at what was probably meant."""
+    """Raise InputError, beginning with `who`, if an object is not a problem; hint at what was probably meant."""
     if isinstance(problem, Problem):
         return
     hint = ""

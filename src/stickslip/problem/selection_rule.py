@@ -106,7 +106,7 @@ def register(name: str, rule: SelectionRule) -> None:
     Raises
     ------
     InputError
-        If the name is not allowed or is that of a built-in rule, or the rule cannot be called.
+        If the name is not allowed or belongs to a built-in rule, or the rule cannot be called.
     """
     if not isinstance(name, str) or not _NAME.fullmatch(name):
         raise InputError(f"selection.register: a name is made of up to 60 letters, digits, - and _, got {ascii(name)[:60]}")

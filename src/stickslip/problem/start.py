@@ -1,6 +1,6 @@
-"""Find the slip rate, load and state with which a contact starts that has a mass and never sticks.
+"""Find the slip rate, load and state at the start of a contact that has a mass and never sticks.
 
-Such a contact has no rest to start from. What the problem leaves out follows from the balance of forces at the start,
+Such a contact cannot start from rest. What the problem leaves out follows from the balance of forces at the start,
 load = damping v + S mu(u, v, state), or from steady sliding.
 """
 
@@ -41,12 +41,12 @@ class Start(NamedTuple):
 
 
 def check_rate(problem: Problem) -> None:
-    """Raise InputError if a problem has an initial rate to which it is not entitled."""
+    """Raise InputError if a problem has an initial rate that it cannot have."""
     if problem.initial_rate is None or problem.has_initial_rate:
         return
     if problem.friction.sticks:
         name = type(problem.friction).__name__
-        raise InputError(f"Problem: initial_rate: {name} has a rest, from which the contact starts: leave initial_rate out")
+        raise InputError(f"Problem: initial_rate: under {name} the contact starts from rest: leave out initial_rate")
     why = "a contact without mass has no slip rate of its own, load and friction determine it"
     raise InputError(f"Problem: initial_rate: {why}: leave it out, or give the contact a mass")
 

@@ -145,7 +145,7 @@ class _Stepper:
             raise InputError(f"method_of_steps: cannot solve {type(law).__name__} on a contact without mass")
         self.path, self.heals = law.counts == "path", law.memory == "since-arrest"
         if len(law.pieces) > 1 and law.knot_variable == "rate":
-            raise InputError(f"method_of_steps: does not know kinks in slip rate, as {type(law).__name__} has them")
+            raise InputError(f"method_of_steps: cannot follow kinks in slip rate, which {type(law).__name__} has")
         start = self.problem.law_slip
         self.home = self.part = int(law.piece_at(start))
         here = float(law.coefficient(start))

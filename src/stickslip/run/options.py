@@ -56,7 +56,7 @@ class RunOptions:
 
     @classmethod
     def of(cls, scenario: Scenario, **given: Any) -> Self:
-        """Return the options of a scenario, those in `given` that are not None in their place or beside them."""
+        """Return the options of a scenario; options in `given` that are not None replace or complete them."""
         names = ("duration", "rtol", "creep_rtol", "shortest_event", "max_events")
         own = {name: getattr(scenario, name) for name in names} | {"title": scenario.heading, "description": scenario.description}
         return cls(**(own | _not_none(given)))
@@ -112,8 +112,8 @@ class RunOptions:
 def problem_and_options(who: str, source: Problem | Scenario | str | Path, **given: Any) -> tuple[Problem, RunOptions]:
     """Return the problem to run and the checked options of its run.
 
-    The source is a problem, a scenario, the name of a bundled scenario or a scenario file. Options in `given` that are None are
-    those of the scenario, or the defaults. Raises InputError, for a wrong option with a message that begins with `who`.
+    The source is a problem, a scenario, the name of a bundled scenario or a scenario file. Options in `given` that are None come
+    from the scenario, or are the defaults. Raises InputError, for a wrong option with a message that begins with `who`.
     """
     found = read_source(who, source)
     if isinstance(found, Problem):

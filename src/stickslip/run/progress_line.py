@@ -18,9 +18,9 @@ Show = Callable[[str], object]
 
 @contextmanager
 def told(progress: Callable[[News], object] | bool | None, what: str) -> Iterator[Callable[[News], object] | None]:
-    """Provide the function that receives the progress of `what`: that of the user, or one that shows it if `progress` is True.
+    """Provide the function that receives the progress of `what`: the user's function, or a display if `progress` is True.
 
-    It is None if nobody wants to know. Raises InputError for anything else.
+    It is None if no progress is wanted. Raises InputError for anything else.
     """
     if progress is True:
         with progress_line(f"{what}:") as report:

@@ -53,7 +53,7 @@ def resume(
         Number of slip events, counted from the start of the run, after which it stops. By default the previous number, unless the
         run has already reached it.
     progress, checkpoint_every, max_pieces
-        See `simulate`, for a catalogue `catalogue`.
+        See `simulate`, or `catalogue` for a catalogue.
     checkpoint : str or Path, optional
         File for checkpoints and, at the end, the solution; `path` by default. A catalogue keeps its own file.
 
@@ -76,7 +76,7 @@ def resume(
     file = as_path("resume: path", path)
     paused = PausedCatalogue.read(file) if is_catalogue(file) else None
     if paused is not None and checkpoint is not None:
-        raise InputError(f"resume: {file}: a catalogue is resumed in its own file: leave checkpoint away")
+        raise InputError(f"resume: {file}: a catalogue is resumed in its own file: leave out checkpoint")
     stopped = open_solution(file) if paused is None else paused.stopped
     kept = file if checkpoint is None else as_path("resume: checkpoint", checkpoint)
     with told(progress, "resume") as report:
@@ -146,7 +146,7 @@ def taken_up(stopped: Solution, path: Path, options: RunOptions) -> Session:
     options = options.check("resume", stopped.problem)
     checkpoint = stopped.checkpoint
     if checkpoint is None:
-        raise InputError(f"{path}: cannot be resumed: it does not hold where the engine stood; run it again from the start")
+        raise InputError(f"{path}: cannot be resumed: it does not hold the state of the engine; run it again from the start")
     if checkpoint.engine != engine():
         raise InputError(
             f"{path}: cannot be resumed: another version of stickslip's engine made it ({checkpoint.engine}, this is {engine()}),"

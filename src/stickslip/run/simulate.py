@@ -41,7 +41,7 @@ def simulate(
     ----------
     problem : Problem, Scenario, str or Path
         The problem itself, a scenario, the name of a bundled scenario (`stickslip.scenarios` lists them), or a scenario file.
-        Options that are not given are those of the scenario.
+        Options that you leave out come from the scenario.
     duration : float or str
         Latest end of the run: a number in s, or a text with a unit such as "480 years". A scenario has one; a problem has none.
         Other times may be given as texts, too, and as quantities of the library pint.
@@ -67,7 +67,7 @@ def simulate(
         Largest number of pieces of history, which are intervals with one polynomial each for load and slip rate. The default is a
         million, some 0.4 GB in memory and in a file.
     title : str
-        Title of the run, for figures; by default that of the scenario.
+        Title of the run, for figures; by default the scenario's title.
 
     Returns
     -------
@@ -77,8 +77,8 @@ def simulate(
     Raises
     ------
     InputError
-        If a scenario cannot be read, an argument is out of range, the contact cannot even start, or creep_rtol or shortest_event is
-        positive for a problem in which there are no such leaps or no lumping.
+        If a scenario cannot be read, an argument is out of range, the contact cannot start, or creep_rtol or shortest_event is
+        positive for a problem without such leaps or lumping.
 
     Notes
     -----

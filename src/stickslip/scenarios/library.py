@@ -48,7 +48,7 @@ def entries() -> dict[str, Entry]:
 
 
 class BundledScenarios(Mapping[str, "Scenario"]):
-    """The bundled scenarios by name: `ss.scenarios["fig6-slab"]` reads one, and printed they are a table.
+    """The bundled scenarios by name: `ss.scenarios["fig6-slab"]` reads one, `print(ss.scenarios)` lists all.
 
     Iterating gives the names. A name that is not bundled raises InputError, which names the nearest one; a file is read with
     `stickslip.load_scenario`.

@@ -96,7 +96,7 @@ class Scenario:
 
     @property
     def heading(self) -> str:
-        """The title of figures: that of the scenario, or its name; "" if it has neither."""
+        """The title of figures: the scenario's title or name; "" if it has neither."""
         return self.title or (self.name if self.name != UNNAMED else "")
 
     @classmethod
@@ -126,8 +126,8 @@ class Scenario:
         Returns
         -------
         Scenario
-            A new scenario; this one stays as it is. The title of the new one tells what was changed, and the description, which may
-            no longer be true, is left out. An initial load replaces an initial excess, and an excess a load.
+            A new scenario; this one stays as it is. Its title says what was changed; the description, which may no longer be true,
+            is left out. An initial load replaces an initial excess, and an excess a load.
 
         Raises
         ------

@@ -33,7 +33,7 @@ def read_source(who: str, source: Problem | Scenario | str | Path) -> Problem | 
 def read_duration_and_problem(
     who: str, source: Problem | Scenario | str | Path, duration: float | str | WithUnit | None
 ) -> tuple[float, Problem]:
-    """Return a checked duration (s), that of the scenario if none is given, and the problem of what `read_source` reads.
+    """Return a checked duration (s), by default the scenario's, and the problem that `read_source` finds.
 
     Raises InputError, which begins with `who`, also if a problem comes without a duration.
     """
@@ -44,15 +44,15 @@ def read_duration_and_problem(
 
 
 def uniqueness(problem: Problem | Scenario | str | Path, law_slip: float | str | WithUnit | None = None) -> Uniqueness:
-    """Determine whether the load fixes the slip rate of a contact, and what the selection rule does where it does not.
+    """Determine whether the load fixes the slip rate of a contact, and otherwise what the selection rule does.
 
     Parameters
     ----------
     problem : Problem, Scenario, str or Path
-        Problem to examine: itself, its scenario, the name of a bundled scenario, or a scenario file. For a block, a contact with
-        mass and a law with a state, the answer is "regular".
+        Problem to examine, its scenario, the name of a bundled scenario, or a scenario file. For a block, a contact with mass and a
+        law with a state, the answer is "regular".
     law_slip : float or str, optional
-        Slip (m, or a text with a unit) as the law counts it; the initial one by default.
+        Slip (m, or a text with a unit) as the law counts it; the initial slip by default.
 
     Returns
     -------

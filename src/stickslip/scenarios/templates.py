@@ -73,7 +73,7 @@ def template(name: str, friction: str | None = None, pull: str | None = None) ->
         raise InputError(f"no scenario '{name}'; {nearest(name, template_names())}")
     if friction is not None or pull is not None:
         chosen = "pull rate" if friction is None else "friction law"
-        raise InputError(f"new: a {chosen} is chosen for slab, lab-slab or block; {name} has its own")
+        raise InputError(f"new: only slab, lab-slab and block take a {chosen}; {name} has its own")
     return library.text(name)
 
 

@@ -1,4 +1,4 @@
-"""Figures and files of a run: the one door through which a solution reaches the packages above it.
+"""Figures and files of a run: the only file in which a solution uses the packages above it.
 
 `solution.plot()` draws the default figure and `solution.plot.energy()`, `.field()` ... draw others; `to_dataset`, `to_netcdf`,
 `to_scec` and `to_seismogram` hand a run to other tools. Each imports what it needs when it is called.
@@ -32,7 +32,7 @@ T = TypeVar("T")
 
 
 class Plots(Generic[Run]):
-    """Figures of a run, or of a window on it: `solution.plot()` draws the default one, `solution.plot.energy()` that of energies.
+    """Figures of a run, or of a window on it: `solution.plot()` draws the default one, `solution.plot.energy()` the energies.
 
     Methods with `start` and `end` draw between these times (s); the default is the whole run, or what the window shows. All but
     `animation` take these keywords, too:
@@ -41,7 +41,7 @@ class Plots(Generic[Run]):
     - `size`: width and height in inches, a text such as "16 x 10 cm", "single column" or "double column".
     - `dpi`: dots per inch.
 
-    They return a `matplotlib.figure.Figure`, or the axes if `ax` was given. A new figure is one of pyplot's: a notebook shows it
+    They return a `matplotlib.figure.Figure`, or the axes if `ax` was given. A new figure belongs to pyplot: a notebook shows it
     once, `pyplot.show()` shows it in a window, and `figure.savefig(...)` saves it.
     """
 
@@ -78,7 +78,7 @@ class Plots(Generic[Run]):
         return self._curve("state", start, end, place)
 
     def second_state(self, start: float | None = None, end: float | None = None, **place: Unpack[Place]) -> Figure | Axes:
-        """Draw the second state variable of a law that has two, as `state` does the first."""
+        """Draw the second state variable of a law with two, as `state` draws the first."""
         return self._curve("second_state", start, end, place)
 
     def _curve(self, name: Curve, start: float | None, end: float | None, place: Place) -> Figure | Axes:
@@ -228,7 +228,7 @@ class Exports(Readings):
     def to_dataset(self, t: ArrayLike, x: ArrayLike | None = None) -> xr.Dataset:
         """Return slip, slip rate, traction and load at given times, with units and provenance.
 
-        In a window the slip is that since the event began, and attributes hold the epoch.
+        In a window the slip counts from the start of the event, and attributes hold the epoch.
 
         Parameters
         ----------

@@ -110,7 +110,7 @@ class Readings:
         return self._state(t, 0)
 
     def second_state(self, t: ArrayLike) -> Floats:
-        """Return the second state variable of a law that has two, as `state` does the first."""
+        """Return the second state variable of a law with two, as `state` returns the first."""
         return self._state(t, 1)
 
     def _state(self, t: ArrayLike, number: int) -> Floats:
@@ -169,7 +169,7 @@ class Readings:
 
     @property
     def curves(self) -> tuple[Curve, ...]:
-        """The names of the quantities to draw: slip, slip rate, traction, load, and the states of a law that has some."""
+        """The names of the quantities to draw: slip, slip rate, traction, load, and the states of the law."""
         return (*CURVES, *STATE_NAMES[: len(self.problem.friction.states)])
 
     def curve(self, name: Curve, start: float | None = None, end: float | None = None, points: int = 2000) -> tuple[Floats, Floats]:

@@ -28,7 +28,7 @@ def fronts_of(readings: Readings, start: float, end: float) -> list[Floats]:
 def origins_of(readings: Readings, start: float, end: float) -> Floats:
     """Return the times (s) of shocks, starts and ends of slip at the contact, from one round trip before `start` on.
 
-    One that is a whole number of round trips after an earlier one is left out: it is taken for its echo, and lies on the same
+    A time that is a whole number of round trips after an earlier one is left out: it is taken for an echo, on the same
     characteristic. The result is empty if more than `MOST_FRONTS` remain, which could not be told apart.
     """
     history, round_trip = readings.history, slab_of(readings.problem).two_way_time

@@ -137,9 +137,9 @@ class Solution(Exports):
     def creep(self) -> pd.DataFrame:
         """The leaps over creep (`simulate(..., creep_rtol=...)`), one row each.
 
-        Columns: start and end (s); start_row (whole round trips before the leap, without rounding); round_trips in it; error
-        (bound of the error of slip at the landing, m); time_error (s: that error divided by the slip rate there, which is how
-        much too early or too late the following events may be).
+        Columns: start and end (s); start_row (whole round trips before the leap, without rounding); round_trips in it; error (bound
+        of the error of slip at the landing, m); time_error (s: the error divided by the slip rate there; the following events may
+        be early or late by this much).
 
         Notes
         -----
@@ -168,7 +168,7 @@ class Solution(Exports):
         before : float or str, optional
             Time to show before the start of the event (s, or a text with a unit). The default is a tenth of its duration.
         after : float or str, optional
-            Time to show after the start of the event (s, or a text with a unit). The default is its duration and a tenth of it.
+            Time to show after the start of the event (s, or a text with a unit). The default is 1.1 times its duration.
 
         Returns
         -------
@@ -258,7 +258,7 @@ class Solution(Exports):
 
     @cached_property
     def proven(self) -> Proof:
-        """How far, at most, the run is from obeying the contact equation at any moment: a bound that is proven, see `Proof`."""
+        """A proven bound of how far the run misses the contact equation at any moment: see `Proof`."""
         return proof_of(self.history, self.undecided)
 
     @cached_property

@@ -133,13 +133,13 @@ def analogy(
     within: float = WITHIN,
     progress: TextProgress | bool | None = None,
 ) -> Analogy:
-    """Compare the first slip event of a slab with that of its equivalent block, over two parameters of the problem.
+    """Compare the first slip events of a slab and of its equivalent block, over two parameters of the problem.
 
     Parameters
     ----------
     problem : Problem, Scenario, str or Path
-        Problem whose body is a slab under a rigid driver; everything except the two parameters is fixed. Itself, its scenario, the
-        name of a bundled scenario, or a scenario file.
+        Problem whose body is a slab under a rigid driver, its scenario, the name of a bundled scenario, or a scenario file.
+        Everything except the two parameters is fixed.
     duration : float, str or None
         Longest time to wait for the end of the event (s, or a text with a unit); None takes the duration of the scenario.
     x, y : Axis
@@ -160,8 +160,8 @@ def analogy(
     Raises
     ------
     InputError
-        If the body is a block, if the driver is not rigid, if a name is not that of a parameter or is given twice, or if `within`
-        is out of range.
+        If the body is a block, if the driver is not rigid, if a name is no parameter or is given twice, or if `within` is out of
+        range.
     KeyboardInterrupt
         If the user presses Ctrl-C.
     """

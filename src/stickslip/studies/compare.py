@@ -64,7 +64,7 @@ def read_source(source: str | Path | Scenario | Solution, duration: float | None
     """
     computed = isinstance(source, Solution)
     if (computed or Path(str(source)).suffix == ".nc") and not (duration is None and rtol is None):
-        raise InputError(f"{'a solution' if computed else source}: has been run: leave duration and rtol away")
+        raise InputError(f"{'a solution' if computed else source}: has been run: leave out duration and rtol")
     if isinstance(source, Solution):
         return Source("run", lambda _: source)
     if Path(str(source)).suffix == ".nc":
@@ -150,9 +150,9 @@ def compare(
     event : int, optional
         Slip event of each run to show in the figure (0 the first, -1 the last), in time since its start.
     duration : float or str, optional
-        Duration of the runs (s, or a text with a unit), in place of that of the scenarios.
+        Duration of the runs (s, or a text with a unit), in place of the scenarios' own.
     rtol : float, optional
-        Relative tolerance, in place of that of the scenarios.
+        Relative tolerance, in place of the scenarios' own.
     progress : bool or callable, optional
         True shows the progress in one line, on a terminal or in a notebook. A function is called with the name of each run as it
         begins.

@@ -42,7 +42,7 @@ def drawn(problem: Problem, members: int, size: float, seed: int) -> Floats:
     check_whole("ensemble: seed", seed, 0)
     scale = abs(problem.strength if problem.friction.sticks else problem.load)
     if scale == 0.0:
-        raise InputError("ensemble: there is neither a strength nor an initial load of which a share could disturb it")
+        raise InputError("ensemble: there is neither a strength nor an initial load whose share could disturb it")
     shares = 2.0 * np.random.default_rng(seed).random(members) - 1.0
     return _kept_going(problem, 0.5 * size * scale * (shares + np.copysign(1.0, shares)))
 

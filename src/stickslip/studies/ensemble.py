@@ -135,7 +135,7 @@ class Ensemble(RunsCompared):
 
     @cached_property
     def separation(self) -> Separation:
-        """The separation of the members' loads from that of the undisturbed run."""
+        """The separation of the members' loads from the undisturbed load."""
         return separation(self.reference, self.runs, self.until)
 
     @cached_property
@@ -256,9 +256,9 @@ def ensemble(
     Parameters
     ----------
     problem : Problem, Scenario, str or Path
-        Problem to disturb: itself, its scenario, the name of a bundled scenario, or a scenario file.
+        Problem to disturb, its scenario, the name of a bundled scenario, or a scenario file.
     duration : float or str, optional
-        Duration of each run (s, or a text with a unit); by default that of the scenario.
+        Duration of each run (s, or a text with a unit); by default the scenario's.
     members : int
         Number n of disturbed runs.
     size : float

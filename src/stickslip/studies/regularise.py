@@ -231,10 +231,10 @@ def regularise(
     Parameters
     ----------
     problem : Problem, Scenario, str or Path
-        Problem with a slab without contact mass and a law without a state: itself, its scenario, the name of a bundled scenario, or
-        a scenario file.
+        Problem with a slab without contact mass and a law without a state, its scenario, the name of a bundled scenario, or a
+        scenario file.
     duration : float or str, optional
-        Duration of each run (s, or a text with a unit); by default that of the scenario.
+        Duration of each run (s, or a text with a unit); by default the scenario's.
     by : str
         Kind of regularisation: "contact-mass" (Z size), "lag" (LaggedFriction of time `size`) or "direct-effect" (the same with
         direct = variation of mu * size / R).

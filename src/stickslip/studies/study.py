@@ -32,7 +32,7 @@ TextProgress = Callable[[str], Any]
 
 @contextmanager
 def telling(progress: TextProgress | bool | None, what: str) -> Iterator[TextProgress]:
-    """Provide the function that receives the progress of a study, as `told` does; it does nothing if nobody wants to know."""
+    """Provide the function that receives the progress of a study, as `told` does; it does nothing if no progress is wanted."""
     with told(progress, what) as tell:
         yield tell or (lambda text: None)
 

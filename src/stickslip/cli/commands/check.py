@@ -37,7 +37,7 @@ def check(
 ) -> None:
     r"""Check a scenario without running it.
 
-    The command shows every value as it is understood, with units (SI); what
+    The command shows every value as it understands it, with units (SI); what
     follows from the values (impedance, travel time, strength, excess); whether
     the contact slips at once; static stability and growth; whether the slip
     rate is unique, the critical values, the folds with what is proven of them,

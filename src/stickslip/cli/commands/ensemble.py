@@ -38,8 +38,8 @@ def ensemble(
     A slab whose friction falls with slip rate amplifies its own echoes, so that
     two runs which differ by rounding diverge. Each member begins with a load
     that is larger or smaller by `size`/2 to `size` of the static strength. The
-    command shows the event from which on members differ, the growth rate of
-    the disturbance beside the predicted one, and how far the statistics of the
+    command shows the first event at which members differ, the measured and the
+    predicted growth rate of the disturbance, and how far the statistics of the
     members are apart.
 
     \b

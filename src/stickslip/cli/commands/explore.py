@@ -1,4 +1,4 @@
-"""`stickslip explore`: open the explorer, a page on which the system answers while its numbers are moved."""
+"""`stickslip explore`: open the explorer, a page on which the system answers while you move its numbers."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ SERVER = "Server"
 FIRST = "fig6-slab"
 """The scenario that is shown first if none is named."""
 ADDRESS = "Network address to listen on. Not given: 127.0.0.1, which can be reached from this computer only."
-ALLOW_ORIGIN = "Host (NAME or NAME:PORT) under which the page may be reached as well, as behind a proxy; may be repeated."
-PORT = "Port to listen on; 0 for any that is free. Not given: the first free one from 5018 on."
+ALLOW_ORIGIN = "Another host (NAME or NAME:PORT) under which the page may be reached, as behind a proxy; may be repeated."
+PORT = "Port to listen on; 0 for any free port. Not given: the first free port from 5018 on."
 STATIC = "Write the guided tour into this new folder, as files that need neither Python nor a network, and end."
 _HOST = re.compile(r"[\w.-]+(:\d{1,5})?|\[[\da-f:]+\](:\d{1,5})?", re.IGNORECASE)
-NO_BROWSER = "Do not open a browser; the address is printed."
+NO_BROWSER = "Do not open a browser: only print the address."
 
 
 def explore(
@@ -36,11 +36,11 @@ def explore(
     no_browser: Annotated[bool, typer.Option("--no-browser", help=NO_BROWSER, rich_help_panel=SERVER)] = False,
     static: Annotated[Path | None, option(STATIC, metavar="<folder>")] = None,
 ) -> None:
-    r"""Open a page in the browser on which a scenario answers while its numbers are moved.
+    r"""Open a page in the browser on which a scenario answers while you move its numbers.
 
     The page shows the law, the contact, the motion, the inside of the slab and
-    the energy, linked; a cursor moves through all of them. The address that is
-    printed holds a token, without which nothing is shown. Ctrl-C ends it.
+    the energy, linked; a cursor moves through all of them. The printed
+    address holds a token, without which nothing is shown. Ctrl-C ends the server.
 
     \b
       stickslip explore
@@ -78,7 +78,7 @@ def _write(folder: Path, scenario: str | None, changes: list[str] | None) -> Non
     from stickslip.run.progress_line import progress_line
 
     if scenario is not None or changes:
-        raise InputError("explore: --static writes the guided tour, which has scenarios of its own: leave SCENARIO and --set away")
+        raise InputError("explore: --static writes the guided tour, which has scenarios of its own: leave out SCENARIO and --set")
     with progress_line("explore:") as report:
         written = write_tour(folder, report)
     typer.echo(written)

@@ -34,7 +34,7 @@ def fit(
     ] = None,
     smooth: Annotated[str | None, option("Smooth the points: auto (cross-validation), or a strength such as 1e-5.")] = None,
     monotone: Annotated[bool, typer.Option("--monotone", help="Smooth to a curve that only rises or only falls.")] = False,
-    along: Annotated[str | None, option("slip or slip_rate: which one to smooth along, if the file has both.")] = None,
+    along: Annotated[str | None, option("slip or slip_rate: the one to smooth along, if the file has both.")] = None,
     fix: Annotated[list[str] | None, option('A parameter that is known: NAME=VALUE, as "alpha=10 s/m".')] = None,
     start: Annotated[list[str] | None, option("Where the search for a parameter begins: NAME=VALUE.")] = None,
     body: Annotated[
@@ -48,7 +48,7 @@ def fit(
     r"""Make a friction law from measured points.
 
     The file is a CSV with a heading over each column: friction (or mu), and
-    slip (or u), slip_rate (or v), or both. Units belong into the headings:
+    slip (or u), slip_rate (or v), or both. Units belong in the headings:
     "v (mm/s)", "slip [mm]". Other columns are ignored.
 
     Without --law and --smooth, every law that suits the points is fitted and
@@ -57,8 +57,8 @@ def fit(
     what the points do not determine. --smooth draws a smooth curve through the
     points instead.
 
-    --out writes a scenario that can be run as it is. Its body and loading are
-    those of --body: edit them.
+    --out writes a scenario that can be run as it is. It takes its body and
+    loading from --body: edit them.
 
     \b
       stickslip fit data.csv

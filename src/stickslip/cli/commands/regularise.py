@@ -42,14 +42,15 @@ def regularise(
     duration: Duration = None,
     rtol: Rtol = None,
 ) -> None:
-    r"""Find which selection rule physics chooses: compare runs with ever less inertia or lag at the contact with every rule.
+    r"""Find which selection rule physics chooses: compare runs of ever less inertia or lag with the answer of every rule.
 
     If several slip rates solve the contact equation, a rule picks one. A
-    little physics makes the slip rate unique: a contact mass of Z size, or
+    little more physics makes the slip rate unique: a contact mass of Z size, or
     friction that lags behind the slip rate by the time `size`, with or without
     a direct effect (variation of mu * size / R). The size shrinks, and the runs
     are compared with the exact answer of each rule. The result is the rule to
-    which they converge, if any, and the power of the size with which they do.
+    which the runs converge, if any, and the power of the size by which their
+    error falls.
 
     \b
       stickslip regularise fig4-loop

@@ -201,7 +201,7 @@ def stored(path: Path, quantity: str | None = None) -> Stored:
     Raises InputError if there are none that can be read, and for a quantity of what is no sweep.
     """
     if quantity is not None and not path.is_dir():
-        raise InputError(f"show: --quantity chooses what is drawn of a sweep, and {path} is none")
+        raise InputError(f"show: --quantity chooses what is drawn of a sweep, and {path} is not a sweep")
     if path.is_dir():
         from stickslip.sweeps.results.layout import reading
         from stickslip.sweeps.results.store import open_store

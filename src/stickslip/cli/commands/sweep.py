@@ -43,13 +43,13 @@ Members = Annotated[int | None, option("How many samples.", "--members", "-m")]
 Seed = Annotated[int, typer.Option(help="Seed of the random samples; the same seed gives the same members.")]
 QUANTITY_HELP = "Quantity to keep of each run; may be repeated."
 Quantities = Annotated[list[str] | None, option(QUANTITY_HELP, "--quantity", "-q", autocompletion=complete_quantity)]
-SERIES_HELP = "Curves over time to be kept too, with commas between them; also state, under a law that has one."
+SERIES_HELP = "Curves over time to keep too, with commas between them; also state, for a law with a state."
 Series = Annotated[str, option(SERIES_HELP, autocompletion=complete_series)]
-Samples = Annotated[int, typer.Option(help="Times of such a curve.")]
+Samples = Annotated[int, typer.Option(help="Number of times in each curve.")]
 Out = Annotated[Path | None, option("Save the results as they come (a folder, .zarr).", "--out", "-o")]
 Threads = Annotated[int | None, option("Threads (default: all cores).")]
-Chunk = Annotated[int | None, option("Members that are run and saved together (default: 1/64 of all).")]
-Workers = Annotated[int | None, option("Processes of a dask cluster to be started here, instead of threads.")]
+Chunk = Annotated[int | None, option("Number of members run and saved together (default: 1/64 of all).")]
+Workers = Annotated[int | None, option("Start a dask cluster of so many processes here, instead of threads.")]
 Scheduler = Annotated[str | None, option("Run on the dask cluster at HOST:PORT, or of a scheduler file.")]
 REFINE_HELP = "Refine the map where this quantity changes."
 Refine = Annotated[str | None, option(REFINE_HELP, autocompletion=complete_quantity, metavar="QUANTITY")]
@@ -57,7 +57,7 @@ Depth = Annotated[int, typer.Option(help="With --refine: how often cells are hal
 Factor = Annotated[float | None, option("With --refine: look for jumps by more than this factor.")]
 FIGURE_HELP = "Draw the first quantity, or the one that is refined (.png, .pdf or .svg)."
 Figure = Annotated[Path | None, option(FIGURE_HELP, "--figure", "-f")]
-DryRun = Annotated[bool, typer.Option("--dry-run", help="Say how many members, how much time and disk, and stop.")]
+DryRun = Annotated[bool, typer.Option("--dry-run", help="Say how many members, how much time and disk it takes, and stop.")]
 
 
 def sweep(
@@ -173,7 +173,7 @@ def _check_can_be_drawn(plan: Plan) -> None:
     varied = sum(count > 1 for count in plan.design.shape)
     if not varied or varied > 3:
         number = f"{varied} keys vary" if varied else "no key varies"
-        raise InputError(f"sweep: --figure draws one to three keys, but here {number}: leave --figure away, or vary fewer keys")
+        raise InputError(f"sweep: --figure draws one to three keys, but here {number}: leave out --figure, or vary fewer keys")
 
 
 def _kept(wanted: list[str] | None, refined: str | None) -> list[str]:

@@ -53,7 +53,7 @@ class Look:
         if not given:
             return
         if not any(figures):
-            raise InputError(f"{given[0]} is the look of a figure: name the file of one, say --figure NAME.png")
+            raise InputError(f"{given[0]} needs a figure: name its file, say --figure NAME.png")
         from stickslip.figures.sheet import check_dpi, read_size
 
         sides = (1.0, 1.0) if self.size is None else read_size(self.size, (1.0, 1.0), "--size")
@@ -77,7 +77,7 @@ def check_targets(*targets: Target) -> None:
         check_target(path, option, suffixes)
         place = path.absolute()
         if place in named:
-            raise InputError(f"{option} {path}: is the file of {named[place]} already: choose another name")
+            raise InputError(f"{option} {path}: is already the file of {named[place]}: choose another name")
         named[place] = option
 
 

@@ -68,7 +68,7 @@ class Pictures:
         """Refuse, before the run, all figures but the one that a catalogue of slip events has. Raises InputError."""
         others = [option for option in self.wanted if option != "--catalogue-figure"]
         if others:
-            raise InputError(f"{where}: a catalogue keeps slip events only, no history: leave {', '.join(others)} away")
+            raise InputError(f"{where}: a catalogue keeps slip events only, no history: leave out {', '.join(others)}")
 
     def draw_events(self, table: pd.DataFrame, title: str) -> list[Path]:
         """Draw the figure of a catalogue if it is wanted and there is an event, and return its file."""

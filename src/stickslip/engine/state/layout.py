@@ -231,7 +231,7 @@ class NearFold(IntEnum):
 
 
 class StepEvent(IntEnum):
-    """Say what ends a step of slip early. Of two events at one place the lower one counts."""
+    """Say what ends a step of slip early. If two events coincide, the lower number counts."""
 
     NONE = 0
     ARREST = 1

@@ -13,4 +13,4 @@ class Stopped(KeyboardInterrupt):
 
 
 def silent(_: str) -> None:
-    """Tell nobody."""
+    """Ignore a report of progress."""

@@ -173,4 +173,4 @@ def unforeseen(error: Exception) -> InputError:
     """Write the traceback of an error that is no user's mistake to the terminal, and return one line on it for the page."""
     logging.getLogger(__name__).error("the explorer could not do this:", exc_info=error)
     line = " ".join(str(error).split())[:200]
-    return InputError(f"this cannot be shown, through a fault of the program ({type(error).__name__}{f': {line}' if line else ''})")
+    return InputError(f"this cannot be shown, because of a program fault ({type(error).__name__}{f': {line}' if line else ''})")

@@ -53,8 +53,8 @@ class Fit:
     correlation : ndarray
         Correlations of the fitted parameters, in the order of `uncertainty`.
     bic : float
-        Bayesian information criterion (Schwarz 1978): of several laws for the same points the one with the smallest fits best for
-        its number of parameters; a difference above 10 is decisive.
+        Bayesian information criterion (Schwarz 1978): of several laws for the same points, the law with the smallest value fits
+        best for its number of parameters; a difference above 10 is decisive.
     notes : list of str
         Sentences on what the points do not determine, and on trends that the law misses.
     """
@@ -120,13 +120,12 @@ def fit(points: Any, law: Any, *, start: Mapping[str, Any] | None = None, fixed:
     points : Points, str, Path, DataFrame or mapping
         The points; `Points.read` says what is understood.
     law : str, FrictionLaw or class
-        The law: its name in scenario files, as "hyperbolic-rate"; two names joined by "+" or "*", one of a law of slip and one of
-        a law of slip rate; or a law with parameters, as `FromExpression`, at whose values the search begins where points give no
-        hint.
+        The law: its name in scenario files, such as "hyperbolic-rate"; the names of a law of slip and a law of slip rate, joined by
+        "+" or "*"; or a law with parameters, such as `FromExpression`, at whose values the search begins where points give no hint.
     start : mapping, optional
         Values of parameters at which the search begins, in SI or as text with a unit. By default they follow from the points.
     fixed : mapping, optional
-        Values of parameters that are known and not fitted.
+        Values of known parameters, which are not fitted.
 
     Returns
     -------

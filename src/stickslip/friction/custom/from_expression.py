@@ -35,7 +35,7 @@ LONGEST_NAME = 40
 
 @dataclass(frozen=True)
 class FromExpression(RemembersSlip):
-    """mu(u, v) as the user writes it, u the slip (m) that `counts` names and v >= 0 the slip rate (m/s).
+    """mu(u, v) as the user writes it; u is the slip (m) that `counts` names, v >= 0 the slip rate (m/s).
 
     For example `FromExpression("mu_d + (mu_s - mu_d) / (1 + alpha*v)", {"mu_s": 0.8, "mu_d": 0.3, "alpha": "1 s/m"})`. `values` has
     the parameters by name, as numbers in SI or as texts with a unit. The text is never evaluated as Python.
@@ -47,10 +47,10 @@ class FromExpression(RemembersSlip):
     samples up to 10 m and 10 m/s. Units are checked if at least one value has a unit; a value without one is then a pure number.
 
     A law may have a state of its own, whose rate of change `evolution` gives: `FromExpression("mu_0 + a*log(1 + v/v_0) + z",
-    {"mu_0": 0.6, "a": 0.01, "v_0": "1 um/s", "b": 0.02, "tau": "1 s", "d": "10 um"}, evolution="dz/dt = (b - z)/tau - v*z/d")`.
-    The state changes at rest, too, where v = 0. Friction must be finite at state 0. If it is zero at v = 0 in every state, or if
-    the state changes its sign at reversal, the contact never sticks. A law may have two states: their equations stand in
-    `evolution` one after the other, with a semicolon between them, and so do their units in `state_unit` ("m; 1").
+    {"mu_0": 0.6, "a": 0.01, "v_0": "1 um/s", "b": 0.02, "tau": "1 s", "d": "10 um"}, evolution="dz/dt = (b - z)/tau - v*z/d")`. The
+    state changes at rest, too, where v = 0. Friction must be finite at state 0. If it is zero at v = 0 in every state, or if the
+    state changes its sign at reversal, the contact never sticks. A law may have two states: a semicolon separates their equations
+    in `evolution`, and their units in `state_unit` ("m; 1").
     """
 
     kind = "expression"
@@ -65,7 +65,7 @@ class FromExpression(RemembersSlip):
         NamedNumbers("values of the parameters", "parameters"), ()
     )
     _: KW_ONLY
-    static: float | None = quantity("1", "friction coefficient at rest, if above that at v = 0+", at_least=0, default=None)
+    static: float | None = quantity("1", "friction coefficient at rest, if above the value at v = 0+", at_least=0, default=None)
     evolution: str = declare(
         Text("rate of change of a state, such as dz/dt = (1 - z)/tau, in u, v, z and parameters; two are separated by ;", LONGEST),
         "",

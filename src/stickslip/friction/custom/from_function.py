@@ -76,8 +76,8 @@ def FromFunction(function: Callable[..., Any] | None = None, /, **given: Any) ->
     **given
         Values of the function's parameters: numbers in SI, or texts with a unit. The others have their defaults. `static`,
         `counts`, `memory`, `state_unit` and `at_reversal` are options of the law (see `FromExpression`), unless the function has a
-        parameter of that name. `state` names the argument that is a state of the law, or the two that are; the function then
-        returns the friction coefficient and the rate of change of each state (its unit over s).
+        parameter of that name. `state` names the one or two arguments that are states of the law; the function then returns the
+        friction coefficient and the rate of change of each state (its unit over s).
 
     Returns
     -------
@@ -154,7 +154,7 @@ def _values(signature: inspect.Signature, given: dict[str, Any], states: tuple[s
     names = [one.name for one in parameters]
     for extra in given:
         if extra in VARIABLES:
-            raise InputError(f"{extra} is the {'slip' if extra == 'u' else 'slip rate'}, and no parameter that could have a value")
+            raise InputError(f"{extra} is the {'slip' if extra == 'u' else 'slip rate'}, not a parameter: it takes no value")
         if extra not in names and extra not in OPTIONS:
             raise InputError(f"it has no parameter {extra}; {nearest(extra, [*names, *OPTIONS])}")
     values = {one.name: given.get(one.name, one.default) for one in parameters}
@@ -165,7 +165,7 @@ def _values(signature: inspect.Signature, given: dict[str, Any], states: tuple[s
 
 
 def _traced(function: Callable[..., Any], signature: inspect.Signature, states: tuple[str, ...]) -> tuple[Expression, ...]:
-    """Return the formula that the function records when it is called with symbols, and those of the changes of its states.
+    """Return the formula that the function records when it is called with symbols, and the formulas of its states' changes.
 
     A state is a symbol with its own name, as a parameter is: the formulas are written out as text.
     """

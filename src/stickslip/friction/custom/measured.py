@@ -63,9 +63,9 @@ class Points:
         ----------
         source : str, Path, DataFrame or mapping
             A CSV file, or columns of numbers by their headings: `friction` with `slip`, `slip_rate` or both. `shear_stress` and
-            `normal_stress` may take the place of friction. A heading may carry a unit, as in "v (mm/s)"; without one numbers are
-            in SI. `u`, `v`, `mu`, `tau`, `sigma` and some full names are understood, and other columns are ignored. Notes before
-            the headings are passed over. Points, and a law given by points, are taken as they are.
+            `normal_stress` may take the place of friction. A heading may carry a unit, as in "v (mm/s)"; without one numbers are in
+            SI. `u`, `v`, `mu`, `tau`, `sigma` and some full names are understood, and other columns are ignored. Notes before the
+            headings are skipped. Points, and a law given by points, are taken as they are.
 
         Returns
         -------
@@ -95,7 +95,7 @@ class Points:
         Parameters
         ----------
         variable : {"slip", "slip_rate"}, optional
-            Which one; it may be left out if the points have only one.
+            The variable; leave it out if the points have only one.
 
         Returns
         -------

@@ -175,12 +175,12 @@ def smooth(
         reach from 0 to 1, beside the mean squared difference from the points. By default cross-validation chooses it.
     monotone : bool
         If True, the law rises throughout or falls throughout, whichever the points do on the whole: it follows the curve of this
-        kind that is closest to the smooth one.
+        kind that is closest to the smooth curve.
     along : {"slip", "slip_rate"}, optional
         The variable of the law, for points that have both.
     scale : {"auto", "linear", "log"}
-        Scale along which the curve is smooth: that of slip or slip rate x itself, or of ln(1 + x / smallest x above 0). By default
-        it is the one under which the curve predicts left-out points better.
+        Scale along which the curve is smooth: slip or slip rate x itself, or ln(1 + x / smallest x above 0). By default the scale
+        on which the curve predicts left-out points better.
 
     Returns
     -------

@@ -22,9 +22,9 @@ from stickslip.friction.piecewise import PiecewiseLaw
 class FromTable(RemembersSlip, PiecewiseLaw):
     """mu through measured points of slip or of slip rate: monotone cubic between them, constant outside (no extrapolation).
 
-    Give the points as a CSV file, a DataFrame or `Points`, as in `FromTable("data.csv")`, with what `Points.read` understands. Or
-    give either `slip` or `rate`, with as many points as `friction`. `along` names the column, slip or slip_rate, that counts
-    where a source has both. Slips must not be negative where the path is counted.
+    Give the points as a CSV file, a DataFrame or `Points`, as in `FromTable("data.csv")`; `Points.read` says what is understood. Or
+    give either `slip` or `rate`, with as many points as `friction`. `along` names the column, slip or slip_rate, that counts where
+    a source has both. Slips must not be negative where the path is counted.
 
     The cubic passes through the points without overshoot. Its slope is continuous between the first and the last point. Through
     noisy points it turns at almost every one of them, and an `InputWarning` says so: see `smooth` and `fit`.

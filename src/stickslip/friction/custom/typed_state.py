@@ -42,7 +42,7 @@ def read_evolution(text: str, taken: tuple[str, ...]) -> dict[str, str]:
             raise InputError(f"evolution: the state cannot be called {name}, which is taken; name it as in {EXAMPLE}")
         equations[name] = found[2].strip()
     if len(equations) > MOST_STATES:
-        raise InputError(f"evolution: a law has at most {MOST_STATES} states, this one {len(equations)}")
+        raise InputError(f"evolution: a law has at most {MOST_STATES} states, this one has {len(equations)}")
     return equations
 
 

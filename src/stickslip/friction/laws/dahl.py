@@ -1,4 +1,4 @@
-"""Define Dahl's friction: springs that bend and give way, without a rate in it."""
+"""Define Dahl's friction: springs that bend and give way, at any slip rate alike."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -18,9 +18,8 @@ from stickslip.friction.laws.lugre import BENDING
 class Dahl(FrictionLaw):
     """mu = stiffness z, with dz/dt = v (1 - stiffness z / sliding) for slip rates v >= 0.
 
-    The state z is the bending of bristles, which changes its sign in the direction of slip where motion reverses. Friction depends
-    on the path alone and not on how fast it is walked: hysteresis without a drop of friction, so that no stick-slip arises. The
-    contact never sticks.
+    The state z is the bending of bristles in the direction of slip: it changes its sign where motion reverses. Friction depends on
+    the path alone, not on the speed. It has hysteresis but no drop, so no stick-slip arises. The contact never sticks.
     """
 
     kind = "dahl"

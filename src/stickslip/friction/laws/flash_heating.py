@@ -1,4 +1,4 @@
-"""Define rate-and-state friction that falls sharply at the slip rates of earthquakes, as flash heating of asperities makes it."""
+"""Define rate-and-state friction that falls sharply at the slip rates of earthquakes, by flash heating of asperities."""
 
 import math
 from dataclasses import dataclass

@@ -21,9 +21,9 @@ from stickslip.friction.law import FrictionLaw
 class LaggedFriction(LawOfParts):
     """mu = law(w) + direct [arcsinh(v / (2 direct_rate)) - arcsinh(w / (2 direct_rate))], with time dw/dt = v - w.
 
-    In steady sliding, w = v, friction is that of the law itself. On a slab without contact mass and without direct effect,
-    Z time dw/dt = load - g(w): the lag acts on w as a contact mass Z time acts on the slip rate. The contact heals at rest,
-    because w falls to 0 there.
+    In steady sliding, w = v, friction is as under the law itself. On a slab without contact mass and without direct effect, Z time
+    dw/dt = load - g(w): the lag acts on w as a contact mass Z time acts on the slip rate. The contact heals at rest, because w
+    falls to 0 there.
 
     The law must depend on slip rate only, and have neither a state, nor kinks, nor a step at rest.
     """
@@ -72,7 +72,7 @@ class LaggedFriction(LawOfParts):
     @property
     @override
     def can_be_negative(self) -> bool:
-        """True with a direct effect: where slip is slow, but was fast a moment ago, it lowers friction without bound."""
+        """True with a direct effect, which lowers friction without bound when slip is slow, but was fast a moment ago."""
         return self.direct > 0.0 or super().can_be_negative
 
     @override

@@ -21,11 +21,12 @@ BENDING = StateVariable("z", "m", "mean bending z of the bristles, positive in f
 class LuGre(FrictionLaw):
     """mu = stiffness z + damping dz/dt + viscosity v, with dz/dt = v - stiffness z v / g(v) for slip rates v >= 0.
 
-    g(v) = dynamic + (static - dynamic) exp(-(v / rate)^2) is friction in steady sliding, but for the viscosity. The bristles bend
-    with slip before they give way, within about static / stiffness, and spring back where motion reverses: z then changes its
-    sign in the direction of slip, and friction drives slip for a moment. The contact never sticks.
+    g(v) = dynamic + (static - dynamic) exp(-(v / rate)^2) is friction in steady sliding without the viscosity. The bristles bend
+    with slip before they give way, within about static / stiffness, and spring back where motion reverses: z, in the direction of
+    slip, then changes its sign, and friction drives slip for a moment. The contact never sticks.
 
-    Damping must not be so large that friction at a given bending falls with slip rate on a contact without mass: such a run ends.
+    On a contact without mass the damping must not be so large that friction at a given bending falls with slip rate: such a run
+    ends.
     """
 
     kind = "lugre"

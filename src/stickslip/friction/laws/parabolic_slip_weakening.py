@@ -15,8 +15,8 @@ from stickslip.friction.families import SlipWeakening, hull
 class ParabolicSlipWeakening(SlipWeakening):
     """mu = static - (static - dynamic) ((d - onset) / distance)^2 up to slip onset + distance (d1 + d2), then dynamic.
 
-    d is the slip path. With an onset above 0 friction begins below `static` and rises to it. Beyond the onset it falls at a
-    growing rate.
+    d is the slip path. With an onset above 0 friction begins below `static` and rises to it. Beyond the onset it falls ever more
+    steeply.
     """
 
     kind = "parabolic-slip-weakening"

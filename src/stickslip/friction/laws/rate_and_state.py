@@ -86,13 +86,13 @@ class RateAndState(FrictionLaw):
 
     @override
     def steady_state(self, v: ArrayLike) -> NDArray[np.float64]:
-        """Return the state theta (s) of steady sliding at slip rates v > 0 (m/s): distance / v, and twice that for the PRZ law."""
+        """Return the state theta (s) of steady sliding at slip rates v > 0 (m/s): distance / v, or twice that for the PRZ law."""
         return (2.0 if self.evolution == "prz" else 1.0) * self.distance / np.asarray(v, float)
 
     def steady_coefficient(self, v: ArrayLike) -> NDArray[np.float64]:
         """Return the friction coefficient (no unit) of steady sliding at slip rates v > 0 (m/s).
 
-        It is reference + (a - b) ln(v / rate), and b ln 2 more for the PRZ law, but for the regularisation at small slip rates.
+        It is reference + (a - b) ln(v / rate), and b ln 2 more for the PRZ law, except for the regularisation at small slip rates.
         """
         rate = np.asarray(v, float)
         return self.coefficient(0.0, rate, np.log(self.rate * self.steady_state(rate) / self.distance))

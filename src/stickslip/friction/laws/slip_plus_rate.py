@@ -10,7 +10,7 @@ from stickslip.friction.composite import CompositeLaw
 
 @dataclass(frozen=True)
 class SlipPlusRate(CompositeLaw):
-    """mu(u, v) = slip law + rate law, at rest too; slip is what the slip law counts."""
+    """mu(u, v) = slip law + rate law, at rest too; the slip law says which slip counts."""
 
     kind = "sum"
     source = "the sources of its parts"

@@ -11,7 +11,7 @@ from stickslip.friction.composite import CompositeLaw
 
 @dataclass(frozen=True)
 class SlipTimesRate(CompositeLaw):
-    """mu(u, v) = slip law * rate law: one is a friction coefficient, the other a factor; slip is what the slip law counts.
+    """mu(u, v) = slip law * rate law: one is a friction coefficient, the other a factor; the slip law says which slip counts.
 
     Both parts must be continuous at rest: the height of a step there would change with slip.
     """

@@ -1,4 +1,4 @@
-"""Define rate-and-state friction with two states: one that renews itself over a short slip, and one over a long one."""
+"""Define rate-and-state friction with two states, which renew themselves over a short and over a long slip."""
 
 import math
 from dataclasses import dataclass
@@ -22,8 +22,8 @@ class TwoStateRateAndState(FrictionLaw):
     """mu(v, theta_1, theta_2) = a arcsinh(v / (2 rate) exp((reference + b w_1 + second_b w_2) / a)), w_i = ln(rate theta_i / L_i).
 
     L_1 is `distance` and L_2 is `second_distance`. With y = v theta_i / L_i, d theta_i/dt is 1 - y for the ageing law and -y ln y
-    for the slip law. After a step of the slip rate, friction so settles over two slips, as it does in many experiments; they also
-    find a negative `second_b`. The contact never sticks.
+    for the slip law. After a step of the slip rate friction settles over both distances, as in many experiments, which also find a
+    negative `second_b`. The contact never sticks.
 
     The formulas use the states w_i; users give and see theta_i (s).
     """
@@ -81,7 +81,7 @@ class TwoStateRateAndState(FrictionLaw):
         return np.asarray(np.exp(w) * self._renewal(np.ndim(w)))
 
     def _renewal(self, axes: int) -> NDArray[np.float64]:
-        """Return the times L_i / rate (s) as an array whose first of so many axes is that of the states."""
+        """Return the times L_i / rate (s) as an array of so many axes, the first of which counts the states."""
         return np.reshape([self.distance / self.rate, self.second_distance / self.rate], (2,) + (1,) * (axes - 1))
 
     @override
@@ -102,7 +102,7 @@ class TwoStateRateAndState(FrictionLaw):
     def steady_coefficient(self, v: ArrayLike) -> NDArray[np.float64]:
         """Return the friction coefficient (no unit) of steady sliding at slip rates v > 0 (m/s).
 
-        It is reference + (a - b - second_b) ln(v / rate), but for the regularisation at small slip rates.
+        It is reference + (a - b - second_b) ln(v / rate), except for the regularisation at small slip rates.
         """
         rate = np.asarray(v, float)
         return self.coefficient(0.0, rate, self.inner_state(self.steady_state(rate)))
