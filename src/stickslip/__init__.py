@@ -10,7 +10,7 @@
 All quantities are in SI units; compression is positive. Source: Campillo, Ionescu, Paumier, Renard 1996, Phys. Earth Planet.
 Inter. 96.
 
-The public names are those of `__init__.pyi`, one page. Each is imported when it is first used, because the compiler and the table
+`__init__.pyi` lists the public names on one page. Each is imported when it is first used, because the compiler and the table
 libraries are slow to load.
 """
 

@@ -29,7 +29,10 @@ CASES = [
     (["check", "fig6-slab", "--set", "alpa=1"], "check: --set: 'alpa' is not a parameter of this scenario; did you mean 'alpha'?"),
     (["sweep", "fig6-slab", "--set", "alpha=-1", "-v", "static=0.7,0.8"], "sweep: --set: friction.alpha must be at least 0 s/m"),
     (["ensemble", "fig6-slab", "--set", "thickness=5 s"], "ensemble: --set: body.thickness must be a number in m or a text with"),
-    (["run", "--resume", "a.nc", "--set", "alpha=1"], "run: --resume goes on as the run began: leave --set, --rtol, --creep-rtol"),
+    (
+        ["run", "--resume", "a.nc", "--set", "alpha=1"],
+        "run: --resume goes on as the run began: leave out --set, --rtol, --creep-rtol",
+    ),
     (["explore", "--static", "tour", "--set", "alpha=1"], "explore: --static writes the guided tour, which has scenarios of its"),
     (["run", "fig6-slab", "--duration"], "Option '--duration' needs a value"),
     (["run", "fig6-slab", "--duration", "12,5"], "run: --duration must be a number in s or a text with a unit such as"),

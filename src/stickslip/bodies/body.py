@@ -13,7 +13,7 @@ from stickslip.foundation.errors import InputError
 class Body(Protocol):
     """What every body that slides on a contact has, whatever solves its motion. Its loads are stresses (Pa) or forces (N).
 
-    Units below are those of a slab; for a block read N for Pa, and kg for kg/m^2.
+    Units below are for a slab; for a block read N for Pa, and kg for kg/m^2.
     """
 
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
@@ -57,7 +57,7 @@ class Body(Protocol):
 
 
 class BodyOnCharacteristics(Body, Protocol):
-    """What the exact solver needs beyond that: how slip acts on the contact again, after a round trip, along characteristics.
+    """What the exact solver needs besides: how slip acts on the contact again, after a round trip, along characteristics.
 
     Units are those of `Body`.
     """

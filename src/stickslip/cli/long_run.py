@@ -208,7 +208,7 @@ def list_events(request: Request) -> tuple[Scenario, Catalogue]:
 
 
 def check_same(request: Request, problem: Problem) -> None:
-    """Refuse to resume a run whose problem differs from that of the scenario that is named beside it. Raises InputError."""
+    """Refuse to resume a run of another problem than the scenario named beside it. Raises InputError."""
     if request.scenario is None:
         return
     asked = request.load().problem

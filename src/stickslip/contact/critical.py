@@ -112,8 +112,8 @@ def critical_value(problem: Problem, name: str, law_slip: float | None = None) -
     Raises
     ------
     InputError
-        If the name is not that of a parameter, if the parameter is a whole number, or if the body is a block or has a contact
-        mass: inertia then makes the slip rate a state, and the motion is unique whatever the parameters are.
+        If the name is no parameter, if the parameter is a whole number, or if the body is a block or has a contact mass: inertia
+        then makes the slip rate a state, and the motion is unique whatever the parameters are.
 
     Notes
     -----

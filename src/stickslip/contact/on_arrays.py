@@ -31,7 +31,7 @@ class Friction(NamedTuple):
     """A quantity of the law at each point, with its derivatives by slip, slip rate and state.
 
     The quantity is the friction coefficient (no unit), or the rate of change of a state (its unit per second). For a law with two
-    states `by_state` has one more axis in front, that of the states.
+    states `by_state` has one more axis in front, for the states.
     """
 
     value: Array

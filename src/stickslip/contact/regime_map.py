@@ -129,8 +129,8 @@ def regime_map(problem: Problem, x: Axis, y: Axis, progress: Callable[[int, int]
     Raises
     ------
     InputError
-        If a name is not that of a parameter, if both axes have the same one, or if the body is a block or has a contact mass, so
-        that the motion is unique.
+        If a name is no parameter, if both axes have the same parameter, or if the body is a block or has a contact mass, so that
+        the motion is unique.
     """
     names = two_parameters(problem, x, y, "regime map")
     check_no_contact_mass(problem, "regime map")

@@ -260,7 +260,7 @@ def _determined(problem: Problem, slip: float | None) -> Uniqueness:
 
 
 _kept = lru_cache(maxsize=16)(_determined)
-"""The same function, which keeps its last results: a run, its tables and its notes ask again and again for that of one problem."""
+"""The same function, which keeps its last results: a run, its tables and its notes ask for the same problem again and again."""
 
 
 def _critical(problem: Problem, g: Resistance) -> tuple[str, float] | None:

@@ -226,7 +226,7 @@ def narrow(text: str) -> str:
 
 
 def title_of(readings: Readings) -> str:
-    """Return the title of a figure of one run: that of its scenario, "" for a problem from Python."""
+    """Return the title of a figure of one run: its scenario's title, or "" for a problem from Python."""
     return readings.title
 
 

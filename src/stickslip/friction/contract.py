@@ -96,7 +96,7 @@ class LawContract(CheckedArguments, ABC):
     """The state variable, if the law has one, or a tuple of two.
 
     Formulas then take it as a fourth argument, the second as a fifth, and `state_rate` is their evolution. For a law with two
-    states, whatever is said of "the state" below is an array with one axis more in front, that of the states.
+    states, whatever is said of "the state" below is an array with one more axis in front, for the states.
     """
     sticks: ClassVar[bool] = True
     """True if there is a static strength below which the contact rests; False if friction passes smoothly through v = 0."""

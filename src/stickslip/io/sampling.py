@@ -73,7 +73,7 @@ def sample(
 ) -> SampledRun:
     """Sample a run, or a window on it, at evenly spaced times.
 
-    Without the filter, the values are those of the solution at the times of the samples, right limits at shocks.
+    Without the filter, the values are the solution's at the times of the samples, right limits at shocks.
 
     Parameters
     ----------

@@ -75,7 +75,7 @@ class EventStream:
 
 @dataclass(frozen=True)
 class Look:
-    """New events in a stream; they count as reported once `tell` is called."""
+    """New events in a stream; they count as reported after `tell`."""
 
     stream: EventStream
     history: History

@@ -59,7 +59,7 @@ class FoundEvents:
         return np.where(self.events.is_over, values, np.nan)
 
     def recurrence(self) -> Floats:
-        """Return the time (s) from the start of the previous event to that of each event, NaN for the first."""
+        """Return the time (s) from the start of the previous event to the start of each event, NaN for the first."""
         row, offset = self.placed
         since = np.full(len(row), np.nan)
         since[1:] = np.diff(row) * self.history.round_trip_time + np.diff(offset)
@@ -161,7 +161,7 @@ NEEDED = ("start", "end", "recurrence", "slip")
 
 
 def unit_for(unit: str, load_unit: str) -> str:
-    """Return a unit in which "load" and "energy" are replaced by those of a body whose load is in Pa or N."""
+    """Return a unit in which "load" and "energy" are replaced by the units of a body whose load is in Pa or N."""
     return {"load": load_unit, "energy": "J m-2" if load_unit == "Pa" else "J"}.get(unit, unit)
 
 

@@ -53,7 +53,7 @@ def field(history: History, slip: Callable[[ArrayLike], Floats], x: ArrayLike, t
     """Return displacement, velocity and shear stress inside the slab; for the parameters see `Solution.field`.
 
     `slip` returns the displacement of the contact (m) at times (s). At a wave front `side` "left" is the limit before the front
-    passes, "right" the one after it; a point within rounding of a front lies on it. Raises InputError for a block, for places
+    passes, "right" the limit after it; a point within rounding of a front lies on it. Raises InputError for a block, for places
     outside the slab, for times outside the run, and if the waves in the slab left the contact in a leap over creep.
     """
     body = slab_of(history.problem)
@@ -85,7 +85,7 @@ class _Inside:
         self.interval = WaveInterval(waves, float(time.min()) - waves.round, float(time.max()))
 
     def field(self, away: Floats, side: Side) -> tuple[Floats, Floats, Floats]:
-        """Return displacement minus that of the contact, velocity and stress at travel times `away` (s) from the contact."""
+        """Return displacement relative to the contact, velocity and stress at travel times `away` (s) from the contact."""
         impedance, reference = self.waves.body.impedance, self.waves.reference
         load, leaving = self._coming(away, side), self.interval.leaving(self.time - away, side)
         rise = 2.0 * reference * away + self._load_coming(away) - self._left(self.time - away, self.time)
@@ -122,7 +122,7 @@ class WaveInterval:
     """The wave that left the contact between two times (s since the epoch): w = 2 Z v - beta, plus the reference strength.
 
     The pieces of the history that hold in the interval are looked up once, including those whose echoes arrive in rests that were
-    leaped over; then any number of moments is evaluated together. Before the run the wave is that of the initial state, linear in
+    leaped over; then any number of moments is evaluated together. Before the run the wave follows from the initial state, linear in
     time.
     """
 

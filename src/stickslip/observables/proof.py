@@ -1,4 +1,4 @@
-"""What is proven of a run: how far, at most, it is from obeying the contact equation at any moment."""
+"""What is proven of a run: by how much, at most, it misses the contact equation at any moment."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from stickslip.trajectory.history import History
 
 @dataclass(frozen=True)
 class Proof:
-    """Bounds of what a run's polynomials lack of the contact equation, at every moment and not only at places.
+    """Bounds of how far a run's polynomials miss the contact equation at any moment.
 
-    Leaps over creep have error bounds of their own (`Solution.creep_leaps`). Rounding in the law's formula is no part of the bound:
-    where it exceeds the tolerance, `Solution.rounding_note` says so. Method and proof: docs/theory/certificate.md.
+    Leaps over creep have error bounds of their own (`Solution.creep_leaps`). The bound leaves out rounding in the law's formula:
+    where that exceeds the tolerance, `Solution.rounding_note` says so. Method and proof: docs/theory/certificate.md.
     """
 
     residual: float

@@ -32,8 +32,8 @@ def catalogue_statistics(table: pd.DataFrame) -> pd.DataFrame:
     pandas.DataFrame
         Each row is in the unit of its quantity. Columns: `count`; `mean`; `deviation`, the sample's standard deviation;
         `variation`, which is deviation / mean (of the recurrence times: 0 periodic, 1 as random as a Poisson process, above 1
-        clustered); `smallest`, `median`, `largest`; and `next`, the correlation of a value with that of the next event.
-        Values are NaN if there are too few events.
+        clustered); `smallest`, `median`, `largest`; and `next`, the correlation of a value with the value of the next event. Values
+        are NaN if there are too few events.
 
     Notes
     -----

@@ -96,7 +96,7 @@ class Waves:
         return both / (4.0 * self.body.impedance)
 
     def trapped(self, now: Epoch) -> float:
-        """Return the energy of the waves inside the slab: the stored energy beyond that of the same mean stress at rest.
+        """Return the energy of the waves inside the slab: the stored energy beyond the energy of the same mean stress at rest.
 
         With a rigid driver the state of comparison is sheared at the pull rate (v = V x / h) instead of at rest.
         """
@@ -295,7 +295,7 @@ class Waves:
 
 
 class Radiation(Waves):
-    """Radiation through a driver of finite impedance Zd: `work` is that of the waves that continue beyond it, Zd (v - V)^2.
+    """Radiation through a driver of finite impedance Zd: `work` is done by the waves that continue beyond it, Zd (v - V)^2.
 
     The far stress and the steady motion of the driver do the work of the driver and the work of radiation; `Waves.work` is net of
     the latter.

@@ -117,7 +117,7 @@ class LinearBlock:
     -----
     The slip grows exponentially until it reaches the weakening distance, and oscillates harmonically after that.
 
-    Source: Campillo et al. 1996, eqs (4)-(6); the law is that of Ida 1972, J. Geophys. Res. 77, 3796.
+    Source: Campillo et al. 1996, eqs (4)-(6); the law is from Ida 1972, J. Geophys. Res. 77, 3796.
     """
 
     body: SpringBlock

@@ -34,7 +34,7 @@ class SteadySliding:
 
     Notes
     -----
-    Masses, dampings and stiffnesses below are those of a block (kg, N s/m, N/m), or all per unit area like the normal load.
+    Masses, dampings and stiffnesses below belong to a block (kg, N s/m, N/m), or are all per unit area like the normal load.
 
     Source: Rice & Ruina 1983, J. Appl. Mech. 50, 343, for the block; for the slab the same linearised friction meets the waves of
     Campillo et al. 1996, eqs (7)-(13).

@@ -113,9 +113,9 @@ class PausedCatalogue:
 
     @property
     def rows(self) -> Rows:
-        """The rows, in a file beside the checkpoint whose name follows from that of the checkpoint.
+        """The rows, in a file beside the checkpoint and named after it.
 
-        Raises InputError if it would be that of another file, or a symbolic link.
+        Raises InputError if that is another file, or a symbolic link.
         """
         found = Rows(self.path.parent / self.about["catalogue"])
         if checkpoint_of(found).name != self.path.name:

@@ -141,10 +141,10 @@ def read_points(
 ) -> dict[str, list[float]]:
     """Return the numbers (SI) in the CSV file `name` of the scenario's folder, by the field to which they belong.
 
-    `columns` maps headings to fields. The last is that of the dependent variable; exactly one other column must be there, or be
+    `columns` maps headings to fields. The last belongs to the dependent variable; exactly one other column must be there, or be
     named by `along`, and holds the ascending slips, slip rates or times at which the values are given. Blank lines, lines that
-    begin with #, notes before the headings and unknown columns are ignored; headings may carry units (`foundation.columns`).
-    Raises InputError with a message of one line that names the file and the line.
+    begin with #, notes before the headings and unknown columns are ignored; headings may carry units (`foundation.columns`). Raises
+    InputError with a message of one line that names the file and the line.
     """
     *others, value = columns
     if along is not None:

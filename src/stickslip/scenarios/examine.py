@@ -203,7 +203,7 @@ def _pulses(problem: Problem) -> list[Fact]:
 
 
 def _critical(problem: Problem, contact: Uniqueness) -> list[Fact]:
-    """Return the critical value of the law's own parameter, if it has one, and that of the normal stress."""
+    """Return the critical value of the law's own parameter, if it has one, and of the normal stress."""
     if contact.resistance is None:
         return []
     named = {contact.critical_parameter: contact.critical_value, "normal_stress": critical_normal_stress(contact.resistance)}

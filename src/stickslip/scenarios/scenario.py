@@ -121,7 +121,7 @@ class Scenario:
         ----------
         values : mapping of str to float or str
             Values by the names of parameters, such as {"friction.alpha": 2.0, "body.thickness": "5 km"}: numbers in SI, texts with
-            a unit, or words. The names are those of `stickslip.sweep`.
+            a unit, or words. Names are as in `stickslip.sweep`.
 
         Returns
         -------
@@ -162,7 +162,7 @@ def doubts(problem: Problem) -> list[str]:
     """Return the questions about the numbers of a problem, one line each."""
     found, static = [], problem.strength / problem.normal
     if static > LARGE_COEFFICIENT:
-        found.append(f"the static friction coefficient is {static:.4g}; that of rock is 0.1 to 1: is it a percentage?")
+        found.append(f"the static friction coefficient is {static:.4g}; rock has 0.1 to 1: is it a percentage?")
     if problem.body.has_waves and problem.normal < SMALL_STRESS:
         found.append(f"the normal stress is {problem.normal:.4g} Pa: mPa is a thousandth of a pascal, MPa is a million")
     return found

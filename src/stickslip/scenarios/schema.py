@@ -67,7 +67,7 @@ def quantities_in(table: str, kind: type, states: tuple[StateVariable, ...] = ()
     """Return each quantity of a table with its default (MISSING if there is none).
 
     `kind` is the class of the law for [friction] and of the body for every other table, because loads are stresses for a slab and
-    forces for a block. `states` are those of the friction law, which [initial] needs.
+    forces for a block. `states` are the friction law's states, which [initial] needs.
     """
     if table in KINDS:
         return _declared(kind)

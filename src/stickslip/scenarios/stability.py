@@ -109,7 +109,7 @@ def _sliding_with_states(problem: Problem) -> str:
     law, rate, pull = problem.friction, problem.first_pull_rate, "first pull rate" if problem.varies else "pull rate"
     states = law.steady_state(rate) if rate > 0.0 else None
     if problem.body.has_waves or states is None:
-        return "not calculated: that of steady sliding is known for a pulled block, and for slabs under rate-and-state friction"
+        return "not calculated: growth in steady sliding is known for a pulled block, and for slabs under rate-and-state friction"
     growth = sliding_growth(as_block(problem.body), law, rate, law.inner_states(np.ravel(states).tolist()))
     if growth == 0.0:
         return f"steady sliding at the {pull}: a small disturbance neither grows nor fades"

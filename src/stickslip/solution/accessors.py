@@ -178,7 +178,7 @@ class Plots(Generic[Run]):
 
 
 class SolutionPlots(Plots["Solution"]):
-    """Figures of a whole run: those of `Plots`, its catalogue, and its path through the solutions of the contact equation."""
+    """Figures of a whole run: as in `Plots`, its catalogue, and its path through the solutions of the contact equation."""
 
     def catalogue(self, event: int | None = None, **place: Unpack[Place]) -> Figure:
         """Draw the slip events, one of them in ever closer zooms, and their distributions.

@@ -65,7 +65,7 @@ class Window(Exports):
 
     @property
     def curves(self) -> tuple[Curve, ...]:
-        """The names of the quantities to draw: those of a run, but with the slip since the event began."""
+        """The names of the quantities to draw, as for a run, but with the slip since the event began."""
         return ("event_slip", *super().curves[1:])
 
     @cached_property

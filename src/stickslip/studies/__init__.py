@@ -1,7 +1,7 @@
 """Studies that answer one question about a problem, mostly by running it several times: `ss.studies.compare(...)`.
 
-The results of studies that run a problem draw themselves with `.plot()`. The names are those of `__init__.pyi`; each is imported
-when it is first used.
+The results of studies that run a problem draw themselves with `.plot()`. `__init__.pyi` lists the names; each is imported when it
+is first used.
 """
 
 import lazy_loader

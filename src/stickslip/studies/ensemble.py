@@ -92,7 +92,7 @@ class Ensemble(RunsCompared):
 
     @cached_property
     def catalogues(self) -> tuple[pd.DataFrame, ...]:
-        """The slip events that start up to `until`: those of the undisturbed run, then those of each member."""
+        """The slip events that start up to `until`: first of the undisturbed run, then of each member."""
         return tuple(table[table.start <= self.until] for table in self._all_events)
 
     @cached_property
@@ -189,7 +189,7 @@ class Ensemble(RunsCompared):
 
     @cached_property
     def statistics(self) -> pd.DataFrame:
-        """The statistics of the undisturbed run, and how far those of the members differ.
+        """The statistics of the undisturbed run, and how far the members differ.
 
         Returns
         -------

@@ -27,7 +27,7 @@ class Difference:
 
 
 def difference(one: Solution, other: Solution, until: float) -> Difference:
-    """Return the slip of `one` minus that of `other`, from t = 0 to `until` (s)."""
+    """Return the slip of `one` minus the slip of `other`, from t = 0 to `until` (s)."""
     time = np.unique(np.concatenate([np.linspace(0.0, until, UNIFORM), _inside(one, 0.0, until), _inside(other, 0.0, until)]))
     gap = one.slip(time) - other.slip(time)
     mean = float(np.trapezoid(np.abs(gap), time)) / until

@@ -32,7 +32,7 @@ DESCRIBED = ("recurrence", "slip", "peak_rate")
 
 
 class Separation(NamedTuple):
-    """Separation of the loads of members from that of the undisturbed run.
+    """Separation of the members' loads from the undisturbed load.
 
     `apart` (Pa or N) has one row for each member and one column for each interval of time. Each value is exceeded at a tenth of the
     times in its interval: it is close to the largest one, but leaves out the times at which a shock is late. `time` (s) is the end
@@ -53,7 +53,7 @@ class Separation(NamedTuple):
 
 
 def separation(reference: Solution, runs: Sequence[Solution], until: float) -> Separation:
-    """Return the separation of the loads of runs from that of the reference, from t = 0 to `until` (s)."""
+    """Return the separation of the runs' loads from the reference's load, from t = 0 to `until` (s)."""
     count = int(np.clip(until / reference.history.round_trip_time, 1, WINDOWS))
     share = (np.arange(SAMPLES) + 0.5) / SAMPLES
     times = (np.arange(count)[:, None] + share) * (until / count)

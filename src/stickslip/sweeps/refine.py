@@ -168,7 +168,7 @@ class _Search:
 
     @property
     def attributes(self) -> dict[str, Any]:
-        """The attributes that record the origin of the members: those of a sweep, and the specification of the search."""
+        """The attributes that record the origin of the members: as for a sweep, with the specification of the search."""
         lattice = self.spec.lattice
         coarse = attributes(self.plan(self.members(lattice.grid(lattice.coarse))))
         design = json.dumps({"design": REFINED, "keys": list(self.spec.columns)})

@@ -38,10 +38,10 @@ SLOWEST = 100
 class SweepProgress(NamedTuple):
     """The progress of a sweep; as a text it is one line for people.
 
-    `done` and `failed` count members, including those of earlier calls that filled the same store; `members` is their total
-    number. `rate` is the number of members per second since this call began, and `left` the expected wall-clock time (s) to the
-    end. Both are NaN until a chunk is finished. `seconds` is the processor time of this call (s), and `alone` that of the SLOWEST
-    members that ran by themselves, by their number in the design, longest first.
+    `done` and `failed` count members, including those of earlier calls that filled the same store; `members` is their total number.
+    `rate` is the number of members per second since this call began, and `left` the expected wall-clock time (s) to the end. Both
+    are NaN until a chunk is finished. `seconds` is the processor time of this call (s), and `alone` the processor time of the
+    SLOWEST members that ran by themselves, by their number in the design, longest first.
     """
 
     done: int

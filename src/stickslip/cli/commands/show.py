@@ -1,4 +1,4 @@
-"""`stickslip show`: summarise a file of results, which may be those of a run, a catalogue of slip events, or a sweep."""
+"""`stickslip show`: summarise a file of results: of a run, a catalogue of slip events, or a sweep."""
 
 from __future__ import annotations
 

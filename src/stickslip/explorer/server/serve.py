@@ -203,7 +203,7 @@ def application_of(server: Any) -> Any:
 
     The application accepts all origins of websockets, because `Access` is stricter: it compares each with the address of the page.
     """
-    application = getattr(server, "_tornado", None)
+    application: Any = getattr(server, "_tornado", None)
     if not hasattr(application, "_websocket_origins"):
         raise InputError(f"explore: bokeh {bokeh.__version__} does not suit; 3.9 and 3.10 do: pip install 'bokeh>=3.9,<3.11'")
     application._websocket_origins = {"*"}

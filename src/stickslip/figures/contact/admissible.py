@@ -64,7 +64,7 @@ def data(problem: Problem, solution: Solution | None = None, *, title: str = "")
     solution : Solution, optional
         A run of the problem; its path is drawn over the set.
     title : str
-        Title of the figure; by default that of the run.
+        Title of the figure; by default the run's title.
 
     Returns
     -------

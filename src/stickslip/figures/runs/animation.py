@@ -43,7 +43,7 @@ def check_animation(path: Path, where: str) -> None:
 
 
 def _ffmpeg() -> str | None:
-    """Return the path of ffmpeg, the system's or that of the package imageio-ffmpeg, or None if there is neither."""
+    """Return the path of ffmpeg, from the system or from the package imageio-ffmpeg, or None if there is neither."""
     if FFMpegWriter.isAvailable():
         return str(mpl.rcParams["animation.ffmpeg_path"])
     if importlib.util.find_spec("imageio_ffmpeg") is None:

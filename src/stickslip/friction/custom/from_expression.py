@@ -111,7 +111,7 @@ class FromExpression(RemembersSlip):
         if needless and not self.evolution:
             raise InputError(f"FromExpression: {needless}: the law has no state: give its rate of change as evolution")
         if self.at_reversal == "first-changes-sign" and len(self._equations) < MOST_STATES:
-            raise InputError("FromExpression: at_reversal: the law has no second state; changes-sign is for one")
+            raise InputError("FromExpression: at_reversal: the law has no second state; changes-sign is for one state")
         if self.evolution and self.static is not None:
             raise InputError("FromExpression: static: a law with a state has the static coefficient of its expression at v = 0")
 

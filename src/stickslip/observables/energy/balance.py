@@ -1,8 +1,8 @@
 """Energy of a run, as differences from its start.
 
-Energies are per unit area for the slab (J/m^2), and in J for the block. The elastic and kinetic energy of the slab is that of its
-two travelling waves, [(Z v + sigma)^2 + (Z v - sigma)^2] / (4 G) integrated over the thickness. The heat is computed from the law
-at the slip and slip rate of the run, not from the load: so the balance tests the run, and is not an identity.
+Energies are per unit area for the slab (J/m^2), and in J for the block. The elastic and kinetic energy of the slab is the energy of
+its two travelling waves, [(Z v + sigma)^2 + (Z v - sigma)^2] / (4 G) integrated over the thickness. The heat is computed from the
+law at the slip and slip rate of the run, not from the load: so the balance tests the run, and is not an identity.
 
 The kinetic energy of the slab needs both waves at the same place, Z v = (A + B) / 2: A is the beta that is on its way to the
 contact, B the w that is on its way to the driver. Between the places at which a piece of either wave ends, both are smooth
@@ -237,7 +237,7 @@ def _damping(history: History) -> Integrand:
 
 
 def kinetic(waves: Waves, now: Epoch) -> float:
-    """Return the kinetic energy of the slab at a moment, J/m^2, without that of a contact mass.
+    """Return the kinetic energy of the slab at a moment, J/m^2, without a contact mass.
 
     Raises InputError if the waves inside are not known: in a leap over creep, and within a round trip after it.
     """

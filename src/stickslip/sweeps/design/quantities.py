@@ -76,7 +76,7 @@ def _at_peak(column: str) -> Of:
 
 
 def _recurrence(statistic: Callable[[NDArray[np.float64]], Any], least: int) -> Of:
-    """Return a statistic of the times from the start of each slip event to that of the next, if there are enough of them."""
+    """Return a statistic of the times from the start of each slip event to the start of the next, if there are enough."""
 
     def of(solution: Solution) -> Any:
         between = solution.events.recurrence.to_numpy(float)[1:]
