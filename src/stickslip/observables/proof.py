@@ -17,7 +17,7 @@ from stickslip.trajectory.history import History
 class Proof:
     """Bounds of how far a run's polynomials miss the contact equation at any moment.
 
-    Leaps over creep have error bounds of their own (`Solution.creep_leaps`). The bound leaves out rounding in the law's formula:
+    Leaps over creep have error bounds of their own (`Solution.creep`). The bound leaves out rounding in the law's formula:
     where that exceeds the tolerance, `Solution.rounding_note` says so. Method and proof: docs/theory/certificate.md.
     """
 
