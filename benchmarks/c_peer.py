@@ -67,8 +67,10 @@ def header(writer: FormulaWriter) -> str:
         code.name: int(code) for codes in (layout.Stop, layout.Cause, layout.Incoming) for code in codes if code.name != "NONE"
     }
     defines = [f"#define {name} {value}" for name, value in names.items() if name.isupper()]
-    ratios = ", ".join(repr(float(ratio)) for ratio in certificate.RATIOS)
-    defines.append(f"static const double RATIOS[] = {{{ratios}}};\n#define DISCS {len(certificate.RATIOS)}")
+    for name in ("RATIOS", "SHRUNK", "SHRUNK_SLOPE"):
+        numbers = ", ".join(repr(float(number)) for number in getattr(certificate, name))
+        defines.append(f"static const double {name}[] = {{{numbers}}};")
+    defines.append(f"#define DISCS {len(certificate.RATIOS)}")
     records = [structure(one) for one in vars(layout).values() if isinstance(one, type) and issubclass(one, Record) and one.places]
     return (
         "\n".join([*defines, *records, structure(workspace.Run, "Memory"), *SINES, *NAMES])

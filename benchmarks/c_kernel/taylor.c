@@ -392,25 +392,36 @@ static double share_on_disc(Run *r, double length, int64_t disc) {
     double force = 1.01 * (r->k.damping * ball->rate + r->k.normal * ball->friction + r->k.stiffness * ball->slip + load);
     double square = length * length, size = fmax(fabs(r->jet[0]), length * first);
     size = fmax(size, fmax(square * fabs(r->jet[2]), square * length * fabs(r->jet[3])));
-    if (r->count->has_inertia) missed = length * (fabs(r->k.speed) / r->k.inertia * force + slopes) * pow(ratio, 1 - TERMS);
+    if (r->count->has_inertia) missed = length * (fabs(r->k.speed) / r->k.inertia * force + slopes) * SHRUNK_SLOPE[disc];
     else {
         double now[4], resistance = r->k.damping;
         if (r->count->is_algebraic) value(r->c, r->k.slip, r->jet[0], now), resistance += fmax(r->k.normal * now[1], 0.0);
-        missed = force / resistance * pow(ratio, -TERMS);
+        missed = force / resistance * SHRUNK[disc];
     }
     return missed / fmax(r->params->tolerance * size, 1e-300);
+}
+
+static double least_share(Run *r, double length, double share, double enough) {
+    int64_t first = r->count->disc;
+    for (int way = 1; way >= -1 && r->count->disc == first; way -= 2)
+        for (int64_t disc = first + way; 0 <= disc && disc < DISCS && !(share <= enough); disc += way) {
+            double other = share_on_disc(r, length, disc);
+            if (share <= other && share < 1e100) break;
+            share = other, r->count->disc = disc;
+        }
+    return share;
 }
 
 static double proven_length(Run *r, double length) {
     double allowed = r->count->has_inertia ? 1000.0 : 100.0, share = share_on_disc(r, length, r->count->disc);
     for (int attempt = 0; !(share <= allowed); attempt++) {
         if (attempt == 60) abort();
-        share = INFINITY;
-        for (int disc = 0; disc < DISCS; disc++) {
-            double other = share_on_disc(r, length, disc);
-            if (other < share) share = other, r->count->disc = disc;
+        double enough = attempt == 0 ? allowed * pow(0.9, 1 - TERMS) : allowed;
+        if (!(share <= enough)) share = least_share(r, length, share, enough);
+        if (!(share <= allowed)) {
+            length *= fmin(fmax(0.98 * pow(allowed / share, 1.0 / (TERMS - 1)), 0.2), 0.9);
+            share = share_on_disc(r, length, r->count->disc);
         }
-        if (!(share <= allowed)) length *= fmin(fmax(0.98 * pow(allowed / share, 1.0 / (TERMS - 1)), 0.2), 0.9);
     }
     return length;
 }

@@ -25,7 +25,7 @@ from stickslip.trajectory.status import BAD_PARAMETERS, INTERRUPTED
 
 Part = TypeVar("Part")
 
-CHUNK = 8192
+CHUNK = 16_384
 """Largest number of members that are set up together: enough to make numpy efficient, and few enough for the processor's cache."""
 SMALLEST_CHUNK = 1024
 """Smallest number of members in a chunk: enough to make the time that a chunk spends in Python negligible."""

@@ -45,7 +45,7 @@ class Setups(NamedTuple):
     """
 
     params: Floats  # (members, numbers of Params)
-    jets: Integers  # (2 pieces,): addresses of the formulas' series and radii for lanes; (0,) if members take their steps alone
+    jets: Integers  # (3 pieces,): addresses of the formulas' series, radii and values in lanes; (0,) if members step alone
     constants: Floats  # (members, pieces, size)
     law: Integers  # (members, pieces of the law, LawPiece.total)
     branch_table: Floats  # (members, largest number of branches, Branch.total); for member n the first branches[n] are filled
@@ -82,7 +82,7 @@ def alike(scenario: Scenario, values: Values) -> Alike:
         compiled = [compile_formula(tree, law.parameters(), law.state_trees()) for tree in law.trees()]
         functions = functions_of(compiled, problem)
         in_lanes = [] if steps_alone(problem) else compiled
-        parts = "motion_jets" if problem.body.has_inertia else "rate_jets", "radii_in_lanes"
+        parts = "motion_jets" if problem.body.has_inertia else "rate_jets", "radii_in_lanes", "values_in_lanes"
         jets = np.array([formula.address(part) for formula in in_lanes for part in parts], np.int64)
         prepare = np.array([formula.address("prepare") for formula in compiled], np.int64)
     state, counts = start_of(problem)
@@ -199,8 +199,7 @@ def branches_of(problem: Problem, group: Alike, constants: Floats, count: int) -
     near = spread(np.nan if near is None else near, count)
     address = int(LawPiece(group.functions[0]).value_at)
     numbers = np.array([spread(getattr(law, name), count) for name in law.parameters()]).reshape(-1, count).T
-    tree = one.friction.trees()[0]
-    formulas = formulas_of((tree,) * count, law.parameters(), numbers)
+    formulas = formulas_of(one.friction.trees()[:1], law.parameters(), numbers)
     slip = spread(problem.law_slip, count)
     contacts = Resistances(address, constants, damping, normal, start, slowest, fastest, near, formulas, slip)
     found = Found(table, branches, irregular, stick_to)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stickslip.engine.codegen.compiler import kernel
-from stickslip.engine.series.polynomial import clearly_positive, crossings, evaluate, total
+from stickslip.engine.series.polynomial import clearly_positive, crossings, evaluate, magnitude, total
 from stickslip.engine.state.layout import TERMS, Floats, HistoryPiece, Integers
 from stickslip.engine.state.workspace import pieces_in
 
@@ -91,7 +91,8 @@ def is_monotone(p: Floats, slope: Floats) -> bool:
     way = 1.0 if p[1] >= 0.0 else -1.0
     for k in range(TERMS - 1):
         slope[k] = way * (k + 1) * p[k + 1]
-    return keeps_its_sign(slope) or (slope[0] > 0.0 and clearly_positive(slope))
+    # The quickest bound that suffices is asked first.
+    return (slope[0] > 0.0 and (slope[0] > magnitude(slope) or clearly_positive(slope))) or keeps_its_sign(slope)
 
 
 @kernel

@@ -11,7 +11,7 @@ import math
 from enum import IntEnum
 from typing import Any
 
-from stickslip.engine.codegen.compiler import ahead, call_jet, call_radii, inlined, kernel
+from stickslip.engine.codegen.compiler import ahead, call_jet, call_radii, call_values, inlined, kernel
 from stickslip.engine.codegen.lane_records import all_lanes, floats_of, one_lane
 from stickslip.engine.codegen.records import Record, floats_inside, inside
 from stickslip.engine.codegen.simd import WIDTH
@@ -25,11 +25,17 @@ from stickslip.engine.contact_step.certificate import (
     allowed,
     begin_step,
     force_on_disc,
+    imbalance,
     is_negative,
+    load_at_end,
     load_on_disc,
-    measure_rounding,
+    missed_by_motion,
+    missed_by_rate,
     note_residual,
+    proven_length,
     put_discs,
+    rough,
+    size_at_end,
     size_of_rate,
     slope_on_disc,
 )
@@ -40,7 +46,7 @@ from stickslip.engine.contact_step.taylor_step import first_guess, length_to, no
 from stickslip.engine.loop import ROOM
 from stickslip.engine.series.polynomial import NONE, bound_below, fill, moment, multiply, powers_of, total
 from stickslip.engine.series.step_size import FAR_FROM_GUESS, length_at, usable_length
-from stickslip.engine.state.layout import TERMS, Ball, Floats, Integers, SeriesInput
+from stickslip.engine.state.layout import TERMS, Ball, Floats, Integers, LawValue, SeriesInput
 from stickslip.engine.state.workspace import RUN_SIZE, Run, borrow
 
 
@@ -56,6 +62,7 @@ class Block(Record):
     ball: Ball = inside(Ball)  # radii on that disc
     ratio: float  # 1: radius of that disc, in lengths of the step
     shrunk: float  # 1: factor by which what the step misses is smaller on the step than on that disc
+    disc: float  # 1: number of the disc that served the step before
     share: float  # 1: bound of what the step misses, as a share (`contact_step.certificate`)
     powers: Floats = floats_inside(TERMS)
     rate: Floats = floats_inside(TERMS)  # m/s: slip rate over the step, as a polynomial on [0, 1]
@@ -68,6 +75,11 @@ class Block(Record):
     guess: float  # 1: unit of the series, in xi
     reached: float  # 1 if the step reaches the target of the run, else 0
     last_step: float  # s: length that the error allowed the step before to have
+    unbalanced: float  # Pa or N: force that the step ignores at its start
+    place: Floats = floats_inside(2)  # m, m/s: slip of the law and slip rate at the end of the step
+    value: LawValue = inside(LawValue)  # friction there
+    size: float  # m/s: size of the slip rate, with which errors at the end are compared
+    missed: float  # m/s: what the contact equation lacks there, in terms of the slip rate
     tolerance: float  # 1: local error allowed to the step
     constants: Floats = floats_inside(0)  # constants of the law, as many as it has
 
@@ -76,6 +88,10 @@ block_in_all_lanes: Any = all_lanes(Block)
 """Function for compiled code that sees the block at an address in all lanes at once."""
 block_in_one_lane: Any = one_lane(Block)
 """Function for compiled code that sees the block at an address in lane 0."""
+
+
+PARTS = 3
+"""Number of functions of a formula that work on lanes."""
 
 
 class Waits(IntEnum):
@@ -95,14 +111,14 @@ def step_side_by_side(table: Integers, waits: Integers, jets: Integers, block: i
     """Take one step in each lane that waits for one; lanes under the same formula of the law step together.
 
     table points to the memory of the runs in the lanes, waits to what each lane waits for, and jets to the addresses of the
-    formulas' series and radii, in turn for each piece of the law; block is the address of the numbers in lanes.
+    formulas' series, radii and values, in turn for each piece of the law; block is the address of the numbers in lanes.
     """
     for lane in range(WIDTH):
         if waits[lane] == Waits.FRESH or waits[lane] == Waits.SLIPPING:
             waits[lane] = -waits[lane]
     for lane in range(WIDTH):
         if waits[lane] < 0:
-            step_under(ahead(jets, 2 * piece_of(table, lane)), table, waits, jets, block)
+            step_under(ahead(jets, PARTS * piece_of(table, lane)), table, waits, jets, block)
 
 
 @inlined
@@ -115,24 +131,26 @@ def piece_of(table: Integers, lane: int) -> int:
 def step_under(formula: Integers, table: Integers, waits: Integers, jets: Integers, block: int) -> None:
     """Take one step in the lanes under a formula that have not taken theirs, which a negative `waits` marks.
 
-    `formula` points to the addresses of its series and of its radii.
+    `formula` points to the addresses of its series, of its radii and of its values.
     """
-    rows, lane_0, taking, moves = block_in_all_lanes(block), block_in_one_lane(block), 0, False
+    rows, lane_0, taking, moves, degree = block_in_all_lanes(block), block_in_one_lane(block), 0, False, 1
     for lane in range(WIDTH):
-        if waits[lane] < 0 and jets[2 * piece_of(table, lane)] == formula[0]:
+        if waits[lane] < 0 and jets[PARTS * piece_of(table, lane)] == formula[0]:
             moves = borrow(ahead(table, lane * RUN_SIZE)).counts.has_inertia == 1
             put_in(borrow(ahead(table, lane * RUN_SIZE)), lane_0[lane], -waits[lane] == Waits.FRESH)
+            degree = max(degree, borrow(ahead(table, lane * RUN_SIZE)).counts.degree)
             waits[lane], taking = Waits.SLIPPING, taking | 1 << lane
     call_jet(formula[0], floats_of(rows.constants), floats_of(rows.k), floats_of(rows.load_along_slip), floats_of(rows.jet))
     rows.length = length_at(rows.jet, rows.tolerance, 0.5)
     for lane in range(WIDTH):
         if taking >> lane & 1:
             take_length(borrow(ahead(table, lane * RUN_SIZE)), lane_0[lane])
-    prove(rows, formula[1], moves)
+    prove(rows, formula[1], moves, degree)
     for lane in range(WIDTH):
         if taking >> lane & 1:
             settle(borrow(ahead(table, lane * RUN_SIZE)), lane_0[lane])
-    calculate(rows)
+    calculate(rows, degree)
+    check_end(rows, formula[2], moves, degree)
     for lane in range(WIDTH):
         if taking >> lane & 1:
             waits[lane] = take_out(borrow(ahead(table, lane * RUN_SIZE)), lane_0[lane])
@@ -172,13 +190,16 @@ def take_length(run: Run, own: Block) -> None:
 
 
 @inlined
-def prove(rows: Block, radii: int, moves: bool) -> None:
-    """Calculate in all lanes what a step may miss, as `certificate.share_on_disc` does; with inertia if the contact `moves`."""
+def prove(rows: Block, radii: int, moves: bool, degree: int) -> None:
+    """Calculate in all lanes what a step may miss, as `certificate.share_on_disc` does; with inertia if the contact `moves`.
+
+    `degree` is the largest of the loads' degrees, here and below.
+    """
     powers = rows.disc_powers
     powers_of(rows.ratio * rows.length, powers)
     put_discs(rows.k, rows.jet, powers, rows.ball)
     call_radii(radii, floats_of(rows.constants), floats_of(rows.jet), floats_of(rows.ball))
-    force = force_on_disc(rows.k, rows.ball, load_on_disc(rows.load_along_slip, powers, TERMS - 1))
+    force = force_on_disc(rows.k, rows.ball, load_on_disc(rows.load_along_slip, powers, degree))
     if moves:
         missed = rows.length * (abs(rows.k.speed) / rows.k.inertia * force + slope_on_disc(rows.jet, powers)) * rows.shrunk
     else:
@@ -189,16 +210,22 @@ def prove(rows: Block, radii: int, moves: bool) -> None:
 @inlined
 def settle(run: Run, own: Block) -> None:
     """Choose the length of a run's step, now that it is proven or not, and store it in the run's lane of the block."""
-    own.last_step = run.state.last_step
+    own.last_step, own.disc, length = run.state.last_step, run.counts.disc, own.usable
     if own.share <= allowed(run):
         run.jet[0], run.jet[1], run.jet[2], run.jet[3] = own.jet[0], own.jet[1], own.jet[2], own.jet[3]
         note_residual(run, own.length, own.share)
-    length, reached = settle_length(run, run.state.target, own.guess, own.usable)
-    own.length, own.reached = length, 1.0 if reached else 0.0
+    else:
+        for k in range(TERMS):
+            run.jet[k], run.centres[k] = own.jet[k], own.centres[k]
+        proven = proven_length(run, own.length)
+        length = proven if proven < own.length else length
+    length, reached = settle_length(run, run.state.target, own.guess, length)
+    begin_step(run)
+    own.length, own.reached, own.unbalanced = length, 1.0 if reached else 0.0, run.state.unbalanced
 
 
 @inlined
-def calculate(rows: Block) -> None:
+def calculate(rows: Block, degree: int) -> None:
     """Calculate in all lanes slip rate and load over the step, slip in it, and the rate's value at the end and lower bound.
 
     The calculations are those of `step_events.stretch` and `keep_step.keep_step`.
@@ -206,7 +233,10 @@ def calculate(rows: Block) -> None:
     length, rate = rows.length, rows.rate
     powers_of(length, rows.powers)
     multiply(rows.jet, rows.powers, rate)
-    multiply(rows.local, rows.powers, rows.load)
+    if degree == 1:
+        rows.load[0], rows.load[1] = rows.local[0], rows.local[1] * rows.powers[1]
+    else:
+        multiply(rows.local, rows.powers, rows.load)
     straight = rows.k.speed * length * moment(rate, 1)
     rows.grown = straight + rows.k.bend * length * length * moment(rate, 2)
     rows.last = total(rate)
@@ -214,11 +244,25 @@ def calculate(rows: Block) -> None:
 
 
 @inlined
+def check_end(rows: Block, values: int, moves: bool, degree: int) -> None:
+    """Put the end of a step into the contact equation in all lanes, as `certificate.measure_rounding` does."""
+    k, rate, place, value = rows.k, rows.rate, rows.place, rows.value
+    place[0], place[1] = k.slip + k.chi * rows.grown, rows.last
+    call_values(values, floats_of(rows.constants), floats_of(place), floats_of(value))
+    missing = imbalance(k, load_at_end(rows.load_along_slip, rows.powers, degree), value, rows.last, rows.unbalanced)
+    rows.size = size_at_end(rate, rows.last)
+    if moves:
+        rows.missed = missed_by_motion(k, missing, rate, rows.length, rows.grown)
+    else:
+        rows.missed = missed_by_rate(k, missing, value)
+
+
+@inlined
 def take_out(run: Run, own: Block) -> int:
     """Append the step to the run's history if it is a simple one, and return what the lane waits for then.
 
-    A step is simple if it is proven, the rate stays positive and no knot is met. Otherwise the step is dropped and Waits.ALONE is
-    returned.
+    A step is simple if it is proven, rounding hides nothing at its end, slip rate and friction stay positive and no knot is met.
+    Otherwise the step is dropped and Waits.ALONE is returned.
     """
     length, target = own.length, run.state.target
     rate, load = run.history[run.counts.length].rate, run.history[run.counts.length].load
@@ -230,15 +274,14 @@ def take_out(run: Run, own: Block) -> int:
     else:
         for k in range(TERMS):
             load[k] = own.load[k]
-    simple = own.share <= allowed(run) and rate[0] > 0.0 and own.bound > 0.0 and math.isfinite(own.last)
-    grown, rate_end = own.grown, own.last
-    if simple:
+    simple = run.counts.breach == 0 and rate[0] > 0.0 and own.bound > 0.0 and math.isfinite(own.last)
+    grown, rate_end, run.value.mu = own.grown, own.last, own.value.mu
+    simple = simple and own.missed <= rough(run) * own.tolerance * own.size and not is_negative(run)
+    if simple and run.params.can_be_negative != 0.0:
         powers_of(length, run.powers)
-        begin_step(run)
-        measure_rounding(run, rate, length, grown, rate_end)
-        simple = not is_negative(run) and not goes_below_zero(run, rate, length)
+        simple = not goes_below_zero(run, rate, length)
     if not simple or (run.pieces > 1 and knot_crossing(run, rate, length, 1.0) != NONE):
-        run.state.last_step = own.last_step
+        run.state.last_step, run.counts.disc, run.counts.breach = own.last_step, int(own.disc), 0
         return Waits.ALONE
     run.jet[0] = own.jet[0]
     note_shock(run)

@@ -18,11 +18,11 @@ from numba.extending import intrinsic
 from stickslip.batch.kernels.lanes import Waits, step_side_by_side
 from stickslip.batch.kernels.points import find_events
 from stickslip.batch.kernels.reduction import COLUMNS, Reduced, fold_events, fold_first, fold_whole, reached, reduced_at
-from stickslip.engine.codegen.compiler import address_of, ahead, call_prepare, floats, integers, kernel
+from stickslip.engine.codegen.compiler import address_of, ahead, call_prepare, floats, inlined, integers, kernel
 from stickslip.engine.codegen.records import numbers_of, whole_numbers_of
 from stickslip.engine.codegen.simd import WIDTH
 from stickslip.engine.loop import run_until
-from stickslip.engine.state.layout import Floats, Integers, Stop
+from stickslip.engine.state.layout import Counts, Floats, Integers, Params, State, Stop
 from stickslip.engine.state.workspace import ADDRESSES, RUN_SIZE, Run, borrow
 from stickslip.trajectory.slip_events import NOT_YET
 from stickslip.trajectory.status import BAD_PARAMETERS
@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 BUDGET = 200_000
 """Number of steps of the engine after which it returns, so that the flag which stops the batch is checked."""
 
+SIZES = Params.total, State.total, Counts.total
+"""Lengths of these records."""
 ARGUMENTS = (types.Array(types.int64, 1, "C"), types.int64, types.float64, types.int64)
 """Types of the arguments of `loop.run_until`: table, last row, last theta (s), budget."""
 
@@ -114,6 +116,26 @@ def fill_constants(prepare: Integers, numbers: Floats, constants: Floats) -> Non
 # ---- members in lanes -------------------------------------------------------------------------------------------------------
 
 
+class Members(NamedTuple):
+    """What a group knows of its members, as pointers: counting references to arrays would take longer than a short run."""
+
+    engine: int
+    total: int  # number of members
+    waits: int  # 1 if they take steps side by side, else 0
+    stop: Integers
+    codes: Integers
+    out: Floats
+    params: Floats
+    stride: int  # distance between the parameters of two members, 0 if all have the same
+    state: Floats
+    counts: Integers
+    branches: Integers
+    last_trip: Integers
+    last_phase: Floats
+    duration: Floats
+    upcoming: Integers  # index of the next member to start
+
+
 @kernel
 def run_group(group: Group, base: Integers, stride: Integers, work: Workspace) -> int:
     """Run members, each in a lane of the workspace, and write their stop codes and numbers into the group.
@@ -122,23 +144,57 @@ def run_group(group: Group, base: Integers, stride: Integers, work: Workspace) -
     returns the lane that has no room, or needs a part of the engine (code NEED_PART), or whose member has crept for so long (code
     PAUSED) that it should be run alone. Called again, it continues from there.
     """
-    first = first_lane(work, base, stride)
+    first, members = first_lane(work, base, stride), members_of(group, work)
     jets, block = integers(group.setups.jets.ctypes.data), work.block[0]
     for n in range(WIDTH):
         if nth(first, n).stage[0] != Stage.FREE:
-            point_at(nth(first, n), group.setups, first.member[n])
+            point_at(nth(first, n), members, first.member[n])
     while True:
         waiting = 0
         for n in range(WIDTH):
-            if first.waits[n] == Waits.NONE or first.waits[n] == Waits.ALONE:
-                if first.stage[n] == Stage.UNDER_WAY:
-                    advance_member(group, nth(first, n))
-                if first.waits[n] == Waits.NONE and not bring_on(group, nth(first, n), work, n):
+            lane = nth(first, n)
+            if lane.stage[0] == Stage.UNDER_WAY and (lane.waits[0] == Waits.NONE or lane.waits[0] == Waits.ALONE):
+                advance_member(members, lane)
+            while lane.waits[0] == Waits.NONE:
+                if lane.stage[0] == Stage.UNDER_WAY:
                     return n
-            waiting += first.waits[n] != Waits.NONE
+                if (
+                    lane.stage[0] == Stage.AT_END
+                    and group.wants_events
+                    and not fold_events_of(lane, group.setups, work, n, members)
+                ):
+                    return n
+                if lane.stage[0] == Stage.AT_END:
+                    fold_run(lane, members)
+                if not start_next(lane, members):
+                    break
+            waiting += lane.waits[0] != Waits.NONE
         if waiting == 0 or group.stop[0] != 0:
             return WIDTH
         step_side_by_side(first.table, first.waits, jets, block)
+
+
+@kernel
+def members_of(group: Group, work: Workspace) -> Members:
+    """Return what a group knows of its members, as pointers."""
+    setups = group.setups
+    return Members(
+        group.engine,
+        len(group.codes),
+        1 if len(setups.jets) > 0 else 0,
+        integers(group.stop.ctypes.data),
+        integers(group.codes.ctypes.data),
+        floats(group.out.ctypes.data),
+        floats(setups.params.ctypes.data),
+        setups.params.shape[1] if len(setups.params) > 1 else 0,
+        floats(setups.state.ctypes.data),
+        integers(setups.counts.ctypes.data),
+        integers(setups.branches.ctypes.data),
+        integers(setups.last_trip.ctypes.data),
+        floats(setups.last_phase.ctypes.data),
+        floats(setups.duration.ctypes.data),
+        integers(work.upcoming.ctypes.data),
+    )
 
 
 @kernel
@@ -159,42 +215,42 @@ def nth(lane: Lane, n: int) -> Lane:
 
 
 @kernel
-def point_at(lane: Lane, setups: Setups, n: int) -> None:
+def point_at(lane: Lane, members: Members, n: int) -> None:
     """Write into a lane's memory the addresses of the tables of member n, and its number of branches."""
     for k in range(ADDRESSES):
         lane.table[k] = lane.base[k] + n * lane.stride[k]
     run = borrow(lane.table)
-    run.branches = setups.branches[n]
+    run.branches = members.branches[n]
 
 
 @kernel
-def start_member(run: Run, setups: Setups, n: int) -> None:
+def start_member(run: Run, members: Members, n: int) -> None:
     """Set the numbers, state and counts of member n as at t = 0.
 
     No caller continues the run after its end, so its end may cut pieces and leaps (`to_the_end`) from the start.
     """
     params, state, counts = numbers_of(run.params), numbers_of(run.state), whole_numbers_of(run.counts)
-    for k in range(setups.params.shape[1]):
-        params[k] = setups.params[n if len(setups.params) > 1 else 0, k]
-    for k in range(len(setups.state)):
-        state[k] = setups.state[k]
-    for k in range(len(setups.counts)):
-        counts[k] = setups.counts[k]
-    run.counts.to_the_end, run.counts.waits = 1, 1 if len(setups.jets) > 0 else 0
+    for k in range(SIZES[0]):
+        params[k] = members.params[n * members.stride + k]
+    for k in range(SIZES[1]):
+        state[k] = members.state[k]
+    for k in range(SIZES[2]):
+        counts[k] = members.counts[k]
+    run.counts.to_the_end, run.counts.waits = 1, members.waits
 
 
 @kernel
-def advance_member(group: Group, lane: Lane) -> None:
+def advance_member(members: Members, lane: Lane) -> None:
     """Run the lane's member until its next step is to be taken side by side, it ends or pauses, lacks room, or `stop` is set."""
     n, table, code = lane.member[0], carray(lane.table, (RUN_SIZE,)), -1  # Stop.NONE
-    last_trip, last_phase = group.setups.last_trip[n], group.setups.last_phase[n]
+    last_trip, last_phase = members.last_trip[n], members.last_phase[n]
     if lane.waits[0] == Waits.ALONE:
         counts = borrow(lane.table).counts
         counts.waits = 0
-        code = run_until_at(group.engine, table, last_trip, last_phase, 1)
+        code = run_until_at(members.engine, table, last_trip, last_phase, 1)
         counts.waits = 1
-    while code == Stop.NONE and group.stop[0] == 0:
-        code = run_until_at(group.engine, table, last_trip, last_phase, BUDGET)
+    while code == Stop.NONE and members.stop[0] == 0:
+        code = run_until_at(members.engine, table, last_trip, last_phase, BUDGET)
     lane.code[0] = code
     lane.waits[0] = Waits.FRESH if code == Stop.SLIPS else Waits.NONE
     asks = code == Stop.SLIPS or code == Stop.FULL or code == Stop.PAUSED or code == Stop.NEED_PART
@@ -203,50 +259,53 @@ def advance_member(group: Group, lane: Lane) -> None:
 
 
 @kernel
-def bring_on(group: Group, lane: Lane, work: Workspace, place: int) -> bool:
-    """Reduce runs that have ended and start further members in a lane, until one waits for a step side by side or none is left.
-
-    place is the index of the lane. Returns True in these cases, and False if there is no room, a part is missing or the member has
-    paused.
-    """
-    setups, codes, numbers = group.setups, group.codes, floats(group.out.ctypes.data)
-    for _ in range(len(codes) + 1):
-        if lane.stage[0] == Stage.UNDER_WAY:
-            break
-        n = lane.member[0]
-        if lane.stage[0] == Stage.AT_END:
-            run = borrow(lane.table)
-            codes[n] = lane.code[0] if run.counts.length > 0 else BAD_PARAMETERS
-            member = reduced_at(ahead(numbers, n * len(COLUMNS)))
-            if run.counts.length > 0 and not fold_member(run, group, work, place, member):
-                return False
-            lane.stage[0] = Stage.FREE
-        n = work.upcoming[0]
-        if n == len(codes):
-            return True
-        work.upcoming[0] += 1
-        if setups.branches[n] <= 0:
-            codes[n] = BAD_PARAMETERS
+def start_next(lane: Lane, members: Members) -> bool:
+    """Start the next member in a lane, and run it until its first step side by side or its end; return False if none is left."""
+    for n in range(members.upcoming[0], members.total):
+        members.upcoming[0] = n + 1
+        if members.branches[n] <= 0:
+            members.codes[n] = BAD_PARAMETERS
             continue
-        point_at(lane, setups, n)
-        start_member(borrow(lane.table), setups, n)
+        point_at(lane, members, n)
+        start_member(borrow(lane.table), members, n)
         lane.stage[0], lane.member[0] = Stage.UNDER_WAY, n
-        advance_member(group, lane)
-    return lane.code[0] == Stop.SLIPS
+        advance_member(members, lane)
+        return True
+    return False
+
+
+# ---- reduction --------------------------------------------------------------------------------------------------------------
 
 
 @kernel
-def fold_member(run: Run, group: Group, work: Workspace, lane: int, out: Reduced) -> bool:
-    """Reduce the run in a lane, which has ended, to the numbers in `out`; return False if points lack room."""
-    setups, n, length = group.setups, work.member[lane], run.counts.length
-    if group.wants_events:
-        events = find_events(work.store.pieces[lane], length, setups.threshold[n], run.counts.sticks == 1, work.points)
-        if events == NOT_YET:
-            return False
-        fold_events(run, work.points, events, out)
-        if events > 0:
-            fold_first(run, work.points, setups.excess[n], out)
-            out.first_static_drop = setups.stiffness[n] * out.first_slip
-    end = reached(setups.duration[n], group.codes[n], run.params.round_trip_time, run.history, length)
-    fold_whole(run.history, length, run.params.round_trip_time, end, out)
+def fold_run(lane: Lane, members: Members) -> None:
+    """Write the stop code and the numbers of a run that has ended, but for those of its events; its lane is free then."""
+    run, n = borrow(lane.table), lane.member[0]
+    members.codes[n] = lane.code[0] if run.counts.length > 0 else BAD_PARAMETERS
+    if run.counts.length > 0:
+        end = reached(members.duration[n], members.codes[n], run.params.round_trip_time, run.history, run.counts.length)
+        fold_whole(run.history, run.counts.length, run.params.round_trip_time, end, reduced_of(lane, members))
+    lane.stage[0] = Stage.FREE
+
+
+@kernel
+def fold_events_of(lane: Lane, setups: Setups, work: Workspace, place: int, members: Members) -> bool:
+    """Write the numbers of the slip events of a run that has ended in lane number `place`; return False if points lack room."""
+    run, n = borrow(lane.table), lane.member[0]
+    if run.counts.length == 0:
+        return True
+    table, out = work.store.pieces[place], reduced_of(lane, members)
+    events = find_events(table, run.counts.length, setups.threshold[n], run.counts.sticks == 1, work.points)
+    if events == NOT_YET:
+        return False
+    fold_events(run, work.points, events, out)
+    if events > 0:
+        fold_first(run, work.points, setups.excess[n], out)
+        out.first_static_drop = setups.stiffness[n] * out.first_slip
     return True
+
+
+@inlined
+def reduced_of(lane: Lane, members: Members) -> Reduced:
+    """Return the numbers of the member in a lane."""
+    return reduced_at(ahead(members.out, lane.member[0] * len(COLUMNS)))

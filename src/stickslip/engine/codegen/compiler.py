@@ -127,6 +127,12 @@ def call_radii(typingctx: Any, address: Any, c: Any, s: Any, k: Any) -> Any:
 
 
 @intrinsic
+def call_values(typingctx: Any, address: Any, c: Any, at: Any, out: Any) -> Any:
+    """Call `values_in_lanes(c, at, out)`, the function of a formula at `address`; `at` holds slip (m) and slip rate (m/s)."""
+    return types.void(types.int64, FLOATS, FLOATS, FLOATS), _call
+
+
+@intrinsic
 def call_jet(typingctx: Any, address: Any, c: Any, k: Any, load: Any, s: Any) -> Any:
     """Call `rate_jet(c, k, L, s)` or `motion_jet(c, k, L, s)`, or their versions for lanes: the function at `address`."""
     return types.void(types.int64, FLOATS, FLOATS, FLOATS, FLOATS), _call
@@ -222,7 +228,7 @@ def float_of(typingctx: Any, bits: Any) -> Any:
 
 
 if UNCOMPILED:
-    call_prepare = call_value = call_state_value = call_radii = call_jet = call_part = call
+    call_prepare = call_value = call_state_value = call_radii = call_values = call_jet = call_part = call
 
     def floats(address: int) -> Pointer:
         """Return the pointer to floats at an address."""

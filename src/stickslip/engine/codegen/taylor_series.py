@@ -9,7 +9,7 @@ rate_jet     massless contact, Z s + S mu(x, s) = L: the series of s, solved ord
 motion_jet   contact with mass, M s' = L - K q - Z s - S mu(x, s): the series of s
 radii        how far mu may be from its value where a series starts, if slip and slip rate vary in complex discs (see `balls`)
 balls        the same around any slip, slip rate and states, and for dw/dt of each
-rate_jets, motion_jets, radii_in_lanes  the two series and their radii for several runs side by side (see `simd`)
+rate_jets, motion_jets, radii_in_lanes, values_in_lanes  the same for several runs side by side (see `simd`)
 
 A jet writes the values of the nodes that `radii` needs right after the ORDER + 1 coefficients of its series, if there is room.
 
@@ -43,6 +43,7 @@ SIGNATURES = {
     "rate_jets": ("c[]", "k[]", "L[]", "s[]"),
     "motion_jets": ("c[]", "k[]", "L[]", "s[]"),
     "radii_in_lanes": ("c[]", "s[]", "k[]"),
+    "values_in_lanes": ("c[]", "at[]", "out[]"),
 }
 """Names of the functions and of their arguments: arrays of floats if marked by [], otherwise single floats."""
 
@@ -66,7 +67,7 @@ from stickslip.engine.series.ball_radii import power_radius, sine_radius, tanh_r
 """
 """Further lines of the header for functions that work out radii."""
 
-SIDE_BY_SIDE = {"rate_jets", "motion_jets", "radii_in_lanes"}
+SIDE_BY_SIDE = {"rate_jets", "motion_jets", "radii_in_lanes", "values_in_lanes"}
 """Functions that work on lanes."""
 RADII = {"radii", "radii_in_lanes", "balls"}
 """Functions that work out radii."""
@@ -213,6 +214,7 @@ class FormulaWriter(Recurrences):
             "radii": self.radii,
             "balls": self.around,
             "radii_in_lanes": self.radii,
+            "values_in_lanes": lambda: ["dx = at[0]", "s = at[1]", *self.value()],
             "rate_jet": self.rate_jet,
             "motion_jet": self.motion_jet,
             "rate_jets": self.rate_jet,

@@ -24,7 +24,7 @@ from stickslip.engine.codegen.compiler import call_radii, call_value, inlined, k
 from stickslip.engine.codegen.records import numbers_of
 from stickslip.engine.contact.contact_equation import constants_of
 from stickslip.engine.series.polynomial import RECIPROCAL, powers_of
-from stickslip.engine.state.layout import TERMS, Ball, Floats, SeriesInput, Stop
+from stickslip.engine.state.layout import TERMS, Ball, Floats, LawValue, SeriesInput, Stop
 from stickslip.engine.state.workspace import Run
 
 ALLOWED, ALLOWED_SLOPE = 100.0, 1000.0
@@ -48,6 +48,9 @@ HOPELESS = 1e100
 """Share (1) from which on a disc counts as too large for the law, which has a singularity on it."""
 SHORTEST, LONGEST = 0.2, 0.9
 """Smallest and largest factor (1) by which a step without a proof is shortened at a time."""
+NEAR = LONGEST ** (1.0 - TERMS)
+"""Factor (1) by which a share falls at least if the step is shortened to LONGEST of its length: that costs one look at a disc, and
+the search for a better disc several."""
 TERM_ROUNDING = 1e-14
 """Rounding of the terms of the contact equation (1), relative to the largest of them."""
 NEGLIGIBLE = 1e-9
@@ -120,6 +123,52 @@ def size_of_rate(jet: Floats, length: float) -> float:
     return max(max(abs(jet[0]), length * abs(jet[1])), max(square * abs(jet[2]), square * length * abs(jet[3])))
 
 
+@inlined
+def imbalance(k: SeriesInput, load: float, value: LawValue, rate_end: float, unbalanced: float) -> float:
+    """Return load minus radiation and friction (Pa or N), less what was unbalanced from the start."""
+    return load - k.damping * rate_end - k.normal * (value.mu + k.offset) - unbalanced
+
+
+@inlined
+def missed_by_rate(k: SeriesInput, missing: float, value: LawValue) -> float:
+    """Return the slip rate (m/s) that makes up for a missing load, for a contact without inertia."""
+    return abs(missing) / (k.damping + k.normal * max(value.by_rate, 0.0))
+
+
+@inlined
+def missed_by_motion(k: SeriesInput, missing: float, rate: Floats, length: float, grown: float) -> float:
+    """Return by how much the slope of the slip rate (m/s per step) is wrong at the end of a step, for a contact with inertia."""
+    pace = (k.speed + k.bend * length) * length / k.inertia
+    return abs((missing - k.stiffness * grown) * pace - slope_at_end(rate))
+
+
+@inlined
+def size_at_end(rate: Floats, rate_end: float) -> float:
+    """Return a size of the slip rate (m/s) over a step, with which errors at its end are compared."""
+    return max(max(abs(rate[0]), abs(rate_end)), max(abs(rate[1]), max(abs(rate[2]), abs(rate[3]))))
+
+
+@inlined
+def slope_at_end(rate: Floats) -> float:
+    """Return p'(1), the slope of the slip rate's polynomial at the end of the step."""
+    a, b = rate[1], 2.0 * rate[2]
+    for k in range(3, TERMS - 1, 2):
+        a, b = a + k * rate[k], b + (k + 1) * rate[k + 1]
+    return a + b
+
+
+@inlined
+def load_at_end(load: Floats, powers: Floats, degree: int) -> float:
+    """Return a load of the given degree at the end of a step (Pa or N), from the powers of the step's length.
+
+    It is the load minus the reference, as seen in the direction of slip.
+    """
+    end = load[0] + powers[1] * load[1]
+    for k in range(2, degree + 1):
+        end += powers[k] * load[k]
+    return end
+
+
 # ---- a step of a single run ------------------------------------------------------------------------------------------------
 
 
@@ -163,12 +212,15 @@ def rough(run: Run) -> float:
 def proven_length(run: Run, length: float) -> float:
     """Return a length (in guesses), at most the given one, for which the step is proven; note the bound in run.state.residual.
 
-    The disc that served the step before is tried first. If no length is proven the run ends: `breach` is OFF_THE_LAW.
+    The disc that served the step before is tried first. A step that is nearly proven is shortened at once, and if that does not
+    help, a better disc is looked for. If no length is proven the run ends: `breach` is OFF_THE_LAW.
     """
     share = share_on_disc(run, length, run.counts.disc)
     attempt = 0
     while not share <= allowed(run) and attempt < ATTEMPTS:
-        share = least_share(run, length, share)
+        enough = allowed(run) * (NEAR if attempt == 0 else 1.0)
+        if not share <= enough:
+            share = least_share(run, length, share, enough)
         if not share <= allowed(run):
             length *= min(max(0.98 * (allowed(run) / share) ** (1.0 / (TERMS - 1)), SHORTEST), LONGEST)
             share = share_on_disc(run, length, run.counts.disc)
@@ -180,21 +232,24 @@ def proven_length(run: Run, length: float) -> float:
 
 
 @kernel
-def least_share(run: Run, length: float, share: float) -> float:
-    """Return the least share of the step on any disc, or the first that is allowed; begin at the present disc, which has `share`.
+def least_share(run: Run, length: float, share: float, enough: float) -> float:
+    """Return the least share of the step on any disc, or the first that is at most `enough`; the present disc has `share`.
 
     Radii have power series without negative coefficients, so that the share falls to its least and rises from there (Hadamard's
     theorem of three circles): from disc to disc, on the side on which it falls. Where a disc reaches a singularity, go on to
     smaller ones.
     """
+    first = run.counts.disc
     for way in (1, -1):
-        disc = run.counts.disc + way
-        while 0 <= disc < len(RATIOS) and not share <= allowed(run):
+        disc = first + way
+        while 0 <= disc < len(RATIOS) and not share <= enough:
             other = share_on_disc(run, length, disc)
             if share <= other and share < HOPELESS:
                 break
             share, run.counts.disc = other, disc
             disc += way
+        if run.counts.disc != first:
+            break
     return share
 
 
@@ -258,8 +313,7 @@ def missing_at_end(run: Run, grown: float, rate_end: float) -> float:
     """
     piece, value = run.counts.piece, run.value
     call_value(run.law[piece].value_at, constants_of(run, piece), run.k.slip + run.k.chi * grown, rate_end, numbers_of(value))
-    friction = run.params.normal * (value.mu + run.law[piece].offset)
-    return load_at_end(run) - run.params.damping * rate_end - friction - run.state.unbalanced
+    return imbalance(run.k, load_at_end(run.load_along_slip, run.powers, run.counts.degree), value, rate_end, run.state.unbalanced)
 
 
 @inlined
@@ -269,15 +323,12 @@ def measure_rounding(run: Run, rate: Floats, length: float, grown: float, rate_e
     `rate` is the slip rate on [0, 1], `length` the length of the step (in guesses), `grown` the slip in it (m) and `rate_end` the
     slip rate at its end (m/s). Friction there is left in run.value.
     """
-    params, value = run.params, run.value
-    missing = missing_at_end(run, grown, rate_end)
-    size = max(max(abs(rate[0]), abs(rate_end)), max(abs(rate[1]), max(abs(rate[2]), abs(rate[3]))))
+    missing, size = missing_at_end(run, grown, rate_end), size_at_end(rate, rate_end)
     if run.counts.has_inertia == 1:
-        pace = (run.k.speed + run.k.bend * length) * length / params.inertia
-        missed = abs((missing - params.stiffness * grown) * pace - slope_at_end(rate))
+        missed = missed_by_motion(run.k, missing, rate, length, grown)
     else:
-        missed = abs(missing) / (params.damping + params.normal * max(value.by_rate, 0.0))
-    if missed > rough(run) * params.tolerance * size:
+        missed = missed_by_rate(run.k, missing, run.value)
+    if missed > rough(run) * run.params.tolerance * size:
         note_rounding(run, missed, size, length)
 
 
@@ -301,29 +352,6 @@ def note_rounding(run: Run, missed: float, size: float, length: float) -> None:
         run.state.roughest = max(run.state.roughest, missed / size)
         if missed * TERM_ROUNDING > LOST * known:
             run.counts.breach = Stop.OFF_THE_LAW
-
-
-@inlined
-def slope_at_end(rate: Floats) -> float:
-    """Return p'(1), the slope of the slip rate's polynomial at the end of the step."""
-    a, b = rate[1], 2.0 * rate[2]
-    for k in range(3, TERMS - 1, 2):
-        a, b = a + k * rate[k], b + (k + 1) * rate[k + 1]
-    return a + b
-
-
-@inlined
-def load_at_end(run: Run) -> float:
-    """Return the load at the end of a step (Pa or N, minus the reference), as seen in the direction of slip.
-
-    run.powers must hold the powers of the step's length.
-    """
-    if run.counts.degree <= 1:
-        return run.load_along_slip[0] + run.powers[1] * run.load_along_slip[1]
-    load = run.load_along_slip[0]
-    for k in range(1, run.counts.degree + 1):
-        load += run.powers[k] * run.load_along_slip[k]
-    return load
 
 
 @inlined

@@ -53,14 +53,14 @@ class Formulas(NamedTuple):
 
 
 def formulas_of(trees: Sequence[Expression], parameters: Sequence[str], values: Floats) -> Formulas:
-    """Write out the formulas of the pieces of a law.
+    """Write out the formulas of the pieces of a law; a single formula serves all rows of `values`.
 
     `values` holds the values of the parameters, shape (pieces, parameters). Raises InputError for a formula with a state.
     """
     distinct = tuple(dict.fromkeys(trees))
     operations, spans, leaves = _written(distinct)
-    of_piece = np.array([distinct.index(tree) for tree in trees])
-    numbers = np.zeros((len(trees), int((spans[:, 1] - spans[:, 0]).max())))
+    of_piece = np.zeros(len(values), int) if len(trees) == 1 else np.array([distinct.index(tree) for tree in trees])
+    numbers = np.zeros((len(of_piece), int((spans[:, 1] - spans[:, 0]).max())))
     for formula, nodes in enumerate(leaves):
         rows = of_piece == formula
         for k, node in enumerate(nodes):

@@ -38,6 +38,12 @@ SMALLEST_INTERVAL = 1e-15
 NEGLIGIBLE = 1e-300
 """Magnitude (any unit) up to which a polynomial on an interval counts as zero there: near the smallest normal number its
 coefficients lose their digits or vanish one after the other, and a bisection would never end."""
+UNCLEAR = -1
+"""Number of sign changes if rounding may hide one."""
+SIGN_ROUNDING = 1e-14
+"""Rounding of a Bernstein coefficient (1), as a share of the magnitude of the polynomial."""
+CONVERGED = 1e-10
+"""Last correction by Newton's method, relative to the root (1): the next one would be about its square."""
 DOUBLINGS = 64
 """Largest number of doublings (1) that lead from the narrowest interval of a bisection to the whole of [0, 1], and more."""
 MOST_INTERVALS = 4096
@@ -194,9 +200,11 @@ def mean_of(c: Floats, speed: float, bend: float, width: float) -> float:
 
 
 @kernel
-def _falling_root(c: Floats) -> float:
-    """Return the root in [-1, 1] of a polynomial that falls through zero there, by Newton's method kept inside its bracket."""
-    low, high, x = -1.0, 1.0, 0.0
+def _falling_root(c: Floats, low: float = -1.0) -> float:
+    """Return the root in [low, 1] of a polynomial that falls through zero there, by Newton's method kept inside its bracket."""
+    high, x = 1.0, -c[0] / c[1] if c[1] != 0.0 else low
+    if not low < x < high:
+        x = 0.5 * (low + high)
     for _ in range(100):
         value, slope = c[TERMS - 1], 0.0
         for k in range(TERMS - 2, -1, -1):
@@ -208,7 +216,9 @@ def _falling_root(c: Floats) -> float:
             high = x
         else:
             return x
-        step = x - value / slope if slope < 0.0 else 0.5 * (low + high)
+        step = x - value / slope if slope < 0.0 else low
+        if slope < 0.0 and abs(step - x) <= CONVERGED * abs(step):
+            return min(max(step, low), high)
         if not low < step < high:
             step = 0.5 * (low + high)
         if step == x or high - low < 1e-17:
@@ -342,18 +352,52 @@ def maximum(c: Floats, sign: float = 1.0) -> float:
 
 
 @kernel
+def sign_changes(c: Floats, spare: Floats) -> int:
+    """Return the number of sign changes in the Bernstein coefficients of p on [0, 1], or UNCLEAR if rounding may hide one.
+
+    p has at most as many roots in (0, 1), and exactly one if the number is 1 (Descartes' rule of signs). `spare` is room.
+    """
+    for j in range(TERMS):
+        spare[j] = c[0]
+    for k in range(1, TERMS):
+        for j in range(TERMS):
+            spare[j] += BERNSTEIN[k, j] * c[k]
+    rounding, changes, last = max(SIGN_ROUNDING * (abs(c[0]) + magnitude(c)), NEGLIGIBLE), 0, c[0]
+    for j in range(1, TERMS):
+        if not abs(spare[j]) > rounding:
+            return UNCLEAR
+        if (last < 0.0) != (spare[j] < 0.0) and last != 0.0:
+            changes += 1
+        last = spare[j]
+    return changes
+
+
+@kernel
 def crossings(c: Floats, out: Floats) -> int:
     """Write every x in (0, 1) at which p changes sign into `out`, ascending, up to its length; return their number.
 
-    The sign is carried from interval to interval, so that a root on the border between two is found once. A polynomial that is not
-    finite has none.
+    A polynomial that is not finite has none. Most calls end at the signs of the Bernstein coefficients.
     """
-    found, sign = 0, 0.0
+    sign, part = 0.0, np.empty(TERMS)
     for k in range(TERMS - 1, -1, -1):
         sign = c[k] if c[k] != 0.0 else sign  # just right of 0 p has the sign of its lowest term
     if sign == 0.0:
         return 0
-    part, start, width = np.empty(TERMS), 0.0, 1.0
+    changes = sign_changes(c, part)
+    if changes == 1:
+        for k in range(TERMS):
+            part[k] = math.copysign(1.0, sign) * c[k]
+        out[0] = _falling_root(part, 0.0)
+    return _all_crossings(c, sign, part, out) if changes == UNCLEAR or changes > 1 else changes
+
+
+@kernel
+def _all_crossings(c: Floats, sign: float, part: Floats, out: Floats) -> int:
+    """Do what `crossings` does by bisection, for a polynomial that has the given sign just right of 0; `part` is room.
+
+    The sign is carried from interval to interval, so that a root on the border between two is found once.
+    """
+    found, start, width = 0, 0.0, 1.0
     for _ in range(MOST_INTERVALS):
         if start >= 1.0 or found >= len(out):
             break
