@@ -39,6 +39,19 @@ COLUMNS: Mapping[str, Column] = {
     "shear_stress": Column("Pa", ("tau", "τ", "shear", "traction"), signed=True),
     "normal_stress": Column("Pa", ("sigma", "σ", "sigma n", "normal")),
     "time": Column("s", ("t",)),
+    "load_point": Column(
+        "m",
+        ("load point displacement", "load displacement", "loading displacement", "driver displacement", "piston displacement", "lp"),
+        signed=True,
+    ),
+    "load_rate": Column("m/s", ("load point rate", "load point velocity", "loading rate", "loading velocity", "vlp"), signed=True),
+    "shear_force": Column("N", ("force", "shear load", "friction force"), signed=True),
+    "normal_force": Column("N", ("normal load",)),
+    "friction_deviation": Column("1", ("standard deviation", "friction error", "mu error", "sd friction", "sd mu")),
+    "shear_stress_deviation": Column("Pa", ("shear stress error", "traction deviation", "tau error", "sd tau")),
+    "shear_force_deviation": Column("N", ("shear force error", "force error", "sd force")),
+    "slip_deviation": Column("m", ("slip error", "sd slip")),
+    "slip_rate_deviation": Column("m/s", ("slip rate error", "sd slip rate")),
     "pull_rate": Column("m/s", signed=True),
     "far_stress": Column("Pa", signed=True),
 }
@@ -49,6 +62,8 @@ LONGEST_LINE = 50_000
 """Largest number of characters of a line."""
 PREAMBLE = 200
 """Number of lines before the header in which notes of an instrument are looked for."""
+NO_NUMBER = ("", "nan", "-", "–", "na", "n/a", "null", "none")
+"""What instruments and people write where a number is missing."""
 PURE = ("", "-", "–", "1", "none", "no unit", "dimensionless")
 """What people write in place of a unit for a pure number."""
 DECIMAL_COMMA = (
@@ -90,13 +105,13 @@ class Table:
             raise InputError(f"{self.at(int(wrong[0]) + 1)}: {column} must ascend, but {here:g} follows {before:g}; {cure}")
 
 
-def read_text(text: str, wanted: Sequence[str], place: str, most: int) -> Table:
+def read_text(text: str, wanted: Sequence[str], place: str, most: int, *, raw: bool = False) -> Table:
     """Return those of the wanted columns that a text has, as numbers in SI.
 
     The first line that is neither blank nor a comment (#) is the header. If it names none of the columns and exactly one of the
     lines that follow names two of them, that line is the header, and those before it are notes. Columns are separated by tabs,
     semicolons or commas, whichever of them the header has, in this order. Raises InputError with a message of one line that names
-    `place` and the line; also for more than `most` rows.
+    `place` and the line; also for more than `most` rows. If `raw`, cells without a number become NaN, and no sign is refused.
     """
     lines, separator = _rows(text, place, wanted)
     number, header = next(lines, (1, [""]))
@@ -114,15 +129,22 @@ def read_text(text: str, wanted: Sequence[str], place: str, most: int) -> Table:
             hint = "" if separator != "," else "; decimal commas? Then separate columns by semicolons and write decimal points"
             raise InputError(f"{at}: {len(row)} cells, but the header has {len(header)}{hint}")
         for name, (i, _) in chosen.items():
-            found[name].append(_number(row[i].strip() if i < len(row) else "", name, at, first=not numbers))
+            cell = row[i].strip() if i < len(row) else ""
+            if raw and cell.casefold() in NO_NUMBER:
+                found[name].append(math.nan)
+                continue
+            found[name].append(float(cell) if raw and _is_number(cell) else _number(cell, name, at, first=not numbers))
         numbers.append(number)
     columns = {name: _scaled(np.array(found[name], float), factor) for name, (_, factor) in chosen.items()}
     note_units(header, {name: i for name, (i, _) in chosen.items()}, columns, at_header)
     return Table(columns, place, np.array(numbers or [number]), "line", header, at_header)
 
 
-def read_mapping(table: Any, wanted: Sequence[str], place: str) -> Table:
-    """Return those of the wanted columns that a DataFrame, or another mapping of headings to numbers, has, as numbers in SI."""
+def read_mapping(table: Any, wanted: Sequence[str], place: str, *, raw: bool = False) -> Table:
+    """Return those of the wanted columns that a DataFrame, or another mapping of headings to numbers, has, as numbers in SI.
+
+    If `raw`, NaN and negative numbers pass. Raises InputError.
+    """
     headings = list(table)
     header = [str(heading) for heading in headings]
     chosen = find(header, wanted, place)
@@ -144,7 +166,7 @@ def read_mapping(table: Any, wanted: Sequence[str], place: str) -> Table:
     if len(set(sizes.values())) > 1:
         raise InputError(f"{place}: columns of different lengths: {', '.join(f'{n} has {size}' for n, size in sizes.items())}")
     made = Table(columns, place, np.arange(max(sizes.values(), default=0)), "row", header, place)
-    for name, numbers in columns.items():
+    for name, numbers in ({} if raw else columns).items():
         for i in np.flatnonzero(~np.isfinite(numbers) | ((numbers < 0.0) & (not _signed(name))))[:1].tolist():
             _check(float(numbers[i]), name, made.at(i))
     note_units(header, plain, columns, place)
@@ -169,7 +191,7 @@ def note_units(header: Sequence[str], chosen: Mapping[str, int], columns: Mappin
             warn(f"{place}: column {chosen[name] + 1}, {name}, has no unit and is read in {si}; if it is in another, {cure}")
 
 
-_OFTEN = {"m": "mm", "m/s": "mm/s", "s": "ms", "Pa": "MPa"}
+_OFTEN = {"m": "mm", "m/s": "mm/s", "s": "ms", "Pa": "MPa", "N": "kN"}
 """Units that laboratories use in place of those of SI."""
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import product
 from typing import Any
@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from stickslip.foundation.determined import covariance_of, misses_trend, sizes_and_correlation, undetermined
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import html_table, text_table, with_uncertainty
 from stickslip.friction.custom.fit_parameters import Leaf, leaves, numbers_of, rebuilt, slopes, template
@@ -24,14 +25,6 @@ EXACT = 1e-9
 """Residual (no unit) below which points lie on a law but for the errors of calculation."""
 AT_LIMIT = 1e-9
 """Distance from its limit, relative to the change of a parameter that the points would notice, at which it is at the limit."""
-UNSEEN = 1e-9
-"""Change of friction by a combination of parameters, as a share of the largest, below which the points do not see it."""
-PART = 0.05
-"""Component in an unseen combination (all components: 1) from which a parameter is part of it."""
-CORRELATED = 0.99
-"""Correlation of two parameters from which the points hardly tell them apart."""
-SERIAL = 5.0
-"""Number of standard deviations by which neighbouring residuals may be more alike than chance makes them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -216,12 +209,12 @@ def _result(law: FrictionLaw, points: Points, values: dict[str, float], total: f
         raise InputError(f"fit: the points give no {law.kind}: {str(error).partition(': ')[2]}") from None
     inner = [i for i, name in enumerate(free) if name not in limits]
     names = [free[i] for i in inner]
-    covariance, unseen = _covariance(by[:, inner], variance)
-    sizes, correlation = _sizes_and_correlation(covariance)
+    covariance, unseen = covariance_of(by[:, inner], variance)
+    sizes, correlation = sizes_and_correlation(covariance)
     uncertainty = dict(zip(names, sizes.tolist(), strict=True))
     open_sets = [[names[i] for i in part] for part in unseen]
     notes = [f"{name} is at its limit, {values[name]:g}: no other value that is allowed fits better" for name in limits]
-    notes += _notes(values, uncertainty, correlation, open_sets)
+    notes += undetermined(values, uncertainty, correlation, open_sets)
     order = np.lexsort(variables)
     if math.sqrt(total / n) > EXACT and misses_trend((made.coefficient(*variables) - points.friction)[order]):
         notes.append("the law misses a trend of the points: the uncertainties are too small, see a figure of the fit")
@@ -239,63 +232,3 @@ def _at_limit(leaf: Leaf, value: float, slopes_by: Floats, variance: float) -> b
         return False
     noticed = math.sqrt(variance) / size
     return value - least <= AT_LIMIT * max(noticed, abs(value))
-
-
-def _covariance(slopes_by: Floats, variance: float) -> tuple[Floats, list[list[int]]]:
-    """Return the covariance of parameters, and the sets of those that the points do not determine, by their indices.
-
-    `slopes_by` are the derivatives at the best fit, shape (n, number of parameters), and `variance` is that of the points about it.
-    The covariance of a parameter in such a set is NaN.
-    """
-    from scipy.linalg import null_space
-
-    sizes = np.linalg.norm(slopes_by, axis=0)
-    seen = np.flatnonzero(sizes > UNSEEN**2 * sizes.max(initial=0.0))
-    upper = np.linalg.qr(slopes_by[:, seen] / sizes[seen], mode="r")
-    inverse = np.linalg.pinv(upper, rcond=UNSEEN) / sizes[seen, None]
-    unseen = [[i] for i in range(len(sizes)) if i not in seen]
-    unseen += [seen[np.abs(row) > PART].tolist() for row in null_space(upper, rcond=UNSEEN).T]
-    covariance = np.full((len(sizes), len(sizes)), np.nan)
-    covariance[np.ix_(seen, seen)] = variance * inverse @ inverse.T
-    unknown = sorted({i for part in unseen for i in part})
-    covariance[unknown] = covariance[:, unknown] = np.nan
-    return covariance, unseen
-
-
-def _sizes_and_correlation(covariance: Floats) -> tuple[Floats, Floats]:
-    """Return the standard uncertainties, infinite for parameters that are not determined, and the correlations."""
-    with np.errstate(invalid="ignore", divide="ignore"):
-        sizes = np.sqrt(np.diag(covariance))
-        return np.where(np.isnan(sizes), np.inf, sizes), np.asarray(covariance / np.outer(sizes, sizes))
-
-
-def _notes(
-    values: Mapping[str, float], uncertainty: Mapping[str, float], correlation: Floats, unseen: list[list[str]]
-) -> Iterator[str]:
-    """Yield a sentence on each set of parameters that the points do not determine, or hardly."""
-    for part in unseen:
-        if len(part) == 1:
-            yield f"the points do not determine {part[0]}: any value fits alike; choose it and fix it"
-        else:
-            yield f"the points do not determine {', '.join(part[:-1])} and {part[-1]} separately: fix one of them"
-    for name, size in uncertainty.items():
-        if np.isfinite(size) and size > abs(values[name]) > 0.0:
-            yield f"the points do not determine {name}: its uncertainty exceeds its value"
-    names = list(uncertainty)
-    for i, j in np.argwhere(np.abs(np.triu(correlation, 1)) > CORRELATED).tolist():
-        yield (
-            f"{names[i]} and {names[j]} can hardly be told apart (correlation {correlation[i, j]:.4f}): "
-            "the points determine a combination of them"
-        )
-
-
-def misses_trend(residuals: Floats) -> bool:
-    """Return True if neighbouring residuals are more alike than chance makes them (von Neumann 1941, Ann. Math. Stat. 12, 367).
-
-    The ratio of the mean squared successive difference to the mean square is 2 with standard deviation 2/sqrt(n) in white noise.
-    """
-    n, total = len(residuals), float(np.sum(residuals**2))
-    if n < 10 or total == 0.0:
-        return False
-    ratio = float(np.sum(np.diff(residuals) ** 2)) / total
-    return (2.0 - ratio) * math.sqrt(n) / 2.0 > SERIAL

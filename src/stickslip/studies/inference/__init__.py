@@ -1,0 +1,1 @@
+"""From a laboratory record to the parameters of a problem, with their uncertainty."""

@@ -1,0 +1,197 @@
+"""Turn the load point of a record into a loading history: straight parts of its displacement, within its noise."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.formatting import brief
+from stickslip.loading import LoadingHistory, Steps
+from stickslip.studies.inference.noise import noise_of
+from stickslip.studies.inference.record import Record
+
+Floats = NDArray[np.float64]
+
+MOST_PARTS = 2000
+"""Largest number of straight parts; a record that needs more is approximated more coarsely."""
+SURE = 5.0
+"""Number of standard deviations by which the mean of some samples may differ from a straight part."""
+ROUNDING = 1e-9
+"""Smallest noise that is assumed, as a share of the range of the displacement."""
+GAP = 20.0
+"""Factor by which the time between two samples is longer than usual if there is a gap between them."""
+
+
+class Loading(NamedTuple):
+    """The loading of a run, and sentences on how it follows from the record."""
+
+    history: LoadingHistory
+    notes: tuple[str, ...]
+
+
+def loading_of(record: Record) -> Loading | None:
+    """Return the pull rate in a record as a loading history; None if the record has no load point.
+
+    A displacement becomes straight lines from knot to knot, as few as leave nothing but noise; a line goes over gaps, and a jump is a
+    short line. A rate becomes steps in the same way. Raises InputError if there are too few numbers.
+    """
+    is_rate = record.load_point is None
+    given = record.load_rate if is_rate else record.load_point
+    if given is None:
+        return None
+    known = np.isfinite(given)
+    time, values = record.clock[known], given[known]
+    if len(time) < 2:
+        raise InputError(f"{record.name}: the load point has fewer than two numbers: give its rate in the scenario, and leave it out")
+    noise = max(noise_of(values), ROUNDING * float(np.max(np.abs(values - values[0]))), 1e-300)
+    cuts, coarser = straight_parts(time, values, noise, 0 if is_rate else 1)
+    if is_rate:
+        middle = 0.5 * (time[np.array(cuts[1:-1], int) - 1] + time[cuts[1:-1]]) if len(cuts) > 2 else np.zeros(0)
+        starts = np.append(0.0, middle)
+        rates = np.array([values[first:last].mean() for first, last in pairwise(cuts)])
+    else:
+        at, heights = _joined(time, values, _knots(time, values, cuts, coarser * noise))
+        rates, starts = np.diff(heights) / np.diff(at), np.append(0.0, at[1:-1])
+    return Loading(_steps(starts, rates), _notes(record, time, rates, coarser, noise))
+
+
+def _steps(starts: Floats, rates: Floats) -> Steps:
+    changed = np.append(True, np.diff(rates) != 0.0)
+    return Steps(starts[changed].tolist(), rates[changed].tolist())
+
+
+def _notes(record: Record, time: Floats, rates: Floats, coarser: float, noise: float) -> tuple[str, ...]:
+    what, unit = ("rate", "m/s") if record.load_point is None else ("displacement", "m")
+    parts = f"{len(rates)} part{'s' if len(rates) > 1 else ''} of constant rate"
+    within = f"its noise of {brief(noise, unit, 3)}"
+    within = within if coarser == 1.0 else f"{brief(coarser * noise, unit, 3)}, {coarser:g} times its noise"
+    found = [f"the {what} of the load point is followed in {parts}, within {within}"]
+    steps = np.diff(time)
+    gaps = int((steps > GAP * float(np.median(steps))).sum())
+    if gaps:
+        found.append(f"the load point has {gaps} gap{'s' if gaps > 1 else ''}, over which its rate is taken as constant")
+    return tuple(found)
+
+
+def straight_parts(time: Floats, values: Floats, noise: float, order: int = 1) -> tuple[list[int], float]:
+    """Return the indices at which parts that are straight (order 1) or constant (0) begin, and the number of samples behind them.
+
+    The second number is the factor by which more than the noise had to be allowed for parts that are not too many.
+    """
+    coarser = 1.0
+    while True:
+        cuts = _cuts(time, values, coarser * noise, order)
+        if len(cuts) - 1 <= MOST_PARTS:
+            return _without_needless(time, values, cuts, coarser * noise, order), coarser
+        coarser *= 4.0
+
+
+def _cuts(time: Floats, values: Floats, noise: float, order: int) -> list[int]:
+    """Return indices between which parts leave nothing but noise; the search stops a little beyond the largest number of parts."""
+    open_parts, ends = [(0, len(time))], []
+    while open_parts and len(ends) + len(open_parts) <= 2 * MOST_PARTS:
+        first, last = open_parts.pop()
+        at = None if last - first < 3 else _worst(time[first:last], values[first:last], noise, order)
+        if at is None:
+            ends.append(first)
+        else:
+            open_parts += [(first, first + at), (first + at, last)]
+    ends += [first for first, _ in open_parts]
+    return [*sorted(ends), len(time)]
+
+
+def _line(time: Floats, values: Floats) -> tuple[float, float]:
+    """Return level at the middle time and slope of the line of least squares."""
+    t = time - time.mean()
+    spread = float(t @ t)
+    return float(values.mean()), float(t @ (values - values.mean())) / spread if spread > 0.0 else 0.0
+
+
+def _rest(time: Floats, values: Floats, order: int) -> Floats:
+    level, slope = _line(time, values)
+    return np.asarray(values - level - (slope * (time - time.mean()) if order else 0.0))
+
+
+def _misfit(rest: Floats) -> float:
+    """Return the largest mean of neighbouring samples, in standard errors per unit of noise, over all lengths that are powers of 2."""
+    worst, width = 0.0, 1
+    sums = np.append(0.0, np.cumsum(rest))
+    while width <= len(rest):
+        step = max(width // 2, 1)
+        means = (sums[width::step] - sums[:-width:step]) / math.sqrt(width)
+        worst = max(worst, float(np.max(np.abs(means))))
+        width *= 2
+    return worst
+
+
+def _worst(time: Floats, values: Floats, noise: float, order: int) -> int | None:
+    """Return where to cut a part that is not straight, or None if it is.
+
+    A line is cut where it is farthest from the chord of its ends, a constant where the sum of what it leaves is largest.
+    """
+    rest = _rest(time, values, order)
+    if _misfit(rest) <= SURE * noise:
+        return None
+    if order == 0:
+        return int(np.argmax(np.abs(np.cumsum(rest)[:-1]))) + 1
+    width = max(min(len(values) // 8, 16), 1)
+    begin, end = values[:width].mean(), values[-width:].mean()
+    t0, t1 = time[:width].mean(), time[-width:].mean()
+    away = np.abs(values - begin - (end - begin) * (time - t0) / (t1 - t0))
+    return int(np.clip(np.argmax(away[1:-1]) + 1, 1, len(values) - 1))
+
+
+def _without_needless(time: Floats, values: Floats, cuts: list[int], noise: float, order: int) -> list[int]:
+    """Return the cuts without those whose two parts are one."""
+    kept = [cuts[0]]
+    for i in range(1, len(cuts) - 1):
+        first, last = kept[-1], cuts[i + 1]
+        if _misfit(_rest(time[first:last], values[first:last], order)) > SURE * noise:
+            kept.append(cuts[i])
+    return [*kept, cuts[-1]]
+
+
+def _knots(time: Floats, values: Floats, cuts: list[int], noise: float) -> list[float]:
+    """Return the times at which neighbouring lines meet; if they do not meet near the cut, there is a jump between two knots."""
+    found = [float(time[0])]
+    for first, at, last in zip(cuts[:-2], cuts[1:-1], cuts[2:], strict=True):
+        left, right = float(time[at - 1]), float(time[at])
+        (a, p), (b, q) = (_line(time[part], values[part]) for part in (slice(first, at), slice(at, last)))
+        t1, t2 = float(time[first:at].mean()), float(time[at:last].mean())
+        if p != q and at - first > 1 and last - at > 1:
+            meet, room = (b - a + p * t1 - q * t2) / (p - q), 2.0 * (right - left) + SURE * noise / abs(p - q)
+            if left - room <= meet <= right + room:
+                found.append(float(np.clip(meet, t1, t2)))
+                continue
+        found += [left, right]
+    found.append(float(time[-1]))
+    ascending = [found[0]]
+    for knot in found[1:]:
+        if knot > ascending[-1] + 1e-12 * (found[-1] - found[0]):
+            ascending.append(knot)
+    return ascending
+
+
+def _joined(time: Floats, values: Floats, knots: list[float]) -> tuple[Floats, Floats]:
+    """Return knots and the heights there of the continuous line of straight parts that is closest to the values."""
+    from scipy.sparse import csr_matrix
+    from scipy.sparse.linalg import spsolve
+
+    at = np.array(knots)
+    n = np.clip(np.searchsorted(at, time, side="right") - 1, 0, len(at) - 2)
+    share = (time - at[n]) / (at[n + 1] - at[n])
+    rows = np.arange(len(time))
+    matrix = csr_matrix(
+        (np.concatenate([1.0 - share, share]), (np.concatenate([rows, rows]), np.concatenate([n, n + 1]))), (len(time), len(at))
+    )
+    # knots without samples beside them: they follow the straight line between the samples
+    straight = np.interp(at, time, values)
+    weak = 1e-8
+    normal = (matrix.T @ matrix).tolil()
+    normal.setdiag(normal.diagonal() + weak)
+    return at, np.asarray(spsolve(normal.tocsc(), matrix.T @ (values - np.interp(time, at, straight)))) + straight

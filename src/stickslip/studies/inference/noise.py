@@ -1,0 +1,129 @@
+"""Noise of a record: its size from one sample to the next, and the time over which residuals remember themselves."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+GAUSSIAN = 0.6744897501960817
+"""Median magnitude of a normal deviate with standard deviation 1."""
+FORGOTTEN = 0.02
+"""Correlation of neighbouring samples below which noise counts as white."""
+LONGEST = 0.5
+"""Longest time of correlation that is looked for, as a share of the record."""
+
+
+def noise_of(values: Floats) -> float:
+    """Return the standard deviation of what differs from sample to sample, from second differences; trends do not count."""
+    known = values[np.isfinite(values)]
+    if len(known) < 3:
+        return 0.0
+    bends = known[2:] - 2.0 * known[1:-1] + known[:-2]
+    size = float(np.median(np.abs(bends))) / (GAUSSIAN * math.sqrt(6.0))
+    return size if size > 0.0 else float(np.sqrt(np.mean(bends**2) / 6.0))
+
+
+def first_value(time: Floats, values: Floats, noise: float) -> tuple[float, float]:
+    """Return the value at the first time, and its standard error, from a line through as many samples as it fits to the noise."""
+    known = np.isfinite(values)
+    time, values = time[known], values[known]
+    best = float(values[0]), noise
+    count = 4
+    while count <= min(len(values), 256):
+        t, y = time[:count] - time[0], values[:count]
+        slope, level = np.polyfit(t, y, 1)
+        rest = float(np.sqrt(np.sum((y - level - slope * t) ** 2) / (count - 2)))
+        if rest > 1.3 * noise:
+            break
+        best = float(level), noise * 2.0 / math.sqrt(count)
+        count *= 2
+    return best
+
+
+class Block(NamedTuple):
+    """Residuals that follow each other in time: their indices among all, and their times (s)."""
+
+    rows: slice
+    time: Floats
+
+
+def whitened(residual: Floats, blocks: list[Block], memory: float) -> Floats:
+    """Return residuals, or derivatives of residuals, less what the sample before tells of each.
+
+    They are those of a first-order autoregressive noise whose correlation falls as exp(-dt/memory), of variance 1 before and after.
+    """
+    if memory <= 0.0:
+        return residual
+    result = residual.copy()
+    for rows, time in blocks:
+        if len(time) < 2:
+            continue
+        rho = np.exp(-np.diff(time) / memory)
+        if residual.ndim == 2:
+            rho = rho[:, None]
+        part = residual[rows]
+        result[rows][1:] = (part[1:] - rho * part[:-1]) / np.sqrt(1.0 - rho**2)
+    return result
+
+
+class Memory(NamedTuple):
+    """Time over which residuals remember themselves (s; 0 for white noise), and their size relative to the assumed one."""
+
+    time: float
+    size: float
+
+
+def memory_of(residual: Floats, slopes: Floats, blocks: list[Block]) -> Memory:
+    """Return the memory of residuals by restricted maximum likelihood, and 0 if white noise explains them as well.
+
+    `slopes` are the derivatives of the residuals with respect to the parameters that were fitted, shape (n, p): what the fit took
+    from the noise is allowed for (Patterson & Thompson 1971, Biometrika 58, 545).
+    """
+    from scipy.optimize import minimize_scalar
+
+    steps = np.concatenate([np.diff(time) for _, time in blocks]) if blocks else np.zeros(0)
+    n, p = slopes.shape
+    if n < p + 10 or not len(steps):
+        return Memory(0.0, _size(residual, slopes))
+    usual, longest = float(np.median(steps)), LONGEST * max(float(np.ptp(time)) for _, time in blocks)
+
+    def criterion(log_time: float) -> float:
+        memory = math.exp(log_time)
+        white, by = whitened(residual, blocks, memory), whitened(slopes, blocks, memory)
+        size, log_det = _size_and_determinant(white, by)
+        spread = sum(float(np.sum(np.log1p(-np.exp(-2.0 * np.diff(time) / memory)))) for _, time in blocks)
+        return 2.0 * (n - p) * math.log(max(size, 1e-300)) + spread + log_det
+
+    size, log_det = _size_and_determinant(residual, slopes)
+    white = 2.0 * (n - p) * math.log(max(size, 1e-300)) + log_det
+    shortest = usual / -math.log(FORGOTTEN)
+    if longest <= shortest:
+        return Memory(0.0, size)
+    found = minimize_scalar(criterion, bounds=(math.log(shortest), math.log(longest)), method="bounded", options={"xatol": 0.01})
+    if found.fun > white - math.log(n):
+        return Memory(0.0, size)
+    memory = math.exp(found.x)
+    return Memory(memory, _size(whitened(residual, blocks, memory), whitened(slopes, blocks, memory)))
+
+
+def _size(residual: Floats, slopes: Floats) -> float:
+    return _size_and_determinant(residual, slopes)[0]
+
+
+def _size_and_determinant(residual: Floats, slopes: Floats) -> tuple[float, float]:
+    """Return the size of residuals after a linear fit of the parameters, and the logarithm of the determinant of the normal matrix."""
+    n, p = slopes.shape
+    if not p:
+        return math.sqrt(float(residual @ residual) / max(n, 1)), 0.0
+    sizes = np.linalg.norm(slopes, axis=0)
+    used = slopes[:, sizes > 0.0] / sizes[sizes > 0.0]
+    basis, _, _ = np.linalg.svd(used, full_matrices=False)
+    rest = residual - basis @ (basis.T @ residual)
+    kept = np.linalg.svd(used, compute_uv=False)
+    log_det = 2.0 * float(np.sum(np.log(np.maximum(kept, 1e-12)))) + 2.0 * float(np.sum(np.log(sizes[sizes > 0.0])))
+    return math.sqrt(float(rest @ rest) / max(n - used.shape[1], 1)), log_det
