@@ -1,0 +1,358 @@
+"""Runs of a problem under the loading of a record, and how far they are from it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.foundation.errors import InputError
+from stickslip.loading import LoadingHistory
+from stickslip.problem.problem import Problem
+from stickslip.run.simulate import simulate
+from stickslip.solution.solution import Solution
+from stickslip.studies.inference.free import DELAY, LOAD, STATE, TREND, Free
+from stickslip.studies.inference.noise import Block, first_value, noise_of, whitened
+from stickslip.studies.inference.record import UNITS, Record
+from stickslip.studies.study import uninterrupted
+
+Floats = NDArray[np.float64]
+
+FAILED = 1e5
+"""Residual, in standard deviations, that stands for a run that failed."""
+LARGEST = 1e7
+"""Largest residual, in standard deviations, so that squares and their sums stay finite."""
+STEP = 2e-4
+"""Step of differences, in searched numbers: the square of it is the error, and 1e-8 over it the noise of runs."""
+SMALLEST_NOISE = 1e-9
+"""Smallest noise, as a share of the range of a quantity: a record without noise has rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """A part of a record with its own run.
+
+    Parameters
+    ----------
+    record
+        The samples.
+    loading
+        The pull rate since the first sample, or None for the problem's own.
+    observed
+        Names of the quantities that are fitted.
+    sensor
+        "contact" if shear is measured at the contact, "spring" for a load cell behind the spring of a block.
+    start
+        "steady", "record" or "problem": how the run begins.
+    """
+
+    record: Record
+    loading: LoadingHistory | None
+    observed: tuple[str, ...]
+    sensor: str = "contact"
+    start: str = "problem"
+
+    @property
+    def duration(self) -> float:
+        """The length of the run (s)."""
+        return float(self.record.clock[-1])
+
+    def begun(self, problem: Problem) -> Problem:
+        """Return a problem under the loading of this part, with the start that its data give. Raises InputError."""
+        rates: dict[str, Any] = {} if self.loading is None else {"pull_rate": self.loading}
+        if self.start == "steady":
+            return steady(problem, rates)
+        if self.start == "problem":
+            return replace(problem, **rates)
+        load, _ = self.first_load(problem.normal)
+        begun: dict[str, Any] = {"initial_load": load, "initial_excess": None}
+        if problem.friction.states and not problem.friction.sticks and problem.initial_state is None:
+            begun["initial_state"] = "steady"
+        return replace(problem, **rates, **begun)
+
+    def first_load(self, normal: float) -> tuple[float, float]:
+        """Return the load at the first sample and its standard error (Pa or N), for a normal load (Pa or N)."""
+        name = self.record.shear
+        if name is None:
+            raise InputError(f"{self.record.name}: no shear is measured, so that the load at the start is not known: start='problem'")
+        values = self.record.measured[name]
+        value, error = first_value(self.record.clock, values, noise_of(values))
+        return (value * normal, error * normal) if name == "friction" else (value, error)
+
+
+def steady(problem: Problem, rates: Mapping[str, Any]) -> Problem:
+    """Return a problem that begins in steady sliding at its first pull rate. Raises InputError if it cannot."""
+    law, body = problem.friction, problem.body
+    none: dict[str, Any] = dict.fromkeys(("initial_load", "initial_excess", "initial_state", "initial_second_state", "initial_rate"))
+    if not law.sticks and body.has_inertia:
+        return replace(problem, **rates, **none)
+    pull = rates.get("pull_rate", problem.pull_rate)
+    rate = pull.first if isinstance(pull, LoadingHistory) else pull
+    if not law.states or law.sticks or rate == 0.0 or not hasattr(law, "steady_coefficient"):
+        raise InputError(f"infer: {law.kind} does not slide steadily at the first pull rate of {rate:g} m/s: start='record'")
+    load = problem.normal * float(law.steady_coefficient(abs(rate))) + body.damping * abs(rate)
+    none |= {"initial_load": math.copysign(load, rate), "initial_state": "steady"}
+    return replace(problem, **rates, **none)
+
+
+def changed(problem: Problem, values: Mapping[str, float]) -> Problem:
+    """Return a problem with other numbers, by their full names; those of the record are passed over. Raises InputError."""
+    law: dict[str, float] = {}
+    body: dict[str, float] = {}
+    start: dict[str, Any] = {}
+    others: dict[str, float] = {}
+    for name, value in values.items():
+        place, _, last = name.partition(".")
+        if place == "friction" and last.isidentifier() and hasattr(problem.friction, last):
+            law[last] = value
+        elif place == "body":
+            body[last] = value
+        elif place == "initial":
+            start[f"initial_{last}"] = value
+            start |= {"initial_excess": None} if name == LOAD else {}
+        elif place != "record":
+            others[name] = value
+    new_law = replace(problem.friction, **law) if law else problem.friction
+    new_body = replace(problem.body, **body) if body else problem.body
+    problem = replace(problem, friction=new_law, body=new_body, **start)
+    for name, value in others.items():
+        problem = problem.parameters[name].put(value)
+    return problem
+
+
+@dataclass
+class Model:
+    """Residuals of a record as a function of searched numbers.
+
+    Parameters
+    ----------
+    problem
+        The problem whose numbers are free.
+    parts
+        The parts of the record.
+    free
+        The free numbers.
+    rtol
+        Relative tolerance of the runs.
+    sizes
+        Standard deviation of each observed quantity that has no column of them (SI).
+    memory
+        Time over which residuals of a quantity remember themselves (s), 0 for white noise.
+    every
+        Each how many-th sample is used.
+    max_pieces
+        Largest number of pieces of a run; a run that needs more has failed.
+    """
+
+    problem: Problem
+    parts: tuple[Part, ...]
+    free: tuple[Free, ...]
+    rtol: float = 1e-8
+    sizes: dict[str, float] = field(default_factory=dict)
+    memory: dict[str, float] = field(default_factory=dict)
+    every: int = 1
+    max_pieces: int = 20_000
+    _last: dict[int, tuple[bytes, Floats]] = field(default_factory=dict)
+
+    def values(self, searched: Floats) -> list[float]:
+        """Return the free values (SI), within their limits."""
+        return [min(max(one.natural(x), one.low), one.high) for one, x in zip(self.free, searched.tolist(), strict=True)]
+
+    def at(self, searched: Floats, part: int) -> Problem:
+        """Return the problem of a part at searched numbers. Raises InputError if there is none."""
+        values = self.values(searched)
+        own = {one.name: v for one, v in zip(self.free, values, strict=True) if one.part in (None, part)}
+        first = {name: v for name, v in own.items() if name not in (LOAD, STATE)}
+        begun = self.parts[part].begun(changed(self.problem, first))
+        return changed(begun, {name: v for name, v in own.items() if name in (LOAD, STATE)})
+
+    def solve(self, searched: Floats, part: int, rtol: float | None = None) -> Solution | None:
+        """Return the run of a part, or None if it failed. Raises KeyboardInterrupt after Ctrl-C."""
+        delay = self._own(searched, part).get(DELAY, 0.0)
+        try:
+            problem = self.at(searched, part)
+            lasts = self.parts[part].duration + max(0.0, -delay)
+            run = uninterrupted(simulate(problem, lasts, self.rtol if rtol is None else rtol, max_pieces=self.max_pieces))
+        except (InputError, ArithmeticError):
+            return None
+        return run if run.status.ok and run.history.span[1] >= lasts * (1.0 - 1e-12) else None
+
+    def _own(self, searched: Floats, part: int) -> dict[str, float]:
+        return {one.name: v for one, v in zip(self.free, self.values(searched), strict=True) if one.part in (None, part)}
+
+    def curves(self, run: Solution, searched: Floats, part: int, every: int = 1) -> dict[str, Floats]:
+        """Return what would be measured in a run at each sample, by the name of the quantity (SI)."""
+        this, own = self.parts[part], self._own(searched, part)
+        time = np.clip(this.record.clock[::every] - own.get(DELAY, 0.0), 0.0, run.history.span[1])
+        found, shift = {}, 0.0
+        if TREND in own:
+            slip = run.slip(time)
+            shift = own[TREND] * (slip - slip[0])
+        for name in this.observed:
+            if name == "slip":
+                found[name] = run.slip(time) - run.problem.initial_slip
+            elif name == "slip_rate":
+                found[name] = run.slip_rate(time)
+            else:
+                force = run.load(time) if this.sensor == "spring" else run.traction(time)
+                normal = run.problem.normal
+                found[name] = force / normal + shift if name == "friction" else force + shift * normal
+        return found
+
+    def data(self, part: int, name: str) -> Floats:
+        """Return the measured values of a quantity in a part (SI); slip is counted from the first sample."""
+        values = self.parts[part].record.measured[name]
+        if name != "slip":
+            return values
+        return values - first_value(self.parts[part].record.clock, values, noise_of(values))[0]
+
+    def _deviations(self, part: int, name: str) -> Floats | float:
+        given = self.parts[part].record.deviations.get(name)
+        scale = self.sizes[name]
+        return scale if given is None else given[:: self.every] * scale
+
+    def part_residual(self, searched: Floats, part: int) -> Floats:
+        """Return the residuals of a part in standard deviations: model minus data, quantity after quantity."""
+        key = searched.tobytes()
+        if self._last.get(part, (b"",))[0] != key:
+            self._last[part] = key, self._new_residual(searched, part)
+        return self._last[part][1]
+
+    def _new_residual(self, searched: Floats, part: int) -> Floats:
+        run = self.solve(searched, part)
+        wanted = {name: self.data(part, name)[:: self.every] for name in self.parts[part].observed}
+        if run is None:
+            return np.concatenate([np.full(int(np.isfinite(y).sum()), FAILED) for y in wanted.values()])
+        with np.errstate(all="ignore"):
+            curves = self.curves(run, searched, part, self.every)
+            pieces = []
+            for name, y in wanted.items():
+                rest = (curves[name] - y) / self._deviations(part, name)
+                rest = rest[np.isfinite(y)]
+                pieces.append(np.clip(np.where(np.isfinite(rest), rest, FAILED), -LARGEST, LARGEST))
+        return np.concatenate(pieces)
+
+    def blocks(self, part: int) -> list[tuple[str, Block]]:
+        """Return the rows of each quantity among the residuals of a part, and their times."""
+        found, begin = [], 0
+        clock = self.parts[part].record.clock[:: self.every]
+        for name in self.parts[part].observed:
+            time = clock[np.isfinite(self.data(part, name)[:: self.every])]
+            found.append((name, Block(slice(begin, begin + len(time)), time)))
+            begin += len(time)
+        return found
+
+    def white(self, residual: Floats, part: int) -> Floats:
+        """Return residuals of a part, or their derivatives, without what neighbouring samples share."""
+        if not any(self.memory.values()):
+            return residual
+        result = residual
+        for name, block in self.blocks(part):
+            if self.memory.get(name, 0.0) > 0.0:
+                result = whitened(result, [block], self.memory[name])
+        return result
+
+    def priors(self, searched: Floats) -> Floats:
+        """Return the distances from what was known before, in standard deviations."""
+        values = zip(self.free, self.values(searched), strict=True)
+        found = [one.prior.residual(v) for one, v in values if one.prior is not None and one.prior.kind != "uniform"]
+        return np.clip(np.array(found, float), -LARGEST, LARGEST)
+
+    def residual(self, searched: Floats) -> Floats:
+        """Return all residuals, those of the priors last."""
+        parts = [self.white(self.part_residual(searched, i), i) for i in range(len(self.parts))]
+        return np.concatenate([*parts, self.priors(searched)])
+
+    def jacobian(self, searched: Floats, *, white: bool = True, sides: Sequence[float] = (1.0, -1.0)) -> Floats:
+        """Return the derivatives of all residuals with respect to the searched numbers, by differences.
+
+        A number that belongs to one part asks for runs of that part only. If the run on one side fails, the other is used.
+        """
+        lows, highs = self.limits
+        base = [self.part_residual(searched, i) for i in range(len(self.parts))]
+        counts = [len(one) for one in base]
+        begins = np.append(0, np.cumsum(counts))
+        result = np.zeros((int(begins[-1]) + len(self.priors(searched)), len(self.free)))
+        for column, one in enumerate(self.free):
+            stepped = []
+            for side in sides:
+                x = searched.copy()
+                x[column] = min(max(x[column] + side * STEP, lows[column]), highs[column])
+                stepped.append(x)
+            for i in range(len(self.parts)) if one.part is None else (one.part,):
+                by = self._difference(searched, stepped, column, i, base[i])
+                result[begins[i] : begins[i + 1], column] = self.white(by, i) if white else by
+            result[begins[-1] :, column] = self._prior_slope(stepped, searched, column)
+        return result
+
+    def _difference(self, searched: Floats, stepped: list[Floats], column: int, part: int, base: Floats) -> Floats:
+        ends = []
+        for x in stepped:
+            if x[column] != searched[column]:
+                rest = self._new_residual(x, part)
+                if len(rest) and not np.all(rest == FAILED):
+                    ends.append((x[column], rest))
+        if len(ends) < 2 and not np.all(base == FAILED):
+            ends.append((searched[column], base))
+        if len(ends) < 2 or ends[0][0] == ends[1][0]:
+            return np.zeros(len(base))
+        (x1, r1), (x2, r2) = ends[0], ends[1]
+        by = (r1 - r2) / (x1 - x2)
+        return np.where((np.abs(r1) < FAILED) & (np.abs(r2) < FAILED), by, 0.0)
+
+    def _prior_slope(self, stepped: list[Floats], searched: Floats, column: int) -> Floats:
+        ends = [x for x in (*stepped, searched) if x is searched or x[column] != searched[column]]
+        first, second = ends[0], ends[1] if len(ends) > 1 else ends[0]
+        width = first[column] - second[column]
+        return (self.priors(first) - self.priors(second)) / width if width else 0.0 * self.priors(first)
+
+    @property
+    def limits(self) -> tuple[Floats, Floats]:
+        """The searched numbers at the limits of the free values."""
+        low = [one.searched(one.low) for one in self.free]
+        high = [one.searched(one.high) for one in self.free]
+        return np.array(low, float), np.array(high, float)
+
+    @property
+    def begin(self) -> Floats:
+        """The searched numbers where the search begins."""
+        low, high = self.limits
+        return np.clip([one.searched(one.start) for one in self.free], low, high)
+
+    @property
+    def samples(self) -> int:
+        """The number of measured values that are fitted."""
+        return sum(block.rows.stop - block.rows.start for i in range(len(self.parts)) for _, block in self.blocks(i))
+
+    def thinned(self, most: int) -> Model:
+        """Return the same model on at most so many samples of each part."""
+        longest = max(len(part.record) for part in self.parts)
+        return self.with_(every=max(1, -(-longest // most)))
+
+    def with_(self, **others: Any) -> Model:
+        """Return the model with other settings."""
+        return replace(self, **others, _last={})
+
+
+def first_sizes(parts: Sequence[Part]) -> dict[str, float]:
+    """Return the noise of each observed quantity from sample to sample; 1 where all have a column of standard deviations."""
+    found: dict[str, float] = {}
+    for name in dict.fromkeys(name for part in parts for name in part.observed):
+        having = [part.record for part in parts if name in part.observed]
+        if all(name in record.deviations for record in having):
+            found[name] = 1.0
+            continue
+        widest = max(float(np.nanmax(r.measured[name]) - np.nanmin(r.measured[name])) for r in having)
+        largest = max(float(np.nanmax(np.abs(r.measured[name]))) for r in having)
+        least = SMALLEST_NOISE * max(widest, 1e-3 * largest, 1e-300)
+        found[name] = max(*(noise_of(r.measured[name]) for r in having), least)
+    return found
+
+
+def unit_of(name: str) -> str:
+    """Return the unit of an observed quantity."""
+    return UNITS[name]
