@@ -34,8 +34,8 @@ COMPETES = 20.0
 """Difference of twice the logarithm of the likelihood below which another minimum competes with the best one."""
 APART = 5.0
 """Distance of two minima, in standard uncertainties, from which they are two."""
-LOSSES = ("linear", "soft_l1", "huber", "cauchy", "arctan")
-"""Functions of squared residuals that may be summed."""
+OUTLYING = 2.0
+"""Residual, in standard deviations, from which a loss other than the linear one counts it less."""
 
 
 @dataclass
@@ -60,17 +60,24 @@ class Estimate:
         Searched numbers of other minima that compete.
     finished
         False after Ctrl-C.
+    loss
+        The function of squared residuals that is summed.
     """
 
     model: Model
     searched: Floats
     others: tuple[Floats, ...] = ()
     finished: bool = True
+    loss: str = "linear"
+
+    def cost(self, searched: Floats) -> float:
+        """Return the sum that the search minimises, twice the negative logarithm of the posterior but for a constant."""
+        return cost_of(self.model.residual(searched), self.loss)
 
 
 def estimate(model: Model, starts: int, loss: str, seed: int, tell: Tell) -> Estimate:
     """Return the best fit of a model. Raises InputError if no run succeeds, KeyboardInterrupt if Ctrl-C comes before any did."""
-    best, found = Best(), Estimate(model, model.begin)
+    best, found = Best(), Estimate(model, model.begin, loss=loss)
     try:
         thin = _light(model.thinned(FEW))
         minima = _search(thin, starts, loss, seed, tell, best)
@@ -81,7 +88,7 @@ def estimate(model: Model, starts: int, loss: str, seed: int, tell: Tell) -> Est
     except KeyboardInterrupt:
         if not len(best.searched):
             raise
-        return Estimate(found.model.with_(every=model.every), best.searched, finished=False)
+        return Estimate(found.model.with_(every=model.every), best.searched, finished=False, loss=loss)
 
 
 def _with_noise(model: Model, searched: Floats, loss: str, tell: Tell, best: Best) -> Estimate:
@@ -94,7 +101,7 @@ def _with_noise(model: Model, searched: Floats, loss: str, tell: Tell, best: Bes
         by = model.jacobian(searched, white=False)
         new = _noise(model, searched, by, loss)
         if turn == 0 and loss == "linear" and _keeps_minimum(model, new):
-            return Estimate(new, searched)
+            return Estimate(new, searched, loss=loss)
         width = _widths(by[: model.samples])
         settled = turn > 0 and np.all(np.abs(searched - before) < SETTLED * width)
         same = all(abs(new.sizes[k] / model.sizes[k] - 1.0) < 0.1 for k in new.sizes) and new.memory.keys() == model.memory.keys()
@@ -102,7 +109,7 @@ def _with_noise(model: Model, searched: Floats, loss: str, tell: Tell, best: Bes
         model = new
         if settled and same:
             break
-    return Estimate(model, searched)
+    return Estimate(model, searched, loss=loss)
 
 
 def _keeps_minimum(model: Model, new: Model) -> bool:
@@ -128,23 +135,30 @@ def solved(model: Model, start: Floats, loss: str, best: Best | None = None, *, 
     inside = np.clip(start, low + 1e-9 * np.maximum(1.0, np.abs(low)), high - 1e-9 * np.maximum(1.0, np.abs(high)))
     found = least_squares(
         residual, np.where(np.isfinite(inside), inside, start), lambda x: model.jacobian(x, sides=(1.0, -1.0) if thorough else (1.0,)),
-        (low, high), x_scale="jac", loss=loss, f_scale=2.0, ftol=tolerance, xtol=1e-2 * tolerance, gtol=1e-12, max_nfev=most,
+        (low, high), x_scale="jac", loss=loss, f_scale=OUTLYING, ftol=tolerance, xtol=1e-2 * tolerance, gtol=1e-12, max_nfev=most,
     )  # fmt: skip
     return np.asarray(found.x)
 
 
 def cost_of(residual: Floats, loss: str = "linear") -> float:
-    """Return the sum that a search minimises."""
-    squares = (residual / 2.0) ** 2
-    if loss == "soft_l1":
-        squares = 2.0 * (np.sqrt(1.0 + squares) - 1.0)
-    elif loss == "huber":
-        squares = np.where(squares <= 1.0, squares, 2.0 * np.sqrt(squares) - 1.0)
-    elif loss == "cauchy":
-        squares = np.log1p(squares)
-    elif loss == "arctan":
-        squares = np.arctan(squares)
-    return 4.0 * float(np.sum(squares))
+    """Return the sum that a search minimises; residuals beyond `OUTLYING` count less than their squares if the loss is not linear."""
+    return OUTLYING**2 * float(np.sum(_LOSSES[loss][0]((residual / OUTLYING) ** 2)))
+
+
+def weights(residual: Floats, loss: str) -> Floats:
+    """Return the weight of each squared residual in the derivatives of the sum."""
+    return np.asarray(_LOSSES[loss][1]((residual / OUTLYING) ** 2))
+
+
+_LOSSES: dict[str, tuple[Callable[[Floats], Floats], Callable[[Floats], Floats]]] = {
+    "linear": (lambda z: z, np.ones_like),
+    "soft_l1": (lambda z: 2.0 * (np.sqrt(1.0 + z) - 1.0), lambda z: 1.0 / np.sqrt(1.0 + z)),
+    "huber": (lambda z: np.where(z <= 1.0, z, 2.0 * np.sqrt(z) - 1.0), lambda z: 1.0 / np.sqrt(np.maximum(z, 1.0))),
+    "cauchy": (np.log1p, lambda z: 1.0 / (1.0 + z)),
+}
+"""Functions of squared residuals, as in scipy's least_squares, and their derivatives."""
+LOSSES = tuple(_LOSSES)
+"""Names of the functions of squared residuals that may be summed."""
 
 
 def _light(model: Model) -> Model:

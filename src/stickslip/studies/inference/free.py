@@ -138,7 +138,7 @@ def read_free(problem: Problem, names: Sequence[str], hints: Mapping[str, float]
     `hints` are values at which numbers begin that the problem lacks, such as "initial.state", and scales, as "record.trend".
     `given` may hold `bounds`, `priors` and `start`, each a mapping by name. Raises InputError.
     """
-    known = _known(problem, hints)
+    known = known_numbers(problem, hints)
     if isinstance(names, str):
         names = [one for one in names.split(",") if one.strip()]
     if not names or not all(isinstance(one, str) for one in names):
@@ -151,7 +151,7 @@ def read_free(problem: Problem, names: Sequence[str], hints: Mapping[str, float]
     return tuple(_one(name, *known[name], limits.get(name), _prior(priors.get(name), known[name][0], name), starts.get(name)) for name in chosen)
 
 
-def _known(problem: Problem, hints: Mapping[str, float]) -> dict[str, tuple[Quantity, float]]:
+def known_numbers(problem: Problem, hints: Mapping[str, float]) -> dict[str, tuple[Quantity, float]]:
     """Return declaration and value of all numbers that may be free."""
     found = {name: (one.declared, one.value) for name, one in problem.parameters.items()}
     found[LOAD] = Quantity(problem.load_unit, "load at the start"), hints.get(LOAD, math.nan)

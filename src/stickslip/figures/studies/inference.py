@@ -1,0 +1,234 @@
+"""Figure of an inference: the record and the best run, what is left, the slip rate, and pairs of the numbers that were found."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, Unpack
+
+import numpy as np
+import xarray as xr
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.ticker import MaxNLocator
+
+from stickslip.figures.names import parameter_name, symbol
+from stickslip.figures.panels import add_legend, letter_panels, set_title, zero_line
+from stickslip.figures.sheet import sheet
+from stickslip.figures.style import BLUE, GREY, INK, SKY, VERMILLION, axis_text, quantity, spans_decades, styled, time_unit, unit_of
+from stickslip.solution.place import Place
+
+if TYPE_CHECKING:
+    from stickslip.studies.inference.inference import Inference
+
+MOST_PAIRED = 4
+"""Largest number of parameters that are drawn against each other."""
+NAMES = {
+    "friction": ("friction", r"\mu", "1"),
+    "shear_stress": ("shear stress", r"\tau", "Pa"),
+    "shear_force": ("shear force", "F", "N"),
+    "slip": ("slip", "u", "m"),
+    "slip_rate": ("slip rate", "v", "m/s"),
+}
+"""Names, symbols and units of what is measured."""
+JOINT = 2.4477468306808166
+"""Half width, in standard uncertainties, of an ellipse that holds two numbers with a probability of 95 %."""
+FRAMES = 4000
+"""Number of times at which the slip rate is drawn, evenly spaced, besides those of the samples."""
+
+
+def data(study: Inference) -> xr.Dataset:
+    """Return data, model and residual of each sample, the slip rate of the runs, and the numbers with their covariance, in SI."""
+    table = study.curves
+    begins = np.array([part.record.time[0] for part in study.parts])
+    of = table.part.to_numpy()
+    contents: dict[str, Any] = {
+        "time": quantity("sample", table.time.to_numpy() + begins[of], "time", "t", "s"),
+        "part": xr.Variable("sample", of, {"long_name": "part of the record"}),
+        "quantity": xr.Variable("sample", table.quantity.to_numpy(str), {"long_name": "what was measured"}),
+        "fitted": xr.Variable("sample", table.fitted.to_numpy(np.int8), {"long_name": "1 for samples that were fitted"}),
+    }
+    units = {NAMES[name][2] for name in table.quantity.unique()}
+    unit = units.pop() if len(units) == 1 else "SI"
+    for name, text in (("data", "measured"), ("model", "best run"), ("residual", "measured minus best run")):
+        contents[name] = quantity("sample", table[name].to_numpy(), text, "", unit)
+    contents |= _rates(study, begins) | _numbers(study)
+    attributes = {"notes": "\n".join(study.notes), "title": study.scenario.title, "factor": study.certainty.factor}
+    return xr.Dataset(contents, attrs=attributes)
+
+
+def _rates(study: Inference, begins: Any) -> dict[str, xr.Variable]:
+    times, rates = [], []
+    for run, part, begin in zip(study.runs, study.parts, begins, strict=True):
+        clock = part.record.clock
+        clock = clock if len(clock) < FRAMES else clock[:: len(clock) // FRAMES]
+        at = np.union1d(np.linspace(0.0, part.duration, FRAMES // len(study.runs) + 2), clock)
+        times += [at + begin, [math.nan]]
+        rates += [run.slip_rate(at), [math.nan]]
+    return {
+        "run_time": quantity("frame", np.concatenate(times), "time", "t", "s"),
+        "slip_rate": quantity("frame", np.concatenate(rates), "slip rate", "v", "m/s"),
+    }
+
+
+def _numbers(study: Inference) -> dict[str, xr.Variable]:
+    free, table = study.free, study.table
+    contents = {
+        "number": xr.Variable("number", np.array([one.label for one in free])),
+        "unit": xr.Variable("number", np.array([one.declared.unit for one in free])),
+        "meaning": xr.Variable("number", np.array([one.declared.meaning for one in free])),
+        "shared": xr.Variable("number", np.array([one.part is None for one in free], np.int8)),
+        "logarithmic": xr.Variable("number", np.array([one.log for one in free], np.int8)),
+        "scale": xr.Variable("number", np.array([one.scale for one in free])),
+        "searched": xr.Variable("number", study.estimate.searched),
+        "covariance": xr.Variable(("number", "other"), study.certainty.covariance, {"long_name": "of searched numbers"}),
+    }
+    for name in ("value", "uncertainty", "low", "high", "start"):
+        contents[name] = xr.Variable("number", table[name].to_numpy(float), {"long_name": name})
+    if study.samples is not None:
+        contents["samples"] = xr.Variable(("draw", "number"), study.samples.to_numpy(float), {"long_name": "posterior samples"})
+    for one in study.profiles:
+        contents[f"profile_{one.name}"] = xr.Variable(f"place_{one.name}", one.values)
+        contents[f"rise_{one.name}"] = xr.Variable(f"place_{one.name}", one.rise, {"long_name": "-2 ln likelihood above the least"})
+    return contents
+
+
+@styled
+def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
+    """Draw record and best run, the residual and the slip rate below each other, and beside them pairs of numbers."""
+    paired = _paired(dataset)
+    count = max(len(paired) - 1, 0)
+    figure = sheet((7.2, 5.4) if count else (5.0, 5.4), **place)
+    axes: Any = figure.subplot_mosaic(_layout(count), width_ratios=[2.2, *[1.0] * max(count, 0)] if count else None)
+    name = str(dataset["quantity"].values[0])
+    unit, size = time_unit(float(np.nanmax(dataset["time"].values) - min(0.0, float(np.nanmin(dataset["time"].values)))))
+    _draw_record(axes["record"], dataset, name, size)
+    _draw_residual(axes["residual"], dataset, name, size)
+    _draw_rate(axes["rate"], dataset, size)
+    for row in ("record", "residual"):
+        axes[row].sharex(axes["rate"])
+        axes[row].tick_params(labelbottom=False)
+    axes["rate"].set_xlabel(f"time $t$ ({unit})")
+    for i in range(count):
+        for j in range(i + 1):
+            _draw_pair(axes[f"{i}{j}"], dataset, paired[j], paired[i + 1], (i == count - 1, j == 0))
+    lettered = [axes["record"], axes["residual"], axes["rate"], *([axes["00"]] if count else [])]
+    letter_panels(lettered, ["record and best run", "residual", "slip rate of the best run", *(["pairs, 95 %"] if count else [])])
+    add_legend(axes["record"], _marks(dataset, count))
+    set_title(figure, str(dataset.attrs["title"]))
+    return figure
+
+
+def _layout(count: int) -> list[list[str]]:
+    """Return the places of the panels: three below each other, and a triangle of pairs beside them."""
+    rows = [["record"], ["residual"], ["rate"]]
+    if not count:
+        return rows
+    tall = 2 if count == 2 else 1  # so that rows of both sides have a common height
+    wide = []
+    for k in range(3 * tall):
+        i = k * count // (3 * tall)
+        wide.append([rows[k // tall][0], *(f"{i}{j}" if j <= i else "." for j in range(count))])
+    return wide
+
+
+def _paired(dataset: xr.Dataset) -> list[int]:
+    """Return the indices of the numbers that are drawn against each other: shared ones that the record determines."""
+    known = np.isfinite(dataset["uncertainty"].values) & (dataset["shared"].values == 1)
+    return np.flatnonzero(known).tolist()[:MOST_PAIRED]
+
+
+def _draw_record(axes: Axes, dataset: xr.Dataset, name: str, size: float) -> None:
+    title, letter, si = NAMES[name]
+    of = dataset["quantity"].values == name
+    unit, scale = unit_of(si, dataset["data"].values[of])
+    for part in np.unique(dataset["part"].values):
+        chosen = of & (dataset["part"].values == part)
+        time = dataset["time"].values[chosen] / size
+        axes.plot(time, dataset["data"].values[chosen] / scale, ".", color=SKY, markersize=2, rasterized=True)
+        axes.plot(time, dataset["model"].values[chosen] / scale, color=INK, linewidth=1.0)
+    left_out = of & (dataset["fitted"].values == 0)
+    if left_out.any():
+        times = dataset["time"].values[left_out] / size
+        axes.axvspan(times.min(), times.max(), color=GREY, alpha=0.15, linewidth=0.0, zorder=0)
+    axes.set_ylabel(axis_text(title, letter, unit))
+
+
+def _draw_residual(axes: Axes, dataset: xr.Dataset, name: str, size: float) -> None:
+    _, letter, si = NAMES[name]
+    of = dataset["quantity"].values == name
+    rest = dataset["residual"].values[of]
+    unit, scale = unit_of(si, rest)
+    power = 10.0 ** math.floor(math.log10(np.nanmax(np.abs(rest)) or 1.0)) if si == "1" else 1.0
+    axes.plot(dataset["time"].values[of] / size, rest / scale / power, ".", color=BLUE, markersize=1.5, rasterized=True)
+    zero_line(axes)
+    digits = f"$10^{{{round(math.log10(power))}}}$" if si == "1" else unit
+    axes.set_ylabel(f"${letter}$, measured\nminus run ({digits})")
+
+
+def _draw_rate(axes: Axes, dataset: xr.Dataset, size: float) -> None:
+    rate = dataset["slip_rate"].values
+    positive = rate[np.isfinite(rate) & (rate > 0.0)]
+    log = bool(positive.size and spans_decades(positive))
+    unit, scale = unit_of("m/s", rate[np.isfinite(rate)], log=log)
+    shown = np.where(rate > 0.0, rate, np.nan) if log else rate
+    axes.plot(dataset["run_time"].values / size, shown / scale, color=VERMILLION, linewidth=1.0)
+    if log:
+        axes.set_yscale("log")
+        axes.set_ylim(bottom=max(float(positive.min()), 1e-12 * float(positive.max())) / scale)
+    axes.set_ylabel(axis_text("slip rate", "v", unit))
+
+
+def _draw_pair(axes: Axes, dataset: xr.Dataset, x: int, y: int, edges: tuple[bool, bool]) -> None:
+    """Draw samples of two numbers, and the ellipse of 95 % that the curvature gives; `edges` tells if labels are due."""
+    units = [unit_of(str(dataset["unit"].values[i]), dataset["value"].values[i]) for i in (x, y)]
+    if "samples" in dataset:
+        drawn = dataset["samples"].values[:, [x, y]] / [units[0][1], units[1][1]]
+        axes.plot(drawn[::-(-len(drawn) // 2000)].T[0], drawn[::-(-len(drawn) // 2000)].T[1], ".", color=SKY, markersize=1, rasterized=True)
+    values, vectors = np.linalg.eigh(dataset["covariance"].values[np.ix_([x, y], [x, y])])
+    angle = np.linspace(0.0, 2.0 * math.pi, 200)
+    ring = vectors @ (np.sqrt(np.maximum(values, 0.0))[:, None] * JOINT * np.array([np.cos(angle), np.sin(angle)]))
+    ends = [_natural(dataset, i, ring[k]) / units[k][1] for k, i in enumerate((x, y))]
+    axes.plot(*ends, color=BLUE, linewidth=1.0)
+    axes.plot(*(dataset["value"].values[i] / units[k][1] for k, i in enumerate((x, y))), "+", color=INK, markersize=5)
+    axes.xaxis.set_major_locator(MaxNLocator(2))
+    axes.yaxis.set_major_locator(MaxNLocator(3))
+    axes.ticklabel_format(useOffset=False, style="plain")
+    labels = [_label(dataset, i, units[k][0]) for k, i in enumerate((x, y))]
+    below, beside = edges
+    axes.tick_params(labelbottom=below, labelleft=beside, labelsize=6, axis="both")
+    if below:
+        axes.tick_params(axis="x", rotation=30)
+        axes.set_xlabel(labels[0])
+    if beside:
+        axes.set_ylabel(labels[1])
+
+
+def _natural(dataset: xr.Dataset, i: int, away: Any) -> Any:
+    """Return values (SI) some way from the best searched number."""
+    at = float(dataset["searched"].values[i])
+    return np.exp(at + away) if dataset["logarithmic"].values[i] else (at + away) * float(dataset["scale"].values[i])
+
+
+def _label(dataset: xr.Dataset, i: int, unit: str) -> str:
+    """Return the symbol of a number, or its last name, with its unit."""
+    name, meaning = str(dataset["number"].values[i]), str(dataset["meaning"].values[i])
+    short = symbol(name, meaning) or name.rpartition(".")[2].replace("_", " ")
+    short = short if len(short) < 14 else parameter_name(name, "")
+    return short if unit == "1" else f"{short} ({unit})"
+
+
+def _marks(dataset: xr.Dataset, count: int) -> list[Artist]:
+    marks: list[Artist] = [
+        Line2D([], [], color=SKY, linestyle="none", marker="o", markersize=3, label="measured"),
+        Line2D([], [], color=INK, label="best run"),
+    ]
+    if (dataset["fitted"].values == 0).any():
+        marks.append(Patch(color=GREY, alpha=0.15, linewidth=0.0, label="left out, predicted"))
+    if count:
+        marks.append(Line2D([], [], color=BLUE, label="(d) from the curvature"))
+        if "samples" in dataset:
+            marks.append(Line2D([], [], color=SKY, linestyle="none", marker=".", label="(d) samples"))
+    return marks

@@ -1,0 +1,247 @@
+"""Infer: from a laboratory record to the parameters of a problem, by full runs with inertia and waves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+
+from stickslip.foundation.arguments import check_whole, shown
+from stickslip.foundation.conversion import WithUnit
+from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.quantities import Quantity
+from stickslip.problem.problem import Problem
+from stickslip.problem.run_quantities import check_rtol
+from stickslip.scenarios.source import read_source
+from stickslip.studies.inference.certainty import Profile, certainty_of, profile_of
+from stickslip.studies.inference.estimate import LOSSES, Tell, estimate
+from stickslip.studies.inference.free import read_free, with_scale
+from stickslip.studies.inference.held_out import share_of, shortened
+from stickslip.studies.inference.model import Model, Part, first_sizes
+from stickslip.studies.inference.record import Record
+from stickslip.studies.inference.inference import Inference
+from stickslip.studies.inference.sampling import sample
+from stickslip.studies.inference.setup import at_rests, hints_of, own_of, parts_of, scales_of
+from stickslip.studies.study import TextProgress, telling
+
+if TYPE_CHECKING:
+    from stickslip.scenarios.scenario import Scenario
+
+MOST_SAMPLES = 1_000_000
+"""Largest number of posterior samples."""
+TIME = Quantity("s", "time of the record")
+RTOL = 1e-8
+"""Default relative tolerance of the runs: far below the noise of a laboratory."""
+
+
+@dataclass(frozen=True)
+class Wishes:
+    """The options of `infer`, where they are described."""
+
+    observe: Sequence[str] | str | None = None
+    start: str | None = None
+    sensor: str = "contact"
+    parts: str | None = None
+    each: Sequence[str] | None = None
+    bounds: Mapping[str, Any] | None = None
+    priors: Mapping[str, Any] | None = None
+    begin_at: Mapping[str, Any] | None = None
+    loss: str = "linear"
+    starts: int = 4
+    held_out: float | str | WithUnit | None = None
+    profiles: bool = False
+    samples: int = 0
+    seed: int = 0
+    rtol: float = RTOL
+
+    def check(self) -> None:
+        """Raise InputError for options that are out of range."""
+        if self.loss not in LOSSES:
+            raise InputError(f"infer: loss {ascii(self.loss)[:40]} is unknown; {nearest(str(self.loss), LOSSES)}")
+        if self.parts not in (None, "rests"):
+            raise InputError(f"infer: parts must be 'rests' or left out, got {shown(self.parts)}")
+        for name, least, most in (("starts", 1, 1000), ("samples", 0, MOST_SAMPLES), ("seed", 0, 2**32 - 1)):
+            check_whole(f"infer: {name}", getattr(self, name), least, most)
+        check_rtol(self.rtol, "infer")
+
+
+def infer(
+    problem: Problem | Scenario | str | Path,
+    record: Any,
+    free: Sequence[str] | str,
+    *,
+    begin: float | str | WithUnit | None = None,
+    end: float | str | WithUnit | None = None,
+    progress: TextProgress | bool | None = None,
+    **options: Any,
+) -> Inference:
+    """Find the numbers of a problem with which its run follows a laboratory record, and how well the record determines them.
+
+    Parameters
+    ----------
+    problem : Problem, Scenario, str or Path
+        The problem with values at which the search begins: itself, its scenario, the name of a bundled scenario, or a file.
+    record : str, Path, DataFrame, mapping, Record, or list of them
+        The record: a CSV file, or columns by their headings, as `Record.read` describes. Several records share the free numbers.
+    free : list of str
+        Names of the free numbers: those of `problem.parameters`, such as "friction.a" and "body.stiffness", and "initial.load",
+        "initial.state", "record.trend" (friction per metre of slip) and "record.delay" (s, of the record behind the machine).
+    begin, end : float or str, optional
+        The part of the record that is taken: times (s, as in the record, or texts with a unit).
+    progress : bool or callable, optional
+        True shows the progress in one line. A function is called with a line of text.
+    observe : str or list of str, optional
+        What is fitted: friction, shear_stress or shear_force, slip, slip_rate. By default shear, or else all that is there.
+    start : {"steady", "record", "problem"}, optional
+        How the run begins: in steady sliding at the first pull rate (default for a law with a state that never sticks), with the
+        load of the first samples (default for others), or as the problem says.
+    sensor : {"contact", "spring"}
+        Where shear is measured: at the contact, or by a load cell behind the spring of a block, which inertia separates from it.
+    parts : "rests", optional
+        Split the record after each slip event and begin a run at each rest, with the load that is measured there.
+    each : list of str, optional
+        What is free for each of these parts: "initial.load" within its noise (default), and "initial.state" of a law that has one.
+    bounds : mapping, optional
+        Lower and upper limits by name; default a factor 1e4 to both sides for positive numbers.
+    priors : mapping, optional
+        What is known before, by name: "normal(0.6, 0.05)", "lognormal(10 um, 0.5)", with the standard deviation of the logarithm,
+        or "uniform(0, 1)".
+    begin_at : mapping, optional
+        Values at which the search begins, by name; by default those of the problem.
+    loss : {"linear", "soft_l1", "huber", "cauchy"}
+        How residuals count: other than linear if some samples lie far off.
+    starts : int
+        Number of starts of the search: the given one, and the best of twelve times as many draws. Default 4.
+    held_out : float or str, optional
+        Share of the record at its end, or time (text with a unit), that is not fitted but predicted.
+    profiles : bool
+        If True, intervals follow from profiles of the likelihood in place of its curvature.
+    samples : int
+        Number of samples of the posterior distribution that are drawn with emcee. Default 0.
+    seed : int
+        Seed of starts and samples.
+    rtol : float
+        Relative tolerance of the runs. Default 1e-8.
+
+    Returns
+    -------
+    Inference
+        The best numbers with intervals, the best problem, and what the record does not determine. After Ctrl-C it holds the best
+        numbers so far.
+
+    Raises
+    ------
+    InputError
+        If the record or an option cannot be used, or no run succeeds; the message is one line with the cure.
+    KeyboardInterrupt
+        If the user presses Ctrl-C before a run has succeeded.
+
+    Notes
+    -----
+    Least squares over full runs; positive numbers are searched along their logarithm. The noise is estimated from the residuals:
+    its size and, by restricted maximum likelihood, the time over which it remembers itself, with which residuals are then
+    whitened (generalised least squares). Intervals are of 95 %.
+    """
+    wishes = _wishes(options)
+    source = read_source("infer", problem)
+    given = source if isinstance(source, Problem) else source.problem
+    records = _records(record, _time(begin, "begin"), _time(end, "end"))
+    whole, notes = parts_of(given, records, wishes.observe, wishes.start, wishes.sensor)
+    if wishes.parts == "rests":
+        whole = [piece for part in whole for piece in at_rests(part)]
+        notes.append(f"{len(whole)} parts between rests, each with a run of its own")
+    share = share_of(wishes.held_out, whole)
+    fitted = shortened(whole, share)
+    model = _model(given, fitted, free, wishes)
+    with telling(progress, "infer") as tell:
+        return _inferred(model, tuple(whole), wishes, notes, tell)
+
+
+def _wishes(options: Mapping[str, Any]) -> Wishes:
+    """Return the options as a record of them. Raises InputError for an unknown one."""
+    known = Wishes.__dataclass_fields__
+    for name in options:
+        if name not in known:
+            raise InputError(f"infer: there is no option {ascii(name)[:40]}; {nearest(name, known)}")
+    wishes = Wishes(**options)
+    wishes.check()
+    return wishes
+
+
+def _time(value: Any, name: str) -> float | None:
+    return None if value is None else TIME.check("infer", name, value)
+
+
+def _records(source: Any, begin: float | None, end: float | None) -> list[Record]:
+    sources = source if isinstance(source, list | tuple) else [source]
+    if not sources:
+        raise InputError("infer: record must be at least one record, got none")
+    return [Record.read(one, begin, end) for one in sources]
+
+
+def _model(problem: Problem, parts: list[Part], names: Sequence[str] | str, wishes: Wishes) -> Model:
+    """Return the model that is fitted. Raises InputError if there is too little to fit it to."""
+    chosen = read_free(
+        problem, names, hints_of(problem, parts[0]), bounds=wishes.bounds, priors=wishes.priors, start=wishes.begin_at
+    )
+    chosen = with_scale(chosen, scales_of(parts[0], problem))
+    own = own_of(problem, parts, wishes.each) if wishes.parts == "rests" else []
+    own = [one for one in own if one.name not in {shared.name for shared in chosen}]
+    model = Model(problem, tuple(parts), (*chosen, *own), wishes.rtol, first_sizes(parts))
+    if model.samples <= len(chosen):
+        raise InputError(f"infer: {model.samples} samples cannot determine {len(chosen)} numbers: free fewer of them")
+    return model
+
+
+def _inferred(model: Model, whole: tuple[Part, ...], wishes: Wishes, notes: list[str], tell: Tell) -> Inference:
+    """Return the result of all that was asked for; Ctrl-C leaves out what was not finished."""
+    found = estimate(model, wishes.starts, wishes.loss, wishes.seed, tell)
+    sure = certainty_of(found)
+    profiles: list[Profile] = []
+    drawn, said, finished = None, tuple[str, ...](), found.finished
+    try:
+        if finished and wishes.profiles:
+            shared = [i for i, one in enumerate(found.model.free) if one.part is None]
+            profiles.extend(profile_of(found, sure, i, tell) for i in shared)
+        if finished and wishes.samples:
+            drawn, said = sample(found, sure, wishes.samples, wishes.seed, tell)
+    except KeyboardInterrupt:
+        finished = False
+    found = replace(found, finished=finished)
+    return Inference(found, sure, whole, tuple(notes), tuple(profiles), drawn, said)
+
+
+def ranking(*found: Inference) -> pd.DataFrame:
+    """Compare inferences from one record by what they predict of the part that was left out, best first.
+
+    Parameters
+    ----------
+    *found : Inference
+        Results of `infer` for the same record, each with `held_out`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row for each. Columns: law, free (number of free numbers), fit and prediction (root mean square residual of the part
+        that was fitted and of the part that was left out, in standard deviations of the least noise that any of them found), and
+        bic (Schwarz's criterion of the fitted part, smaller is better).
+
+    Raises
+    ------
+    InputError
+        If no part was left out, or if the records differ.
+    """
+    if len({(one.model.samples, tuple(len(part.record) for part in one.parts)) for one in found}) > 1:
+        raise InputError("ranking: the inferences are of different records or leave out different parts")
+    least = {name: min(one.model.sizes[name] for one in found) for name in found[0].model.sizes} if found else {}
+    rows = []
+    for one in found:
+        if one.prediction is None:
+            raise InputError("ranking: nothing was left out to be predicted: give held_out=0.3 to infer")
+        errors = [one.errors(least, fitted=fitted) for fitted in (True, False)]
+        rows.append((one.model.problem.friction.kind, len(one.model.free), *errors, one.bic))
+    table = pd.DataFrame(rows, columns=["law", "free", "fit", "prediction", "bic"])
+    return table.sort_values("prediction", ignore_index=True)

@@ -1,0 +1,281 @@
+"""The result of `infer`: numbers with intervals, the best problem, and what is and is not known."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from stickslip.foundation.atomic_write import write_atomically
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.formatting import brief, with_uncertainty
+from stickslip.foundation.netcdf_file import write
+from stickslip.io.netcdf import origin
+from stickslip.problem.problem import Problem
+from stickslip.scenarios.scenario import Scenario
+from stickslip.solution.solution import Solution
+from stickslip.studies.inference.certainty import Certainty, Profile
+from stickslip.studies.inference.estimate import Estimate
+from stickslip.studies.inference.free import Free
+from stickslip.studies.inference.model import Model, Part, unit_of
+from stickslip.studies.study import Study
+
+Floats = NDArray[np.float64]
+
+MANY = 1.5
+"""Size of residuals, in the standard deviations that were given, from which they are told to be larger."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Inference(Study):
+    """The result of `infer`.
+
+    Attributes
+    ----------
+    estimate : Estimate
+        The best fit, with its model.
+    certainty : Certainty
+        What the record determines.
+    parts : tuple of Part
+        The parts of the record, with what was left out of the fit.
+    about : tuple of str
+        What was done with the record, one sentence each.
+    profiles : tuple of Profile
+        Profiles of the likelihood, if they were asked for.
+    drawn : ndarray or None
+        Searched numbers that were drawn from the posterior distribution.
+    about_samples : tuple of str
+        How good the samples are.
+    """
+
+    estimate: Estimate
+    certainty: Certainty
+    parts: tuple[Part, ...]
+    about: tuple[str, ...]
+    profiles: tuple[Profile, ...] = ()
+    drawn: Floats | None = None
+    about_samples: tuple[str, ...] = ()
+
+    @property
+    def model(self) -> Model:
+        """The model that was fitted."""
+        return self.estimate.model
+
+    @property
+    def free(self) -> tuple[Free, ...]:
+        """The free numbers, those of single parts last."""
+        return self.model.free
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The best values of the free numbers (SI), by name."""
+        return dict(zip([one.label for one in self.free], self.model.values(self.estimate.searched), strict=True))
+
+    @cached_property
+    def table(self) -> pd.DataFrame:
+        """A table with one row for each free number.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Index: names. Columns: value, uncertainty (standard, infinite where the record does not determine it, NaN on a bound),
+            low and high (interval of 95 %), all in SI; unit; start, where the search began; source of the interval: curvature,
+            profile or samples.
+        """
+        rows = [self._row(i, one) for i, one in enumerate(self.free)]
+        columns = ["value", "uncertainty", "low", "high", "unit", "start", "source"]
+        return pd.DataFrame(rows, index=pd.Index([one.label for one in self.free], name="number"), columns=columns)
+
+    def _row(self, i: int, one: Free) -> tuple[float, float, float, float, str, float, str]:
+        value, width = self.values[one.label], float(self.certainty.widths[i])
+        if self.certainty.on_bound[i]:
+            return value, math.nan, value, value, one.declared.unit, one.start, "bound"
+        searched, half = float(self.estimate.searched[i]), self.certainty.factor * width
+        low, high = (max(one.low, one.natural(searched - half)), min(one.high, one.natural(searched + half)))
+        source = "curvature"
+        profile = next((found for found in self.profiles if found.name == one.label), None)
+        if profile is not None and np.isfinite([profile.low, profile.high]).all():
+            low, high, source = profile.low, profile.high, "profile"
+        if self.samples is not None:
+            low, high = np.quantile(self.samples[one.label], [0.025, 0.975]).tolist()
+            source = "samples"
+        return value, one.width(value, width), low, high, one.declared.unit, one.start, source
+
+    @cached_property
+    def samples(self) -> pd.DataFrame | None:
+        """Samples of the posterior distribution (SI), a column for each free number; None if none were asked for."""
+        if self.drawn is None:
+            return None
+        columns = {one.label: [one.natural(x) for x in self.drawn[:, i].tolist()] for i, one in enumerate(self.free)}
+        return pd.DataFrame(columns)
+
+    @property
+    def correlation(self) -> pd.DataFrame:
+        """Correlations of the searched numbers, which are logarithms where numbers are positive; NaN if not determined."""
+        labels = [one.label for one in self.free]
+        return pd.DataFrame(self.certainty.correlation, labels, labels)
+
+    def best_of(self, part: int = 0) -> Problem:
+        """Return the problem with the best numbers, under the loading of a part.
+
+        Parameters
+        ----------
+        part : int
+            Number of the part, 0 for the first.
+
+        Returns
+        -------
+        Problem
+            The best problem.
+        """
+        return self._whole.at(self.estimate.searched, part)
+
+    @property
+    def best(self) -> Problem:
+        """The problem with the best numbers, under the loading of the (first part of the) record."""
+        return self.best_of(0)
+
+    @property
+    def scenario(self) -> Scenario:
+        """The scenario that runs to the curve of the (first part of the) record."""
+        name = Path(self.parts[0].record.name).name
+        title = f"Fitted to {name}" + (f", part 1 of {len(self.parts)}" if len(self.parts) > 1 else "")
+        about = "\n".join([self._headline, *(f"{name} = {text}" for name, text, _ in self.rows), *self.notes])
+        return Scenario(self.best, self.parts[0].duration, self.model.rtol, title, about, name="fitted")
+
+    def to_toml(self, path: str | Path) -> Path:
+        """Write the scenario that runs to the curve shown, with the loading as a list of steps, and return the path."""
+        text = self.scenario.to_toml()
+        return write_atomically(Path(path), lambda draft: draft.write_text(text, encoding="utf-8"))
+
+    @cached_property
+    def _whole(self) -> Model:
+        """The model with what was left out of the fit; numbers of parts that were not fitted are those of the record."""
+        return self.model.with_(parts=self.parts)
+
+    @cached_property
+    def runs(self) -> tuple[Solution, ...]:
+        """The best run of each part, those that were left out too. Raises InputError if one fails, as after a bad prediction."""
+        found = [self._whole.solve(self.estimate.searched, i) for i in range(len(self.parts))]
+        if any(run is None for run in found):
+            raise InputError("infer: the best numbers do not run to the end of the record")
+        return tuple(run for run in found if run is not None)
+
+    def _fitted_until(self, part: int) -> float:
+        return self.model.parts[part].duration if part < len(self.model.parts) else -1.0
+
+    @cached_property
+    def curves(self) -> pd.DataFrame:
+        """Data, model and residual at each sample.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Columns: part; time (s since the first sample of the part); quantity; data, model and residual (data minus model, SI);
+            fitted, False for what was left out.
+        """
+        pieces = []
+        for i, run in enumerate(self.runs):
+            clock = self.parts[i].record.clock
+            for name, model in self._whole.curves(run, self.estimate.searched, i).items():
+                data = self._whole.data(i, name)
+                columns = {"part": i, "time": clock, "quantity": name, "data": data, "model": model, "residual": data - model}
+                pieces.append(pd.DataFrame(columns | {"fitted": clock <= self._fitted_until(i)}))
+        return pd.concat(pieces, ignore_index=True)
+
+    def errors(self, sizes: Mapping[str, float], *, fitted: bool) -> float:
+        """Return the root mean square residual of what was fitted, or left out, in given sizes of noise by quantity (SI)."""
+        table = self.curves[(self.curves.fitted == fitted) & self.curves.residual.notna()]
+        if table.empty:
+            return math.nan
+        scaled = table.residual.to_numpy() / np.array([sizes[name] for name in table.quantity])
+        return float(np.sqrt(np.mean(scaled**2)))
+
+    @cached_property
+    def prediction(self) -> float | None:
+        """Root mean square error of what was left out, in standard deviations of the noise; None if nothing was."""
+        error = self.errors(self.model.sizes, fitted=False)
+        return None if math.isnan(error) else error
+
+    @property
+    def bic(self) -> float:
+        """Schwarz's criterion: of inferences from one record the smallest fits best for its number of free numbers."""
+        n, total = self.model.samples, 0.0
+        for name, size in self.model.sizes.items():
+            count = sum(len(b.time) for i in range(len(self.model.parts)) for q, b in self.model.blocks(i) if q == name)
+            total += 2.0 * count * math.log(size)
+        return total + self.estimate.cost(self.estimate.searched) + len(self.free) * math.log(n)
+
+    @property
+    def fit(self) -> pd.DataFrame:
+        """What is left of each fitted quantity: samples, noise (standard deviation, SI), memory (s), and rms of the residual."""
+        table, rows = self.curves[self.curves.fitted], {}
+        for name, size in self.model.sizes.items():
+            rest = table.residual[table.quantity == name].dropna().to_numpy()
+            rows[name] = (len(rest), size, self.model.memory.get(name, 0.0), float(np.sqrt(np.mean(rest**2))), unit_of(name))
+        return pd.DataFrame.from_dict(rows, orient="index", columns=["samples", "noise", "memory", "rms", "unit"])
+
+    @property
+    def notes(self) -> list[str]:
+        """What is not determined, and what else to know before the numbers are used, one sentence each."""
+        return list(dict.fromkeys(self._notes()))
+
+    def _notes(self) -> Iterator[str]:
+        if not self.estimate.finished:
+            yield "interrupted: these are the best numbers so far"
+        yield from self.certainty.notes
+        if self.model.every > 1:
+            yield f"only each {self.model.every}th sample was fitted"
+        for x in self.estimate.others:
+            values = [f"{one.label} {brief(v, one.declared.unit, 3)}" for one, v in zip(self.free, self.model.values(x), strict=True)]
+            yield f"another minimum fits almost as well: {', '.join(values[:8])}; bounds or priors choose between them"
+        for name, memory in self.model.memory.items():
+            if memory > 0.0:
+                yield f"residuals of {name} remember themselves for {brief(memory, 's', 3)}; the intervals allow for it"
+        for name, size in self.model.sizes.items():
+            if size > MANY and any(name in part.record.deviations for part in self.parts):
+                yield f"residuals of {name} are {size:.3g} times the standard deviations that were given; the intervals allow for it"
+        if self.prediction is not None:
+            yield f"what was left out is predicted with an error of {self.prediction:.3g} times the noise"
+        yield from self.about_samples
+        yield from self.about
+
+    @property
+    def rows(self) -> list[tuple[str, str, str]]:
+        """Name, value with interval, and unit of each free number that all parts share, as text."""
+        found = []
+        for name, row in self.table.iterrows():
+            one = next(free for free in self.free if free.label == name)
+            if one.part is not None:
+                continue
+            unit = "" if row.unit == "1" else row.unit
+            how = "on a bound" if row.source == "bound" else f"{row.low:.4g} to {row.high:.4g}"
+            sure = bool(np.isfinite(row.uncertainty))
+            how = how if sure or row.source == "bound" else "not determined"
+            found.append((str(name), with_uncertainty(row.value, row.uncertainty if sure else None), f"{unit}  ({how})".strip()))
+        return found
+
+    @property
+    def _headline(self) -> str:
+        shared = sum(one.part is None for one in self.free)
+        noise = ", ".join(f"{name} {brief(size, unit_of(name), 3)}" for name, size in self.model.sizes.items())
+        return f"{shared} numbers from {self.model.samples} samples, noise: {noise}; intervals of 95 %"
+
+    def to_netcdf(self, path: str | Path) -> Path:
+        """Write data, model, residual, numbers, samples and provenance, and return the path. Raises InputError if that fails."""
+        provenance: dict[str, Any] = {**origin(self.runs[0]), "title": "stickslip inference", "notes": "\n".join(self.notes)}
+        return write(self.to_dataset().assign_attrs(provenance | {"scenario": self.scenario.to_toml()}), Path(path))
+
+    def _lines(self) -> Iterator[str]:
+        yield self._headline
+        width = max(len(name) for name, _, _ in self.rows)
+        for name, value, unit in self.rows:
+            yield f"{name:<{width}}  {value} {unit}"
+        yield from self.notes

@@ -1,0 +1,78 @@
+"""Draw the free numbers from their posterior distribution, with emcee."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.foundation.errors import InputError
+from stickslip.studies.inference.certainty import Certainty
+from stickslip.studies.inference.estimate import Estimate, Tell, cost_of
+from stickslip.studies.inference.model import FAILED
+
+Floats = NDArray[np.float64]
+
+WALKERS = 4
+"""Number of walkers for each free number; there are 16 at least."""
+FORGET = 0.3
+"""Share of the steps, beyond those that are kept, that let the walkers forget where they began."""
+FEW_TIMES = 20.0
+"""Number of correlation times of the walkers below which samples are too few."""
+
+
+def sample(found: Estimate, sure: Certainty, count: int, seed: int, tell: Tell) -> tuple[Floats, tuple[str, ...]]:
+    """Return samples of the searched numbers, shape (count, number of free ones), and sentences on how good they are.
+
+    Numbers on a bound may leave it, and those that are not determined are drawn within their limits. Raises InputError if emcee is
+    not installed.
+    """
+    try:
+        import emcee
+    except ImportError:
+        raise InputError("infer: samples need emcee: pip install 'stickslip[infer]'") from None
+    model, low_high, dimensions = found.model, found.model.limits, len(found.searched)
+    low, high = low_high
+    walkers = max(16, WALKERS * dimensions)
+    walkers += walkers % 2
+    steps = -(-count // walkers)
+    forget = max(20, math.ceil(FORGET * steps))
+
+    def posterior(x: Floats) -> float:
+        if np.any(x < low) or np.any(x > high):
+            return -math.inf
+        rest = model.residual(np.asarray(x, float))
+        return -math.inf if np.all(np.abs(rest) >= FAILED) else -0.5 * cost_of(rest, found.loss)
+
+    random = np.random.default_rng(seed)
+    begin = _begun(found, sure, walkers, random)
+    sampler: Any = emcee.EnsembleSampler(walkers, dimensions, posterior)
+    sampler.random_state = np.random.RandomState(seed).get_state()  # noqa: NPY002 - what emcee takes
+    for i, _ in enumerate(sampler.sample(begin, iterations=forget + steps)):
+        if i % 10 == 0:
+            tell(f"sampling: step {i + 1} of {forget + steps}, {walkers} runs each")
+    chain = sampler.get_chain(discard=forget, flat=True)[:count]
+    times = emcee.autocorr.integrated_time(sampler.get_chain(discard=forget), quiet=True)
+    worst = float(np.max(times))
+    note = f"{len(chain)} samples, about {len(chain) / max(worst, 1.0):.0f} of them independent"
+    if steps < FEW_TIMES * worst:
+        note += "; the walkers need longer to forget each other: ask for more samples"
+    return np.asarray(chain), (note,)
+
+
+def _begun(found: Estimate, sure: Certainty, walkers: int, random: np.random.Generator) -> Floats:
+    """Return places of walkers, drawn from the normal distribution that the curvature gives, inside the limits."""
+    low, high = found.model.limits
+    width = np.where(np.isfinite(sure.widths), sure.widths, 0.1)
+    covariance = np.where(np.isfinite(sure.covariance), sure.covariance, 0.0)
+    known = np.sqrt(np.maximum(np.diag(covariance), 0.0)) > 0.0
+    drawn = found.searched + np.zeros((walkers, len(width)))
+    if known.any():
+        factor = np.linalg.cholesky(covariance[np.ix_(known, known)] + np.diag(1e-12 * width[known] ** 2))
+        drawn[:, known] += random.standard_normal((walkers, int(known.sum()))) @ factor.T
+    loose = ~known
+    drawn[:, loose] += np.maximum(width[loose], 1e-3) * np.abs(random.standard_normal((walkers, int(loose.sum()))))
+    room = 1e-9 * np.maximum(1.0, np.abs(found.searched))
+    return np.clip(drawn, low + room, high - room)

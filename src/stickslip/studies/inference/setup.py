@@ -1,0 +1,160 @@
+"""Set up an inference: what of a record is fitted, in which parts, and how each of their runs begins."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.foundation.errors import InputError, nearest
+from stickslip.problem.problem import Problem
+from stickslip.studies.inference.free import LOAD, STATE, TREND, Free, Prior, known_numbers
+from stickslip.studies.inference.loading import loading_of
+from stickslip.studies.inference.model import Part
+from stickslip.studies.inference.noise import noise_of
+from stickslip.studies.inference.record import MEASURED, SHEAR, Record
+
+Floats = NDArray[np.float64]
+
+STARTS = ("steady", "record", "problem")
+"""How a run may begin: in steady sliding at the first rate, with the load of the first samples, or as the problem says."""
+SENSORS = ("contact", "spring")
+"""Where shear is measured."""
+DROP, ABOVE_NOISE = 0.25, 8.0
+"""Fall of shear that is a slip event: as a share of the range of the record, and in standard deviations of its noise."""
+LEAST = 8
+"""Smallest number of samples of a part."""
+
+
+def parts_of(problem: Problem, records: Sequence[Record], observe: Any, start: str | None, sensor: str) -> tuple[list[Part], list[str]]:
+    """Return a part for each record, and sentences on what was done. Raises InputError for what does not go together."""
+    if sensor not in SENSORS:
+        raise InputError(f"infer: sensor {ascii(sensor)[:40]} is unknown; {nearest(str(sensor), SENSORS)}")
+    if sensor == "spring" and problem.body.has_waves:
+        raise InputError("infer: sensor 'spring' is the load cell behind the spring of a block: a slab has none")
+    if start is not None and start not in STARTS:
+        raise InputError(f"infer: start {ascii(start)[:40]} is unknown; {nearest(str(start), STARTS)}")
+    found, notes = [], []
+    for record in records:
+        loading = loading_of(record)
+        observed = _observed(record, observe, problem)
+        begins = start or ("steady" if problem.friction.states and not problem.friction.sticks else "record")
+        begins = "problem" if start is None and begins == "record" and record.shear is None else begins
+        if record.clock[-1] <= 0.0:
+            raise InputError(f"{record.name}: the record has no duration")
+        found.append(Part(record, None if loading is None else loading.history, observed, sensor, begins))
+        before = f"{record.name}: " if len(records) > 1 else ""
+        said = [*record.notes, *(() if loading is None else loading.notes)]
+        if loading is None:
+            said.append("the record has no load point: the loading is that of the problem")
+        notes += [before + one for one in said]
+    return found, list(dict.fromkeys(notes))
+
+
+def _observed(record: Record, observe: Any, problem: Problem) -> tuple[str, ...]:
+    """Return the names of the quantities that are fitted. Raises InputError."""
+    if isinstance(observe, str):
+        observe = [one.strip() for one in observe.split(",")]
+    names = list(observe) if observe else [record.shear] if record.shear else [one for one in MEASURED if one in record.measured]
+    names = ["shear_stress" if one in ("traction", "tau") else one for one in names]
+    for name in names:
+        if name not in record.measured:
+            raise InputError(f"infer: observe: the record has no {ascii(name)[:40]}; {nearest(str(name), record.measured)}")
+    if "shear_stress" in names and not problem.body.has_waves:
+        cure = "give normal_stress beside it, so that it becomes friction, or the force as shear_force"
+        raise InputError(f"{record.name}: the loads of a block are forces (N), and shear_stress is in Pa: {cure}")
+    if "shear_force" in names and problem.body.has_waves:
+        raise InputError(f"{record.name}: the loads of a slab are stresses (Pa): divide shear_force by the area of the contact")
+    if sum(name in SHEAR for name in names) > 1:
+        raise InputError(f"infer: observe: {' and '.join(one for one in names if one in SHEAR)} are one measurement: choose one")
+    return tuple(names)
+
+
+def hints_of(problem: Problem, part: Part) -> dict[str, float]:
+    """Return the load and the state with which the run of a part begins, as far as the problem can begin."""
+    try:
+        begun = part.begun(problem)
+    except InputError:
+        return {}
+    found = {LOAD: begun.load}
+    law, rate = begun.friction, begun.first_pull_rate
+    if law.states:
+        given = begun.given_states or (np.ravel(law.steady_state(abs(rate))).tolist() if rate else ())
+        found |= {STATE: float(given[0])} if given else {}
+    return found
+
+
+def scales_of(part: Part, problem: Problem) -> dict[str, float]:
+    """Return the sizes (SI) of steps for free numbers that begin at 0."""
+    record = part.record
+    moved = record.measured.get("slip", record.load_point)
+    reach = float(np.nanmax(moved) - np.nanmin(moved)) if moved is not None else 0.0
+    if not reach > 0.0:
+        reach = abs(problem.first_pull_rate) * part.duration or 1.0
+    return {TREND: 0.1 / reach, "record.delay": 0.01 * part.duration, "initial.slip": 0.1 * reach, "body.damping": 1.0}
+
+
+def at_rests(part: Part) -> list[Part]:
+    """Return the parts of a record between its rests: each begins right after a slip event. Raises InputError without events."""
+    record, name = part.record, part.record.shear
+    if name is None:
+        raise InputError(f"{record.name}: parts='rests' needs shear, whose drops are the slip events")
+    arrests = arrests_in(record.measured[name])
+    if not len(arrests):
+        raise InputError(f"{record.name}: no drop of {name} stands out of its noise: leave parts='rests' out")
+    ends = [0, *(arrests + 1).tolist(), len(record)]
+    cuts = [(first, last) for first, last in zip(ends[:-1], ends[1:], strict=True) if last - first >= LEAST]
+    found = []
+    for first, last in cuts:
+        piece = record.part(float(record.time[first]), float(record.time[last - 1]))
+        loading = loading_of(piece) if part.loading is not None else None
+        found.append(replace(part, record=piece, loading=None if loading is None else loading.history, start="record"))
+    return found
+
+
+def arrests_in(values: Floats) -> NDArray[np.intp]:
+    """Return the indices of the lowest samples after each large drop."""
+    known = np.flatnonzero(np.isfinite(values))
+    shear = values[known]
+    low, high = np.quantile(shear, [0.01, 0.99])
+    drop = max(DROP * float(high - low), ABOVE_NOISE * noise_of(shear))
+    found, falling, top, bottom = [], False, 0, 0
+    for i, value in enumerate(shear.tolist()):
+        if falling:
+            if value < shear[bottom]:
+                bottom = i
+            elif value > shear[bottom] + 0.5 * drop:
+                found.append(bottom)
+                falling, top = False, i
+        elif value > shear[top]:
+            top = i
+        elif value < shear[top] - drop:
+            falling, bottom = True, i
+    if falling and bottom < len(shear) - 1:
+        found.append(bottom)
+    return np.asarray(known[np.array(found, int)], np.intp)
+
+
+def own_of(problem: Problem, parts: Sequence[Part], wanted: Iterable[str] | None) -> list[Free]:
+    """Return free numbers that belong to one part each: the load at its start, known to the noise, and a state if the law has one."""
+    names = list(wanted) if wanted is not None else [LOAD, *([STATE] if problem.friction.states and not problem.friction.sticks else [])]
+    found = []
+    for i, part in enumerate(parts):
+        declared = known_numbers(problem, hints_of(problem, part))
+        for name in names:
+            if name not in (LOAD, STATE) or name not in declared:
+                raise InputError(f"infer: each: {ascii(name)[:40]} cannot differ from part to part; allowed: {LOAD}, {STATE}")
+            quantity, value = declared[name]
+            if name == LOAD:
+                load, error = part.first_load(problem.normal)
+                error = max(error, 1e-6 * abs(load), 1e-300)
+                wide = 50.0 * error
+                found.append(Free(LOAD, quantity, load, load - wide, load + wide, False, Prior("normal", load, error), i, error))
+            elif np.isfinite(value) and value > 0.0:
+                found.append(Free(STATE, quantity, value, value / 1e12, value * 1e12, True, None, i))
+            else:
+                raise InputError("infer: parts='rests': the problem needs an initial_state, where the search for that of each part begins")
+    return found
