@@ -11,9 +11,9 @@ from scipy.optimize import curve_fit
 from scipy.stats import binom
 
 import stickslip as ss
+from stickslip.foundation.determined import misses_trend
 from stickslip.foundation.formatting import with_uncertainty
 from stickslip.friction import LAWS, FromExpression, Points, fit, fit_each
-from stickslip.foundation.determined import misses_trend
 from stickslip.friction.custom.fit_parameters import leaves, rebuilt, slopes, template
 from tests.problems import RATE_LAW, measured
 

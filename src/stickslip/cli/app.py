@@ -18,6 +18,7 @@ from stickslip.cli.commands.ensemble import ensemble
 from stickslip.cli.commands.explore import explore
 from stickslip.cli.commands.export import export
 from stickslip.cli.commands.fit import fit
+from stickslip.cli.commands.infer import infer
 from stickslip.cli.commands.new import new
 from stickslip.cli.commands.paper import paper
 from stickslip.cli.commands.regularise import regularise
@@ -97,7 +98,7 @@ What happens at a frictional contact once inertia and waves matter: how it slips
 """
 GROUPS: dict[str, tuple[Callable[..., None], ...]] = {
     "A scenario and its run": (new, check, run, show, export, explore),
-    "Measured friction": (fit,),
+    "Measured friction": (fit, infer),
     "Questions that need many runs": (compare, sweep, analogy, ensemble, regularise),
     "The source paper": (paper,),
     "This installation": (doctor,),

@@ -41,7 +41,14 @@ COLUMNS: Mapping[str, Column] = {
     "time": Column("s", ("t",)),
     "load_point": Column(
         "m",
-        ("load point displacement", "load displacement", "loading displacement", "driver displacement", "piston displacement", "lp"),
+        (
+            "load point displacement",
+            "load displacement",
+            "loading displacement",
+            "driver displacement",
+            "piston displacement",
+            "lp",
+        ),
         signed=True,
     ),
     "load_rate": Column("m/s", ("load point rate", "load point velocity", "loading rate", "loading velocity", "vlp"), signed=True),

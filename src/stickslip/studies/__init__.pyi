@@ -2,8 +2,8 @@ from .analogy import Analogy, analogy
 from .compare import Comparison, compare
 from .ensemble import Ensemble, ensemble
 from .inference.infer import infer, ranking
-from .inference.record import Record
 from .inference.inference import Inference
+from .inference.record import Record
 from .one_run import catalogue_statistics, critical_value, predictability
 from .regularise import Regularisation, regularise
 

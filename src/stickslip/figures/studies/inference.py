@@ -60,7 +60,7 @@ def data(study: Inference) -> xr.Dataset:
 
 
 def _rates(study: Inference, begins: Any) -> dict[str, xr.Variable]:
-    times, rates = [], []
+    times, rates = list[Any](), list[Any]()
     for run, part, begin in zip(study.runs, study.parts, begins, strict=True):
         clock = part.record.clock
         clock = clock if len(clock) < FRAMES else clock[:: len(clock) // FRAMES]
@@ -121,7 +121,7 @@ def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     return figure
 
 
-def _layout(count: int) -> list[list[str]]:
+def _layout(count: int) -> Any:
     """Return the places of the panels: three below each other, and a triangle of pairs beside them."""
     rows = [["record"], ["residual"], ["rate"]]
     if not count:
@@ -186,7 +186,14 @@ def _draw_pair(axes: Axes, dataset: xr.Dataset, x: int, y: int, edges: tuple[boo
     units = [unit_of(str(dataset["unit"].values[i]), dataset["value"].values[i]) for i in (x, y)]
     if "samples" in dataset:
         drawn = dataset["samples"].values[:, [x, y]] / [units[0][1], units[1][1]]
-        axes.plot(drawn[::-(-len(drawn) // 2000)].T[0], drawn[::-(-len(drawn) // 2000)].T[1], ".", color=SKY, markersize=1, rasterized=True)
+        axes.plot(
+            drawn[:: -(-len(drawn) // 2000)].T[0],
+            drawn[:: -(-len(drawn) // 2000)].T[1],
+            ".",
+            color=SKY,
+            markersize=1,
+            rasterized=True,
+        )
     values, vectors = np.linalg.eigh(dataset["covariance"].values[np.ix_([x, y], [x, y])])
     angle = np.linspace(0.0, 2.0 * math.pi, 200)
     ring = vectors @ (np.sqrt(np.maximum(values, 0.0))[:, None] * JOINT * np.array([np.cos(angle), np.sin(angle)]))

@@ -90,7 +90,9 @@ def certainty_of(found: Estimate) -> Certainty:
     labels = [free[i].label for i in inner]
     sizes = {free[i].label: free[i].width(values[free[i].label], float(widths[i])) for i in inner}
     seen_correlation = correlation[np.ix_(inner, inner)]
-    texts = undetermined({one: values[one] for one in labels}, sizes, seen_correlation, [[labels[i] for i in one] for one in unseen])
+    texts = undetermined(
+        {one: values[one] for one in labels}, sizes, seen_correlation, [[labels[i] for i in one] for one in unseen]
+    )
     notes += [text.replace("the points do", "the record does").replace("the points", "the record") for text in texts]
     notes += _smooth_note(model, x, inner)
     degrees = max(_independent(model) - len(inner), 1.0)
@@ -153,7 +155,7 @@ class Profile:
 
 def profile_of(found: Estimate, sure: Certainty, column: int, tell: Tell) -> Profile:
     """Return the profile of the likelihood along one free number."""
-    model, x, free = found.model, found.searched, found.model.free[column]
+    x, free = found.searched, found.model.free[column]
     tell(f"profile of {free.label}")
     least = found.cost(x)
     width = float(sure.widths[column])

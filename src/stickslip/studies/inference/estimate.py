@@ -80,7 +80,7 @@ def estimate(model: Model, starts: int, loss: str, seed: int, tell: Tell) -> Est
     best, found = Best(), Estimate(model, model.begin, loss=loss)
     try:
         thin = _light(model.thinned(FEW))
-        minima = _search(thin, starts, loss, seed, tell, best)
+        minima = _search(thin, starts, loss, seed, tell=tell, best=best)
         searched = minima[0][1]
         best.cost, best.searched = np.inf, searched
         found = _with_noise(model, searched, loss, tell, best)
@@ -133,15 +133,20 @@ def solved(model: Model, start: Floats, loss: str, best: Best | None = None, *, 
 
     tolerance = 1e-9 if thorough else 1e-4
     inside = np.clip(start, low + 1e-9 * np.maximum(1.0, np.abs(low)), high - 1e-9 * np.maximum(1.0, np.abs(high)))
+    sides = (1.0, -1.0) if thorough else (1.0,)
     found = least_squares(
-        residual, np.where(np.isfinite(inside), inside, start), lambda x: model.jacobian(x, sides=(1.0, -1.0) if thorough else (1.0,)),
-        (low, high), x_scale="jac", loss=loss, f_scale=OUTLYING, ftol=tolerance, xtol=1e-2 * tolerance, gtol=1e-12, max_nfev=most,
-    )  # fmt: skip
+        residual,
+        np.where(np.isfinite(inside), inside, start),
+        lambda x: model.jacobian(x, sides=sides),
+        (low, high),
+        **{"x_scale": "jac", "loss": loss, "f_scale": OUTLYING, "max_nfev": most},
+        **{"ftol": tolerance, "xtol": 1e-2 * tolerance, "gtol": 1e-12},
+    )
     return np.asarray(found.x)
 
 
 def cost_of(residual: Floats, loss: str = "linear") -> float:
-    """Return the sum that a search minimises; residuals beyond `OUTLYING` count less than their squares if the loss is not linear."""
+    """Return the sum that a search minimises; unless the loss is linear, residuals beyond `OUTLYING` count less than squares."""
     return OUTLYING**2 * float(np.sum(_LOSSES[loss][0]((residual / OUTLYING) ** 2)))
 
 
@@ -167,7 +172,7 @@ def _light(model: Model) -> Model:
     return model.with_(max_pieces=min(model.max_pieces, max(LIGHT, 3 * max(needed, default=model.max_pieces))))
 
 
-def _search(model: Model, starts: int, loss: str, seed: int, tell: Tell, best: Best) -> list[tuple[float, Floats]]:
+def _search(model: Model, starts: int, loss: str, seed: int, *, tell: Tell, best: Best) -> list[tuple[float, Floats]]:
     """Return the minima that searches from several starts reach, best first. Raises InputError if no run succeeds."""
     begin = model.begin
     first = _cost(model, begin, loss)
@@ -260,7 +265,7 @@ def _noise(model: Model, searched: Floats, by: Floats, loss: str) -> Model:
 def _widths(by: Floats) -> Floats:
     """Return rough standard uncertainties of the searched numbers, each as if the others were known."""
     sizes = np.linalg.norm(by, axis=0)
-    return 1.0 / np.maximum(sizes, 1e-12)
+    return np.asarray(1.0 / np.maximum(sizes, 1e-12))
 
 
 def _competing(model: Model, best: Floats, others: list[Floats], every: int) -> tuple[Floats, ...]:

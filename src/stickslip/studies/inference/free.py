@@ -148,7 +148,10 @@ def read_free(problem: Problem, names: Sequence[str], hints: Mapping[str, float]
     if twice is not None:
         raise InputError(f"infer: free: {twice} is named twice")
     limits, priors, starts = (_by_name(given.get(what), chosen, what) for what in ("bounds", "priors", "start"))
-    return tuple(_one(name, *known[name], limits.get(name), _prior(priors.get(name), known[name][0], name), starts.get(name)) for name in chosen)
+    return tuple(
+        _one(name, known[name], limits.get(name), _prior(priors.get(name), known[name][0], name), starts.get(name))
+        for name in chosen
+    )
 
 
 def known_numbers(problem: Problem, hints: Mapping[str, float]) -> dict[str, tuple[Quantity, float]]:
@@ -168,11 +171,14 @@ def _by_name(given: Mapping[str, Any] | None, chosen: Sequence[str], what: str) 
         return {}
     if not isinstance(given, Mapping):
         raise InputError(f"infer: {what} must be a mapping of names to values, got {shown(given)}")
-    return {full_name(str(name), chosen, f"infer: {what}: ", "is not among the free numbers"): value for name, value in given.items()}
+    return {
+        full_name(str(name), chosen, f"infer: {what}: ", "is not among the free numbers"): value for name, value in given.items()
+    }
 
 
-def _one(name: str, declared: Quantity, value: float, limits: Any, prior: Prior | None, start: Any) -> Free:
+def _one(name: str, known: tuple[Quantity, float], limits: Any, prior: Prior | None, start: Any) -> Free:
     """Return a free number with its limits. Raises InputError if they leave nothing."""
+    declared, value = known
     if start is not None:
         value = declared.check("infer", f"start: {name}", start)
     elif not math.isfinite(value) and prior is not None:
@@ -223,15 +229,25 @@ def _prior(given: Any, declared: Quantity, name: str) -> Prior | None:
         found = _PRIOR.fullmatch(given)
         given = found.groups() if found else given
     wanted = f'infer: priors: {name} must be like "normal(0.6, 0.05)", "lognormal(10 um, 0.5)" or "uniform(0, 1)"'
-    if isinstance(given, str) or not isinstance(given, Sequence) or len(given) != 3 or given[0] not in ("normal", "lognormal", "uniform"):
+    if (
+        isinstance(given, str)
+        or not isinstance(given, Sequence)
+        or len(given) != 3
+        or given[0] not in ("normal", "lognormal", "uniform")
+    ):
         raise InputError(f"{wanted}, got {shown(given)}")
     kind, *numbers = given
     plain = Quantity("1", "", above=0.0)
-    units = (replace(declared, above=None, at_least=None), plain if kind == "lognormal" else replace(declared, above=None, at_least=None))
-    first, second = (
-        unit.check("infer", f"priors: {name}", _number(one)) for unit, one in zip(units, numbers, strict=True)
+    units = (
+        replace(declared, above=None, at_least=None),
+        plain if kind == "lognormal" else replace(declared, above=None, at_least=None),
     )
-    if (kind == "uniform" and not first < second) or (kind != "uniform" and second <= 0.0) or (kind == "lognormal" and first <= 0.0):
+    first, second = (unit.check("infer", f"priors: {name}", _number(one)) for unit, one in zip(units, numbers, strict=True))
+    if (
+        (kind == "uniform" and not first < second)
+        or (kind != "uniform" and second <= 0.0)
+        or (kind == "lognormal" and first <= 0.0)
+    ):
         raise InputError(f"{wanted}, got {kind}({first:g}, {second:g})")
     return Prior(kind, first, second)
 

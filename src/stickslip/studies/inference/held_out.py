@@ -8,7 +8,7 @@ from typing import Any
 
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity
-from stickslip.studies.inference.model import Part
+from stickslip.studies.inference.part import Part
 
 LEFT_OUT = Quantity("s", "time at the end of the record that is left out", above=0.0)
 LEAST = 8

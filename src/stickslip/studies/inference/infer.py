@@ -20,9 +20,10 @@ from stickslip.studies.inference.certainty import Profile, certainty_of, profile
 from stickslip.studies.inference.estimate import LOSSES, Tell, estimate
 from stickslip.studies.inference.free import read_free, with_scale
 from stickslip.studies.inference.held_out import share_of, shortened
-from stickslip.studies.inference.model import Model, Part, first_sizes
-from stickslip.studies.inference.record import Record
 from stickslip.studies.inference.inference import Inference
+from stickslip.studies.inference.model import Model
+from stickslip.studies.inference.part import Part, first_sizes
+from stickslip.studies.inference.record import Record
 from stickslip.studies.inference.sampling import sample
 from stickslip.studies.inference.setup import at_rests, hints_of, own_of, parts_of, scales_of
 from stickslip.studies.study import TextProgress, telling

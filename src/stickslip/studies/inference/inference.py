@@ -24,13 +24,20 @@ from stickslip.solution.solution import Solution
 from stickslip.studies.inference.certainty import Certainty, Profile
 from stickslip.studies.inference.estimate import Estimate
 from stickslip.studies.inference.free import Free
-from stickslip.studies.inference.model import Model, Part, unit_of
+from stickslip.studies.inference.model import Model, unit_of
+from stickslip.studies.inference.part import Part
 from stickslip.studies.study import Study
 
 Floats = NDArray[np.float64]
 
 MANY = 1.5
 """Size of residuals, in the standard deviations that were given, from which they are told to be larger."""
+
+
+def _near(value: float, uncertainty: float) -> str:
+    """Return a number with the digits that its uncertainty leaves."""
+    size = abs(value) / uncertainty if 0.0 < uncertainty < math.inf else 1.0
+    return f"{value:.{min(max(2 + math.ceil(math.log10(max(size, 1e-3))), 3), 12)}g}"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -147,7 +154,7 @@ class Inference(Study):
         """The scenario that runs to the curve of the (first part of the) record."""
         name = Path(self.parts[0].record.name).name
         title = f"Fitted to {name}" + (f", part 1 of {len(self.parts)}" if len(self.parts) > 1 else "")
-        about = "\n".join([self._headline, *(f"{name} = {text}" for name, text, _ in self.rows), *self.notes])
+        about = "\n".join([self.headline, *(f"{name} = {text}" for name, text, _ in self.rows), *self.notes])
         return Scenario(self.best, self.parts[0].duration, self.model.rtol, title, about, name="fitted")
 
     def to_toml(self, path: str | Path) -> Path:
@@ -234,14 +241,16 @@ class Inference(Study):
         if self.model.every > 1:
             yield f"only each {self.model.every}th sample was fitted"
         for x in self.estimate.others:
-            values = [f"{one.label} {brief(v, one.declared.unit, 3)}" for one, v in zip(self.free, self.model.values(x), strict=True)]
+            values = [
+                f"{one.label} {brief(v, one.declared.unit, 3)}" for one, v in zip(self.free, self.model.values(x), strict=True)
+            ]
             yield f"another minimum fits almost as well: {', '.join(values[:8])}; bounds or priors choose between them"
         for name, memory in self.model.memory.items():
             if memory > 0.0:
                 yield f"residuals of {name} remember themselves for {brief(memory, 's', 3)}; the intervals allow for it"
         for name, size in self.model.sizes.items():
             if size > MANY and any(name in part.record.deviations for part in self.parts):
-                yield f"residuals of {name} are {size:.3g} times the standard deviations that were given; the intervals allow for it"
+                yield f"residuals of {name} are {size:.3g} times the standard deviations given; the intervals allow for it"
         if self.prediction is not None:
             yield f"what was left out is predicted with an error of {self.prediction:.3g} times the noise"
         yield from self.about_samples
@@ -256,14 +265,19 @@ class Inference(Study):
             if one.part is not None:
                 continue
             unit = "" if row.unit == "1" else row.unit
-            how = "on a bound" if row.source == "bound" else f"{row.low:.4g} to {row.high:.4g}"
+            how = (
+                "on a bound"
+                if row.source == "bound"
+                else f"{_near(row.low, row.uncertainty)} to {_near(row.high, row.uncertainty)}"
+            )
             sure = bool(np.isfinite(row.uncertainty))
             how = how if sure or row.source == "bound" else "not determined"
             found.append((str(name), with_uncertainty(row.value, row.uncertainty if sure else None), f"{unit}  ({how})".strip()))
         return found
 
     @property
-    def _headline(self) -> str:
+    def headline(self) -> str:
+        """What was found from what, in one line."""
         shared = sum(one.part is None for one in self.free)
         noise = ", ".join(f"{name} {brief(size, unit_of(name), 3)}" for name, size in self.model.sizes.items())
         return f"{shared} numbers from {self.model.samples} samples, noise: {noise}; intervals of 95 %"
@@ -274,7 +288,7 @@ class Inference(Study):
         return write(self.to_dataset().assign_attrs(provenance | {"scenario": self.scenario.to_toml()}), Path(path))
 
     def _lines(self) -> Iterator[str]:
-        yield self._headline
+        yield self.headline
         width = max(len(name) for name, _, _ in self.rows)
         for name, value, unit in self.rows:
             yield f"{name:<{width}}  {value} {unit}"

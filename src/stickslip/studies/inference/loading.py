@@ -37,8 +37,8 @@ class Loading(NamedTuple):
 def loading_of(record: Record) -> Loading | None:
     """Return the pull rate in a record as a loading history; None if the record has no load point.
 
-    A displacement becomes straight lines from knot to knot, as few as leave nothing but noise; a line goes over gaps, and a jump is a
-    short line. A rate becomes steps in the same way. Raises InputError if there are too few numbers.
+    A displacement becomes straight lines from knot to knot, as few as leave nothing but noise; a line goes over gaps, and a jump is
+    a short line. A rate becomes steps in the same way. Raises InputError if there are too few numbers.
     """
     is_rate = record.load_point is None
     given = record.load_rate if is_rate else record.load_point
@@ -47,7 +47,9 @@ def loading_of(record: Record) -> Loading | None:
     known = np.isfinite(given)
     time, values = record.clock[known], given[known]
     if len(time) < 2:
-        raise InputError(f"{record.name}: the load point has fewer than two numbers: give its rate in the scenario, and leave it out")
+        raise InputError(
+            f"{record.name}: the load point has fewer than two numbers: give its rate in the scenario, and leave it out"
+        )
     noise = max(noise_of(values), ROUNDING * float(np.max(np.abs(values - values[0]))), 1e-300)
     cuts, coarser = straight_parts(time, values, noise, 0 if is_rate else 1)
     if is_rate:
@@ -93,7 +95,7 @@ def straight_parts(time: Floats, values: Floats, noise: float, order: int = 1) -
 
 def _cuts(time: Floats, values: Floats, noise: float, order: int) -> list[int]:
     """Return indices between which parts leave nothing but noise; the search stops a little beyond the largest number of parts."""
-    open_parts, ends = [(0, len(time))], []
+    open_parts, ends = [(0, len(time))], list[int]()
     while open_parts and len(ends) + len(open_parts) <= 2 * MOST_PARTS:
         first, last = open_parts.pop()
         at = None if last - first < 3 else _worst(time[first:last], values[first:last], noise, order)
@@ -118,7 +120,7 @@ def _rest(time: Floats, values: Floats, order: int) -> Floats:
 
 
 def _misfit(rest: Floats) -> float:
-    """Return the largest mean of neighbouring samples, in standard errors per unit of noise, over all lengths that are powers of 2."""
+    """Return the largest mean of neighbouring samples, in standard errors per unit of noise, over lengths that are powers of 2."""
     worst, width = 0.0, 1
     sums = np.append(0.0, np.cumsum(rest))
     while width <= len(rest):

@@ -97,7 +97,7 @@ def memory_of(residual: Floats, slopes: Floats, blocks: list[Block]) -> Memory:
         white, by = whitened(residual, blocks, memory), whitened(slopes, blocks, memory)
         size, log_det = _size_and_determinant(white, by)
         spread = sum(float(np.sum(np.log1p(-np.exp(-2.0 * np.diff(time) / memory)))) for _, time in blocks)
-        return 2.0 * (n - p) * math.log(max(size, 1e-300)) + spread + log_det
+        return float(2.0 * (n - p) * math.log(max(size, 1e-300)) + spread + log_det)
 
     size, log_det = _size_and_determinant(residual, slopes)
     white = 2.0 * (n - p) * math.log(max(size, 1e-300)) + log_det
@@ -116,7 +116,7 @@ def _size(residual: Floats, slopes: Floats) -> float:
 
 
 def _size_and_determinant(residual: Floats, slopes: Floats) -> tuple[float, float]:
-    """Return the size of residuals after a linear fit of the parameters, and the logarithm of the determinant of the normal matrix."""
+    """Return the size of residuals after a linear fit of the parameters, and the logarithm of the normal matrix's determinant."""
     n, p = slopes.shape
     if not p:
         return math.sqrt(float(residual @ residual) / max(n, 1)), 0.0

@@ -126,17 +126,19 @@ class Record:
 
     def _of(self, chosen: Any) -> Record:
         def cut(values: Floats | None) -> Floats | None:
-            return None if values is None else values[chosen]
+            return None if values is None else np.asarray(values[chosen])
 
         measured = {name: values[chosen] for name, values in self.measured.items()}
         deviations = {name: values[chosen] for name, values in self.deviations.items()}
         loads = cut(self.load_point), cut(self.load_rate)
-        return replace(self, time=self.time[chosen], measured=measured, deviations=deviations, load_point=loads[0], load_rate=loads[1])
+        return replace(
+            self, time=self.time[chosen], measured=measured, deviations=deviations, load_point=loads[0], load_rate=loads[1]
+        )
 
     @property
     def clock(self) -> Floats:
         """Times since the first sample (s), shape (n,): those of the run."""
-        return self.time - self.time[0]
+        return np.asarray(self.time - self.time[0])
 
     @property
     def shear(self) -> str | None:
@@ -168,7 +170,9 @@ class Record:
             if flat.any():
                 measured[name] = np.where(flat, np.nan, values)
                 at = f"{int(flat.sum())} samples at {brief(float(values[flat][0]), UNITS[name])}"
-                notes.append(f"{name} is constant at the end of its range in {at}: the sensor was saturated there; they are left out")
+                notes.append(
+                    f"{name} is constant at the end of its range in {at}: the sensor was saturated there; they are left out"
+                )
         made = replace(self, measured=measured, notes=tuple(notes))
         made._check_load_point()
         return made
@@ -194,7 +198,7 @@ class Record:
 
 
 def saturated(values: Floats) -> NDArray[np.bool_]:
-    """Return True for samples of a long run of one value at an end of the range, with which no other run of equal samples compares."""
+    """Return True for samples of a run of one value at an end of the range, which is longer than other runs of equal samples."""
     flat = np.zeros(len(values), bool)
     if len(values) < 2 * RAIL:
         return flat
@@ -210,7 +214,9 @@ def saturated(values: Floats) -> NDArray[np.bool_]:
 
 def _check_friction(size: float, name: str, notes: list[str]) -> None:
     if size > HIGHEST:
-        raise InputError(f"{name}: friction is {size:.3g} in the median: is a stress in N, or friction in percent? Friction is 0.1 to 1")
+        raise InputError(
+            f"{name}: friction is {size:.3g} in the median: is a stress in N, or friction in percent? Friction is 0.1 to 1"
+        )
     if size < LOWEST:
         notes.append(f"friction is {size:.3g} in the median: are the units of shear and normal stress in the headings right?")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -49,17 +50,24 @@ def sample(found: Estimate, sure: Certainty, count: int, seed: int, tell: Tell) 
     random = np.random.default_rng(seed)
     begin = _begun(found, sure, walkers, random)
     sampler: Any = emcee.EnsembleSampler(walkers, dimensions, posterior)
-    sampler.random_state = np.random.RandomState(seed).get_state()  # noqa: NPY002 - what emcee takes
+    sampler.random_state = np.random.RandomState(seed).get_state()
     for i, _ in enumerate(sampler.sample(begin, iterations=forget + steps)):
         if i % 10 == 0:
             tell(f"sampling: step {i + 1} of {forget + steps}, {walkers} runs each")
     chain = sampler.get_chain(discard=forget, flat=True)[:count]
-    times = emcee.autocorr.integrated_time(sampler.get_chain(discard=forget), quiet=True)
-    worst = float(np.max(times))
+    worst = max(_memory(sampler.get_chain(discard=forget)[:, :, i], emcee.autocorr.function_1d) for i in range(dimensions))
     note = f"{len(chain)} samples, about {len(chain) / max(worst, 1.0):.0f} of them independent"
     if steps < FEW_TIMES * worst:
         note += "; the walkers need longer to forget each other: ask for more samples"
     return np.asarray(chain), (note,)
+
+
+def _memory(chain: Floats, correlation: Callable[[Floats], Floats]) -> float:
+    """Return the steps after which the walkers, shape (steps, walkers), are independent (Sokal's window, as in emcee)."""
+    mean = np.mean([correlation(chain[:, k]) for k in range(chain.shape[1])], axis=0)
+    times = 2.0 * np.cumsum(mean) - 1.0
+    inside = np.arange(len(times)) >= 5.0 * times
+    return max(1.0, float(times[int(np.argmax(inside))] if inside.any() else times[-1]))
 
 
 def _begun(found: Estimate, sure: Certainty, walkers: int, random: np.random.Generator) -> Floats:

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.friction.law import FrictionLaw
 from stickslip.problem.problem import Problem
 from stickslip.studies.inference.free import LOAD, STATE, TREND, Free, Prior, known_numbers
 from stickslip.studies.inference.loading import loading_of
-from stickslip.studies.inference.model import Part
 from stickslip.studies.inference.noise import noise_of
+from stickslip.studies.inference.part import Part
 from stickslip.studies.inference.record import MEASURED, SHEAR, Record
 
 Floats = NDArray[np.float64]
@@ -29,7 +31,9 @@ LEAST = 8
 """Smallest number of samples of a part."""
 
 
-def parts_of(problem: Problem, records: Sequence[Record], observe: Any, start: str | None, sensor: str) -> tuple[list[Part], list[str]]:
+def parts_of(
+    problem: Problem, records: Sequence[Record], observe: Any, start: str | None, sensor: str
+) -> tuple[list[Part], list[str]]:
     """Return a part for each record, and sentences on what was done. Raises InputError for what does not go together."""
     if sensor not in SENSORS:
         raise InputError(f"infer: sensor {ascii(sensor)[:40]} is unknown; {nearest(str(sensor), SENSORS)}")
@@ -82,9 +86,15 @@ def hints_of(problem: Problem, part: Part) -> dict[str, float]:
     found = {LOAD: begun.load}
     law, rate = begun.friction, begun.first_pull_rate
     if law.states:
-        given = begun.given_states or (np.ravel(law.steady_state(abs(rate))).tolist() if rate else ())
+        given = begun.given_states or np.ravel(_steady_state(law, rate)).tolist()
         found |= {STATE: float(given[0])} if given else {}
     return found
+
+
+def _steady_state(law: FrictionLaw, rate: float) -> Floats:
+    """Return the states of steady sliding at a rate (m/s), none if there are none."""
+    found = law.steady_state(abs(rate)) if rate else None
+    return np.zeros(0) if found is None else found
 
 
 def scales_of(part: Part, problem: Problem) -> dict[str, float]:
@@ -106,7 +116,7 @@ def at_rests(part: Part) -> list[Part]:
     if not len(arrests):
         raise InputError(f"{record.name}: no drop of {name} stands out of its noise: leave parts='rests' out")
     ends = [0, *(arrests + 1).tolist(), len(record)]
-    cuts = [(first, last) for first, last in zip(ends[:-1], ends[1:], strict=True) if last - first >= LEAST]
+    cuts = [(first, last) for first, last in pairwise(ends) if last - first >= LEAST]
     found = []
     for first, last in cuts:
         piece = record.part(float(record.time[first]), float(record.time[last - 1]))
@@ -139,8 +149,12 @@ def arrests_in(values: Floats) -> NDArray[np.intp]:
 
 
 def own_of(problem: Problem, parts: Sequence[Part], wanted: Iterable[str] | None) -> list[Free]:
-    """Return free numbers that belong to one part each: the load at its start, known to the noise, and a state if the law has one."""
-    names = list(wanted) if wanted is not None else [LOAD, *([STATE] if problem.friction.states and not problem.friction.sticks else [])]
+    """Return free numbers of one part each: the load at its start, known to the noise, and a state if the law has one."""
+    names = (
+        list(wanted)
+        if wanted is not None
+        else [LOAD, *([STATE] if problem.friction.states and not problem.friction.sticks else [])]
+    )
     found = []
     for i, part in enumerate(parts):
         declared = known_numbers(problem, hints_of(problem, part))
@@ -156,5 +170,7 @@ def own_of(problem: Problem, parts: Sequence[Part], wanted: Iterable[str] | None
             elif np.isfinite(value) and value > 0.0:
                 found.append(Free(STATE, quantity, value, value / 1e12, value * 1e12, True, None, i))
             else:
-                raise InputError("infer: parts='rests': the problem needs an initial_state, where the search for that of each part begins")
+                raise InputError(
+                    "infer: parts='rests': the problem needs an initial_state, where the search for that of each part begins"
+                )
     return found

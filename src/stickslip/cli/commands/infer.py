@@ -1,0 +1,167 @@
+"""`stickslip infer`: from a laboratory record to the parameters of a scenario, by full runs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from stickslip.cli.options import ACCURACY, RESULTS, Changes, Dpi, FigureFile, ScenarioName, Size, complete_table, option
+from stickslip.cli.output.files import Look, Target, announce, check_targets, drawing, write_files
+from stickslip.foundation.errors import InputError
+
+if TYPE_CHECKING:
+    from stickslip.studies.inference.inference import Inference
+
+FREE = 'The numbers to find, with commas: "friction.a,friction.b,body.stiffness".'
+START = "How the run begins: steady, record (load of the first samples) or problem."
+PRIOR = 'What is known before: "friction.a=normal(0.01, 0.002)"; lognormal and uniform too.'
+BOUND = 'Limits of a number: "friction.a=0.001..0.1".'
+COMPARE = "Another scenario, to compare what both predict of the part left out; may be repeated."
+COMPARE_FREE = "The free numbers of the scenarios of --compare; by default those of --free that they have."
+SEARCH = "The search"
+
+
+def infer(
+    scenario: ScenarioName,
+    data: Annotated[
+        list[str], typer.Argument(help="CSV files with a column time, and what was measured.", autocompletion=complete_table)
+    ],
+    *,
+    free: Annotated[str, typer.Option(help=FREE)],
+    changes: Changes = None,
+    begin: Annotated[str | None, option("Take the record from this time on (s, or with a unit).", "--from")] = None,
+    end: Annotated[str | None, option("Take the record up to this time.", "--to")] = None,
+    observe: Annotated[
+        str | None, option("What is fitted, with commas: friction, shear_stress, shear_force, slip, slip_rate.")
+    ] = None,
+    start: Annotated[str | None, option(START)] = None,
+    sensor: Annotated[str, typer.Option(help="Where shear is measured: contact, or spring (load cell of a block).")] = "contact",
+    parts: Annotated[str | None, option("rests: a run of its own after each slip event of the record.")] = None,
+    each: Annotated[str | None, option("What is free for each of these parts: initial.load, initial.state.")] = None,
+    bound: Annotated[list[str] | None, option(BOUND, panel=SEARCH)] = None,
+    prior: Annotated[list[str] | None, option(PRIOR, panel=SEARCH)] = None,
+    begin_at: Annotated[list[str] | None, option("Where the search for a number begins: NAME=VALUE.", panel=SEARCH)] = None,
+    loss: Annotated[str, typer.Option(help="linear; soft_l1, huber or cauchy for outliers.", rich_help_panel=SEARCH)] = "linear",
+    starts: Annotated[int, typer.Option(help="How many starts the search has.", rich_help_panel=SEARCH)] = 4,
+    seed: Annotated[int, typer.Option(help="Seed of starts and samples.", rich_help_panel=SEARCH)] = 0,
+    held_out: Annotated[str | None, option('Leave the end out, to be predicted: a share as 0.3, or "100 s".')] = None,
+    profiles: Annotated[bool, typer.Option("--profiles", help="Intervals from profiles of the likelihood.")] = False,
+    samples: Annotated[int, typer.Option(help="Samples of the posterior distribution to draw (needs emcee).")] = 0,
+    compare: Annotated[list[str] | None, option(COMPARE)] = None,
+    compare_free: Annotated[str | None, option(COMPARE_FREE)] = None,
+    rtol: Annotated[float, typer.Option(help="Relative tolerance of the runs.", rich_help_panel=ACCURACY)] = 1e-8,
+    out: Annotated[
+        Path | None, option("Save all numbers and curves (.nc) or the table (.csv).", "--out", "-o", panel=RESULTS)
+    ] = None,
+    scenario_out: Annotated[Path | None, option("Write the scenario that runs to the curve found (.toml).", panel=RESULTS)] = None,
+    figure: FigureFile = None,
+    dpi: Dpi = None,
+    size: Size = None,
+) -> None:
+    r"""Find the parameters with which a run follows a laboratory record, with their uncertainty.
+
+    The data are columns with headings and units: time, friction (or
+    "tau (MPa)" with "sigma (MPa)", or shear_force), slip, slip_rate, and
+    load_point (displacement of the machine) or load_rate, which becomes the
+    loading. Each trial is a full run with inertia and waves, so that machine
+    stiffness, steps of rate, holds and stick-slip are all fitted as they are.
+
+    For points of friction against slip or slip rate see `stickslip fit`.
+
+    \b
+      stickslip infer velocity-steps-block data.csv --free a,b,distance,stiffness
+      stickslip infer mine.toml data.csv --free a,b --prior "a=normal(0.01, 0.002)"
+      stickslip infer mine.toml data.csv --free static,dynamic --parts rests
+      stickslip infer mine.toml data.csv --free a,b --held-out 0.3 --compare other.toml
+      stickslip infer mine.toml data.csv --free a,b -o a.nc --scenario-out best.toml
+
+    After Ctrl-C the command shows and saves the best numbers so far.
+
+    Exit code: 0 done, 2 unusable input, 130 interrupted.
+    """
+    from stickslip.cli.output.inference import show_inference, show_ranking
+    from stickslip.cli.overrides import load
+
+    look = Look(dpi, size)
+    targets = Target("--out", out, (".nc", ".csv")), Target("--scenario-out", scenario_out, (".toml",))
+    check_targets(*targets, Target("--figure", figure))
+    look.check(figure)
+    options: dict[str, Any] = {"observe": observe, "start": start, "sensor": sensor, "parts": parts, "loss": loss, "starts": starts}
+    options |= {"each": each and each.split(","), "seed": seed, "profiles": profiles, "samples": samples, "rtol": rtol}
+    options |= {"held_out": _typed(held_out), "begin": _typed(begin), "end": _typed(end)}
+    options |= {"bounds": _bounds(bound), "priors": _values(prior, "--prior"), "begin_at": _values(begin_at, "--begin-at")}
+    chosen = load(scenario, "infer", changes)
+    found = _inferred(chosen, data, free, options)
+    show_inference(chosen, found)
+    if compare:
+        if found.prediction is None:
+            raise InputError("infer: --compare needs --held-out, the part of the record that is predicted")
+        others = [
+            _inferred(
+                load(name, "infer"),
+                data,
+                _free_of(name, compare_free or free),
+                options | {"priors": None, "bounds": None, "begin_at": None},
+            )
+            for name in compare
+        ]
+        show_ranking(found, *others)
+    save = found.to_netcdf if out is not None and out.suffix.lower() == ".nc" else found.to_csv
+    announce(*write_files((out, save), (scenario_out, found.to_toml), (figure, drawing(found.plot, look))))
+    if not found.estimate.finished:
+        raise KeyboardInterrupt
+
+
+def _inferred(scenario: Any, data: list[str], free: str, options: dict[str, Any]) -> Inference:
+    from stickslip.run.progress_line import progress_line
+    from stickslip.studies.inference.infer import infer as study
+
+    with progress_line(f"{scenario.name}:") as report:
+        return study(scenario, data, free, progress=report, **options)
+
+
+def _free_of(scenario: str, free: str) -> str:
+    """Return those of the free numbers that another scenario has. Raises InputError if it has none."""
+    from stickslip.cli.overrides import load
+    from stickslip.foundation.errors import full_name
+    from stickslip.studies.inference.free import known_numbers
+
+    known, found = known_numbers(load(scenario, "infer").problem, {}), []
+    for name in (one.strip() for one in free.split(",")):
+        try:
+            found.append(full_name(name, known, "", ""))
+        except InputError:
+            continue
+    if not found:
+        raise InputError(f"infer: --compare {scenario}: has none of the numbers of --free: name its own with --compare-free")
+    return ",".join(found)
+
+
+def _typed(text: str | None) -> Any:
+    """Return what was typed as a number if it is one."""
+    from stickslip.scenarios.entries import typed_number
+
+    return None if text is None else typed_number(text)
+
+
+def _values(texts: list[str] | None, where: str) -> dict[str, Any] | None:
+    from stickslip.cli.overrides import typed_values
+
+    return typed_values(texts, f"infer: {where}", "friction.a=0.01") if texts else None
+
+
+def _bounds(texts: list[str] | None) -> dict[str, Any] | None:
+    """Return limits by name. Raises InputError."""
+    if not texts:
+        return None
+    found = {}
+    for name, value in (_values(texts, "--bound") or {}).items():
+        low, dots, high = str(value).partition("..")
+        if not dots:
+            raise InputError(
+                f'infer: --bound must be NAME=LOW..HIGH, as "friction.a=0.001..0.1", got {ascii(name)[:40]}={ascii(value)[:40]}'
+            )
+        found[name] = (_typed(low), _typed(high))
+    return found

@@ -1,0 +1,134 @@
+"""A part of a record with a run of its own: how the run is loaded and begins, and the problem with other numbers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.foundation.errors import InputError
+from stickslip.loading import LoadingHistory
+from stickslip.problem.problem import Problem
+from stickslip.studies.inference.free import LOAD
+from stickslip.studies.inference.noise import first_value, noise_of
+from stickslip.studies.inference.record import Record
+
+Floats = NDArray[np.float64]
+
+SMALLEST_NOISE = 1e-9
+"""Smallest noise, as a share of the range of a quantity: a record without noise has rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """A part of a record with its own run.
+
+    Parameters
+    ----------
+    record
+        The samples.
+    loading
+        The pull rate since the first sample, or None for the problem's own.
+    observed
+        Names of the quantities that are fitted.
+    sensor
+        "contact" if shear is measured at the contact, "spring" for a load cell behind the spring of a block.
+    start
+        "steady", "record" or "problem": how the run begins.
+    """
+
+    record: Record
+    loading: LoadingHistory | None
+    observed: tuple[str, ...]
+    sensor: str = "contact"
+    start: str = "problem"
+
+    @property
+    def duration(self) -> float:
+        """The length of the run (s)."""
+        return float(self.record.clock[-1])
+
+    def begun(self, problem: Problem) -> Problem:
+        """Return a problem under the loading of this part, with the start that its data give. Raises InputError."""
+        rates: dict[str, Any] = {} if self.loading is None else {"pull_rate": self.loading}
+        if self.start == "steady":
+            return steady(problem, rates)
+        if self.start == "problem":
+            return replace(problem, **rates)
+        load, _ = self.first_load(problem.normal)
+        begun: dict[str, Any] = {"initial_load": load, "initial_excess": None}
+        if problem.friction.states and not problem.friction.sticks and problem.initial_state is None:
+            begun["initial_state"] = "steady"
+        return replace(problem, **rates, **begun)
+
+    def first_load(self, normal: float) -> tuple[float, float]:
+        """Return the load at the first sample and its standard error (Pa or N), for a normal load (Pa or N)."""
+        name = self.record.shear
+        if name is None:
+            raise InputError(
+                f"{self.record.name}: no shear is measured, so that the load at the start is not known: start='problem'"
+            )
+        values = self.record.measured[name]
+        value, error = first_value(self.record.clock, values, noise_of(values))
+        return (value * normal, error * normal) if name == "friction" else (value, error)
+
+
+def steady(problem: Problem, rates: Mapping[str, Any]) -> Problem:
+    """Return a problem that begins in steady sliding at its first pull rate. Raises InputError if it cannot."""
+    law, body = problem.friction, problem.body
+    none: dict[str, Any] = dict.fromkeys(
+        ("initial_load", "initial_excess", "initial_state", "initial_second_state", "initial_rate")
+    )
+    if not law.sticks and body.has_inertia:
+        return replace(problem, **rates, **none)
+    pull = rates.get("pull_rate", problem.pull_rate)
+    rate = pull.first if isinstance(pull, LoadingHistory) else pull
+    if not law.states or law.sticks or rate == 0.0 or not hasattr(law, "steady_coefficient"):
+        raise InputError(f"infer: {law.kind} does not slide steadily at the first pull rate of {rate:g} m/s: start='record'")
+    load = problem.normal * float(law.steady_coefficient(abs(rate))) + body.damping * abs(rate)
+    none |= {"initial_load": math.copysign(load, rate), "initial_state": "steady"}
+    return replace(problem, **rates, **none)
+
+
+def changed(problem: Problem, values: Mapping[str, float]) -> Problem:
+    """Return a problem with other numbers, by their full names; those of the record are passed over. Raises InputError."""
+    law: dict[str, float] = {}
+    body: dict[str, float] = {}
+    start: dict[str, Any] = {}
+    others: dict[str, float] = {}
+    for name, value in values.items():
+        place, _, last = name.partition(".")
+        if place == "friction" and last.isidentifier() and hasattr(problem.friction, last):
+            law[last] = value
+        elif place == "body":
+            body[last] = value
+        elif place == "initial":
+            start[f"initial_{last}"] = value
+            start |= {"initial_excess": None} if name == LOAD else {}
+        elif place != "record":
+            others[name] = value
+    new_law = replace(problem.friction, **law) if law else problem.friction
+    new_body = replace(problem.body, **body) if body else problem.body
+    problem = replace(problem, friction=new_law, body=new_body, **start)
+    for name, value in others.items():
+        problem = problem.parameters[name].put(value)
+    return problem
+
+
+def first_sizes(parts: Sequence[Part]) -> dict[str, float]:
+    """Return the noise of each observed quantity from sample to sample; 1 where all have a column of standard deviations."""
+    found: dict[str, float] = {}
+    for name in dict.fromkeys(name for part in parts for name in part.observed):
+        having = [part.record for part in parts if name in part.observed]
+        if all(name in record.deviations for record in having):
+            found[name] = 1.0
+            continue
+        widest = max(float(np.nanmax(r.measured[name]) - np.nanmin(r.measured[name])) for r in having)
+        largest = max(float(np.nanmax(np.abs(r.measured[name]))) for r in having)
+        least = SMALLEST_NOISE * max(widest, 1e-3 * largest, 1e-300)
+        found[name] = max(*(noise_of(r.measured[name]) for r in having), least)
+    return found
