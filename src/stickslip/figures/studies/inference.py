@@ -55,7 +55,11 @@ def data(study: Inference) -> xr.Dataset:
     for name, text in (("data", "measured"), ("model", "best run"), ("residual", "measured minus best run")):
         contents[name] = quantity("sample", table[name].to_numpy(), text, "", unit)
     contents |= _rates(study, begins) | _numbers(study)
-    attributes = {"notes": "\n".join(study.notes), "title": study.scenario.title, "factor": study.certainty.factor}
+    attributes = {
+        "notes": "\n".join(study.notes),
+        "title": study.scenario.title.partition(", part 1")[0],
+        "factor": study.certainty.factor,
+    }
     return xr.Dataset(contents, attrs=attributes)
 
 

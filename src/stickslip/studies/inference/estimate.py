@@ -24,6 +24,12 @@ FIRST = 8
 """Number of steps after which starts are compared again."""
 FOLLOWED, HOPELESS = 3, 30.0
 """Number of starts that are followed to their end, and the factor by which the sum of squares of one may be above the least."""
+FAR = 5.0
+"""Size of residuals, in standard deviations, from which a search goes on without derivatives."""
+AVERAGED = (0.1, 0.02, 0.005, 0.0)
+"""Shares of the samples over which residuals are averaged in a search without derivatives, from coarse to fine."""
+GENERATIONS = 60
+"""Largest number of generations of such a search."""
 LIGHT = 2000
 """Largest number of pieces of a run while starts are compared, unless the run of the first start needs more than a third of it."""
 ROUNDS = 4
@@ -194,10 +200,43 @@ def _search(model: Model, starts: int, loss: str, seed: int, *, tell: Tell, best
         tell(f"search {i + 1} of {len(chosen)}")
         end = solved(model, x, loss, best, most=FIRST)
         minima.append((_cost(model, end, loss), end))
+    if starts > 1 and min(minima, key=lambda one: one[0])[0] > FAR**2 * model.samples:
+        end = solved(model, _by_evolution(model, seed, tell), loss, best, most=FIRST)
+        minima.append((_cost(model, end, loss), end))
     minima.sort(key=lambda one: one[0])
     followed = [one for one in minima[:FOLLOWED] if one[0] < HOPELESS * minima[0][0] + COMPETES]
     ends = (solved(model, x, loss, best) for _, x in followed)
     return sorted(((_cost(model, end, loss), end) for end in ends), key=lambda one: one[0])
+
+
+def _by_evolution(model: Model, seed: int, tell: Tell) -> Floats:
+    """Return where a search without derivatives ends: differential evolution (Storn & Price 1997), then simplexes.
+
+    A slip event at another time than in the record tells derivatives nothing. Here residuals are averaged over some time, and count
+    by their logarithm, so that what follows well outweighs what does not follow at all.
+    """
+    from scipy.optimize import differential_evolution, minimize
+
+    def robust(smoothed: Model) -> Callable[[Floats], float]:
+        return lambda x: float(np.log(cost_of(smoothed.residual(np.asarray(x, float)), "cauchy")))
+
+    low, high = model.limits
+    box = [(max(one.near[0], low[i]), min(one.near[1], high[i])) for i, one in enumerate(model.free)]
+    box = [(x - 1.0, x + 1.0) if end - begin <= 0.0 else (begin, end) for (begin, end), x in zip(box, model.begin, strict=True)]
+    count = iter(range(10**9))
+    found = differential_evolution(
+        robust(model.with_(smooth=AVERAGED[0])),
+        box,
+        callback=lambda *_, **__: tell(f"search without derivatives: generation {next(count) + 1} of {GENERATIONS} at most"),
+        **{"maxiter": GENERATIONS, "popsize": 8, "rng": seed, "polish": False, "tol": 1e-3},
+    )
+    x = np.clip(found.x, low, high)
+    for smooth in AVERAGED[1:]:
+        tell(f"search without derivatives: residuals averaged over {smooth:.1%} of the record")
+        simplex = np.clip(x + np.vstack([np.zeros(len(x)), 0.01 * np.eye(len(x))]), low, high)
+        options = {"maxfev": 100 * len(x), "initial_simplex": simplex}
+        x = np.clip(minimize(robust(model.with_(smooth=smooth)), x, method="Nelder-Mead", options=options).x, low, high)
+    return x
 
 
 def _cost(model: Model, searched: Floats, loss: str) -> float:

@@ -18,10 +18,10 @@ from stickslip.problem.problem import Problem
 
 Floats = NDArray[np.float64]
 
-FARTHEST = 1e4
-"""Factor by which a positive number may differ from where its search begins, unless bounds say otherwise."""
-NEAR, NEAR_PURE = 10.0, 3.0
-"""Factors within which starts are drawn: of quantities with a unit, and of pure numbers."""
+FARTHEST, FARTHEST_PURE = 1e3, 30.0
+"""Factors by which positive numbers, with a unit and without, may differ from where the search begins, unless bounds say."""
+NEAR, NEAR_KNOWN = 10.0, 2.0
+"""Factors within which starts are drawn: of slips and rates of a law, and of pure numbers and the body, which are known better."""
 TREND, DELAY, LOAD, STATE = "record.trend", "record.delay", "initial.load", "initial.state"
 ON_BOUND = 1e-6
 """Distance from a bound, as a share of the standard uncertainty or of the range, at which a number is on it."""
@@ -120,7 +120,7 @@ class Free:
         """The searched numbers between which starts are drawn."""
         low, high = self.searched(self.low), self.searched(self.high)
         at = self.searched(self.start)
-        reach = math.log(NEAR_PURE if self.declared.unit == "1" else NEAR) if self.log else 1.0
+        reach = math.log(NEAR_KNOWN if self.declared.unit == "1" or self.name.startswith("body.") else NEAR) if self.log else 1.0
         if self.prior is not None and self.prior.kind != "uniform":
             around = self.searched(self.prior.first)
             wide = 2.0 * self.prior.second
@@ -187,7 +187,8 @@ def _one(name: str, known: tuple[Quantity, float], limits: Any, prior: Prior | N
     if not math.isfinite(value):
         raise InputError(f"infer: {name}: the problem does not say where to begin: give start={{'{name}': VALUE}}")
     log = bool(positive and value > 0.0)
-    low, high = (value / FARTHEST, value * FARTHEST) if log else (-math.inf, math.inf)
+    far = FARTHEST_PURE if declared.unit == "1" else FARTHEST
+    low, high = (value / far, value * far) if log else (-math.inf, math.inf)
     least = next((one for one in (declared.above, declared.at_least) if one is not None), None)
     low = low if least is None else max(low, least)
     if prior is not None and prior.kind == "uniform":
@@ -195,7 +196,7 @@ def _one(name: str, known: tuple[Quantity, float], limits: Any, prior: Prior | N
     if limits is not None:
         low, high = _limits(name, declared, limits)
         if log and low <= 0.0:
-            low = value / FARTHEST if high > value / FARTHEST else high / FARTHEST
+            low = value / far if high > value / far else high / far
         if not low <= value <= high:
             value = math.sqrt(low * high) if log else 0.5 * (low + high)
     scale = _scale(name, value, low, high, prior)

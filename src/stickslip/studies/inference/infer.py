@@ -106,7 +106,8 @@ def infer(
     each : list of str, optional
         What is free for each of these parts: "initial.load" within its noise (default), and "initial.state" of a law that has one.
     bounds : mapping, optional
-        Lower and upper limits by name; default a factor 1e4 to both sides for positive numbers.
+        Lower and upper limits by name; default a factor 1000 to both sides for positive
+        quantities, 30 for pure numbers.
     priors : mapping, optional
         What is known before, by name: "normal(0.6, 0.05)", "lognormal(10 um, 0.5)", with the standard deviation of the logarithm,
         or "uniform(0, 1)".
@@ -115,7 +116,8 @@ def infer(
     loss : {"linear", "soft_l1", "huber", "cauchy"}
         How residuals count: other than linear if some samples lie far off.
     starts : int
-        Number of starts of the search: the given one, and the best of twelve times as many draws. Default 4.
+        Number of starts of the search: the given one, and the best of twelve times as many draws. Default 4. If none of them leads
+        near the record, and this is not 1, a search without derivatives follows.
     held_out : float or str, optional
         Share of the record at its end, or time (text with a unit), that is not fitted but predicted.
     profiles : bool

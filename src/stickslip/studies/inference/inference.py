@@ -25,11 +25,15 @@ from stickslip.studies.inference.certainty import Certainty, Profile
 from stickslip.studies.inference.estimate import Estimate
 from stickslip.studies.inference.free import Free
 from stickslip.studies.inference.model import Model, unit_of
-from stickslip.studies.inference.part import Part
+from stickslip.studies.inference.part import Part, first_sizes
+from stickslip.studies.inference.record import SHEAR
+from stickslip.studies.inference.setup import arrests_in
 from stickslip.studies.study import Study
 
 Floats = NDArray[np.float64]
 
+MISSED = 10.0
+"""Size of residuals, in the noise of neighbouring samples, from which the run is said to miss the record."""
 MANY = 1.5
 """Size of residuals, in the standard deviations that were given, from which they are told to be larger."""
 
@@ -237,6 +241,7 @@ class Inference(Study):
     def _notes(self) -> Iterator[str]:
         if not self.estimate.finished:
             yield "interrupted: these are the best numbers so far"
+        yield from self._misfit()
         yield from self.certainty.notes
         if self.model.every > 1:
             yield f"only each {self.model.every}th sample was fitted"
@@ -255,6 +260,19 @@ class Inference(Study):
             yield f"what was left out is predicted with an error of {self.prediction:.3g} times the noise"
         yield from self.about_samples
         yield from self.about
+
+    def _misfit(self) -> Iterator[str]:
+        """Yield a sentence if what is left is far more than the noise of neighbouring samples: the run does not follow the record."""
+        for name, noise in first_sizes(self.model.parts).items():
+            given = any(name in part.record.deviations for part in self.model.parts)
+            times = self.model.sizes[name] / noise
+            if not given and times > MISSED and self.model.memory.get(name, 0.0) > 0.0:
+                alone = len(self.parts) == 1 and name in SHEAR and len(arrests_in(self.parts[0].record.measured[name])) > 1
+                cure = "; the record has several slip events: fit each from its own rest with parts='rests'" if alone else ""
+                yield (
+                    f"the run misses features of {name}: what is left is {times:.3g} times the noise of neighbouring samples, and "
+                    f"the numbers mean little{cure}"
+                )
 
     @property
     def rows(self) -> list[tuple[str, str, str]]:

@@ -28,9 +28,9 @@ GAP = 20.0
 
 
 class Loading(NamedTuple):
-    """The loading of a run, and sentences on how it follows from the record."""
+    """The pull rate of a run (m/s), a number if it is constant, and sentences on how it follows from the record."""
 
-    history: LoadingHistory
+    rate: LoadingHistory | float
     notes: tuple[str, ...]
 
 
@@ -50,7 +50,8 @@ def loading_of(record: Record) -> Loading | None:
         raise InputError(
             f"{record.name}: the load point has fewer than two numbers: give its rate in the scenario, and leave it out"
         )
-    noise = max(noise_of(values), ROUNDING * float(np.max(np.abs(values - values[0]))), 1e-300)
+    least = max(float(np.max(np.abs(values - values[0]))), 1e-3 * float(np.max(np.abs(values))))
+    noise = max(noise_of(values), ROUNDING * least, 1e-300)
     cuts, coarser = straight_parts(time, values, noise, 0 if is_rate else 1)
     if is_rate:
         middle = 0.5 * (time[np.array(cuts[1:-1], int) - 1] + time[cuts[1:-1]]) if len(cuts) > 2 else np.zeros(0)
@@ -62,8 +63,10 @@ def loading_of(record: Record) -> Loading | None:
     return Loading(_steps(starts, rates), _notes(record, time, rates, coarser, noise))
 
 
-def _steps(starts: Floats, rates: Floats) -> Steps:
+def _steps(starts: Floats, rates: Floats) -> Steps | float:
     changed = np.append(True, np.diff(rates) != 0.0)
+    if changed.sum() == 1:
+        return float(rates[0])
     return Steps(starts[changed].tolist(), rates[changed].tolist())
 
 

@@ -14,7 +14,7 @@ from stickslip.problem.problem import Problem
 from stickslip.run.simulate import simulate
 from stickslip.solution.solution import Solution
 from stickslip.studies.inference.free import DELAY, LOAD, STATE, TREND, Free
-from stickslip.studies.inference.noise import Block, first_value, noise_of, whitened
+from stickslip.studies.inference.noise import Block, whitened
 from stickslip.studies.inference.part import Part, changed
 from stickslip.studies.inference.record import UNITS
 from stickslip.studies.study import uninterrupted
@@ -49,6 +49,10 @@ class Model:
         Time over which residuals of a quantity remember themselves (s), 0 for white noise.
     every
         Each how many-th sample is used.
+    step
+        Step of differences, in searched numbers.
+    smooth
+        Share of the samples over which residuals are averaged, so that an event at another time is felt from afar.
     max_pieces
         Largest number of pieces of a run; a run that needs more has failed.
     """
@@ -60,6 +64,8 @@ class Model:
     sizes: dict[str, float] = field(default_factory=dict)
     memory: dict[str, float] = field(default_factory=dict)
     every: int = 1
+    step: float = STEP
+    smooth: float = 0.0
     max_pieces: int = 20_000
     _last: dict[int, tuple[bytes, Floats]] = field(default_factory=dict)
 
@@ -113,7 +119,7 @@ class Model:
         values = self.parts[part].record.measured[name]
         if name != "slip":
             return values
-        return values - first_value(self.parts[part].record.clock, values, noise_of(values))[0]
+        return np.asarray(values - self.parts[part].first[name][0])
 
     def _deviations(self, part: int, name: str) -> Floats | float:
         given = self.parts[part].record.deviations.get(name)
@@ -136,8 +142,11 @@ class Model:
             curves = self.curves(run, searched, part, self.every)
             pieces = []
             for name, y in wanted.items():
-                rest = (curves[name] - y) / self._deviations(part, name)
-                rest = rest[np.isfinite(y)]
+                scale = np.broadcast_to(self._deviations(part, name), y.shape)
+                known = np.isfinite(y)
+                curve, data = curves[name][known], y[known]
+                rest = (curve - data) / scale[known]
+                rest = averaged(rest, round(self.smooth * len(rest))) if self.smooth else rest
                 pieces.append(np.clip(np.where(np.isfinite(rest), rest, FAILED), -LARGEST, LARGEST))
         return np.concatenate(pieces)
 
@@ -186,7 +195,7 @@ class Model:
             stepped = []
             for side in sides:
                 x = searched.copy()
-                x[column] = min(max(x[column] + side * STEP, lows[column]), highs[column])
+                x[column] = min(max(x[column] + side * self.step, lows[column]), highs[column])
                 stepped.append(x)
             for i in range(len(self.parts)) if one.part is None else (one.part,):
                 by = self._difference(searched, stepped, column, i, base[i])
@@ -234,13 +243,23 @@ class Model:
         return sum(block.rows.stop - block.rows.start for i in range(len(self.parts)) for _, block in self.blocks(i))
 
     def thinned(self, most: int) -> Model:
-        """Return the same model on at most so many samples of each part."""
+        """Return the same model on about so many samples, but no fewer than 200 of the longest part."""
         longest = max(len(part.record) for part in self.parts)
-        return self.with_(every=max(1, -(-longest // most)))
+        return self.with_(every=max(1, -(-longest // max(most // len(self.parts), 200))))
 
     def with_(self, **others: Any) -> Model:
         """Return the model with other settings."""
         return replace(self, **others, _last={})
+
+
+def averaged(rest: Floats, width: int) -> Floats:
+    """Return running means of so many residuals, times the root of their number, so that white noise keeps its size."""
+    if width < 2:
+        return rest
+    sums = np.append(0.0, np.cumsum(np.clip(np.nan_to_num(rest, nan=FAILED), -LARGEST, LARGEST)))
+    ends = np.clip(np.arange(len(rest)) + width // 2 + 1, 0, len(rest))
+    begins = np.clip(np.arange(len(rest)) - (width - 1) // 2, 0, len(rest))
+    return np.asarray((sums[ends] - sums[begins]) / np.sqrt(ends - begins))
 
 
 def unit_of(name: str) -> str:

@@ -14,6 +14,8 @@ GAUSSIAN = 0.6744897501960817
 """Median magnitude of a normal deviate with standard deviation 1."""
 FORGOTTEN = 0.02
 """Correlation of neighbouring samples below which noise counts as white."""
+UNSEEN = 1e-9
+"""Eigenvalue of the normal matrix, whose diagonal is 1, below which a combination is not determined."""
 LONGEST = 0.5
 """Longest time of correlation that is looked for, as a share of the record."""
 
@@ -118,12 +120,14 @@ def _size(residual: Floats, slopes: Floats) -> float:
 def _size_and_determinant(residual: Floats, slopes: Floats) -> tuple[float, float]:
     """Return the size of residuals after a linear fit of the parameters, and the logarithm of the normal matrix's determinant."""
     n, p = slopes.shape
-    if not p:
-        return math.sqrt(float(residual @ residual) / max(n, 1)), 0.0
+    total = float(residual @ residual)
     sizes = np.linalg.norm(slopes, axis=0)
     used = slopes[:, sizes > 0.0] / sizes[sizes > 0.0]
-    basis, _, _ = np.linalg.svd(used, full_matrices=False)
-    rest = residual - basis @ (basis.T @ residual)
-    kept = np.linalg.svd(used, compute_uv=False)
-    log_det = 2.0 * float(np.sum(np.log(np.maximum(kept, 1e-12)))) + 2.0 * float(np.sum(np.log(sizes[sizes > 0.0])))
-    return math.sqrt(float(rest @ rest) / max(n - used.shape[1], 1)), log_det
+    if not used.shape[1]:
+        return math.sqrt(total / max(n, 1)), 0.0
+    spectrum, vectors = np.linalg.eigh(used.T @ used)
+    seen = spectrum > UNSEEN
+    along = vectors[:, seen].T @ (used.T @ residual)
+    taken = float(np.sum(along**2 / spectrum[seen]))
+    log_det = float(np.sum(np.log(np.maximum(spectrum, UNSEEN)))) + 2.0 * float(np.sum(np.log(sizes[sizes > 0.0])))
+    return math.sqrt(max(total - taken, 0.0) / max(n - used.shape[1], 1)), log_det

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -42,7 +43,7 @@ class Part:
     """
 
     record: Record
-    loading: LoadingHistory | None
+    loading: LoadingHistory | float | None
     observed: tuple[str, ...]
     sensor: str = "contact"
     start: str = "problem"
@@ -51,6 +52,14 @@ class Part:
     def duration(self) -> float:
         """The length of the run (s)."""
         return float(self.record.clock[-1])
+
+    @cached_property
+    def first(self) -> dict[str, tuple[float, float]]:
+        """The value of each measured quantity at the first sample, with its standard error (SI)."""
+        found = {}
+        for name, values in self.record.measured.items():
+            found[name] = first_value(self.record.clock, values, noise_of(values))
+        return found
 
     def begun(self, problem: Problem) -> Problem:
         """Return a problem under the loading of this part, with the start that its data give. Raises InputError."""
@@ -72,8 +81,7 @@ class Part:
             raise InputError(
                 f"{self.record.name}: no shear is measured, so that the load at the start is not known: start='problem'"
             )
-        values = self.record.measured[name]
-        value, error = first_value(self.record.clock, values, noise_of(values))
+        value, error = self.first[name]
         return (value * normal, error * normal) if name == "friction" else (value, error)
 
 

@@ -49,7 +49,7 @@ def parts_of(
         begins = "problem" if start is None and begins == "record" and record.shear is None else begins
         if record.clock[-1] <= 0.0:
             raise InputError(f"{record.name}: the record has no duration")
-        found.append(Part(record, None if loading is None else loading.history, observed, sensor, begins))
+        found.append(Part(record, None if loading is None else loading.rate, observed, sensor, begins))
         before = f"{record.name}: " if len(records) > 1 else ""
         said = [*record.notes, *(() if loading is None else loading.notes)]
         if loading is None:
@@ -121,7 +121,7 @@ def at_rests(part: Part) -> list[Part]:
     for first, last in cuts:
         piece = record.part(float(record.time[first]), float(record.time[last - 1]))
         loading = loading_of(piece) if part.loading is not None else None
-        found.append(replace(part, record=piece, loading=None if loading is None else loading.history, start="record"))
+        found.append(replace(part, record=piece, loading=None if loading is None else loading.rate, start="record"))
     return found
 
 

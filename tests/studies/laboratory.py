@@ -1,0 +1,135 @@
+"""Synthetic records of a laboratory, made without the engine: scipy's integrator, and closed forms of Coulomb friction."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+from scipy.signal import lfilter
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class RateAndStateBlock:
+    """A block on a spring under rate-and-state friction, integrated by Radau's method."""
+
+    mass: float = 20.0
+    stiffness: float = 6e7
+    normal: float = 5e4
+    reference: float = 0.62
+    a: float = 0.008
+    b: float = 0.0125
+    distance: float = 15e-6
+    rate: float = 1e-6
+
+    def friction(self, time: Floats, times: Sequence[float], rates: Sequence[float]) -> Floats:
+        """Friction at sample times from steady sliding at the first of several load-point rates, each from a time on."""
+        steady = self.reference + (self.a - self.b) * math.log(rates[0] / self.rate)
+        spring, log_rate, log_state = self.normal * steady, math.log(rates[0]), math.log(self.distance / rates[0])
+        state, found = np.array([spring, log_rate, log_state]), []
+        ends = [*times[1:], float(time[-1])]
+        for i, (begin, end, pull) in enumerate(zip(times, ends, rates, strict=True)):
+            inside = time[(time >= begin) & ((time < end) | (i == len(rates) - 1))]
+            # the spring force (N), ln v and ln theta: m dv/dt = F - S mu, dF/dt = K (V - v)
+            at = np.union1d(inside, end)
+            run = solve_ivp(self._change, (begin, end), state, "Radau", args=(pull,), t_eval=at, rtol=1e-9, atol=1e-10)
+            state = run.y[:, -1]
+            found.append(self._mu(run.y[1], run.y[2])[: len(inside)])
+        return np.concatenate(found)
+
+    def _mu(self, log_rate: Any, log_state: Any) -> Any:
+        exponent = (self.reference + self.b * (math.log(self.rate / self.distance) + log_state)) / self.a
+        return self.a * np.arcsinh(np.exp(log_rate + exponent) / (2.0 * self.rate))
+
+    def _change(self, time: float, y: Floats, pull: float) -> list[float]:
+        spring, log_rate, log_state = y
+        rate = math.exp(log_rate)
+        force = spring - self.normal * self._mu(log_rate, log_state)
+        return [self.stiffness * (pull - rate), force / (self.mass * rate), math.exp(-log_state) - rate / self.distance]
+
+
+def load_point(time: Floats, times: Sequence[float], rates: Sequence[float]) -> Floats:
+    """Displacement of a load point whose rate changes at given times."""
+    moved = np.zeros(len(time))
+    for before, after, at in zip([0.0, *rates[:-1]], rates, times, strict=True):
+        moved += (after - before) * np.maximum(time - at, 0.0)
+    return moved
+
+
+def correlated(count: int, per_sample: float, seed: int) -> Floats:
+    """Noise of standard deviation 1 whose correlation falls by a factor e in so many samples; 0 for white noise."""
+    white = np.random.default_rng(seed).standard_normal(count)
+    if per_sample == 0.0:
+        return white
+    rho = math.exp(-1.0 / per_sample)
+    drive = white * math.sqrt(1.0 - rho**2)
+    drive[0] = white[0]
+    return np.asarray(lfilter([1.0], [1.0, -rho], drive))
+
+
+@dataclass(frozen=True)
+class CoulombBlock:
+    """Stick-slip of a block with static and dynamic Coulomb friction, by the closed form of each slip."""
+
+    mass: float = 2.0
+    stiffness: float = 4e6
+    normal: float = 1e3
+    static: float = 0.65
+    dynamic: float = 0.5
+    pull: float = 1e-3
+
+    def sampled(self, time: Floats, spring: float) -> tuple[Floats, Floats]:
+        """Spring force (N) and slip (m) at sample times, from rest at a spring force."""
+        frequency = math.sqrt(self.stiffness / self.mass)
+        force, slip = np.zeros(len(time)), np.zeros(len(time))
+        at, moved, sticks, load = 0.0, 0.0, True, spring
+        while at < time[-1]:
+            if sticks:
+                lasts = (self.static * self.normal - load) / (self.stiffness * self.pull)
+                inside = (time >= at) & (time <= at + lasts)
+                force[inside], slip[inside] = load + self.stiffness * self.pull * (time[inside] - at), moved
+                load = self.static * self.normal
+            else:
+                # F - Fd = A cos(w t) + B sin(w t), v = V - F'/K, at rest again where v = 0
+                above, sine = load - self.dynamic * self.normal, self.stiffness * self.pull / frequency
+                lasts = 2.0 / frequency * (math.pi - math.atan2(above, sine))
+                inside = (time > at) & (time <= at + lasts)
+                phase = frequency * (time[inside] - at)
+                force[inside] = self.dynamic * self.normal + above * np.cos(phase) + sine * np.sin(phase)
+                slip[inside] = moved + self.pull * (time[inside] - at) - (force[inside] - load) / self.stiffness
+                end = self.dynamic * self.normal + above * math.cos(frequency * lasts) + sine * math.sin(frequency * lasts)
+                moved += self.pull * lasts - (end - load) / self.stiffness
+                load = end
+            at, sticks = at + lasts, not sticks
+        return force, slip
+
+
+@dataclass(frozen=True)
+class CoulombSlab:
+    """One slip event of an elastic slab with static and dynamic Coulomb friction, by the closed form of its waves."""
+
+    density: float = 1180.0
+    wave_speed: float = 1300.0
+    thickness: float = 0.1
+    normal: float = 5e6
+    static: float = 0.6
+    dynamic: float = 0.5
+    pull: float = 1e-3
+
+    def sampled(self, time: Floats, stress: float) -> tuple[Floats, Floats]:
+        """Shear stress at the contact (Pa) and slip (m) at sample times, from rest at a uniform shear stress."""
+        impedance, trip = self.density * self.wave_speed, 2.0 * self.thickness / self.wave_speed
+        rise = self.density * self.wave_speed**2 * self.pull / self.thickness
+        peak, drop = self.static * self.normal, (self.static - self.dynamic) * self.normal
+        since = time - (peak - stress) / rise
+        count, phase = np.floor(since / trip), np.mod(since, trip)
+        after = peak - 2.0 * drop + 2.0 * impedance * self.pull * count - rise * phase
+        shear = np.where(since < 0.0, peak + rise * since, np.where(since < trip, self.dynamic * self.normal, after))
+        slipped = np.clip(since, 0.0, trip)
+        return shear, (drop * slipped + 0.5 * rise * slipped**2) / impedance
