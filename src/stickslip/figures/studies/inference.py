@@ -55,9 +55,10 @@ def data(study: Inference) -> xr.Dataset:
     for name, text in (("data", "measured"), ("model", "best run"), ("residual", "measured minus best run")):
         contents[name] = quantity("sample", table[name].to_numpy(), text, "", unit)
     contents |= _rates(study, begins) | _numbers(study)
+    line = study.scenario.title.partition(", part 1")[0]
     attributes = {
         "notes": "\n".join(study.notes),
-        "title": study.scenario.title.partition(", part 1")[0],
+        "title": line,
         "factor": study.certainty.factor,
     }
     return xr.Dataset(contents, attrs=attributes)

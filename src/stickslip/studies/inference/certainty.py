@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,9 +10,11 @@ from numpy.typing import NDArray
 
 from stickslip.foundation.determined import covariance_of, sizes_and_correlation, undetermined
 from stickslip.foundation.formatting import brief
-from stickslip.studies.inference.estimate import Estimate, Tell, cost_of, weights
+from stickslip.studies.inference.estimate import Estimate
 from stickslip.studies.inference.free import Free
+from stickslip.studies.inference.losses import cost_of, weights
 from stickslip.studies.inference.model import FAILED, Model
+from stickslip.studies.inference.search import Tell
 
 Floats = NDArray[np.float64]
 
@@ -71,7 +72,8 @@ def certainty_of(found: Estimate) -> Certainty:
     from scipy.stats import t as student
 
     model, x = found.model.with_(rtol=min(EXACT, found.model.rtol)), found.searched
-    slopes = model.jacobian(x) * np.sqrt(weights(model.residual(x), found.loss))[:, None]
+    slopes, smooth_notes = _slopes(model, x)
+    slopes *= np.sqrt(weights(model.residual(x), found.loss))[:, None]
     low, high = model.limits
     on_bound = (x - low < AT_BOUND) | (high - x < AT_BOUND)
     norms = np.linalg.norm(slopes, axis=0)
@@ -94,7 +96,7 @@ def certainty_of(found: Estimate) -> Certainty:
         {one: values[one] for one in labels}, sizes, seen_correlation, [[labels[i] for i in one] for one in unseen]
     )
     notes += [text.replace("the points do", "the record does").replace("the points", "the record") for text in texts]
-    notes += _smooth_note(model, x, inner)
+    notes += [text for i, text in smooth_notes.items() if i in inner]
     degrees = max(_independent(model) - len(inner), 1.0)
     return Certainty(covariance, widths, correlation, float(student.ppf(HALF, degrees)), on_bound, tuple(notes), slopes)
 
@@ -105,16 +107,24 @@ def _bound_note(free: Free, value: float, *, at_low: bool) -> str:
     return f"{free.label} lies on the {end} end of {why}, {brief(value, free.declared.unit)}: no value inside fits better"
 
 
-def _smooth_note(model: Model, x: Floats, inner: NDArray[np.intp]) -> Iterator[str]:
-    """Yield a sentence if derivatives to one side differ from those to the other: then the curvature says little."""
-    one_sided, slopes = model.jacobian(x, sides=(1.0,)), model.jacobian(x, sides=(-1.0,))
-    for i in inner.tolist():
-        size = float(np.linalg.norm(slopes[:, i]))
-        if size > 0.0 and float(np.linalg.norm(one_sided[:, i] - slopes[:, i])) > ROUGH * size:
-            yield (
-                f"residuals do not change smoothly with {model.free[i].label}, as where a slip event passes a sample: "
-                "its interval is rough; a profile tells more"
+def _slopes(model: Model, x: Floats) -> tuple[Floats, dict[int, str]]:
+    """Return the derivatives of the residuals, and a sentence for each number with which they do not change smoothly.
+
+    A sample that a jump of the run passes within the step of the differences has no derivative: it counts as 0, so that what such
+    samples tell is left out of the curvature, and intervals are rather too wide.
+    """
+    right, left = model.jacobian(x, sides=(1.0,)), model.jacobian(x, sides=(-1.0,))
+    size, apart = np.maximum(np.abs(right), np.abs(left)), np.abs(right - left)
+    rough = (apart > 0.5 * size) & (size > 1e-3 * np.max(size, axis=0, initial=0.0))
+    notes = {}
+    for i in range(len(x)):
+        total = float(np.linalg.norm(0.5 * (right[:, i] + left[:, i])))
+        if total > 0.0 and float(np.linalg.norm(apart[:, i])) > ROUGH * total:
+            notes[i] = (
+                f"the run does not change smoothly with {model.free[i].label}, as where a slip event passes a sample; "
+                "such samples are left out of its interval, which is rough: a profile tells more"
             )
+    return np.where(rough, 0.0, 0.5 * (right + left)), notes
 
 
 def _independent(model: Model) -> float:

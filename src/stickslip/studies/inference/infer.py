@@ -17,14 +17,16 @@ from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_rtol
 from stickslip.scenarios.source import read_source
 from stickslip.studies.inference.certainty import Profile, certainty_of, profile_of
-from stickslip.studies.inference.estimate import LOSSES, Tell, estimate
+from stickslip.studies.inference.estimate import estimate
 from stickslip.studies.inference.free import read_free, with_scale
 from stickslip.studies.inference.held_out import share_of, shortened
 from stickslip.studies.inference.inference import Inference
+from stickslip.studies.inference.losses import LOSSES
 from stickslip.studies.inference.model import Model
 from stickslip.studies.inference.part import Part, first_sizes
 from stickslip.studies.inference.record import Record
 from stickslip.studies.inference.sampling import sample
+from stickslip.studies.inference.search import Tell
 from stickslip.studies.inference.setup import at_rests, hints_of, own_of, parts_of, scales_of
 from stickslip.studies.study import TextProgress, telling
 

@@ -25,17 +25,11 @@ from stickslip.studies.inference.certainty import Certainty, Profile
 from stickslip.studies.inference.estimate import Estimate
 from stickslip.studies.inference.free import Free
 from stickslip.studies.inference.model import Model, unit_of
-from stickslip.studies.inference.part import Part, first_sizes
-from stickslip.studies.inference.record import SHEAR
-from stickslip.studies.inference.setup import arrests_in
+from stickslip.studies.inference.part import Part
+from stickslip.studies.inference.words import notes_of
 from stickslip.studies.study import Study
 
 Floats = NDArray[np.float64]
-
-MISSED = 10.0
-"""Size of residuals, in the noise of neighbouring samples, from which the run is said to miss the record."""
-MANY = 1.5
-"""Size of residuals, in the standard deviations that were given, from which they are told to be larger."""
 
 
 def _near(value: float, uncertainty: float) -> str:
@@ -236,43 +230,7 @@ class Inference(Study):
     @property
     def notes(self) -> list[str]:
         """What is not determined, and what else to know before the numbers are used, one sentence each."""
-        return list(dict.fromkeys(self._notes()))
-
-    def _notes(self) -> Iterator[str]:
-        if not self.estimate.finished:
-            yield "interrupted: these are the best numbers so far"
-        yield from self._misfit()
-        yield from self.certainty.notes
-        if self.model.every > 1:
-            yield f"only each {self.model.every}th sample was fitted"
-        for x in self.estimate.others:
-            values = [
-                f"{one.label} {brief(v, one.declared.unit, 3)}" for one, v in zip(self.free, self.model.values(x), strict=True)
-            ]
-            yield f"another minimum fits almost as well: {', '.join(values[:8])}; bounds or priors choose between them"
-        for name, memory in self.model.memory.items():
-            if memory > 0.0:
-                yield f"residuals of {name} remember themselves for {brief(memory, 's', 3)}; the intervals allow for it"
-        for name, size in self.model.sizes.items():
-            if size > MANY and any(name in part.record.deviations for part in self.parts):
-                yield f"residuals of {name} are {size:.3g} times the standard deviations given; the intervals allow for it"
-        if self.prediction is not None:
-            yield f"what was left out is predicted with an error of {self.prediction:.3g} times the noise"
-        yield from self.about_samples
-        yield from self.about
-
-    def _misfit(self) -> Iterator[str]:
-        """Yield a sentence if what is left is far more than the noise of neighbouring samples: the run does not follow the record."""
-        for name, noise in first_sizes(self.model.parts).items():
-            given = any(name in part.record.deviations for part in self.model.parts)
-            times = self.model.sizes[name] / noise
-            if not given and times > MISSED and self.model.memory.get(name, 0.0) > 0.0:
-                alone = len(self.parts) == 1 and name in SHEAR and len(arrests_in(self.parts[0].record.measured[name])) > 1
-                cure = "; the record has several slip events: fit each from its own rest with parts='rests'" if alone else ""
-                yield (
-                    f"the run misses features of {name}: what is left is {times:.3g} times the noise of neighbouring samples, and "
-                    f"the numbers mean little{cure}"
-                )
+        return list(dict.fromkeys(notes_of(self)))
 
     @property
     def rows(self) -> list[tuple[str, str, str]]:

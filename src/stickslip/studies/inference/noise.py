@@ -119,7 +119,7 @@ def _size(residual: Floats, slopes: Floats) -> float:
 
 def _size_and_determinant(residual: Floats, slopes: Floats) -> tuple[float, float]:
     """Return the size of residuals after a linear fit of the parameters, and the logarithm of the normal matrix's determinant."""
-    n, p = slopes.shape
+    n = len(residual)
     total = float(residual @ residual)
     sizes = np.linalg.norm(slopes, axis=0)
     used = slopes[:, sizes > 0.0] / sizes[sizes > 0.0]

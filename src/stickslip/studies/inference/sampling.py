@@ -11,8 +11,10 @@ from numpy.typing import NDArray
 
 from stickslip.foundation.errors import InputError
 from stickslip.studies.inference.certainty import Certainty
-from stickslip.studies.inference.estimate import Estimate, Tell, cost_of
+from stickslip.studies.inference.estimate import Estimate
+from stickslip.studies.inference.losses import cost_of
 from stickslip.studies.inference.model import FAILED
+from stickslip.studies.inference.search import Tell
 
 Floats = NDArray[np.float64]
 

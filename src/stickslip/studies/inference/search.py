@@ -1,0 +1,174 @@
+"""Search for the numbers that fit a record best: least squares from several starts, and a search without derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.foundation.errors import InputError
+from stickslip.studies.inference.losses import OUTLYING, cost_of
+from stickslip.studies.inference.model import FAILED, Model
+
+Floats = NDArray[np.float64]
+Tell = Callable[[str], Any]
+
+COMPETES = 20.0
+"""Difference of twice the logarithm of the likelihood below which another minimum competes with the best one."""
+SCREENED = 12
+"""Number of draws of which one start is kept."""
+FIRST = 8
+"""Number of steps after which starts are compared again."""
+FOLLOWED, HOPELESS = 3, 30.0
+"""Number of starts that are followed to their end, and the factor by which the sum of squares of one may be above the least."""
+FAR = 5.0
+"""Size of residuals, in standard deviations, from which a search goes on without derivatives."""
+AVERAGED = (0.1, 0.02, 0.005, 0.0)
+"""Shares of the samples over which residuals are averaged in a search without derivatives, from coarse to fine."""
+GENERATIONS = 60
+"""Largest number of generations of such a search."""
+LIGHT = 2000
+"""Largest number of pieces of a run while starts are compared, unless the run of the first start needs more than a third of it."""
+
+
+@dataclass
+class Best:
+    """The best numbers so far, which are what Ctrl-C leaves."""
+
+    cost: float = np.inf
+    searched: Floats = field(default_factory=lambda: np.zeros(0))
+
+
+def solved(model: Model, start: Floats, loss: str, best: Best | None = None, *, thorough: bool = False, most: int = 40) -> Floats:
+    """Return the searched numbers of least squares that a search from a start finds; a thorough one takes central differences."""
+    from scipy.optimize import least_squares
+
+    low, high = model.limits
+    low, high = np.minimum(low, high - 1e-9), np.maximum(high, low + 1e-9)
+
+    def residual(x: Floats) -> Floats:
+        rest = model.residual(x)
+        cost = float(rest @ rest)
+        if best is not None and cost < best.cost:
+            best.cost, best.searched = cost, x.copy()
+        return rest
+
+    tolerance = 1e-9 if thorough else 1e-4
+    inside = np.clip(start, low + 1e-9 * np.maximum(1.0, np.abs(low)), high - 1e-9 * np.maximum(1.0, np.abs(high)))
+    sides = (1.0, -1.0) if thorough else (1.0,)
+    found = least_squares(
+        residual,
+        np.where(np.isfinite(inside), inside, start),
+        lambda x: model.jacobian(x, sides=sides),
+        (low, high),
+        **{"x_scale": "jac", "loss": loss, "f_scale": OUTLYING, "max_nfev": most},
+        **{"ftol": tolerance, "xtol": 1e-2 * tolerance, "gtol": 1e-12},
+    )
+    return np.asarray(found.x)
+
+
+def light(model: Model) -> Model:
+    """Return the model with runs that end early if they need many more pieces than those where the search begins."""
+    needed = [len(run.history) for i in range(len(model.parts)) if (run := model.solve(model.begin, i)) is not None]
+    return model.with_(max_pieces=min(model.max_pieces, max(LIGHT, 3 * max(needed, default=model.max_pieces))))
+
+
+def searched_minima(model: Model, starts: int, loss: str, seed: int, *, tell: Tell, best: Best) -> list[tuple[float, Floats]]:
+    """Return the minima that searches from several starts reach, best first. Raises InputError if no run succeeds."""
+    begin = model.begin
+    first = _cost(model, begin, loss)
+    candidates = [(first, begin)]
+    if np.isfinite(first):
+        best.cost, best.searched = first, begin
+    if starts > 1 or not np.isfinite(first):
+        drawn = _drawn(model, SCREENED * max(starts - 1, 2), seed)
+        for i, x in enumerate(drawn):
+            tell(f"start {i + 1} of {len(drawn)}")
+            candidates.append((_cost(model, x, loss), x))
+    usable = [one for one in candidates if np.isfinite(one[0])]
+    if not usable:
+        _refuse(model)
+    screened = sorted(usable[1:] if np.isfinite(first) else usable, key=lambda one: one[0])
+    chosen = ([(first, begin)] if np.isfinite(first) else []) + screened[: max(starts - 1, 0) or (0 if np.isfinite(first) else 1)]
+    minima = []
+    for i, (_, x) in enumerate(chosen):
+        tell(f"search {i + 1} of {len(chosen)}")
+        end = solved(model, x, loss, best, most=FIRST)
+        minima.append((_cost(model, end, loss), end))
+    if starts > 1 and min(minima, key=lambda one: one[0])[0] > FAR**2 * model.samples:
+        end = solved(model, _by_evolution(model, seed, tell), loss, best, most=FIRST)
+        minima.append((_cost(model, end, loss), end))
+    minima.sort(key=lambda one: one[0])
+    followed = [one for one in minima[:FOLLOWED] if one[0] < HOPELESS * minima[0][0] + COMPETES]
+    ends = (solved(model, x, loss, best) for _, x in followed)
+    return sorted(((_cost(model, end, loss), end) for end in ends), key=lambda one: one[0])
+
+
+def _by_evolution(model: Model, seed: int, tell: Tell) -> Floats:
+    """Return where a search without derivatives ends: differential evolution (Storn & Price 1997), then simplexes.
+
+    A slip event at another time than in the record tells derivatives nothing. Here residuals are averaged over some time, and count
+    by their logarithm, so that what follows well outweighs what does not follow at all.
+    """
+    from scipy.optimize import differential_evolution, minimize
+
+    def robust(smoothed: Model) -> Callable[[Floats], float]:
+        return lambda x: float(np.log(cost_of(smoothed.residual(np.asarray(x, float)), "cauchy")))
+
+    low, high = model.limits
+    box = [(max(one.near[0], low[i]), min(one.near[1], high[i])) for i, one in enumerate(model.free)]
+    box = [(x - 1.0, x + 1.0) if end - begin <= 0.0 else (begin, end) for (begin, end), x in zip(box, model.begin, strict=True)]
+    count = iter(range(10**9))
+    found = differential_evolution(
+        robust(model.with_(smooth=AVERAGED[0])),
+        box,
+        callback=lambda *_, **__: tell(f"search without derivatives: generation {next(count) + 1} of {GENERATIONS} at most"),
+        **{"maxiter": GENERATIONS, "popsize": 8, "rng": seed, "polish": False, "tol": 1e-3},
+    )
+    x = np.clip(found.x, low, high)
+    for smooth in AVERAGED[1:]:
+        tell(f"search without derivatives: residuals averaged over {smooth:.1%} of the record")
+        simplex = np.clip(x + np.vstack([np.zeros(len(x)), 0.01 * np.eye(len(x))]), low, high)
+        options = {"maxfev": 100 * len(x), "initial_simplex": simplex}
+        x = np.asarray(minimize(robust(model.with_(smooth=smooth)), x, method="Nelder-Mead", options=options).x)
+    return np.asarray(np.clip(x, low, high))
+
+
+def _cost(model: Model, searched: Floats, loss: str) -> float:
+    """Return what is minimised, inf if a run fails."""
+    rest = model.residual(searched)
+    return np.inf if (np.abs(rest) >= FAILED).all() or np.all(np.abs(rest[: len(rest) or 1]) >= FAILED) else cost_of(rest, loss)
+
+
+def _drawn(model: Model, count: int, seed: int) -> list[Floats]:
+    """Return a Latin hypercube of searched numbers around where the search begins; numbers of single parts stay."""
+    from scipy.stats import qmc
+
+    begin, shared = model.begin, [i for i, one in enumerate(model.free) if one.part is None]
+    places = qmc.LatinHypercube(max(len(shared), 1), seed=seed).random(count)
+    drawn = []
+    for row in places:
+        x = begin.copy()
+        for place, i in zip(row, shared, strict=False):
+            low, high = model.free[i].near
+            x[i] = low + place * (high - low)
+        drawn.append(x)
+    return drawn
+
+
+def _refuse(model: Model) -> None:
+    """Raise InputError with the reason why the problem cannot be run at all."""
+    from stickslip.run.simulate import simulate
+
+    for i in range(len(model.parts)):
+        try:
+            problem = model.at(model.begin, i)
+        except InputError as error:
+            raise InputError(f"infer: the problem cannot begin: {str(error).removeprefix('Problem: ')}") from None
+        run = simulate(problem, model.parts[i].duration, model.rtol, max_pieces=model.max_pieces)
+        if not run.status.ok:
+            raise InputError(f"infer: no run reaches the end of the record: {run.status.message}; give other values or bounds")
+    raise InputError("infer: no run gives numbers that can be compared with the record: give other values or bounds")

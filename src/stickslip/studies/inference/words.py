@@ -1,0 +1,57 @@
+"""What to know before the numbers of an inference are used, in sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from stickslip.foundation.formatting import brief
+from stickslip.studies.inference.part import first_sizes
+from stickslip.studies.inference.record import SHEAR
+from stickslip.studies.inference.setup import arrests_in
+
+if TYPE_CHECKING:
+    from stickslip.studies.inference.inference import Inference
+
+MISSED, MISSED_WHITE = 10.0, 2.0
+"""Sizes of residuals, in the noise of neighbouring samples, from which a run misses the record: with memory, and white ones."""
+MANY = 1.5
+"""Size of residuals, in the standard deviations that were given, from which they are told to be larger."""
+
+
+def notes_of(study: Inference) -> Iterator[str]:
+    """Yield sentences on what is not determined, and on what else to know before the numbers are used."""
+    if not study.estimate.finished:
+        yield "interrupted: these are the best numbers so far"
+    yield from _misfit(study)
+    yield from study.certainty.notes
+    if study.model.every > 1:
+        yield f"only each {study.model.every}th sample was fitted"
+    for x in study.estimate.others:
+        values = [f"{one.label} {brief(v, one.declared.unit, 3)}" for one, v in zip(study.free, study.model.values(x), strict=True)]
+        yield f"another minimum fits almost as well: {', '.join(values[:8])}; bounds or priors choose between them"
+    for name, memory in study.model.memory.items():
+        if memory > 0.0:
+            yield f"residuals of {name} remember themselves for {brief(memory, 's', 3)}; the intervals allow for it"
+    for name, size in study.model.sizes.items():
+        if size > MANY and any(name in part.record.deviations for part in study.parts):
+            yield f"residuals of {name} are {size:.3g} times the standard deviations given; the intervals allow for it"
+    if study.prediction is not None:
+        yield f"what was left out is predicted with an error of {study.prediction:.3g} times the noise"
+    yield from study.about_samples
+    yield from study.about
+
+
+def _misfit(study: Inference) -> Iterator[str]:
+    """Yield a sentence if what is left is far more than the noise of neighbouring samples: the run misses the record."""
+    for name, noise in first_sizes(study.model.parts).items():
+        given = any(name in part.record.deviations for part in study.model.parts)
+        times = study.model.sizes[name] / noise
+        allowed = MISSED if study.model.memory.get(name, 0.0) > 0.0 else MISSED_WHITE
+        if not given and times > allowed:
+            alone = len(study.parts) == 1 and name in SHEAR and len(arrests_in(study.parts[0].record.measured[name])) > 1
+            cure = "; the record has several slip events: fit each from its own rest with parts='rests'" if alone else ""
+            yield (
+                f"the run misses features of {name}: what is left is {times:.3g} times the noise of neighbouring samples, and "
+                f"its numbers may mean little{cure}"
+            )

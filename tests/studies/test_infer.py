@@ -1,0 +1,234 @@
+"""Inference from records that scipy's integrator and closed forms have made: the numbers come back within their intervals."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import stickslip as ss
+from stickslip.foundation.netcdf_file import read
+from stickslip.studies.inference.inference import Inference
+from stickslip.studies.inference.loading import loading_of
+from tests.studies.laboratory import CoulombBlock, RateAndStateBlock, correlated, load_point
+
+TIMES, RATES = [0.0, 60.0, 100.0], [1e-6, 1e-5, 1e-6]
+TRUE = RateAndStateBlock()
+TRUTH = {
+    "friction.a": TRUE.a,
+    "friction.b": TRUE.b,
+    "friction.distance": TRUE.distance,
+    "body.stiffness": TRUE.stiffness,
+    "friction.reference": TRUE.reference,
+}
+GUESS = ss.Problem(ss.SpringBlock(20.0, 9e7, 5e4), ss.friction.RateAndState(0.6, 0.01, 0.013, 1e-5), pull_rate=1e-6)
+CLOCK = np.linspace(0.0, 200.0, 1501)
+CLEAN = TRUE.friction(CLOCK, TIMES, RATES)
+STEPS = ss.loading.Steps(TIMES, RATES)
+
+
+def record(noise: float = 2e-4, per_sample: float = 0.0, seed: int = 1) -> pd.DataFrame:
+    moved = load_point(CLOCK, TIMES, RATES)
+    friction = CLEAN + noise * correlated(len(CLOCK), per_sample, seed)
+    return pd.DataFrame({"time (min)": CLOCK / 60.0, "load point (um)": 1e6 * moved, "mu": friction})
+
+
+def inferred(data: Any = None, free: Any = tuple(TRUTH), **options: Any) -> Inference:
+    return ss.studies.infer(GUESS, record() if data is None else data, free, **({"starts": 1} | options))
+
+
+@pytest.fixture(scope="module")
+def found() -> Inference:
+    return inferred(profiles=True, held_out=0.2)
+
+
+def check_holds(study: Inference, truth: dict[str, float], widths: float = 1.5) -> None:
+    """Check that true values are within so many half widths of the intervals of 95 %."""
+    for name, value in truth.items():
+        row = study.table.loc[name]
+        half = 0.5 * (row.high - row.low)
+        assert abs(row.value - value) < widths * half, (name, row.value, value, half)
+
+
+def test_the_engine_and_the_integrator_of_the_record_agree() -> None:
+    law = ss.friction.RateAndState(TRUE.reference, TRUE.a, TRUE.b, TRUE.distance)
+    run = ss.simulate(ss.Problem(ss.SpringBlock(TRUE.mass, TRUE.stiffness, TRUE.normal), law, pull_rate=STEPS), 200.0)
+    assert np.abs(run.traction(CLOCK) / TRUE.normal - CLEAN).max() < 1e-8
+
+
+def test_velocity_steps_give_back_friction_and_stiffness_of_the_machine(found: Inference) -> None:
+    check_holds(found, TRUTH)
+    assert (found.table.uncertainty / found.table.value).max() < 0.02
+    assert found.fit.noise["friction"] == pytest.approx(2e-4, rel=0.05)
+    assert found.prediction == pytest.approx(1.0, abs=0.15)
+    assert found.estimate.finished
+
+
+def test_profiles_of_a_nearly_linear_fit_are_the_intervals_of_its_curvature(found: Inference) -> None:
+    for profile, width, one, x in zip(found.profiles, found.certainty.widths, found.free, found.estimate.searched, strict=True):
+        half = found.certainty.factor * width
+        assert profile.low == pytest.approx(one.natural(x - half), rel=0.15 * half)
+        assert profile.high == pytest.approx(one.natural(x + half), rel=0.15 * half)
+        assert min(profile.rise) == 0.0
+
+
+def test_the_scenario_written_runs_to_the_curve_shown(found: Inference, tmp_path: Path) -> None:
+    run = ss.simulate(found.to_toml(tmp_path / "best.toml"))
+    shown = found.curves
+    assert run.traction(shown.time) / 5e4 == pytest.approx(shown.model.to_numpy(), rel=1e-9)
+
+
+def test_the_file_holds_data_model_numbers_and_where_they_come_from(found: Inference, tmp_path: Path) -> None:
+    stored = read(found.to_netcdf(tmp_path / "a.nc"))
+    assert stored["residual"].values == pytest.approx(stored["data"].values - stored["model"].values, abs=1e-15)
+    assert dict(zip(stored["number"].values, stored["value"].values, strict=True)) == pytest.approx(found.values)
+    assert stored.attrs["scenario"] == found.scenario.to_toml()
+    assert "stickslip" in stored.attrs["source"]
+    assert (stored["fitted"].values == 0).sum() == 300
+
+
+def test_the_figure_shows_record_residual_rate_and_pairs(found: Inference) -> None:
+    figure = found.plot()
+    titles = [axes.get_title() for axes in figure.axes]
+    assert titles[:3] == ["(a)  record and best run", "(b)  residual", "(c)  slip rate of the best run"]
+    assert len(titles) == 3 + 6
+
+
+def test_correlated_noise_is_told_and_widens_the_intervals() -> None:
+    white, memory = inferred(), inferred(record(per_sample=10.0))
+    assert memory.model.memory["friction"] == pytest.approx(10.0 * CLOCK[1], rel=0.3)
+    assert white.model.memory["friction"] == 0.0
+    assert any(note.startswith("residuals of friction remember themselves for 1.") for note in memory.notes)
+    check_holds(memory, TRUTH)
+    slow = ["friction.reference"]  # what changes slowly suffers most from slow noise
+    assert (memory.table.uncertainty / white.table.uncertainty)[slow].min() > 2.5
+
+
+def test_words_say_what_the_record_does_not_determine() -> None:
+    study = inferred(free=[*TRUTH, "friction.rate", "body.mass"])
+    assert "body.mass has no influence on what is fitted: fix it" in study.notes
+    assert "the record does not determine friction.reference and friction.rate separately: fix one of them" in study.notes
+    assert not np.isfinite(study.table.uncertainty[["friction.rate", "friction.reference", "body.mass"]]).any()
+    check_holds(study, {name: TRUTH[name] for name in ("friction.a", "friction.b", "body.stiffness")})
+
+
+def test_a_number_on_a_bound_is_told_and_has_no_interval() -> None:
+    study = inferred(bounds={"b": (0.0128, 0.02)})
+    assert study.table.source["friction.b"] == "bound"
+    assert any(note.startswith("friction.b lies on the lower end of its bounds, 0.0128") for note in study.notes)
+
+
+def test_a_prior_pulls_as_much_as_it_is_sure() -> None:
+    loose = inferred(priors={"a": "normal(0.012, 0.1)"})
+    tight = inferred(priors={"a": "lognormal(0.012, 1e-5)"})
+    assert loose.values["friction.a"] == pytest.approx(TRUE.a, rel=0.02)
+    assert tight.values["friction.a"] == pytest.approx(0.012, rel=1e-3)
+
+
+def test_starts_far_off_lead_to_the_same_numbers() -> None:
+    start = {"a": 0.02, "b": 0.022, "distance": "60 um", "stiffness": 2.5e7}
+    check_holds(inferred(starts=4, begin_at=start), TRUTH)
+
+
+def test_outliers_are_borne_by_a_robust_loss() -> None:
+    data = record()
+    data.loc[::97, "mu"] += 0.02
+    check_holds(inferred(data, loss="soft_l1"), TRUTH, 2.0)
+    assert abs(inferred(data).values["friction.reference"] - TRUE.reference) > 1.5e-4
+
+
+def test_a_trend_and_the_clock_of_the_record_can_be_free() -> None:
+    data = record()
+    moved = load_point(CLOCK, TIMES, RATES)
+    late = np.interp(CLOCK - 1.5, CLOCK, CLEAN)
+    data["mu"] = late + 5.0 * moved + 1e-4 * correlated(len(CLOCK), 0.0, 3)
+    study = inferred(data, [*TRUTH, "record.trend", "record.delay"])
+    assert study.values["record.delay"] == pytest.approx(1.5, abs=0.05)
+    assert study.values["record.trend"] == pytest.approx(5.0, rel=0.05)
+
+
+def test_two_records_share_the_numbers() -> None:
+    one, two = record(seed=1), record(seed=2)
+    alone, both = inferred(one), inferred([one, two])
+    check_holds(both, TRUTH)
+    ratio = both.table.uncertainty / alone.table.uncertainty
+    assert ratio.to_numpy() == pytest.approx(math.sqrt(0.5), rel=0.1)
+
+
+def test_slip_can_be_fitted_beside_friction() -> None:
+    data = record()
+    spring = CLEAN * TRUE.normal / TRUE.stiffness  # slip is what the spring has not taken
+    slip = load_point(CLOCK, TIMES, RATES) - spring + spring[0]
+    data["slip (um)"] = 1e6 * slip + 0.05 * correlated(len(CLOCK), 0.0, 5) + 300.0
+    alone, both = inferred(data, observe="friction"), inferred(data, observe=["friction", "slip"])
+    check_holds(both, TRUTH)
+    assert (both.table.uncertainty <= 1.02 * alone.table.uncertainty).all()
+    assert both.fit.noise["slip"] == pytest.approx(5e-8, rel=0.1)
+
+
+def test_laws_are_ranked_by_what_they_predict() -> None:
+    slip_law = replace(GUESS, friction=replace(GUESS.friction, evolution="slip"))
+    options: dict[str, Any] = {"starts": 1, "held_out": "110 s"}
+    ranked = [ss.studies.infer(one, record(), tuple(TRUTH), **options) for one in (slip_law, GUESS)]
+    table = ss.studies.ranking(*ranked)
+    assert table.prediction.is_monotonic_increasing
+    assert ranked[1].prediction < ranked[0].prediction
+
+
+def test_stick_slip_of_a_block_is_fitted_event_by_event() -> None:
+    true = CoulombBlock()
+    time = np.arange(0.0, 0.3, 1e-4)
+    force, _ = true.sampled(time, 300.0)
+    start = ss.Problem(ss.SpringBlock(1.5, 5e6, 1e3), ss.friction.Coulomb(0.7, 0.4), pull_rate=1e-3, initial_load=300.0)
+    data = {"time (s)": time, "shear force (N)": force + correlated(len(time), 0.0, 0), "load point (m)": 1e-3 * time}
+    free = ["static", "dynamic", "stiffness", "mass"]
+    study = ss.studies.infer(start, data, free, sensor="spring", parts="rests", starts=1)
+    assert len(study.parts) == 4
+    truth = {"friction.static": 0.65, "friction.dynamic": 0.5, "body.stiffness": 4e6, "body.mass": 2.0}
+    check_holds(study, truth, 2.0)
+    whole = ss.studies.infer(start, data, free, sensor="spring", starts=1)
+    assert "parts='rests'" in whole.notes[0]
+
+
+def test_a_load_point_of_a_million_samples_with_noise_a_gap_and_a_jump_is_followed() -> None:
+    time = np.linspace(0.0, 1000.0, 200_001)
+    moved = load_point(time, [0.0, 300.0, 400.0], [1e-6, 1e-5, 1e-6]) + 5e-5 * (time > 700.0)
+    noisy = moved + 1e-7 * correlated(len(time), 0.0, 0)
+    keep = (time < 500.0) | (time > 560.0)
+    read_in = ss.studies.Record.read({"time (s)": time[keep], "load point (m)": noisy[keep], "mu": 0.6 + 0.0 * time[keep]})
+    loading: Any = loading_of(read_in)
+    segments = np.array(loading.rate.segments)
+    ends = np.append(segments[1:, 0], 1000.0)
+    at = np.append(0.0, np.cumsum(segments[:, 1] * (ends - segments[:, 0])))
+    assert np.abs(np.interp(time, np.append(segments[:, 0], 1000.0), at) - moved).max() < 6e-7 or len(segments) > 4
+    assert at[-1] == pytest.approx(moved[-1] - moved[0], abs=2e-7)
+    assert len(segments) < 20
+    assert "1 gap" in loading.notes[1]
+
+
+def test_ctrl_c_leaves_the_best_numbers_so_far(monkeypatch: pytest.MonkeyPatch) -> None:
+    module, calls = import_module("stickslip.studies.inference.model"), []
+    original = module.simulate
+
+    def stops(*args: Any, **options: Any) -> Any:
+        calls.append(1)
+        if len(calls) > 25:
+            raise KeyboardInterrupt
+        return original(*args, **options)
+
+    monkeypatch.setattr(module, "simulate", stops)
+    model = import_module("stickslip.studies.inference.infer")
+    monkeypatch.setattr(model, "certainty_of", lambda found: calls.clear() or original_certainty(found))
+    study = inferred()
+    assert not study.estimate.finished
+    assert study.notes[0] == "interrupted: these are the best numbers so far"
+    assert study.values["friction.reference"] == pytest.approx(0.62, rel=0.05)
+
+
+original_certainty = import_module("stickslip.studies.inference.certainty").certainty_of

@@ -1,0 +1,133 @@
+"""Records as they come from laboratories: one line with the cure, or a note in the answer, and never a number from nonsense."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import stickslip as ss
+from tests.studies.laboratory import correlated, load_point
+
+CLOCK = np.linspace(0.0, 100.0, 401)
+MOVED = load_point(CLOCK, [0.0, 50.0], [1e-6, 1e-5])
+FRICTION = 0.6 + 1e-3 * np.tanh(CLOCK - 50.0) + 1e-4 * correlated(len(CLOCK), 0.0, 0)
+GUESS = ss.Problem(ss.SpringBlock(20.0, 1e8, 5e4), ss.friction.RateAndState(0.6, 0.01, 0.009, 1e-5), pull_rate=1e-6)
+SLAB = ss.Problem(
+    ss.ElasticSlab(2700, 3000, 1.0, 5e6),
+    ss.friction.RateAndState(0.6, 0.01, 0.009, 1e-5),
+    **{"pull_rate": 1e-6, "initial_load": 3e6, "initial_state": 10.0},
+)
+GOOD = {"time (s)": CLOCK, "load point (m)": MOVED, "friction": FRICTION}
+Record = ss.studies.Record
+
+
+def stick_slip(moved: Any) -> dict[str, Any]:
+    saw = 0.6 - 0.1 * ((CLOCK / 20.0) % 1.0 < 0.02) + 1e-3 * (CLOCK % 20.0)
+    return {"time (s)": CLOCK, "load point (m)": moved, "friction": saw}
+
+
+REFUSED: list[tuple[Any, dict[str, Any], str]] = [
+    ({"load point (m)": MOVED, "friction": FRICTION}, {}, "record: no column 'time'"),
+    ({"time (s)": CLOCK, "load point (m)": MOVED}, {}, "record: nothing measured"),
+    ({"time (s)": CLOCK, "tau (N)": FRICTION}, {}, "record, column 2: the unit in the heading does not convert to Pa"),
+    ({**GOOD, "friction": 100.0 * FRICTION}, {}, "record: friction is 60 in the median: is a stress in N, or friction in percent?"),
+    ({"time (s)": CLOCK, "tau (Pa)": 3e6 * FRICTION, "load point (m)": MOVED}, {}, "record: the loads of a block are forces (N)"),
+    ({**GOOD, "slip (m)": MOVED}, {}, "record: load_point and slip are the same numbers"),
+    (stick_slip(1e-6 * CLOCK + 1e-4 * np.floor(CLOCK / 20.0)), {}, "record: load_point looks like slip"),
+    ({**GOOD, "friction": np.full(len(CLOCK), np.nan)}, {}, "record: friction has no number in any row"),
+    ({name: values[:3] for name, values in GOOD.items()}, {"free": ["a", "b", "distance"]}, "infer: 3 samples cannot determine 3 "),
+    ({**GOOD, "time (s)": 0.0 * CLOCK}, {}, "record: all rows have one time, 0 s"),
+    (GOOD, {"begin": 1000.0}, "record: fewer than two samples in the part that is asked for; the record goes from 0 to 100 s"),
+    (GOOD, {"observe": "slip"}, "infer: observe: the record has no slip"),
+    (GOOD, {"free": ["frictoin.a"]}, "infer: free: frictoin.a"),
+    (GOOD, {"free": ["a", "a"]}, "infer: free: friction.a is named twice"),
+    (GOOD, {"free": []}, "infer: free must name at least one number"),
+    (GOOD, {"bounds": {"a": (0.02, 0.01)}}, "infer: bounds: friction.a: the first must be smaller"),
+    (GOOD, {"priors": {"a": "gauss(0.01, 0.1)"}}, 'infer: priors: friction.a must be like "normal(0.6, 0.05)"'),
+    (GOOD, {"loss": "l1"}, "infer: loss 'l1' is unknown"),
+    (GOOD, {"parts": "rests"}, "record: no drop of friction stands out of its noise"),
+    (GOOD, {"sensor": "sprnig"}, "infer: sensor 'sprnig' is unknown; did you mean 'spring'?"),
+    (GOOD, {"held_out": 2.0}, "infer: held_out must be a share between 0 and 1"),
+    (GOOD, {"strats": 3}, "infer: there is no option 'strats'; did you mean 'starts'?"),
+    (GOOD, {"start": "stuck"}, "infer: start 'stuck' is unknown"),
+    ("no.csv", {}, "no.csv: no such file"),
+    (3.0, {}, "infer: record must be a CSV file"),
+]
+
+
+@pytest.mark.parametrize(("data", "options", "message"), REFUSED, ids=[message[:50] for _, _, message in REFUSED])
+def test_what_cannot_be_used_is_refused_in_one_line_with_the_cure(data: Any, options: dict[str, Any], message: str) -> None:
+    options = {"starts": 1} | options
+    with pytest.raises(ss.InputError) as caught:
+        ss.studies.infer(GUESS, data, options.pop("free", ["a"]), **options)
+    assert str(caught.value).startswith(message), caught.value
+    assert "\n" not in str(caught.value)
+
+
+def test_force_on_a_slab_and_its_sensor_are_refused() -> None:
+    force = {"time (s)": CLOCK, "shear force (N)": 3e4 * FRICTION, "load point (m)": MOVED}
+    with pytest.raises(ss.InputError, match="the loads of a slab are stresses"):
+        ss.studies.infer(SLAB, force, ["a"])
+    with pytest.raises(ss.InputError, match="a slab has none"):
+        ss.studies.infer(SLAB, GOOD, ["a"], sensor="spring")
+
+
+def test_rows_in_disorder_repeated_and_without_numbers_are_put_right_and_told() -> None:
+    table = pd.DataFrame(GOOD)
+    table.loc[7, "friction"] = np.nan
+    table.loc[9, "time (s)"] = np.nan
+    messy = pd.concat([table.iloc[200:], table.iloc[:201]])
+    read = Record.read(messy)
+    assert len(read) == 400
+    assert (np.diff(read.time) > 0.0).all()
+    assert read.notes == (
+        "1 rows without a time are left out",
+        "friction has no number in 1 of 401 rows: they are left out",
+        "the rows were not in the order of time: they were sorted",
+        "1 rows repeat a time: their mean was taken",
+    )
+
+
+def test_shear_of_the_wrong_sign_is_turned_and_told() -> None:
+    read = Record.read({**GOOD, "friction": -FRICTION})
+    assert read.measured["friction"] == pytest.approx(FRICTION)
+    assert read.notes == ("friction is negative while the machine moves forwards: its sign was turned",)
+
+
+def test_a_saturated_sensor_is_left_out_and_told() -> None:
+    read = Record.read({**GOOD, "friction": np.where((CLOCK > 60.0) & (CLOCK < 65.0), 0.7, FRICTION)})
+    assert np.isnan(read.measured["friction"]).sum() == 19
+    assert "the sensor was saturated there" in read.notes[0]
+
+
+def test_values_in_steps_of_the_digitiser_are_no_saturation() -> None:
+    read = Record.read({**GOOD, "friction": np.round(FRICTION, 3)})
+    assert read.notes == ()
+
+
+def test_notes_before_the_headings_synonyms_and_units_are_understood(tmp_path: Any) -> None:
+    lines = ["Acquisition 4.2", "operator: A", "", "Time (min);Load point displacement (mm);tau (MPa);sigma n (MPa);v (um/s)"]
+    lines += [f"{t / 60};{1e3 * x};{5 * mu};5;1" for t, x, mu in zip(CLOCK, MOVED, FRICTION, strict=True)]
+    path = tmp_path / "a.csv"
+    path.write_text("\n".join(lines))
+    read = Record.read(path)
+    assert read.measured["friction"] == pytest.approx(FRICTION, rel=1e-12)
+    assert read.load_point == pytest.approx(MOVED, rel=1e-12)
+    assert read.measured["slip_rate"] == pytest.approx(1e-6)
+    assert read.clock == pytest.approx(CLOCK)
+
+
+def test_given_standard_deviations_weigh_and_are_doubted_if_too_small() -> None:
+    options: dict[str, Any] = {"starts": 1}
+    data = {**GOOD, "standard deviation": np.full(len(CLOCK), 1e-5)}
+    study = ss.studies.infer(GUESS, data, ["reference"], **options)
+    assert any("times the standard deviations given" in note for note in study.notes)
+
+
+def test_a_run_that_cannot_begin_is_told_with_the_reason() -> None:
+    hold = {**GOOD, "load point (m)": np.maximum(MOVED - 2e-5, 0.0)}
+    with pytest.raises(ss.InputError, match="steadily"):
+        ss.studies.infer(GUESS, hold, ["a"], starts=1)
