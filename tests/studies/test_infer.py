@@ -95,9 +95,10 @@ def test_the_file_holds_data_model_numbers_and_where_they_come_from(found: Infer
 
 def test_the_figure_shows_record_residual_rate_and_pairs(found: Inference) -> None:
     figure = found.plot()
-    titles = [axes.get_title() for axes in figure.axes]
+    titles = [axes.get_title(loc="left") for axes in figure.axes]
     assert titles[:3] == ["(a)  record and best run", "(b)  residual", "(c)  slip rate of the best run"]
     assert len(titles) == 3 + 6
+    assert "samples" not in found.to_dataset()
 
 
 def test_correlated_noise_is_told_and_widens_the_intervals() -> None:

@@ -75,9 +75,8 @@ def certainty_of(found: Estimate) -> Certainty:
     slopes, smooth_notes = _slopes(model, x)
     slopes *= np.sqrt(weights(model.residual(x), found.loss))[:, None]
     low, high = model.limits
-    on_bound = (x - low < AT_BOUND) | (high - x < AT_BOUND)
-    norms = np.linalg.norm(slopes, axis=0)
-    idle = ~on_bound & (norms < IDLE)
+    idle = np.linalg.norm(slopes, axis=0) < IDLE
+    on_bound = ~idle & ((x - low < AT_BOUND) | (high - x < AT_BOUND))
     inner = np.flatnonzero(~on_bound & ~idle)
     covariance = np.zeros((len(x), len(x)))
     part, unseen = covariance_of(slopes[:, inner], 1.0, UNSEEN) if len(inner) else (np.zeros((0, 0)), [])

@@ -24,7 +24,7 @@ from stickslip.solution.solution import Solution
 from stickslip.studies.inference.certainty import Certainty, Profile
 from stickslip.studies.inference.estimate import Estimate
 from stickslip.studies.inference.free import Free
-from stickslip.studies.inference.model import Model, unit_of
+from stickslip.studies.inference.model import OF_NO_ZERO, Model, unit_of
 from stickslip.studies.inference.part import Part
 from stickslip.studies.inference.words import notes_of
 from stickslip.studies.study import Study
@@ -191,6 +191,7 @@ class Inference(Study):
             clock = self.parts[i].record.clock
             for name, model in self._whole.curves(run, self.estimate.searched, i).items():
                 data = self._whole.data(i, name)
+                data = data + np.nanmean((model - data)[clock <= self._fitted_until(i)]) if name in OF_NO_ZERO else data
                 columns = {"part": i, "time": clock, "quantity": name, "data": data, "model": model, "residual": data - model}
                 pieces.append(pd.DataFrame(columns | {"fitted": clock <= self._fitted_until(i)}))
         return pd.concat(pieces, ignore_index=True)

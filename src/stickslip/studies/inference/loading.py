@@ -60,6 +60,7 @@ def loading_of(record: Record) -> Loading | None:
     else:
         at, heights = _joined(time, values, _knots(time, values, cuts, coarser * noise))
         rates, starts = np.diff(heights) / np.diff(at), np.append(0.0, at[1:-1])
+        rates[np.abs(np.diff(heights)) < coarser * noise] = 0.0  # at rest, as far as can be told
     return Loading(_steps(starts, rates), _notes(record, time, rates, coarser, noise))
 
 

@@ -21,6 +21,8 @@ from stickslip.studies.study import uninterrupted
 
 Floats = NDArray[np.float64]
 
+OF_NO_ZERO = ("slip",)
+"""Quantities that a sensor measures from a zero of its own: the mean of their residual is taken away."""
 FAILED = 1e5
 """Residual, in standard deviations, that stands for a run that failed."""
 LARGEST = 1e7
@@ -117,9 +119,7 @@ class Model:
     def data(self, part: int, name: str) -> Floats:
         """Return the measured values of a quantity in a part (SI); slip is counted from the first sample."""
         values = self.parts[part].record.measured[name]
-        if name != "slip":
-            return values
-        return np.asarray(values - self.parts[part].first[name][0])
+        return np.asarray(values - self.parts[part].first[name][0]) if name in OF_NO_ZERO else values
 
     def _deviations(self, part: int, name: str) -> Floats | float:
         given = self.parts[part].record.deviations.get(name)
@@ -145,7 +145,8 @@ class Model:
                 scale = np.broadcast_to(self._deviations(part, name), y.shape)
                 known = np.isfinite(y)
                 curve, data = curves[name][known], y[known]
-                rest = (curve - data) / scale[known]
+                rest = curve - data
+                rest = (rest - np.mean(rest) if name in OF_NO_ZERO else rest) / scale[known]
                 rest = averaged(rest, round(self.smooth * len(rest))) if self.smooth else rest
                 pieces.append(np.clip(np.where(np.isfinite(rest), rest, FAILED), -LARGEST, LARGEST))
         return np.concatenate(pieces)

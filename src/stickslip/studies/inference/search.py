@@ -57,11 +57,12 @@ def solved(model: Model, start: Floats, loss: str, best: Best | None = None, *, 
         return rest
 
     tolerance = 1e-9 if thorough else 1e-4
-    inside = np.clip(start, low + 1e-9 * np.maximum(1.0, np.abs(low)), high - 1e-9 * np.maximum(1.0, np.abs(high)))
+    room = 1e-9 * np.maximum(1.0, np.abs(start))
+    inside = np.clip(start, np.minimum(low + room, high), np.maximum(high - room, low))
     sides = (1.0, -1.0) if thorough else (1.0,)
     found = least_squares(
         residual,
-        np.where(np.isfinite(inside), inside, start),
+        inside,
         lambda x: model.jacobian(x, sides=sides),
         (low, high),
         **{"x_scale": "jac", "loss": loss, "f_scale": OUTLYING, "max_nfev": most},
