@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief
 from stickslip.loading import LoadingHistory, Steps
-from stickslip.studies.inference.noise import noise_of
+from stickslip.studies.inference.noise import noise_of, rounding_of
 from stickslip.studies.inference.record import Record
 
 Floats = NDArray[np.float64]
@@ -21,8 +21,8 @@ MOST_PARTS = 2000
 """Largest number of straight parts; a record that needs more is approximated more coarsely."""
 SURE = 5.0
 """Number of standard deviations by which the mean of some samples may differ from a straight part."""
-ROUNDING = 1e-9
-"""Smallest noise that is assumed, as a share of the range of the displacement."""
+ROUNDING = 1e-7
+"""Smallest noise that is assumed, as a share of the range of the displacement: no sensor and no clock is better."""
 GAP = 20.0
 """Factor by which the time between two samples is longer than usual if there is a gap between them."""
 
@@ -51,7 +51,7 @@ def loading_of(record: Record) -> Loading | None:
             f"{record.name}: the load point has fewer than two numbers: give its rate in the scenario, and leave it out"
         )
     least = max(float(np.max(np.abs(values - values[0]))), 1e-3 * float(np.max(np.abs(values))))
-    noise = max(noise_of(values), ROUNDING * least, 1e-300)
+    noise = max(noise_of(values), rounding_of(values), ROUNDING * least, 1e-300)
     cuts, coarser = straight_parts(time, values, noise, 0 if is_rate else 1)
     if is_rate:
         middle = 0.5 * (time[np.array(cuts[1:-1], int) - 1] + time[cuts[1:-1]]) if len(cuts) > 2 else np.zeros(0)

@@ -30,6 +30,17 @@ def noise_of(values: Floats) -> float:
     return size if size > 0.0 else float(np.sqrt(np.mean(bends**2) / 6.0))
 
 
+def rounding_of(values: Floats) -> float:
+    """Return half the step of a digitiser, or of the last digit that was written, if numbers change by multiples of one; else 0."""
+    known = values[np.isfinite(values)]
+    if len(known) < 3:
+        return 0.0
+    bends = np.abs(known[2:] - 2.0 * known[1:-1] + known[:-2])
+    exact = 16.0 * float(np.max(np.abs(known))) * float(np.finfo(float).eps)
+    bends = bends[bends > exact]
+    return 0.5 * float(bends.min()) if len(bends) > max(10, 0.02 * len(known)) else 0.0
+
+
 def first_value(time: Floats, values: Floats, noise: float) -> tuple[float, float]:
     """Return the value at the first time, and its standard error, from a line through as many samples as it fits to the noise."""
     known = np.isfinite(values)
