@@ -17,16 +17,16 @@ import stickslip as ss
 body = ss.SpringBlock(mass="20 kg", stiffness="60 kN/mm", normal_force="50 kN")
 law = ss.friction.RateAndState(reference=0.62, a=0.008, b=0.0095, distance="15 um")
 holds = ss.loading.HoldAndSlide(slide=1e-5, slide_time=50.0, hold_times=[10.0, 30.0, 100.0])
-run = ss.simulate(ss.Problem(body, law, pull_rate=holds), "290 s")
+run = ss.simulate(ss.Problem(body, law, pull_rate=holds), "340 s")
 
 # The record: the rate of the load point, which is 0 in the holds, and friction with noise.
 
-time = np.arange(0.0, 290.0, 0.1)
+time = np.arange(0.0, 340.0, 0.1)
 friction = run.traction(time) / 50e3 + 3e-4 * np.random.default_rng(4).standard_normal(len(time))
 record = {"time (s)": time, "load rate (m/s)": holds.at(time), "friction": friction}
 
 # %%
-# Two laws with the same parameters are fitted up to the end of the second hold. The third hold, with its peak, is predicted.
+# Two evolutions of the state are fitted to the first two holds and their peaks. The third hold and its peak are predicted.
 
 guess = replace(law, a=0.01, b=0.012, distance="10 um", reference=0.6)
 free = ["a", "b", "distance", "reference"]

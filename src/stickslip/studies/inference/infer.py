@@ -12,7 +12,8 @@ import pandas as pd
 from stickslip.foundation.arguments import check_whole, shown
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.foundation.quantities import Quantity
+from stickslip.foundation.quantities import Choice, Quantity, fields_of
+from stickslip.friction.law import FrictionLaw
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_rtol
 from stickslip.scenarios.source import read_source
@@ -247,6 +248,12 @@ def ranking(*found: Inference) -> pd.DataFrame:
         if one.prediction is None:
             raise InputError("ranking: nothing was left out to be predicted: give held_out=0.3 to infer")
         errors = [one.errors(least, fitted=fitted) for fitted in (True, False)]
-        rows.append((one.model.problem.friction.kind, len(one.model.free), *errors, one.bic))
+        rows.append((_called(one.model.problem.friction), len(one.model.free), *errors, one.bic))
     table = pd.DataFrame(rows, columns=["law", "free", "fit", "prediction", "bic"])
     return table.sort_values("prediction", ignore_index=True)
+
+
+def _called(law: FrictionLaw) -> str:
+    """Return the kind of a law with its choices, such as "rate-and-state, ageing"."""
+    chosen = (str(getattr(law, name)) for name, (declared, _) in fields_of(type(law)).items() if isinstance(declared, Choice))
+    return ", ".join([law.kind, *chosen])

@@ -38,6 +38,8 @@ LONE = 10.0
 """Factor by which such a run is longer than other runs of equal samples."""
 BACKWARD = 0.9
 """Share of shear stresses below 0 from which the sign of a record is turned."""
+FALLING = 0.7
+"""Share of its fast samples in which shear drops, from which a load point is slip."""
 HIGHEST, LOWEST = 3.0, 1e-3
 """Friction coefficients beyond which a record is refused, or doubted."""
 
@@ -191,8 +193,9 @@ class Record:
         change, step, lasting = change[known], step[known], np.diff(self.time)[known]
         noise = max(noise_of(self.measured[shear]), 1e-9 * float(np.nanmax(np.abs(self.measured[shear]))))
         falls = change < -10.0 * noise
-        usual = float(np.median(step / lasting))
-        if 2 <= falls.sum() < 0.2 * len(change) and np.median(step[falls] / lasting[falls]) > 10.0 * max(usual, 0.0) > 0.0:
+        rate = step / lasting
+        fast = rate > 10.0 * max(float(np.median(rate)), 0.0)
+        if 2 <= fast.sum() < 0.2 * len(rate) and float(np.mean(falls[fast])) > FALLING:
             why = "it jumps where the shear stress drops, as slip does and a driven load point does not"
             raise InputError(f"{self.name}: load_point looks like slip: {why}; call the column slip, and give the load rate")
 
