@@ -39,6 +39,7 @@ COMMANDS = [
     "show",
     "export",
     "fit",
+    "infer",
     "compare",
     "sweep",
     "analogy",

@@ -1,0 +1,78 @@
+"""The command infer: what it shows and writes, and what it refuses."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import stickslip as ss
+from tests.studies.laboratory import RateAndStateBlock, correlated, load_point
+
+TIMES, RATES = [0.0, 60.0, 100.0], [1e-6, 1e-5, 1e-6]
+FREE = "a,b,distance,stiffness,reference"
+
+
+@pytest.fixture(autouse=True)
+def _record(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    clock = np.linspace(0.0, 200.0, 801)
+    friction = RateAndStateBlock().friction(clock, TIMES, RATES) + 2e-4 * correlated(len(clock), 0.0, 1)
+    table = {"time (s)": clock, "load point (um)": 1e6 * load_point(clock, TIMES, RATES), "mu": friction}
+    pd.DataFrame(table).to_csv("data.csv", index=False)
+
+
+def test_infer_shows_numbers_and_writes_what_was_asked_for(command, tmp_path: Path):
+    files = ["--out", "a.nc", "--scenario-out", "best.toml", "--figure", "a.png"]
+    shown = command("infer", "velocity-steps-block", "data.csv", "--free", FREE, "--starts", "1", *files)
+    assert shown.code == 0, shown.err
+    assert "5 numbers from 801 samples, noise: friction 0.000" in shown.out
+    assert "friction.distance" in shown.out
+    assert all((tmp_path / name).stat().st_size > 1000 for name in ("a.nc", "best.toml", "a.png"))
+    assert ss.load_scenario("best.toml").problem.friction.a == pytest.approx(0.008, rel=0.05)
+
+
+def test_infer_compares_scenarios_by_what_they_predict(command):
+    Path("other.toml").write_text(ss.load_scenario("velocity-steps-block").to_toml().replace('"ageing"', '"slip"'))
+    options = ["--free", FREE, "--held-out", "105 s", "--starts", "1", "--compare", "other.toml"]
+    shown = command("infer", "velocity-steps-block", "data.csv", *options)
+    assert shown.code == 0, shown.err
+    assert shown.out.index("rate-and-state, ageing") < shown.out.index("rate-and-state, slip")
+
+
+def test_priors_bounds_and_begins_are_read(command):
+    known = ["--prior", "a=normal(0.008, 0.0001)", "--bound", "b=0.01..0.02", "--begin-at", "distance=12 um"]
+    shown = command(
+        "infer", "velocity-steps-block", "data.csv", "--free", FREE, "--from", "20 s", "--to", "180", "--starts", "1", *known
+    )
+    assert shown.code == 0, shown.err
+    assert "5 numbers from 641 samples" in shown.out
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--free", "alpha"], "infer: free: 'alpha' is no number of this problem"),
+        (["--free", "a", "--bound", "a=1"], "infer: --bound must be NAME=LOW..HIGH"),
+        (["--free", "a", "--prior", "a"], "infer: --prior must be NAME=VALUE"),
+        (["--free", "a", "--out", "a.txt"], "--out a.txt: the name must end in .nc or .csv"),
+        (["--free", "a", "--parts", "events"], "infer: parts must be 'rests' or left out, got 'events'"),
+        (["--free", "a", "--from", "1 kg"], "infer: begin must be"),
+        ([], "infer: --free is missing"),
+    ],
+)
+def test_what_cannot_be_used_is_one_line(command, options, message):
+    shown = command("infer", "velocity-steps-block", "data.csv", *options)
+    assert shown.code == 2
+    assert shown.err.startswith(f"stickslip: {message}"), shown.err
+    assert shown.err.count("\n") == 1
+
+
+def test_compare_needs_a_part_that_is_left_out(command):
+    shown = command(
+        "infer", "velocity-steps-block", "data.csv", "--free", "a", "--starts", "1", "--compare", "velocity-steps-block"
+    )
+    assert shown.code == 2
+    assert "--compare needs --held-out" in shown.err
