@@ -133,3 +133,40 @@ class CoulombSlab:
         shear = np.where(since < 0.0, peak + rise * since, np.where(since < trip, self.dynamic * self.normal, after))
         slipped = np.clip(since, 0.0, trip)
         return shear, (drop * slipped + 0.5 * rise * slipped**2) / impedance
+
+
+@dataclass(frozen=True)
+class WeakeningSlab:
+    """An elastic slab under linear slip weakening: Heun's method on a grid that divides the two-way travel time."""
+
+    density: float = 1180.0
+    wave_speed: float = 1300.0
+    thickness: float = 0.1
+    normal: float = 5e6
+    static: float = 0.6
+    dynamic: float = 0.5
+    distance: float = 2e-5
+    pull: float = 1e-3
+    steps: int = 1000
+
+    def run(self, stress: float, duration: float) -> tuple[Floats, Floats, Floats]:
+        """Times (s), shear stress at the contact (Pa) and slip (m), from rest at a uniform shear stress."""
+        impedance, trip = self.density * self.wave_speed, 2.0 * self.thickness / self.wave_speed
+        step, count = trip / self.steps, int(duration / trip * self.steps) + 2
+        rise = self.density * self.wave_speed**2 * self.pull / self.thickness
+        load, rate, slip, shear = np.zeros(count), np.zeros(count), np.zeros(count), np.zeros(count)
+        load[: self.steps] = stress + rise * step * np.arange(min(self.steps, count))
+        for i in range(count):
+            if i >= self.steps:
+                load[i] = load[i - self.steps] + 2.0 * impedance * (self.pull - rate[i - self.steps])
+            if i:
+                ahead = max(load[i] - self._strength(slip[i - 1] + step * rate[i - 1]), 0.0) / impedance
+                slip[i] = slip[i - 1] + 0.5 * step * (rate[i - 1] + ahead)
+            strength = self._strength(slip[i])
+            rate[i] = max(load[i] - strength, 0.0) / impedance
+            shear[i] = min(load[i], strength)
+        return step * np.arange(count), shear, slip
+
+    def _strength(self, slip: float) -> float:
+        fallen = min(slip / self.distance, 1.0)
+        return self.normal * (self.static + (self.dynamic - self.static) * fallen)

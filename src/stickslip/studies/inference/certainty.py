@@ -109,8 +109,8 @@ def _bound_note(free: Free, value: float, *, at_low: bool) -> str:
 def _slopes(model: Model, x: Floats) -> tuple[Floats, dict[int, str]]:
     """Return the derivatives of the residuals, and a sentence for each number with which they do not change smoothly.
 
-    A sample that a jump of the run passes within the step of the differences has no derivative: it counts as 0, so that what such
-    samples tell is left out of the curvature, and intervals are rather too wide.
+    A sample that a jump of the run passes within the step of the differences has no derivative with respect to any number: its row
+    is 0, so that what such samples tell is left out of the curvature, and intervals are rather too wide.
     """
     right, left = model.jacobian(x, sides=(1.0,)), model.jacobian(x, sides=(-1.0,))
     size, apart = np.maximum(np.abs(right), np.abs(left)), np.abs(right - left)
@@ -123,7 +123,7 @@ def _slopes(model: Model, x: Floats) -> tuple[Floats, dict[int, str]]:
                 f"the run does not change smoothly with {model.free[i].label}, as where a slip event passes a sample; "
                 "such samples are left out of its interval, which is rough: a profile tells more"
             )
-    return np.where(rough, 0.0, 0.5 * (right + left)), notes
+    return np.where(rough.any(axis=1)[:, None], 0.0, 0.5 * (right + left)), notes
 
 
 def _independent(model: Model) -> float:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from stickslip.foundation.formatting import brief
 from stickslip.studies.inference.part import first_sizes
 from stickslip.studies.inference.record import SHEAR
@@ -51,7 +53,16 @@ def _misfit(study: Inference) -> Iterator[str]:
         if not given and times > allowed:
             alone = len(study.parts) == 1 and name in SHEAR and len(arrests_in(study.parts[0].record.measured[name])) > 1
             cure = "; the record has several slip events: fit each from its own rest with parts='rests'" if alone else ""
+            if not cure and _never_slips(study, name):
+                cure = "; the record has a slip event, the run has none: begin with numbers, or give bounds, with which it slips in time"
             yield (
                 f"the run misses features of {name}: what is left is {times:.3g} times the noise of neighbouring samples, and "
                 f"its numbers may mean little{cure}"
             )
+
+
+def _never_slips(study: Inference, name: str) -> bool:
+    """Return True if shear drops in a record as in a slip event, and nothing of the kind happens in its run."""
+    shown = study.curves[study.curves.quantity == name]
+    drops = name in SHEAR and any(len(arrests_in(part.record.measured[name])) > 0 for part in study.parts)
+    return drops and float(np.ptp(shown.model)) < 0.5 * float(np.nanmax(shown.data) - np.nanmin(shown.data))
