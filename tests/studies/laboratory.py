@@ -111,31 +111,6 @@ class CoulombBlock:
 
 
 @dataclass(frozen=True)
-class CoulombSlab:
-    """One slip event of an elastic slab with static and dynamic Coulomb friction, by the closed form of its waves."""
-
-    density: float = 1180.0
-    wave_speed: float = 1300.0
-    thickness: float = 0.1
-    normal: float = 5e6
-    static: float = 0.6
-    dynamic: float = 0.5
-    pull: float = 1e-3
-
-    def sampled(self, time: Floats, stress: float) -> tuple[Floats, Floats]:
-        """Shear stress at the contact (Pa) and slip (m) at sample times, from rest at a uniform shear stress."""
-        impedance, trip = self.density * self.wave_speed, 2.0 * self.thickness / self.wave_speed
-        rise = self.density * self.wave_speed**2 * self.pull / self.thickness
-        peak, drop = self.static * self.normal, (self.static - self.dynamic) * self.normal
-        since = time - (peak - stress) / rise
-        count, phase = np.floor(since / trip), np.mod(since, trip)
-        after = peak - 2.0 * drop + 2.0 * impedance * self.pull * count - rise * phase
-        shear = np.where(since < 0.0, peak + rise * since, np.where(since < trip, self.dynamic * self.normal, after))
-        slipped = np.clip(since, 0.0, trip)
-        return shear, (drop * slipped + 0.5 * rise * slipped**2) / impedance
-
-
-@dataclass(frozen=True)
 class WeakeningSlab:
     """An elastic slab under linear slip weakening: Heun's method on a grid that divides the two-way travel time."""
 

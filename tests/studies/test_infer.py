@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
@@ -16,7 +17,7 @@ import stickslip as ss
 from stickslip.foundation.netcdf_file import read
 from stickslip.studies.inference.inference import Inference
 from stickslip.studies.inference.loading import loading_of
-from tests.studies.laboratory import CoulombBlock, RateAndStateBlock, correlated, load_point
+from tests.studies.laboratory import CoulombBlock, RateAndStateBlock, WeakeningSlab, correlated, load_point
 
 TIMES, RATES = [0.0, 60.0, 100.0], [1e-6, 1e-5, 1e-6]
 TRUE = RateAndStateBlock()
@@ -234,3 +235,47 @@ def test_ctrl_c_leaves_the_best_numbers_so_far(monkeypatch: pytest.MonkeyPatch) 
 
 
 original_certainty = import_module("stickslip.studies.inference.certainty").certainty_of
+
+
+@pytest.mark.slow
+def test_thickness_and_impedance_of_a_laboratory_slab_come_out_of_one_slip_event() -> None:
+    """Only impedance and travel time act on the contact: with the wave speed known, density and thickness follow to 1 %."""
+    true, stress = WeakeningSlab(), 2.9e6
+    clock, shear, slip = true.run(stress, 5.7e-3)
+    slab = ss.ElasticSlab(1200.0, true.wave_speed, 0.101, true.normal)
+    law = ss.friction.LinearSlipWeakening(0.6005, 0.49, 2.2e-5)
+    guess = ss.Problem(slab, law, pull_rate=true.pull, initial_load=stress)
+    same = replace(guess, body=replace(slab, density=true.density, thickness=true.thickness))
+    run = ss.simulate(replace(same, friction=ss.friction.LinearSlipWeakening(0.6, 0.5, 2e-5)), 5.7e-3)
+    at = clock[clock <= 5.7e-3]
+    assert np.abs(run.slip(at) - slip[: len(at)]).max() < 1e-9  # of 3.6e-5 m
+    time = np.unique(np.concatenate([np.linspace(0.0, 4.9e-3, 200), np.arange(4.9e-3, 5.7e-3, 2e-6)]))
+    noise = [correlated(len(time), 0.0, seed) for seed in (1, 2)]
+    data = {"time (s)": time, "tau (Pa)": np.interp(time, clock, shear) + 2e3 * noise[0], "load rate (m/s)": true.pull + 0.0 * time}
+    data["slip (m)"] = np.interp(time, clock, slip) + 5e-8 * noise[1]
+    free = ["static", "dynamic", "distance", "thickness", "density", "initial.load"]
+    bounds = {"initial.load": (2.89e6, 2.91e6)}
+    study = ss.studies.infer(guess, data, free, observe="shear_stress,slip", starts=2, bounds=bounds)
+    assert study.values["body.thickness"] == pytest.approx(0.1, rel=0.01)
+    assert study.values["body.density"] == pytest.approx(1180.0, rel=0.01)
+    assert study.values["friction.distance"] == pytest.approx(2e-5, rel=0.02)
+    assert study.values["friction.static"] == pytest.approx(0.6, rel=1e-3)
+
+
+def test_posterior_samples_have_the_intervals_of_the_curvature() -> None:
+    pytest.importorskip("emcee")
+    free = ("friction.a", "friction.reference")
+    study = inferred(free=free, samples=800)
+    assert study.samples is not None
+    assert len(study.samples) == 800
+    spread = study.samples.std().to_numpy()
+    assert spread == pytest.approx(study.table.uncertainty.to_numpy(), rel=0.3)
+    assert set(study.table.source) == {"samples"}
+    assert "800 samples" in study.about_samples[0]
+    assert len(study.plot().axes) == 4
+
+
+def test_samples_without_emcee_are_refused_with_the_way_to_install_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "emcee", None)
+    with pytest.raises(ss.InputError, match=r"samples need emcee: pip install 'stickslip\[infer\]'"):
+        inferred(samples=100)

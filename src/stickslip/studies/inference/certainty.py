@@ -94,7 +94,9 @@ def certainty_of(found: Estimate) -> Certainty:
     texts = undetermined(
         {one: values[one] for one in labels}, sizes, seen_correlation, [[labels[i] for i in one] for one in unseen]
     )
-    notes += [text.replace("the points do", "the record does").replace("the points", "the record") for text in texts]
+    notes += [
+        text.replace("the points do", "the record does").replace("the points determine", "the record determines") for text in texts
+    ]
     notes += [text for i, text in smooth_notes.items() if i in inner]
     degrees = max(_independent(model) - len(inner), 1.0)
     return Certainty(covariance, widths, correlation, float(student.ppf(HALF, degrees)), on_bound, tuple(notes), slopes)

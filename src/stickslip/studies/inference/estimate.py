@@ -10,13 +10,15 @@ from numpy.typing import NDArray
 from stickslip.studies.inference.losses import cost_of
 from stickslip.studies.inference.model import Model
 from stickslip.studies.inference.noise import GAUSSIAN, Block, memory_of
-from stickslip.studies.inference.search import COMPETES, Best, Tell, light, searched_minima, solved
+from stickslip.studies.inference.search import COMPETES, Best, Tell, is_rough, light, polished, searched_minima, solved
 
 Floats = NDArray[np.float64]
 
 FEW = 1500
 """Number of samples of a part with which starts are compared and followed."""
 
+ROUGH = 1.2
+"""Size of residuals, in the noise of neighbouring samples, from which a best fit is searched once more without derivatives."""
 ROUNDS = 4
 """Largest number of times that noise and numbers are estimated in turn."""
 SETTLED = 0.05
@@ -63,6 +65,12 @@ def estimate(model: Model, starts: int, loss: str, seed: int, tell: Tell) -> Est
         searched = minima[0][1]
         best.cost, best.searched = np.inf, searched
         found = _with_noise(model, searched, loss, tell, best)
+        misses = any(size > ROUGH * model.sizes[name] for name, size in found.model.sizes.items())
+        if starts > 1 and misses and is_rough(found.model, found.searched):
+            tell("polishing without derivatives")
+            better = polished(found.model, found.searched, loss)
+            if found.cost(better) < found.cost(found.searched) - COMPETES:
+                found = _with_noise(model, better, loss, tell, best)
         return replace(found, others=_competing(found.model, found.searched, [x for _, x in minima[1:]], thin.every))
     except KeyboardInterrupt:
         if not len(best.searched):

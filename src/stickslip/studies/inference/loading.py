@@ -23,6 +23,8 @@ SURE = 5.0
 """Number of standard deviations by which the mean of some samples may differ from a straight part."""
 ROUNDING = 1e-7
 """Smallest noise that is assumed, as a share of the range of the displacement: no sensor and no clock is better."""
+MANY_GAPS = 0.05
+"""Share of the samples from which gaps are how the record was sampled."""
 GAP = 20.0
 """Factor by which the time between two samples is longer than usual if there is a gap between them."""
 
@@ -79,7 +81,7 @@ def _notes(record: Record, time: Floats, rates: Floats, coarser: float, noise: f
     found = [f"the {what} of the load point is followed in {parts}, within {within}"]
     steps = np.diff(time)
     gaps = int((steps > GAP * float(np.median(steps))).sum())
-    if gaps:
+    if 0 < gaps < MANY_GAPS * len(steps):
         found.append(f"the load point has {gaps} gap{'s' if gaps > 1 else ''}, over which its rate is taken as constant")
     return tuple(found)
 

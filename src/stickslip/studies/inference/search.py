@@ -71,6 +71,26 @@ def solved(model: Model, start: Floats, loss: str, best: Best | None = None, *, 
     return np.asarray(found.x)
 
 
+def is_rough(model: Model, x: Floats) -> bool:
+    """Return True if derivatives of residuals to one side differ from those to the other, as where a jump passes a sample."""
+    right, left = model.jacobian(x, sides=(1.0,)), model.jacobian(x, sides=(-1.0,))
+    size = np.linalg.norm(right + left, axis=0)
+    return bool((np.linalg.norm(right - left, axis=0) > 0.2 * size).any())
+
+
+def polished(model: Model, start: Floats, loss: str) -> Floats:
+    """Return where simplexes of falling size end that begin at a best fit: derivatives stop where a jump passes a sample."""
+    from scipy.optimize import minimize
+
+    low, high = model.limits
+    x = start
+    for size in (3e-3, 1e-3, 3e-4):
+        simplex = np.clip(x + np.vstack([np.zeros(len(x)), size * np.eye(len(x))]), low, high)
+        options = {"maxfev": 150 * len(x), "initial_simplex": simplex, "adaptive": True}
+        x = np.clip(minimize(lambda y: cost_of(model.residual(y), loss), x, method="Nelder-Mead", options=options).x, low, high)
+    return np.asarray(x)
+
+
 def light(model: Model) -> Model:
     """Return the model with runs that end early if they need many more pieces than those where the search begins."""
     needed = [len(run.history) for i in range(len(model.parts)) if (run := model.solve(model.begin, i)) is not None]

@@ -54,7 +54,7 @@ def _misfit(study: Inference) -> Iterator[str]:
             alone = len(study.parts) == 1 and name in SHEAR and len(arrests_in(study.parts[0].record.measured[name])) > 1
             cure = "; the record has several slip events: fit each from its own rest with parts='rests'" if alone else ""
             if not cure and _never_slips(study, name):
-                cure = "; the record has a slip event, the run has none: begin with numbers, or give bounds, with which it slips in time"
+                cure = "; the record has a slip event, the run has none: begin, or give bounds, with numbers with which it slips"
             yield (
                 f"the run misses features of {name}: what is left is {times:.3g} times the noise of neighbouring samples, and "
                 f"its numbers may mean little{cure}"
