@@ -191,10 +191,16 @@ class Inference(Study):
             clock = self.parts[i].record.clock
             for name, model in self._whole.curves(run, self.estimate.searched, i).items():
                 data = self._whole.data(i, name)
-                data = data + np.nanmean((model - data)[clock <= self._fitted_until(i)]) if name in OF_NO_ZERO else data
+                data = data + self._zero(model - data, clock <= self._fitted_until(i)) if name in OF_NO_ZERO else data
                 columns = {"part": i, "time": clock, "quantity": name, "data": data, "model": model, "residual": data - model}
                 pieces.append(pd.DataFrame(columns | {"fitted": clock <= self._fitted_until(i)}))
         return pd.concat(pieces, ignore_index=True)
+
+    @staticmethod
+    def _zero(apart: Floats, fitted: NDArray[np.bool_]) -> float:
+        """Return the zero of a sensor: the mean difference of the run from the samples fitted, or from all if none were."""
+        known = np.isfinite(apart)
+        return float(np.mean(apart[known & fitted if (known & fitted).any() else known]))
 
     def errors(self, sizes: Mapping[str, float], *, fitted: bool) -> float:
         """Return the root mean square residual of what was fitted, or left out, in given sizes of noise by quantity (SI)."""
