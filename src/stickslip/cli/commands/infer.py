@@ -14,7 +14,7 @@ from stickslip.foundation.errors import InputError
 if TYPE_CHECKING:
     from stickslip.studies.inference.inference import Inference
 
-FREE = 'The numbers to find, with commas: "friction.a,friction.b,body.stiffness".'
+FREE = 'The numbers to find, with commas: "a,b,body.stiffness".'
 START = "How the run begins: steady, record (load of the first samples) or problem."
 PRIOR = 'What is known before: "friction.a=normal(0.01, 0.002)"; lognormal and uniform too.'
 BOUND = 'Limits of a number: "friction.a=0.001..0.1".'
@@ -71,11 +71,11 @@ def infer(
     For points of friction against slip or slip rate see `stickslip fit`.
 
     \b
-      stickslip infer velocity-steps-block data.csv --free a,b,distance,stiffness
-      stickslip infer mine.toml data.csv --free a,b --prior "a=normal(0.01, 0.002)"
+      stickslip infer velocity-steps-block data.csv --free a,b,stiffness
+      stickslip infer mine.toml data.csv --free a --prior "a=normal(0.01, 0.002)"
       stickslip infer mine.toml data.csv --free static,dynamic --parts rests
-      stickslip infer mine.toml data.csv --free a,b --held-out 0.3 --compare other.toml
-      stickslip infer mine.toml data.csv --free a,b -o a.nc --scenario-out best.toml
+      stickslip infer a.toml data.csv --free a,b --held-out 0.3 --compare b.toml
+      stickslip infer mine.toml data.csv --free a,b --scenario-out best.toml
 
     After Ctrl-C the command shows and saves the best numbers so far.
 

@@ -34,6 +34,8 @@ from stickslip.studies.study import TextProgress, telling
 if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario
 
+MOST_FITTED = 100_000
+"""Largest number of samples of a part that are fitted: of more, each second, third and so on."""
 MOST_SAMPLES = 1_000_000
 """Largest number of posterior samples."""
 TIME = Quantity("s", "time of the record")
@@ -197,6 +199,7 @@ def _model(problem: Problem, parts: list[Part], names: Sequence[str] | str, wish
     own = own_of(problem, parts, wishes.each) if wishes.parts == "rests" else []
     own = [one for one in own if one.name not in {shared.name for shared in chosen}]
     model = Model(problem, tuple(parts), (*chosen, *own), wishes.rtol, first_sizes(parts))
+    model = model.thinned(MOST_FITTED) if max(len(part.record) for part in parts) > MOST_FITTED else model
     if model.samples <= len(chosen):
         raise InputError(f"infer: {model.samples} samples cannot determine {len(chosen)} numbers: free fewer of them")
     return model
