@@ -188,6 +188,31 @@ def reversing_axis(names: Names) -> None:
     close(names["work"], found.y[3, 2] - found.y[3, 0], 1e-6)  # a sum over 20001 places
 
 
+@check
+def fit_velocity_steps(names: Names) -> None:
+    """The numbers with which the record was made are within 4 standard uncertainties, and the memory of its noise is 2 s."""
+    table = names["found"].table
+    truth = np.array([0.008, 0.0125, 15e-6, 60e6, 0.62])
+    assert (np.abs(table.value - truth) < 4.0 * table.uncertainty).all()
+    close(names["found"].model.memory["friction"], 1.95, 0.35)
+
+
+@check
+def fit_slide_hold_slide(names: Names) -> None:
+    """The ageing law, which made the record, predicts the third hold to the noise; the slip law does not."""
+    ageing, slip = names["tried"]
+    close(ageing.prediction, 1.0, 0.15)
+    assert slip.prediction > 2.0
+
+
+@check
+def fit_stick_slip(names: Names) -> None:
+    """Both frictions, stiffness and mass of the record come out."""
+    values = names["found"].values
+    close([values["friction.static"], values["friction.dynamic"], values["body.stiffness"]], [0.65, 0.5, 4e6], 2e-3)
+    close(values["body.mass"], 2.0, 0.03)
+
+
 @pytest.fixture(autouse=True)
 def _own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.chdir(tmp_path)
