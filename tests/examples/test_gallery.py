@@ -213,6 +213,16 @@ def fit_stick_slip(names: Names) -> None:
     close(values["body.mass"], 2.0, 0.03)
 
 
+@check
+def fit_rocks(names: Names) -> None:
+    """Basalt is neutral to the rate and sepiolite strengthens, as published; a and b of basalt go together."""
+    basalt, sepiolite = (names["found"][rock] for rock in ("basalt", "sepiolite"))
+    assert abs(basalt.values["friction.a"] - basalt.values["friction.b"]) < 1e-3
+    assert basalt.certainty.correlation[0, 1] > 0.9
+    close(sepiolite.values["friction.a"] - sepiolite.values["friction.b"], 0.006, 0.2)
+    close(sepiolite.values["friction.distance"], 170e-6, 0.2)
+
+
 @pytest.fixture(autouse=True)
 def _own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.chdir(tmp_path)

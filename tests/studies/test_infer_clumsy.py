@@ -51,7 +51,6 @@ REFUSED: list[tuple[Any, dict[str, Any], str]] = [
     (GOOD, {"parts": "rests"}, "record: no drop of friction stands out of its noise"),
     (GOOD, {"sensor": "sprnig"}, "infer: sensor 'sprnig' is unknown; did you mean 'spring'?"),
     (GOOD, {"held_out": 2.0}, "infer: held_out must be a share between 0 and 1"),
-    (GOOD, {"strats": 3}, "infer: there is no option 'strats'; did you mean 'starts'?"),
     (GOOD, {"start": "stuck"}, "infer: start 'stuck' is unknown"),
     ("no.csv", {}, "no.csv: no such file"),
     (3.0, {}, "infer: record must be a CSV file"),
@@ -131,3 +130,9 @@ def test_a_run_that_cannot_begin_is_told_with_the_reason() -> None:
     hold = {**GOOD, "load point (m)": np.maximum(MOVED - 2e-5, 0.0)}
     with pytest.raises(ss.InputError, match="steadily"):
         ss.studies.infer(GUESS, hold, ["a"], starts=1)
+
+
+def test_columns_that_are_not_understood_are_told_where_there_is_no_load_point() -> None:
+    record = ss.studies.Record.read({"time": [0.0, 1.0, 2.0], "mu": [0.6, 0.61, 0.62], "Displ (um)": [0.0, 1.0, 2.0]})
+    (note,) = record.notes
+    assert note.startswith("columns that were not understood: 'Displ (um)'; the displacement of the machine is called load_point")

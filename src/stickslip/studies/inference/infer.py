@@ -47,21 +47,21 @@ RTOL = 1e-8
 class Wishes:
     """The options of `infer`, where they are described."""
 
-    observe: Sequence[str] | str | None = None
-    start: str | None = None
-    sensor: str = "contact"
-    parts: str | None = None
-    each: Sequence[str] | None = None
-    bounds: Mapping[str, Any] | None = None
-    priors: Mapping[str, Any] | None = None
-    begin_at: Mapping[str, Any] | None = None
-    loss: str = "linear"
-    starts: int = 4
-    held_out: float | str | WithUnit | None = None
-    profiles: bool = False
-    samples: int = 0
-    seed: int = 0
-    rtol: float = RTOL
+    observe: Sequence[str] | str | None
+    start: str | None
+    sensor: str
+    parts: str | None
+    each: Sequence[str] | None
+    held_out: float | str | WithUnit | None
+    profiles: bool
+    samples: int
+    bounds: Mapping[str, Any] | None
+    priors: Mapping[str, Any] | None
+    begin_at: Mapping[str, Any] | None
+    loss: str
+    starts: int
+    seed: int
+    rtol: float
 
     def check(self) -> None:
         """Raise InputError for options that are out of range."""
@@ -82,7 +82,21 @@ def infer(
     begin: float | str | WithUnit | None = None,
     end: float | str | WithUnit | None = None,
     progress: TextProgress | bool | None = None,
-    **options: Any,
+    observe: Sequence[str] | str | None = None,
+    start: str | None = None,
+    sensor: str = "contact",
+    parts: str | None = None,
+    each: Sequence[str] | None = None,
+    bounds: Mapping[str, Any] | None = None,
+    priors: Mapping[str, Any] | None = None,
+    begin_at: Mapping[str, Any] | None = None,
+    loss: str = "linear",
+    starts: int = 4,
+    held_out: float | str | WithUnit | None = None,
+    profiles: bool = False,
+    samples: int = 0,
+    seed: int = 0,
+    rtol: float = RTOL,
 ) -> Inference:
     """Find the numbers of a problem with which its run follows a laboratory record, and how well the record determines them.
 
@@ -153,7 +167,11 @@ def infer(
     its size and, by restricted maximum likelihood, the time over which it remembers itself, with which residuals are then
     whitened (generalised least squares). Intervals are of 95 %.
     """
-    wishes = _wishes(options)
+    wishes = Wishes(
+        observe=observe, start=start, sensor=sensor, parts=parts, each=each, held_out=held_out, profiles=profiles, samples=samples,
+        bounds=bounds, priors=priors, begin_at=begin_at, loss=loss, starts=starts, seed=seed, rtol=rtol,
+    )  # fmt: skip
+    wishes.check()
     source = read_source("infer", problem)
     given = source if isinstance(source, Problem) else source.problem
     records = _records(record, _time(begin, "begin"), _time(end, "end"))
@@ -166,17 +184,6 @@ def infer(
     model = _model(given, fitted, free, wishes)
     with telling(progress, "infer") as tell:
         return _inferred(model, tuple(whole), wishes, notes, tell)
-
-
-def _wishes(options: Mapping[str, Any]) -> Wishes:
-    """Return the options as a record of them. Raises InputError for an unknown one."""
-    known = Wishes.__dataclass_fields__
-    for name in options:
-        if name not in known:
-            raise InputError(f"infer: there is no option {ascii(name)[:40]}; {nearest(name, known)}")
-    wishes = Wishes(**options)
-    wishes.check()
-    return wishes
 
 
 def _time(value: Any, name: str) -> float | None:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from stickslip.foundation.arguments import as_path, shown
 from stickslip.foundation.atomic_write import read_bounded
-from stickslip.foundation.columns import Table, missing, read_mapping, read_text
+from stickslip.foundation.columns import Table, find, missing, read_mapping, read_text
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief
 from stickslip.studies.inference.noise import noise_of
@@ -104,7 +104,7 @@ class Record:
         found, place = dict(table.columns), table.place
         if "time" not in found:
             raise InputError(f"{table.at_header or place}: no column 'time'; {missing(table.header, 'time')}")
-        notes: list[str] = []
+        notes = _not_understood(table)
         ordered = _in_order(found, place, notes)
         time = ordered.pop("time")
         _take_ratio(ordered, "shear_stress", "normal_stress")
@@ -274,6 +274,17 @@ def _means(values: Floats, first: NDArray[np.intp]) -> Floats:
     count = np.add.reduceat(known.astype(float), first)
     with np.errstate(invalid="ignore"):
         return np.asarray(np.add.reduceat(np.where(known, values, 0.0), first) / count)
+
+
+def _not_understood(table: Table) -> list[str]:
+    """Return a sentence on columns that are passed over, if one of them may be the load point."""
+    chosen = find(table.header, WANTED, table.place)
+    used = {place for place, _ in chosen.values()}
+    others = [shown(heading) for i, heading in enumerate(table.header) if i not in used]
+    if not others or set(LOADING) & set(chosen):
+        return []
+    cure = "the displacement of the machine is called load_point, and its rate load_rate"
+    return [f"columns that were not understood: {', '.join(others[:6])}; {cure}"]
 
 
 def _table_in(source: Any) -> Table:
