@@ -20,7 +20,7 @@ LAYERS = (
     ("bodies", "engine", "loading"),
     ("problem",),
     ("contact", "reference"),
-    ("engine_input",),
+    ("engine_input", "schemes"),
     ("scenarios", "trajectory"),
     ("creep", "observables"),
     ("solution",),
@@ -57,6 +57,14 @@ ROOMS = {
     "sweeps": (("design",), ("execution",), ("results",), ("sweep",), ("estimate", "refine")),
     "figures": (("names", "style"), ("sheet",), ("panels",), ("contact", "runs", "sweeps"), ("studies",)),
     "explorer": (("extra", "model"), ("page",), ("server", "static"), ("notebook",)),
+    "schemes": (
+        ("contract",),
+        ("series",),
+        ("contact", "finite_elements"),
+        ("central_differences", "characteristics", "newmark", "sbp", "theta"),
+        ("regularised",),
+        ("registry", "run"),
+    ),
     "reference": (("rate_and_state",), ("block", "slab"), ("method_of_steps",)),
     "cli": (
         ("output", "overrides", "installation"),

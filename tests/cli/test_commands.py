@@ -45,6 +45,8 @@ COMMANDS = [
     "analogy",
     "ensemble",
     "regularise",
+    "schemes",
+    "benchmark",
     "paper",
     "doctor",
 ]

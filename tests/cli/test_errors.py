@@ -15,7 +15,7 @@ BAD = template("slab").replace("thickness =", "thicknes =")
 FOUR_KEYS = [word for name in ("alpha", "static", "dynamic", "thickness") for word in ("-v", f"{name}=0.1,0.2")]
 CASES = [
     (["rn"], "there is no command 'rn'; did you mean 'run'?"),
-    (["frobnicate"], "there is no command 'frobnicate'; allowed: analogy, check, compare, doctor, ensemble, explore, export,"),
+    (["frobnicate"], "there is no command 'frobnicate'; allowed: analogy, benchmark, check, compare, doctor, ensemble, explore,"),
     (["fig6-slab"], "'fig6-slab' is a scenario, not a command: did you mean `stickslip run fig6-slab` or `stickslip check fig6-"),
     (["run"], "run: nothing to run: give a SCENARIO, or --resume FILE"),
     (["run", "fig6-slab", "--figur", "a.png"], "run: there is no option --figur; did you mean '--figure'? `stickslip run --help`"),
@@ -147,6 +147,11 @@ CASES = [
     (["export", "fig6-slab", "a.txt", "-r", "0"], "sampling rate must be a positive number of samples a second, got 0.0"),
     (["export", "second-event-maxwell", "a.txt"], "1.51e+12 samples are too many: use a lower rate, or a single event"),
     (["export", "fig6-slab", "a.txt", "--event", "1"], "window: no event 1: the run has 1, 0 to 0"),
+    (["benchmark", "get", "lop"], "benchmark: there is no problem 'lop'; did you mean 'loop'?"),
+    (["benchmark", "gte"], "benchmark: there is nothing called 'gte'; did you mean 'get'?"),
+    (["benchmark", "judge"], "benchmark: judge needs a file"),
+    (["schemes", "fig4-loop", "--nx", "20;50"], "schemes: --nx must be whole numbers separated by commas"),
+    (["schemes", "fig4-loop", "--scheme", "hth"], "schemes: there is no scheme 'hth'; did you mean 'hht'?"),
     (["regularise", "fig4-lop"], "fig4-lop: no such file, and no bundled scenario of that name; did you mean 'fig4-loop'?"),
     (["regularise", "fig6-block-printed"], "regularise: a block has inertia, which makes its slip rate unique"),
     (["regularise", "cycles-slab"], "regularise: a contact_mass of"),

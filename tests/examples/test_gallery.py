@@ -223,6 +223,20 @@ def fit_rocks(names: Names) -> None:
     close(sepiolite.values["friction.distance"], 170e-6, 0.2)
 
 
+@check
+def trust_a_scheme(names: Names) -> None:
+    """Characteristics follow the minimal rule; backward Euler stops where its effective impedance says, on every mesh."""
+    table = names["study"].table
+    assert table.rule[table.scheme == "characteristics"].tolist() == ["minimal"] * 3
+    assert table.rule[table.scheme == "backward-euler"].tolist() == ["none"] * 3
+    run = names["study"].own
+    time = np.linspace(2.5, 5.2, 20_001)
+    inertia = (math.sqrt(1.0 + 1.0 / 3.0) - 1.0) * 9.8e6  # Courant number 1/2
+    expected = time[run.load(time) + inertia * run.slip_rate(time) < 80e6][0]
+    late = table.arrest[table.scheme == "backward-euler"].to_numpy(float) - expected
+    assert (np.abs(late) < 2.0 * table.step[table.scheme == "backward-euler"]).all()
+
+
 @pytest.fixture(autouse=True)
 def _own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.chdir(tmp_path)

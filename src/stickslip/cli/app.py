@@ -11,6 +11,7 @@ from typing import Annotated, Any
 import typer
 
 from stickslip.cli.commands.analogy import analogy
+from stickslip.cli.commands.benchmark import benchmark
 from stickslip.cli.commands.check import check
 from stickslip.cli.commands.compare import compare
 from stickslip.cli.commands.doctor import doctor
@@ -23,6 +24,7 @@ from stickslip.cli.commands.new import new
 from stickslip.cli.commands.paper import paper
 from stickslip.cli.commands.regularise import regularise
 from stickslip.cli.commands.run import run
+from stickslip.cli.commands.schemes import schemes
 from stickslip.cli.commands.show import show
 from stickslip.cli.commands.sweep import sweep
 from stickslip.cli.options import CHOICES
@@ -99,7 +101,8 @@ What happens at a frictional contact once inertia and waves matter: how it slips
 GROUPS: dict[str, tuple[Callable[..., None], ...]] = {
     "A scenario and its run": (new, check, run, show, export, explore),
     "Measured friction": (fit, infer),
-    "Questions that need many runs": (compare, sweep, analogy, ensemble, regularise),
+    "Questions that need many runs": (compare, sweep, analogy, ensemble, regularise, schemes),
+    "For other programs": (benchmark,),
     "The source paper": (paper,),
     "This installation": (doctor,),
 }

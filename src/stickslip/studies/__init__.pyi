@@ -6,6 +6,7 @@ from .inference.inference import Inference
 from .inference.record import Record
 from .one_run import catalogue_statistics, critical_value, predictability
 from .regularise import Regularisation, regularise
+from .schemes import Schemes, judge_series, schemes
 
 __all__ = [
     "Analogy",
@@ -14,13 +15,16 @@ __all__ = [
     "Inference",
     "Record",
     "Regularisation",
+    "Schemes",
     "analogy",
     "catalogue_statistics",
     "compare",
     "critical_value",
     "ensemble",
     "infer",
+    "judge_series",
     "predictability",
     "ranking",
     "regularise",
+    "schemes",
 ]

@@ -1,0 +1,77 @@
+"""`stickslip benchmark`: problems with exact series for other programs, and a report on a series of theirs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from stickslip.cli.options import Dpi, FigureFile, Size, option
+from stickslip.cli.output.files import Look, Target, announce, check_targets, drawing, write_files
+from stickslip.foundation.errors import InputError, nearest
+
+ACTIONS = ("list", "get", "judge")
+"""What the command can do."""
+
+
+def benchmark(
+    action: Annotated[str, typer.Argument(help="list, get or judge.")] = "list",
+    what: Annotated[str | None, typer.Argument(help="The name of a problem (get), or a file (judge).", show_default=False)] = None,
+    *,
+    name: Annotated[str | None, option("Judge: the problem; by default it has the name of the file.")] = None,
+    folder: Annotated[Path, typer.Option(help="Get: where the files go.")] = Path(),
+    out: Annotated[Path | None, option("Judge: save the table (.csv).", "--out", "-o")] = None,
+    figure: FigureFile = None,
+    dpi: Dpi = None,
+    size: Size = None,
+) -> None:
+    r"""Give twelve problems with exact series to other programs, and judge the series that they write.
+
+    `get` writes the problem as TOML, its exact series as netCDF, and checksums
+    of both. `judge` reads time, slip since the start, slip rate and traction
+    from a CSV file or one in the layout of the SCEC benchmarks.
+
+    \b
+      stickslip benchmark list
+      stickslip benchmark get loop
+      stickslip benchmark judge mine.csv --name loop --figure mine.png
+
+    Exit code: 0 done, 2 unusable input, 130 interrupted.
+    """
+    if action not in ACTIONS:
+        raise InputError(f"benchmark: there is nothing called {ascii(action)[:60]}; {nearest(action, ACTIONS)}")
+    if action == "list":
+        _list()
+        return
+    if what is None:
+        raise InputError(f"benchmark: {action} needs {'the name of a problem: see `list`' if action == 'get' else 'a file'}")
+    if action == "get":
+        from stickslip.studies.benchmarks import write_benchmark
+
+        announce(*write_benchmark(what, folder))
+        return
+    look = Look(dpi, size)
+    check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))
+    look.check(figure)
+    _judge(Path(what), name, out, (figure, look))
+
+
+def _list() -> None:
+    from stickslip.cli.output.show import console, print_numbers
+    from stickslip.studies.benchmarks import BENCHMARKS
+
+    print_numbers(console(), ("name", "asks for"), [[name, one.asks] for name, one in BENCHMARKS.items()], text=2)
+
+
+def _judge(file: Path, name: str | None, out: Path | None, picture: tuple[Path | None, Look]) -> None:
+    from stickslip.cli.output.schemes import show_schemes
+    from stickslip.run.progress_line import progress_line
+    from stickslip.studies.benchmarks import benchmark_of, judge_benchmark
+
+    asked = benchmark_of(file.stem if name is None else name)
+    with progress_line("benchmark") as tell:
+        study = judge_benchmark(file, asked.name, progress=tell)
+    show_schemes(asked.scenario, study)
+    figure, look = picture
+    announce(*write_files((out, study.to_csv), (figure, drawing(study.plot, look))))

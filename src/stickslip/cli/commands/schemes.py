@@ -1,0 +1,94 @@
+"""`stickslip schemes`: compare numerical schemes, or the series of another program, with the exact solution of every rule."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from stickslip.cli.options import Changes, Dpi, Duration, FigureFile, Rtol, ScenarioName, Size, option
+from stickslip.cli.output.files import Look, Target, announce, check_targets, drawing, write_files
+from stickslip.foundation.errors import InputError
+
+if TYPE_CHECKING:
+    from stickslip.scenarios.scenario import Scenario
+    from stickslip.studies.schemes import Schemes
+
+
+def schemes(
+    scenario: ScenarioName,
+    *,
+    changes: Changes = None,
+    scheme: Annotated[str, typer.Option(help="Schemes, separated by commas, or all.")] = "all",
+    nx: Annotated[str, typer.Option("--nx", help="Cells in the thickness, separated by commas.")] = "25,50,100,200",
+    search: Annotated[
+        str, typer.Option(help="How the contact looks for a slip rate: stick-first, continue, newton or fastest.")
+    ] = "stick-first",
+    courant: Annotated[float | None, option("Courant number, in place of each scheme's own.")] = None,
+    files: Annotated[list[Path] | None, option("Judge the series in a file instead; may be repeated.", "--series")] = None,
+    out: Annotated[Path | None, option("Save the table (.csv; .nc with the curves).", "--out", "-o")] = None,
+    figure: FigureFile = None,
+    dpi: Dpi = None,
+    size: Size = None,
+    duration: Duration = None,
+    rtol: Rtol = None,
+) -> None:
+    r"""Measure numerical schemes against the exact solution: errors, orders, pulses, and the selection rule that each follows.
+
+    The slab is cut into cells and moved by schemes of differences and finite
+    elements, on several meshes. Where several slip rates solve the contact
+    equation, a scheme takes one of them; the comparison with the exact solution
+    of every selection rule shows which rule it follows, if any. With --series
+    the slip, slip rate and traction that another program has written get the
+    same report.
+
+    \b
+      stickslip schemes fig4-loop
+      stickslip schemes fig5-slab-u0-1e-2 --scheme newmark,hht --nx 50,100,200
+      stickslip schemes fig6-slab --series mine.csv --figure mine.png
+
+    Exit code: 0 done, 2 unusable input, 130 interrupted.
+    """
+    from stickslip.cli.output.schemes import show_schemes
+    from stickslip.cli.overrides import load_with
+
+    look = Look(dpi, size)
+    check_targets(Target("--out", out, (".csv", ".nc")), Target("--figure", figure))
+    look.check(figure)
+    chosen = load_with("schemes", scenario, changes, duration=duration, rtol=rtol)
+    study = _judged(chosen, files) if files else _study(chosen, scheme, _cells(nx), search, courant)
+    show_schemes(chosen, study)
+    table = study.to_netcdf if out is not None and out.suffix == ".nc" else study.to_csv
+    announce(*write_files((out, table), (figure, drawing(study.plot, look))))
+    if study.interrupted:
+        raise KeyboardInterrupt
+
+
+def _cells(text: str) -> list[int]:
+    """Return the numbers of cells that were typed. Raises InputError."""
+    parts = [part.strip() for part in text.split(",") if part.strip()]
+    if not parts or not all(part.isdecimal() for part in parts):
+        raise InputError(f"schemes: --nx must be whole numbers separated by commas, such as 20,50,100, got {ascii(text)[:60]}")
+    return [int(part) for part in parts]
+
+
+def _study(scenario: Scenario, scheme: str, cells: list[int], search: str, courant: float | None) -> Schemes:
+    from stickslip.run.progress_line import progress_line
+    from stickslip.schemes.registry import SCHEMES
+    from stickslip.studies.schemes import schemes as study
+
+    names = list(SCHEMES) if scheme == "all" else [name.strip() for name in scheme.split(",") if name.strip()]
+    how = {"search": search, "rtol": scenario.rtol}
+    with progress_line("schemes") as tell:
+        return study(scenario, None, names, cells, courant=courant, progress=tell, **how)  # type: ignore[arg-type]
+
+
+def _judged(scenario: Scenario, files: list[Path]) -> Schemes:
+    from stickslip.io.series import read_series
+    from stickslip.run.progress_line import progress_line
+    from stickslip.studies.schemes import judge_series
+
+    read = [read_series(file) for file in files]
+    with progress_line("schemes") as tell:
+        return judge_series(read, scenario, rtol=scenario.rtol, progress=tell)

@@ -1,0 +1,132 @@
+"""Explicit central differences with lumped mass, with all of the mass at the contact, or with none of it there."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from stickslip.schemes.contract import Answer, Contact, Floats, Grid, Meeting, Sample, energy_of
+
+
+class CentralDifferences:
+    """Leap-frog in time: velocities at half steps, friction at the mean of the two that surround a step. Second order.
+
+    The contact node has the mass rho dx/2, and therefore the effective impedance Z / (Courant number).
+    """
+
+    order, largest_courant = 2.0, 1.0
+
+    def __init__(self, name: str, title: str, courant: float) -> None:
+        self.name, self.title, self.courant = name, title, courant
+
+    def begin(self, grid: Grid) -> LeapFrog:
+        """Return the slab at t = 0."""
+        return LeapFrog(grid)
+
+
+class MassRedistribution:
+    """Leap-frog in time without mass at the contact node, which holds in balance at every step; its mass moves to the next node.
+
+    The balance is taken with the slip rate of the step that leads to it: second order in the slip for friction of slip, first order
+    for friction of slip rate. The effective impedance is Z (Courant number).
+
+    Source: H.B. Khenous, P. Laborde, Y. Renard 2008, Eur. J. Mech. A 27, 918, who redistribute the mass so that the total, the
+    centre and the moment are kept; here, in one dimension, only the total is.
+    """
+
+    name, title, order, courant, largest_courant = "mass-redistribution", "mass redistribution", 2.0, 0.8, 1.0
+
+    def begin(self, grid: Grid) -> MasslessContact:
+        """Return the slab at t = 0."""
+        return MasslessContact(grid)
+
+
+class LeapFrog:
+    """A slab with lumped masses; `rate` holds the velocities half a step after the displacements."""
+
+    def __init__(self, grid: Grid) -> None:
+        self.grid, self.step, self.work = grid, 0, 0.0
+        self.displacement: Floats = np.zeros(grid.cells + 1)
+        self.rate: Floats = grid.start_rates
+        self.contact_rate = 0.0
+        self.mass = np.full(grid.cells + 1, grid.density * grid.dx)
+        self.mass[[0, -1]] *= 0.5
+
+    def _forces(self) -> Floats:
+        """Return the elastic force on each node, Pa; displacements count from the start."""
+        tension = np.diff(self.displacement) * (self.grid.shear_modulus / self.grid.dx)
+        return np.diff(np.concatenate([[0.0], tension, [0.0]]))
+
+    def _kick_interior(self, forces: Floats, step: float) -> float:
+        """Change the velocities of all nodes but the contact's over a step (s), and return the traction of the driver (Pa)."""
+        grid, time = self.grid, self.step * self.grid.dt
+        last = float(self.rate[-1])
+        self.rate[1:-1] += step * forces[1:-1] / self.mass[1:-1]
+        if grid.is_rigid:
+            self.rate[-1] = grid.pull_rate
+            return -float(forces[-1])
+        push, drag = grid.push(time), grid.driver_impedance
+        inertia = self.mass[-1] / step
+        self.rate[-1] = ((inertia - 0.5 * drag) * last + forces[-1] + push) / (inertia + 0.5 * drag)
+        return float(push - 0.5 * drag * (last + self.rate[-1]))
+
+    def first(self, contact: Contact) -> Sample:
+        """Return the state just after t = 0: half a step from the velocities at t = 0."""
+        return self._kick(contact, 0.5 * self.grid.dt)
+
+    def advance(self, contact: Contact) -> Sample:
+        """Move the displacements by one step, and the velocities from half a step before to half a step after it."""
+        self.displacement += self.grid.dt * self.rate
+        self.step += 1
+        return self._kick(contact, self.grid.dt)
+
+    def _kick(self, contact: Contact, step: float) -> Sample:
+        grid, before, forces = self.grid, self.rate.copy(), self._forces()
+        push = self._kick_interior(forces, step)
+        start = step < grid.dt  # then velocities are known at the step itself, not half a step before
+        inertia = self.mass[0] / step
+        held = grid.stress + forces[0] + inertia * before[0]
+        share = 1.0 if start else 2.0
+        meeting = Meeting(held + (share - 1.0) * inertia * before[0], share * inertia, grid.slip + self.displacement[0])
+        rate, traction = contact.meet(meeting, self.contact_rate)
+        sticks = rate == 0.0
+        self.rate[0] = 0.0 if sticks else share * rate - (share - 1.0) * before[0]
+        self.contact_rate = rate
+        middle = self.rate.copy() if start else 0.5 * (before + self.rate)
+        self.work += grid.dt * (0.5 if start else 1.0) * push * float(middle[-1])
+        energy = energy_of(grid, self.displacement, middle)
+        shown = Answer(rate, held if sticks else traction)
+        return Sample(self.step * grid.dt, float(self.displacement[0]), *shown, energy, self.work)
+
+
+class MasslessContact(LeapFrog):
+    """A slab whose contact node has no mass."""
+
+    def __init__(self, grid: Grid) -> None:
+        super().__init__(grid)
+        self.mass[1] += self.mass[0]
+        self.mass[0] = 0.0
+
+    def first(self, contact: Contact) -> Sample:
+        """Return the state at t = 0, at which nothing has moved."""
+        grid = self.grid
+        push = self._kick_interior(self._forces(), 0.5 * grid.dt)
+        self.work += 0.5 * grid.dt * push * float(self.rate[-1])
+        return Sample(0.0, 0.0, 0.0, grid.stress, energy_of(grid, self.displacement, self.rate), self.work)
+
+    def advance(self, contact: Contact) -> Sample:
+        """Move all nodes but the contact's by one step, put the contact in balance with them, and kick."""
+        grid, node = self.grid, float(self.displacement[0])
+        self.displacement[1:] += grid.dt * self.rate[1:]
+        self.step += 1
+        stiffness = grid.shear_modulus / grid.dx
+        load = grid.stress + stiffness * (float(self.displacement[1]) - node)
+        meeting = Meeting(load, stiffness * grid.dt, grid.slip + node, grid.dt)
+        self.contact_rate, traction = contact.meet(meeting, self.contact_rate)
+        self.displacement[0] = node + grid.dt * self.contact_rate
+        before = self.rate.copy()
+        push = self._kick_interior(self._forces(), grid.dt)
+        middle = 0.5 * (before + self.rate)
+        middle[0] = self.contact_rate
+        self.work += grid.dt * push * float(middle[-1])
+        energy = energy_of(grid, self.displacement, middle)
+        return Sample(self.step * grid.dt, float(self.displacement[0]), self.contact_rate, traction, energy, self.work)

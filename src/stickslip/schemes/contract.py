@@ -1,0 +1,160 @@
+"""What a numerical scheme is: it moves the body by one step of time, and leaves the contact equation of the step to the contact.
+
+A scheme that treats the contact implicitly, at one node, finds two numbers in each step: the load, which is the traction that the
+contact would have if its slip rate were 0, and an effective impedance. The contact then solves
+
+    impedance v + traction(u, v) = load,    u = slip + slip_per_rate v,
+
+and the scheme completes its step with the slip rate and the traction that come back.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Grid:
+    """A slab cut into equal cells, with its driver and its start; every number in SI.
+
+    Displacements count from the start, at which the slab has the uniform stress `stress` and the velocity V x/h.
+    """
+
+    cells: int
+    density: float
+    """rho, kg/m^3."""
+    wave_speed: float
+    """c, m/s."""
+    thickness: float
+    """h, m."""
+    driver_impedance: float
+    """Zd, Pa s/m; inf for a rigid driver."""
+    pull_rate: float
+    """V, m/s."""
+    stress: float
+    """Shear stress at t = 0, Pa."""
+    far_stress: float
+    """Far stress at t = 0 minus `stress`, Pa."""
+    far_stress_rate: float
+    """Pa/s."""
+    slip: float
+    """Slip at t = 0, m."""
+    courant: float
+    """Courant number c dt / dx."""
+
+    @property
+    def dx(self) -> float:
+        """The length of a cell, m."""
+        return self.thickness / self.cells
+
+    @property
+    def dt(self) -> float:
+        """The step of time, s."""
+        return self.courant * self.dx / self.wave_speed
+
+    @property
+    def impedance(self) -> float:
+        """Z = rho c, Pa s/m."""
+        return self.density * self.wave_speed
+
+    @property
+    def shear_modulus(self) -> float:
+        """G = rho c^2, Pa."""
+        return self.density * self.wave_speed**2
+
+    @property
+    def is_rigid(self) -> bool:
+        """True if the driver prescribes the displacement."""
+        return bool(np.isinf(self.driver_impedance))
+
+    @property
+    def start_rates(self) -> Floats:
+        """The velocity V x/h of each node at t = 0, m/s."""
+        return self.pull_rate * np.linspace(0.0, 1.0, self.cells + 1)
+
+    def push(self, t: float) -> float:
+        """Return the traction (Pa, minus that of the start) which a driver that gives way would exert on a slab at rest."""
+        return self.far_stress + self.far_stress_rate * t + self.driver_impedance * self.pull_rate
+
+
+class Meeting(NamedTuple):
+    """The contact equation of one step, all but the friction."""
+
+    load: float
+    """Traction at slip rate 0, Pa."""
+    impedance: float
+    """Effective impedance, Pa s/m."""
+    slip: float
+    """Slip at slip rate 0, m."""
+    slip_per_rate: float = 0.0
+    """Increase of the slip with the slip rate of this step, s; 0 if the scheme knows the slip beforehand."""
+
+
+class Answer(NamedTuple):
+    """The slip rate (m/s) and the traction (Pa) that solve the contact equation of one step."""
+
+    rate: float
+    traction: float
+
+
+class Contact(Protocol):
+    """The contact, as a scheme sees it."""
+
+    def meet(self, meeting: Meeting, before: float) -> Answer:
+        """Solve the contact equation of a step; `before` is the slip rate (m/s) of the step before."""
+
+
+class Sample(NamedTuple):
+    """What a scheme shows at the end of a step."""
+
+    time: float
+    """s."""
+    slip: float
+    """Slip since the start, m."""
+    rate: float
+    """Slip rate, m/s."""
+    traction: float
+    """Traction at the contact, Pa."""
+    energy: float
+    """Kinetic energy and strain energy of displacements from the start, J/m^2."""
+    driver_work: float
+    """Work of the driver on these displacements, J/m^2; the uniform stress of the start is left out."""
+
+
+class Motion(Protocol):
+    """A body in motion on a grid under one scheme."""
+
+    def first(self, contact: Contact) -> Sample:
+        """Return the state just after t = 0."""
+
+    def advance(self, contact: Contact) -> Sample:
+        """Move by one step of time, and return the state at its end."""
+
+
+class Scheme(Protocol):
+    """A numerical scheme for a slab; an object with these attributes and this method is one."""
+
+    name: str
+    title: str
+    order: float
+    """Order of convergence of the slip where the slip rate is smooth and friction depends on slip."""
+    courant: float
+    """Courant number that is taken if none is given."""
+    largest_courant: float
+    """Largest stable Courant number; inf for a scheme that is stable with any step."""
+
+    def begin(self, grid: Grid) -> Motion:
+        """Return the slab at rest against its contact, at t = 0."""
+
+
+def energy_of(grid: Grid, displacement: Floats, rate: Floats) -> float:
+    """Return the energy (J/m^2) of displacements from the start and of velocities at the nodes, by the trapezoidal rule."""
+    kinetic = 0.5 * grid.density * grid.dx * (float(rate @ rate) - 0.5 * (rate[0] ** 2 + rate[-1] ** 2))
+    strain = np.diff(displacement)
+    return float(kinetic + 0.5 * grid.shear_modulus / grid.dx * (strain @ strain))

@@ -1,0 +1,144 @@
+"""Differences that sum by parts, with the friction imposed weakly by penalties (SAT), and Runge-Kutta's fourth-order steps.
+
+Energy is bounded as in the exact slab: the penalty only takes energy away. Sources: B. Strand 1994, J. Comput. Phys. 110, 47; J.E.
+Kozdon, E.M. Dunham, J. Nordström 2012, J. Sci. Comput. 50, 341.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+from scipy.sparse import csr_array, lil_array
+
+from stickslip.schemes.contract import Contact, Floats, Grid, Meeting, Sample
+
+NORMS = {
+    2: (1 / 2,),
+    4: (17 / 48, 59 / 48, 43 / 48, 49 / 48),
+    6: (13649 / 43200, 12013 / 8640, 2711 / 4320, 5359 / 4320, 7877 / 8640, 43801 / 43200),
+}
+"""Weights of the nodes next to a boundary, in cells, by the order inside."""
+INSIDE = {2: (1 / 2,), 4: (2 / 3, -1 / 12), 6: (3 / 4, -3 / 20, 1 / 60)}
+"""Weights of the nodes to the right in a first difference; those to the left have the other sign."""
+STAGES = ((0.5, 1 / 6), (0.5, 1 / 3), (1.0, 1 / 3), (0.0, 1 / 6))
+"""Of each stage: the share of the step at which the next stage is taken, and the weight."""
+
+
+class SummationByParts:
+    """Differences of an even order inside and of half of it at the boundaries."""
+
+    courant, largest_courant = 0.5, 0.7
+
+    def __init__(self, inside: int) -> None:
+        self.inside = inside
+        self.name, self.title = f"sbp{inside}", f"summation by parts, order {inside} inside, with SAT"
+        self.order = {2: 2.0, 4: 3.0, 6: 4.0}[inside]
+
+    def begin(self, grid: Grid) -> Weak:
+        """Return the slab at t = 0."""
+        return Weak(grid, self.inside)
+
+
+@cache
+def closure(inside: int) -> Floats:
+    """Return the antisymmetric part of Q next to a boundary, from the condition that the difference is exact for polynomials.
+
+    The degree of the polynomials is half of the order inside. Of several solutions it is the one with the smallest sum of squares.
+    """
+    weights, arms = np.array(NORMS[inside]), INSIDE[inside]
+    size, degree = len(weights), inside // 2
+    place = {pair: k for k, pair in enumerate((i, j) for i in range(size) for j in range(i + 1, size))}
+    rows, right = [], []
+    for i in range(size):
+        for power in range(degree + 1):
+            row = np.zeros(len(place))
+            for j in range(size):
+                if i != j:
+                    row[place[min(i, j), max(i, j)]] += (1.0 if i < j else -1.0) * float(j**power)
+            outside = sum(arm * float((i + k) ** power) for k, arm in enumerate(arms, 1) if i + k >= size)
+            corner = 0.5 * float(power == 0) if i == 0 else 0.0
+            rows.append(row)
+            right.append(weights[i] * (power * float(i ** (power - 1)) if power else 0.0) - outside + corner)
+    found = np.linalg.lstsq(np.array(rows), np.array(right), rcond=None)[0]
+    block = np.zeros((size, size))
+    for (i, j), k in place.items():
+        block[i, j], block[j, i] = found[k], -found[k]
+    block[0, 0] = -0.5
+    return block
+
+
+@cache
+def difference(inside: int, cells: int) -> tuple[csr_array, float]:
+    """Return the first difference on a grid of a number of cells, for a cell of length 1, and the weight of a boundary node."""
+    count, block, arms = cells + 1, closure(inside), INSIDE[inside]
+    size = len(block)
+    Q = lil_array((count, count))
+    for i in range(count):
+        for k, arm in enumerate(arms, 1):
+            if i + k < count and not (i < size and i + k < size) and not (i >= count - size and i + k >= count - size):
+                Q[i, i + k], Q[i + k, i] = arm, -arm
+    Q[:size, :size] = block
+    Q[-size:, -size:] = -block[::-1, ::-1]
+    weights = np.ones(count)
+    weights[:size], weights[-size:] = NORMS[inside], NORMS[inside][::-1]
+    return csr_array(Q.multiply(1.0 / weights[:, None])), float(weights[0])
+
+
+class Weak:
+    """Velocity and stress (minus that of the start) at the nodes, with the slip of the contact."""
+
+    def __init__(self, grid: Grid, inside: int) -> None:
+        self.grid, self.step, self.work = grid, 0, 0.0
+        self.slope, corner = difference(inside, max(grid.cells, 2 * len(NORMS[inside])))
+        self.penalty = 1.0 / (corner * grid.dx)
+        self.state = np.concatenate([grid.start_rates, np.zeros(grid.cells + 1), [0.0, 0.0]])
+        self.contact_rate = 0.0
+
+    def first(self, contact: Contact) -> Sample:
+        """Return the state just after t = 0."""
+        return self._sample(contact)
+
+    def advance(self, contact: Contact) -> Sample:
+        """Move by one step of time."""
+        start, change, stage = self.state, np.zeros_like(self.state), self.state
+        time = self.step * self.grid.dt
+        begun = time
+        for share, weight in STAGES:
+            slope = self._slope(stage, begun, contact)
+            change = change + weight * slope
+            stage, begun = start + share * self.grid.dt * slope, time + share * self.grid.dt
+        self.state = start + self.grid.dt * change
+        self.step += 1
+        return self._sample(contact)
+
+    def _meet(self, state: Floats, contact: Contact) -> tuple[float, float]:
+        """Return slip rate and traction of the contact."""
+        grid = self.grid
+        load = grid.stress + grid.impedance * float(state[0]) + float(state[grid.cells + 1])
+        return contact.meet(Meeting(load, grid.impedance, grid.slip + float(state[-2])), self.contact_rate)
+
+    def _slope(self, state: Floats, time: float, contact: Contact) -> Floats:
+        """Return the rate of change of velocities, stresses, slip and the work of the driver."""
+        grid, nodes = self.grid, self.grid.cells + 1
+        Z, rho, G = grid.impedance, grid.density, grid.shear_modulus
+        rate, stress = state[:nodes], state[nodes:-2]
+        accelerations = self.slope @ stress / (rho * grid.dx)
+        stressing = G * (self.slope @ rate) / grid.dx
+        slip_rate, traction = self._meet(state, contact)
+        miss = Z * rate[0] - stress[0] - (Z * slip_rate - (traction - grid.stress))
+        accelerations[0] -= 0.5 * self.penalty * miss / rho
+        stressing[0] += 0.5 * self.penalty * miss * G / Z
+        wave = Z * float(rate[-1]) - float(stress[-1])
+        driven = grid.pull_rate if grid.is_rigid else (wave + grid.push(time)) / (Z + grid.driver_impedance)
+        miss = Z * rate[-1] + stress[-1] - (2.0 * Z * driven - wave)
+        accelerations[-1] -= 0.5 * self.penalty * miss / rho
+        stressing[-1] -= 0.5 * self.penalty * miss * G / Z
+        return np.concatenate([accelerations, stressing, [slip_rate, driven * (Z * driven - wave)]])
+
+    def _sample(self, contact: Contact) -> Sample:
+        grid, nodes = self.grid, self.grid.cells + 1
+        self.contact_rate, traction = self._meet(self.state, contact)
+        density = 0.5 * grid.density * self.state[:nodes] ** 2 + 0.5 * self.state[nodes:-2] ** 2 / grid.shear_modulus
+        energy = float(np.trapezoid(density, dx=grid.dx))
+        return Sample(self.step * grid.dt, float(self.state[-2]), self.contact_rate, traction, energy, float(self.state[-1]))

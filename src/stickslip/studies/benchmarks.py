@@ -1,0 +1,199 @@
+"""Twelve problems of the slab for other programs, each with its exact series as a file, and a report on a series of theirs.
+
+Each problem asks one thing of a program. A scheme that passes all of them moves waves, rests, slips, makes shocks and follows the
+rule that it claims.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+import stickslip
+from stickslip.bodies import ElasticSlab
+from stickslip.foundation.atomic_write import write_atomically
+from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.netcdf_file import write
+from stickslip.friction import HyperbolicRate, LinearSlipWeakening, SinusoidalSlip
+from stickslip.friction.laws.coulomb import Coulomb
+from stickslip.io.series import read_series
+from stickslip.problem.problem import Problem
+from stickslip.run.simulate import simulate
+from stickslip.scenarios import Scenario, load_scenario
+from stickslip.studies.schemes import Schemes, judge_series
+from stickslip.studies.study import TextProgress
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+RTOL = 1e-12
+"""Relative tolerance of the exact series."""
+INTERVALS = 4000
+"""Number of equal intervals of time in a series."""
+ROCK = ElasticSlab(density=2800.0, wave_speed=3500.0, thickness=1e4, normal_stress=1e8)
+"""The slab of the paper."""
+MATCHED = replace(ROCK, driver_impedance=ROCK.impedance)
+"""The same slab under a half-space of the same rock, which reflects nothing."""
+
+
+def _smooth() -> Scenario:
+    law = SinusoidalSlip(mean=1.0, amplitude=0.5, wavenumber=2.0)
+    return Scenario(Problem(ROCK, law, pull_rate=0.3, initial_slip=math.pi / 4, initial_excess=0.0), 8.0)
+
+
+def _at_the_maximum() -> Scenario:
+    law = SinusoidalSlip(mean=1.0, amplitude=0.5, wavenumber=50.0)
+    excess = 5e7 * (1.0 - math.cos(0.05))
+    return Scenario(Problem(ROCK, law, initial_slip=math.pi / 100 + 1e-3, initial_excess=excess), 5.7)
+
+
+def _weakening(slab: ElasticSlab) -> Scenario:
+    law = LinearSlipWeakening(static=0.677, dynamic=0.525, distance=0.4)
+    rock = replace(slab, density=2670.0, wave_speed=3464.0, normal_stress=1.2e8)
+    rock = rock if math.isinf(slab.driver_impedance) else replace(rock, driver_impedance=rock.impedance)
+    return Scenario(Problem(rock, law, initial_excess=3.6e5), 12.0)
+
+
+def _coulomb() -> Scenario:
+    return Scenario(Problem(ROCK, Coulomb(static=0.8, dynamic=0.3), pull_rate=1e-6, initial_excess=0.0), 9.0)
+
+
+def _regular() -> Scenario:
+    law = HyperbolicRate(static=0.8, dynamic=0.3, alpha=0.1)
+    return Scenario(Problem(ROCK, law, pull_rate=0.5, initial_excess=0.0), 12.0)
+
+
+def _dwell() -> Scenario:
+    law = HyperbolicRate(static=0.8, dynamic=0.3, alpha=1.0)
+    return Scenario(Problem(MATCHED, law, initial_load=7e7, far_stress=7.5e7), 8.0)
+
+
+@dataclass(frozen=True)
+class Benchmark:
+    """A problem for other programs: what it asks of them, and its scenario."""
+
+    name: str
+    asks: str
+    make: Callable[[], Scenario]
+
+    @property
+    def scenario(self) -> Scenario:
+        """The scenario, with the tolerance of the exact series."""
+        return replace(self.make(), rtol=RTOL, name=self.name, title=f"benchmark {self.name}", description=self.asks)
+
+
+def _bundled(name: str) -> Callable[[], Scenario]:
+    return lambda: load_scenario(name)
+
+
+_ALL = (
+    Benchmark("smooth-slip", "the order of convergence: slip begins without a shock and goes on", _smooth),
+    Benchmark("linear-weakening", "a kink of the law, a shock by an echo, arrest; it has a closed form", lambda: _weakening(ROCK)),
+    Benchmark("no-echo", "a driver that absorbs every wave: radiation damping alone", lambda: _weakening(MATCHED)),
+    Benchmark("coulomb", "two large shocks and exact rest after one round trip of the waves", _coulomb),
+    Benchmark("one-pulse", "exactly one pulse, and rest until the echo", _bundled("fig5-slab-u0-1e-2")),
+    Benchmark("three-pulses", "three pulses of 8 ms at the right times, and complete arrest", _bundled("fig5-slab-reconstructed")),
+    Benchmark("load-at-the-maximum", "no pulse of the grid's own: friction just holds after the first", _at_the_maximum),
+    Benchmark("regular-rate", "friction of slip rate with one solution, under a fast driver", _regular),
+    Benchmark("rate-shock", "an onset from the strength exactly, and two shocks of 4 m/s", _bundled("fig6-slab")),
+    Benchmark("weak-shock", "a shock of 2.6e-5 m/s that must neither be lost nor grow", _bundled("fig7-slab-critical")),
+    Benchmark("loop", "which selection rule: the load passes both folds", _bundled("fig4-loop")),
+    Benchmark("dwell", "which selection rule: the load rises to between the folds and stays there", _dwell),
+)
+BENCHMARKS = {one.name: one for one in _ALL}
+"""The problems by name."""
+
+
+def benchmark_of(name: str) -> Benchmark:
+    """Return the problem of a name. Raises InputError for an unknown one."""
+    if name not in BENCHMARKS:
+        raise InputError(f"benchmark: there is no problem {ascii(name)[:60]}; {nearest(name, BENCHMARKS)}")
+    return BENCHMARKS[name]
+
+
+def exact_series(name: str) -> xr.Dataset:
+    """Return the exact series of a problem: time, slip since t = 0, slip rate and traction, and its events and shocks.
+
+    At each shock there are two rows of the same time, with the values before it and after it.
+    """
+    scenario = benchmark_of(name).scenario
+    run = simulate(scenario)
+    shocks = run.shocks[["time", "rate_before", "rate_after", "traction_before", "traction_after"]]
+    at = shocks.time.to_numpy(float)
+    uniform = np.unique(np.concatenate([np.linspace(0.0, run.history.span[1], INTERVALS + 1), at]))
+    sides = [(at, "left"), (uniform, "right")]
+    time = np.concatenate([times for times, _ in sides])
+    order = np.argsort(time, kind="stable")  # stable: the values before a shock come first
+    rate = np.concatenate([run.slip_rate(times, side) for times, side in sides])  # type: ignore[arg-type]
+    traction = np.concatenate([run.traction(times, side) for times, side in sides])  # type: ignore[arg-type]
+    table = shocks.rename(columns=lambda column: f"shock_{column}").rename_axis("shock")
+    events = run.events[["start", "end", "slip", "peak_rate", "pulses"]].rename(columns=lambda column: f"event_{column}")
+    found = table.to_xarray().merge(events.rename_axis("event").to_xarray())
+    values = {"time": time, "slip": run.slip(time) - run.problem.initial_slip, "slip_rate": rate, "traction": traction}
+    units = {"time": "s", "slip": "m", "slip_rate": "m s-1", "traction": "Pa"}
+    found = found.assign({column: ("sample", values[column][order], {"units": unit}) for column, unit in units.items()})
+    about = {"title": scenario.title, "asks": scenario.description, "rtol": RTOL, "version": stickslip.__version__}
+    return found.assign_attrs(**about, rule=run.problem.rule, scenario=scenario.to_toml())
+
+
+def write_benchmark(name: str, folder: str | Path = ".") -> tuple[Path, Path, Path]:
+    """Write a problem for other programs, and return the paths of the three files.
+
+    Parameters
+    ----------
+    name : str
+        Name of the problem, one of BENCHMARKS.
+    folder : str or Path
+        Folder for the files, which exists.
+
+    Returns
+    -------
+    tuple of Path
+        NAME.toml, the scenario in SI units; NAME.nc, the exact series; NAME.sha256, the checksums of both for `sha256sum --check`.
+
+    Raises
+    ------
+    InputError
+        If the name is unknown, or a file cannot be written.
+    """
+    found, place = benchmark_of(name), Path(folder)
+    if not place.is_dir():
+        raise InputError(f"benchmark: there is no folder {place}")
+    text = found.scenario.to_toml()
+    scenario = write_atomically(place / f"{name}.toml", lambda draft: draft.write_text(text, encoding="utf-8", newline="\n"))
+    series = write(exact_series(name), place / f"{name}.nc")
+    sums = "".join(f"{hashlib.sha256(file.read_bytes()).hexdigest()}  {file.name}\n" for file in (scenario, series))
+    checksums = write_atomically(place / f"{name}.sha256", lambda draft: draft.write_text(sums, encoding="utf-8", newline="\n"))
+    return scenario, series, checksums
+
+
+def judge_benchmark(file: str | Path, name: str | None = None, *, progress: TextProgress | bool | None = None) -> Schemes:
+    """Compare the series of another program, in a file, with the exact solution of a problem.
+
+    Parameters
+    ----------
+    file : str or Path
+        A file that `stickslip.io.series.read_series` reads.
+    name : str, optional
+        Name of the problem; by default that of the file without its suffix.
+    progress : bool or callable, optional
+        As for `stickslip.studies.schemes`.
+
+    Returns
+    -------
+    Schemes
+        The report.
+
+    Raises
+    ------
+    InputError
+        If the name is unknown, or the file cannot be read.
+    """
+    scenario = benchmark_of(Path(file).stem if name is None else name).scenario
+    return judge_series(read_series(file), scenario, progress=progress)

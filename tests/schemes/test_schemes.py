@@ -1,0 +1,234 @@
+"""Every scheme against the exact solution: order, energy, the rule that it follows; series of others; what is refused."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from stickslip.foundation.errors import InputError
+from stickslip.io.series import read_series
+from stickslip.schemes.contact import SEARCHES, GridContact
+from stickslip.schemes.contract import Meeting
+from stickslip.schemes.finite_elements import Elements
+from stickslip.schemes.registry import SCHEMES, scheme_of
+from stickslip.schemes.run import grid_of, run_scheme
+from stickslip.schemes.sbp import NORMS, difference
+from stickslip.schemes.series import Series
+from stickslip.studies.scheme_measures import arrest_in, pulses_in
+from stickslip.studies.schemes import judge_series, schemes
+
+SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)
+SMOOTH = ss.Problem(SLAB, ss.friction.SinusoidalSlip(1.0, 0.5, 2.0), pull_rate=0.3, initial_slip=np.pi / 4, initial_excess=0.0)
+"""Slip that begins without a shock, under friction of slip: every rule has the same solution."""
+LOOP = ss.load_scenario("fig4-loop")
+STICK = [name for name in SCHEMES if name != "regularised"]
+
+
+@pytest.fixture(scope="module")
+def exact() -> ss.Solution:
+    return ss.simulate(SMOOTH, 4.0)
+
+
+def error(name: str, cells: int, exact: ss.Solution) -> float:
+    series = run_scheme(SMOOTH, 4.0, SCHEMES[name], cells)
+    inside = series.time <= 4.0
+    return float(np.abs(series.slip - exact.slip(np.minimum(series.time, 4.0)) + SMOOTH.initial_slip)[inside].max())
+
+
+@pytest.mark.parametrize("name", STICK)
+def test_each_scheme_converges_at_its_declared_order(name: str, exact: ss.Solution) -> None:
+    coarse, fine = (error(name, cells, exact) for cells in (80, 160))
+    order = np.log2(coarse / fine)
+    assert order > SCHEMES[name].order - 0.35
+    assert fine < 0.06 * float(exact.slip(4.0))
+
+
+def test_finer_meshes_come_closer_together_for_regularised_friction_but_not_to_friction_with_stick(exact: ss.Solution) -> None:
+    assert error("regularised", 160, exact) > 5.0 * error("central-differences", 160, exact)
+
+
+@pytest.mark.parametrize("name", STICK)
+def test_no_scheme_makes_energy_where_slip_is_smooth(name: str) -> None:
+    study = schemes(SMOOTH, 4.0, name, [100])
+    drift = float(study.table.energy_drift.iloc[0])
+    assert abs(drift) < (0.2 if SCHEMES[name].order == 1.0 else 1e-2)
+    if name in ("backward-euler", "theta"):
+        assert drift < -1e-3  # they damp
+
+
+@pytest.mark.parametrize(("inside", "degree"), [(2, 1), (4, 2), (6, 3)])
+def test_differences_sum_by_parts_and_are_exact_for_polynomials(inside: int, degree: int) -> None:
+    slope, corner = difference(inside, 30)
+    x = np.arange(31.0)
+    for power in range(degree + 1):
+        assert slope @ x**power == pytest.approx(power * x ** max(power - 1, 0), rel=1e-9, abs=1e-9)
+    weights, ends = np.ones(31), np.array(NORMS[inside])
+    weights[: len(ends)], weights[-len(ends) :] = ends, ends[::-1]
+    assert weights[0] == corner
+    both = np.diag(weights) @ slope.todense()
+    assert np.abs(both + both.T - np.diag(np.eye(31)[-1] - np.eye(31)[0])).max() < 1e-12
+
+
+def test_characteristics_have_the_rate_of_the_exact_solution_after_a_shock() -> None:
+    problem = ss.load_scenario("fig6-slab").problem
+    series = run_scheme(problem, 5.0, SCHEMES["characteristics"], 40)
+    assert series.rate[0] == pytest.approx(float(ss.simulate(problem, 5.0).slip_rate(0.0)), rel=1e-12, abs=0.0)
+
+
+@pytest.mark.parametrize(
+    ("search", "rule"),
+    [("stick-first", "minimal"), ("continue", "perfect-delay"), ("newton", "perfect-delay"), ("fastest", "maximal")],
+)
+def test_the_search_of_the_contact_decides_which_rule_characteristics_follow(search: str, rule: str) -> None:
+    study = schemes(LOOP, None, "characteristics", [100], search=search)
+    assert study.verdicts == {"characteristics": rule}
+    assert study.table.slip_error.iloc[0] == pytest.approx(study.errors(study.series[0])[study.groups[0]], rel=1e-12, abs=0.0)
+
+
+def test_one_solution_of_all_rules_is_called_unique() -> None:
+    study = schemes(SMOOTH, 1.0, ["hht", "sbp4"], [20, 40])
+    assert study.verdicts == {"hht": "unique", "sbp4": "unique"}
+    assert "all selection rules have the same solution" in repr(study)
+
+
+@pytest.mark.parametrize("search", SEARCHES)
+def test_each_search_finds_the_root_that_it_names(search: str) -> None:
+    problem = LOOP.problem
+    excess = 70e6 - problem.strength
+    rates = ss.uniqueness(problem).admissible(70e6)
+    contact = GridContact(problem, search)
+    found = {before: contact.meet(Meeting(70e6, SLAB.impedance, 0.0), before).rate for before in (0.0, 0.9 * max(rates))}
+    assert excess < 0.0
+    top = pytest.approx(max(rates), rel=1e-12, abs=0.0)
+    wanted = {
+        "stick-first": {0.0: 0.0, 0.9 * max(rates): 0.0},
+        "continue": {0.0: 0.0, 0.9 * max(rates): top},
+        "newton": {0.0: 0.0, 0.9 * max(rates): top},
+        "fastest": {0.0: top, 0.9 * max(rates): top},
+    }[search]
+    assert found == wanted
+
+
+def test_a_contact_that_is_pushed_backwards_slips_backwards() -> None:
+    contact = GridContact(LOOP.problem)
+    forward, backward = (contact.meet(Meeting(load, SLAB.impedance, 0.0), 0.0) for load in (90e6, -90e6))
+    assert forward.rate == -backward.rate > 0.0
+    assert forward.traction == -backward.traction > 0.0
+
+
+def test_pulses_and_arrest_are_counted_as_in_the_events() -> None:
+    rate = np.array([0.0, 1.0, 0.6, 1.0, 0.4, 1.0, 0.1, 0.15, 0.0, 0.0])
+    assert pulses_in(rate, 1e-6) == 2
+    assert pulses_in(np.array([0.0, 1.0, 0.1, 0.3, 0.0]), 1e-6) == 2
+    assert pulses_in(np.zeros(5), 1e-6) == 0
+    assert arrest_in(np.arange(10.0), rate, 1e-6) == 8.0
+    assert np.isnan(arrest_in(np.arange(3.0), np.array([0.0, 1.0, 1.0]), 1e-6))
+
+
+def test_a_series_of_another_program_is_judged(tmp_path: Path) -> None:
+    run = ss.simulate(LOOP)
+    file = run.to_scec(tmp_path / "other.txt", 200.0) if hasattr(run, "to_scec") else None
+    time = np.linspace(0.0, 5.7, 1141)
+    if file is None:
+        file = tmp_path / "other.csv"
+        rows = np.column_stack([time, run.slip(time), run.slip_rate(time), run.traction(time)])
+        np.savetxt(file, rows, delimiter=",", header="time_s,slip_m,slip_rate_m_per_s,traction_Pa", comments="")
+    study = judge_series(read_series(file), LOOP)
+    row = study.table.iloc[0]
+    assert (row.rule, row.scheme, row.pulses) == ("perfect-delay", "other", 1)
+    assert row.slip_error < 1e-9
+    wrong = replace(read_series(file), slip=1.5 * read_series(file).slip)
+    assert judge_series(wrong, LOOP).table.rule.iloc[0] == "none"
+
+
+def test_files_keep_every_number(tmp_path: Path) -> None:
+    study = schemes(SMOOTH, 1.0, "theta", [20, 40])
+    import pandas as pd
+
+    table = pd.read_csv(study.to_csv(tmp_path / "a.csv"), comment="#")
+    assert table.slip_error.tolist() == study.table.slip_error.tolist()
+    import xarray as xr
+
+    with xr.open_dataset(study.to_netcdf(tmp_path / "a.nc")) as found:
+        assert found.slip_error.values.tolist() == study.table.slip_error.tolist()
+
+
+def test_interrupted_studies_keep_the_rows_that_were_finished() -> None:
+    told: list[str] = []
+
+    def stop(text: str) -> None:
+        told.append(text)
+        if text == "theta, 40 cells":
+            raise KeyboardInterrupt
+
+    study = schemes(SMOOTH, 1.0, "theta", [20, 40], progress=stop)
+    assert study.interrupted
+    assert study.table.cells.tolist() == [20]
+    assert "theta, 20 cells" in told
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: schemes("fig6-block-printed"), "schemes: a block has no grid"),
+        (lambda: schemes("cycles-slab"), "schemes: a contact_mass of"),
+        (lambda: schemes("rate-and-state-slab", 1.0), "schemes: rate-and-state"),
+        (lambda: schemes("fig6-slab", scheme="newmrk"), "schemes: there is no scheme 'newmrk'; did you mean 'newmark'?"),
+        (lambda: schemes("fig6-slab", search="x"), "schemes: there is no search 'x'"),
+        (lambda: schemes("fig6-slab", cells=[3]), "schemes: cells must lie between"),
+        (lambda: schemes("fig6-slab", courant=2.0), "schemes: central-differences: the Courant number must lie in"),
+        (lambda: schemes("fig6-slab", 1e6, cells=[1000]), "schemes: .* steps of"),
+        (lambda: scheme_of(object()), "schemes: a scheme needs name, title"),
+        (lambda: read_series("no-such-file.csv"), "no-such-file.csv: cannot be read"),
+        (lambda: Series(np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3)), "series: a series needs three or more times"),
+    ],
+)
+def test_mistakes_are_refused_in_one_line(call, message: str) -> None:  # type: ignore[no-untyped-def]
+    with pytest.raises(InputError, match=message) as error:
+        call()
+    assert "\n" not in str(error.value)
+
+
+def test_backward_euler_stops_where_its_effective_impedance_says() -> None:
+    """Closed form: rest begins at beta + (kappa - 1) Z v = S mu_static, kappa = sqrt(1 + 1/(12 nu^2)), on any mesh."""
+    run, courant = ss.simulate(LOOP), 0.4
+    time = np.linspace(2.5, 5.2, 20_001)
+    kappa = np.sqrt(1.0 + 1.0 / (12.0 * courant**2))
+    expected = time[run.load(time) + (kappa - 1.0) * SLAB.impedance * run.slip_rate(time) < 80e6][0]
+    for cells in (50, 200):
+        study = schemes(LOOP, None, "backward-euler", [cells], courant=courant)
+        assert 0.0 <= study.table.arrest.iloc[0] - expected < 2.0 * study.table.step.iloc[0]
+
+
+@pytest.mark.parametrize(("gamma", "rolls"), [(1.38, False), (1.43, True)])
+def test_a_massive_contact_rolls_over_the_next_barrier_beyond_urabes_damping(gamma: float, rolls: bool) -> None:
+    assert (gamma > 2.0 / 1.193**2) == rolls
+    mass = 0.5 * 2800.0 * gamma * SLAB.shear_modulus / (1e8 * 0.5 * 50.0)
+    law = ss.friction.SinusoidalSlip(1.0, 0.5, 50.0)
+    problem = ss.Problem(
+        replace(SLAB, contact_mass=mass), law, initial_slip=np.pi / 100 + 1e-3, initial_excess=5e7 * (1.0 - np.cos(0.05))
+    )
+    slip = float(ss.simulate(problem, 5.7).slip(5.7)) - problem.initial_slip
+    assert (slip > 2.5 * np.pi / 50.0) == rolls
+
+
+@pytest.mark.parametrize(("name", "courant"), [("newmark", 0.5), ("newmark", 2.0), ("theta", 0.3), ("backward-euler", 1.0)])
+def test_finite_elements_have_the_effective_impedance_of_the_closed_form(name: str, courant: float) -> None:
+    """A chain without end: 1/(12 theta^2 nu^2) + 1, where Newmark's method is theta = 1/2."""
+    theta = {"newmark": 0.5, "theta": 0.6, "backward-euler": 1.0}[name]
+    motion = SCHEMES[name].begin(grid_of(SMOOTH, 200, courant))
+    assert isinstance(motion, Elements)
+    kappa = 1.0 / float(motion.reply[0]) / SLAB.impedance
+    assert kappa == pytest.approx(np.sqrt(1.0 + 1.0 / (12.0 * theta**2 * courant**2)), rel=1e-9, abs=0.0)
+
+
+def test_ringing_schemes_are_near_a_rule_without_converging_to_it() -> None:
+    study = schemes(LOOP, None, ["central-differences", "sbp4"], [50, 100, 200], search="continue")
+    assert study.verdicts == {"central-differences": "near perfect-delay, without converging to it", "sbp4": "perfect-delay"}
+    limit = study.limit("sbp4")
+    assert limit is not None
+    assert limit.rules == ("perfect-delay",)
