@@ -1,4 +1,4 @@
-"""A hundred times as many members take no more memory than their numbers."""
+"""Four times as many members take no more memory than their numbers."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ def run(members):
     run_members(scenario, {"friction.alpha": np.linspace(0.9, 1.1, members)}, ("slip", "events"), threads=2)
     return resident()
 
-run(1_000), run(10_000)
-print(run(10_000), run(100_000))
+run(10_000), run(100_000)
+print(run(100_000), run(400_000))
 """
 BYTES_OF_A_MEMBER = 8 * (1 + 2 + 1)
 """What varies, two quantities, status."""
@@ -30,4 +30,4 @@ BYTES_OF_A_MEMBER = 8 * (1 + 2 + 1)
 def test_memory_grows_only_by_the_results_of_each_member() -> None:
     done = subprocess.run([sys.executable, "-c", CODE], capture_output=True, text=True, check=True)
     before, after = (int(word) for word in done.stdout.split())
-    assert after - before < 90_000 * BYTES_OF_A_MEMBER + 8e6
+    assert after - before < 300_000 * BYTES_OF_A_MEMBER + 12e6  # a history would take thousands of bytes a member

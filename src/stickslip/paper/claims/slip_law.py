@@ -76,7 +76,7 @@ def slab_pulses(runs: Runs) -> Verdict:
     why = (
         "As printed (u0 = uc + 1 mm) the start is statically stable: the slab creeps and settles. Started 1 cm beyond uc it "
         "slips in a single pulse. Several pulses within one round trip need friction that repeats within a shorter slip (ω = "
-        "50 /m)."
+        "50 /m). A coarse grid shows several where the exact solution has one: `stickslip schemes`, and the page on schemes."
     )
     return verdict(
         judge(pulses["as printed"] >= SEVERAL, pulses["ω = 50 /m"] >= SEVERAL),
