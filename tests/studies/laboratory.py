@@ -145,3 +145,40 @@ class WeakeningSlab:
     def _strength(self, slip: float) -> float:
         fallen = min(slip / self.distance, 1.0)
         return self.normal * (self.static + (self.dynamic - self.static) * fallen)
+
+
+@dataclass(frozen=True)
+class CoulombSlab:
+    """An elastic slab under static and dynamic Coulomb friction: the closed form of its first slip event."""
+
+    density: float = 1180.0
+    wave_speed: float = 1300.0
+    thickness: float = 0.1
+    normal: float = 5e6
+    static: float = 0.6
+    dynamic: float = 0.5
+    pull: float = 1e-3
+
+    @property
+    def trip(self) -> float:
+        """Two-way travel time of waves (s), for which the slab slips."""
+        return 2.0 * self.thickness / self.wave_speed
+
+    def onset(self, stress: float) -> float:
+        """Time (s) at which slip begins, from rest at a uniform shear stress."""
+        return (self.static * self.normal - stress) / self._rise
+
+    @property
+    def _rise(self) -> float:
+        return self.density * self.wave_speed**2 * self.pull / self.thickness
+
+    def sampled(self, time: Floats, stress: float) -> tuple[Floats, Floats]:
+        """Shear stress at the contact (Pa) and slip (m) at sample times before the end of the second round trip after the onset."""
+        impedance, begin, end = self.density * self.wave_speed, self.onset(stress), self.onset(stress) + self.trip
+        back = time - self.trip
+        rate = np.where((back > begin) & (back <= end), (stress + self._rise * back - self.dynamic * self.normal) / impedance, 0.0)
+        after = stress + self._rise * back - 2.0 * impedance * rate + 2.0 * impedance * self.pull
+        before = np.where(time <= begin, stress + self._rise * time, self.dynamic * self.normal)
+        lasts = np.clip(time - begin, 0.0, self.trip)
+        slip = ((self.static - self.dynamic) * self.normal * lasts + 0.5 * self._rise * lasts**2) / impedance
+        return np.where(time <= end, before, after), slip

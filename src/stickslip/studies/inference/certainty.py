@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from stickslip.foundation.determined import covariance_of, sizes_and_correlation, undetermined
 from stickslip.foundation.formatting import brief
+from stickslip.studies.inference.directions import IDLE, better_known, null_directions, told, without
 from stickslip.studies.inference.estimate import Estimate
 from stickslip.studies.inference.free import Free
 from stickslip.studies.inference.losses import cost_of, weights
@@ -21,9 +22,9 @@ Floats = NDArray[np.float64]
 EXACT = 1e-10
 """Relative tolerance of the runs from which derivatives at the best fit are taken."""
 UNSEEN = 3e-5
-"""Effect of a combination, as a share of the largest, below which the record does not see it: noise of differences is near 1e-6."""
-IDLE = 0.1
-"""Effect of a factor e on all residuals together, in standard deviations, below which a number has no influence."""
+"""Effect of a combination, as a share of the largest, that a profile does not follow: noise of differences is near 1e-6."""
+TOGETHER = 0.9
+"""Correlation of two numbers from which it is told if their sum, difference, product or ratio is known much better."""
 AT_BOUND = 1e-4
 """Distance from a bound, in searched numbers, at which a number lies on it."""
 ROUGH = 0.1
@@ -71,7 +72,8 @@ def certainty_of(found: Estimate) -> Certainty:
     """Return what a record determines at a best fit, from the curvature of the sum of squares."""
     from scipy.stats import t as student
 
-    model, x = found.model.with_(rtol=min(EXACT, found.model.rtol)), found.searched
+    x = found.searched
+    model = found.model.with_(rtol=min(EXACT, found.model.rtol)).fine(x)
     slopes, smooth_notes = _slopes(model, x)
     slopes *= np.sqrt(weights(model.residual(x), found.loss))[:, None]
     low, high = model.limits
@@ -79,27 +81,50 @@ def certainty_of(found: Estimate) -> Certainty:
     on_bound = ~idle & ((x - low < AT_BOUND) | (high - x < AT_BOUND))
     inner = np.flatnonzero(~on_bound & ~idle)
     covariance = np.zeros((len(x), len(x)))
-    part, unseen = covariance_of(slopes[:, inner], 1.0, UNSEEN) if len(inner) else (np.zeros((0, 0)), [])
-    covariance[np.ix_(inner, inner)] = part
+    moves = null_directions(model, x, slopes[:, inner], inner) if len(inner) else np.zeros((0, 0))
+    if len(inner):
+        covariance[np.ix_(inner, inner)] = covariance_of(without(slopes[:, inner], moves), 1.0)[0]
     covariance[idle] = covariance[:, idle] = np.nan
     covariance[on_bound] = covariance[:, on_bound] = 0.0
     widths, correlation = sizes_and_correlation(covariance)
-    free = model.free
-    values = dict(zip([one.label for one in free], model.values(x), strict=True))
-    notes = [f"{free[i].label} has no influence on what is fitted: fix it" for i in np.flatnonzero(idle)]
-    notes += [_bound_note(free[i], values[free[i].label], at_low=bool(x[i] - low[i] < AT_BOUND)) for i in np.flatnonzero(on_bound)]
-    labels = [free[i].label for i in inner]
-    sizes = {free[i].label: free[i].width(values[free[i].label], float(widths[i])) for i in inner}
-    seen_correlation = correlation[np.ix_(inner, inner)]
-    texts = undetermined(
-        {one: values[one] for one in labels}, sizes, seen_correlation, [[labels[i] for i in one] for one in unseen]
-    )
-    notes += [
-        text.replace("the points do", "the record does").replace("the points determine", "the record determines") for text in texts
-    ]
-    notes += [text for i, text in smooth_notes.items() if i in inner]
     degrees = max(_independent(model) - len(inner), 1.0)
-    return Certainty(covariance, widths, correlation, float(student.ppf(HALF, degrees)), on_bound, tuple(notes), slopes)
+    factor = float(student.ppf(HALF, degrees))
+    notes = [f"{model.free[i].label} has no influence on what is fitted: fix it" for i in np.flatnonzero(idle)]
+    values = model.values(x)
+    notes += [_bound_note(model.free[i], values[i], at_low=bool(x[i] - low[i] < AT_BOUND)) for i in np.flatnonzero(on_bound)]
+    notes += _words(model, np.array(values), (slopes, moves, covariance, correlation), inner, factor)
+    notes += [text for i, text in smooth_notes.items() if i in inner]
+    return Certainty(covariance, widths, correlation, factor, on_bound, tuple(notes), slopes)
+
+
+def _words(
+    model: Model, values: Floats, found: tuple[Floats, Floats, Floats, Floats], inner: NDArray[np.intp], factor: float
+) -> list[str]:
+    """Return sentences on sets of numbers of which a record determines combinations only, or much better than each."""
+    slopes, moves, covariance, correlation = found
+    slopes, correlation = slopes[:, inner], correlation[np.ix_(inner, inner)].copy()
+    labels, free = [model.free[i].label for i in inner], [model.free[i] for i in inner]
+    declared = list(model.problem.parameters)
+    order = sorted(range(len(inner)), key=lambda i: declared.index(free[i].name) if free[i].name in declared else len(declared))
+    words, open_sets = [], []
+    for numbers, text in told([labels[i] for i in order], moves[order], slopes[:, order], factor):
+        numbers = [order[i] for i in numbers]
+        if text and all(free[i].log for i in numbers):
+            words.append(text)
+        else:
+            open_sets.append([labels[i] for i in sorted(numbers)])
+    for i, j in np.argwhere(np.abs(np.triu(correlation, 1)) > TOGETHER).tolist():
+        alike = free[i].declared.unit == free[j].declared.unit and free[i].name.partition(".")[0] == free[j].name.partition(".")[0]
+        chosen = inner[[i, j]]
+        text = better_known(values[chosen], covariance[np.ix_(chosen, chosen)], (labels[i], labels[j]), alike=alike)
+        if text and free[i].log and free[j].log:
+            words.append(f"the record determines {text} ({labels[i]} and {labels[j]} have the correlation {correlation[i, j]:.4f})")
+            correlation[i, j] = 0.0
+    sizes = {one.label: one.width(values[k], math.sqrt(covariance[k, k])) for k, one in zip(inner, free, strict=True)}
+    texts = undetermined(dict(zip(labels, values[inner], strict=True)), sizes, correlation, open_sets)
+    return words + [
+        one.replace("the points do", "the record does").replace("the points determine", "the record determines") for one in texts
+    ]
 
 
 def _bound_note(free: Free, value: float, *, at_low: bool) -> str:
@@ -115,8 +140,10 @@ def _slopes(model: Model, x: Floats) -> tuple[Floats, dict[int, str]]:
     is 0, so that what such samples tell is left out of the curvature, and intervals are rather too wide.
     """
     right, left = model.jacobian(x, sides=(1.0,)), model.jacobian(x, sides=(-1.0,))
+    right, left = np.where(right.any(axis=0), right, left), np.where(left.any(axis=0), left, right)  # a limit leaves one side only
     size, apart = np.maximum(np.abs(right), np.abs(left)), np.abs(right - left)
-    rough = (apart > 0.5 * size) & (size > 1e-3 * np.max(size, axis=0, initial=0.0))
+    seen = np.linalg.norm(right + left, axis=0) > 2.0 * IDLE  # what is left of another column is the noise of runs
+    rough = (apart > 0.5 * size) & (size > 1e-3 * np.max(size, axis=0, initial=0.0)) & seen
     notes = {}
     for i in range(len(x)):
         total = float(np.linalg.norm(0.5 * (right[:, i] + left[:, i])))

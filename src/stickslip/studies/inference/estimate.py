@@ -23,6 +23,8 @@ ROUNDS = 4
 """Largest number of times that noise and numbers are estimated in turn."""
 SETTLED = 0.05
 """Change of a number, in standard uncertainties, that asks for no further turn."""
+NARROWING = (64, 16, 4)
+"""Numbers of samples over which jumps of a run are spread one after the other, so that a fit finds those of the record."""
 APART = 5.0
 """Distance of two minima, in standard uncertainties, from which they are two."""
 
@@ -60,9 +62,9 @@ def estimate(model: Model, starts: int, loss: str, seed: int, tell: Tell) -> Est
     """Return the best fit of a model. Raises InputError if no run succeeds, KeyboardInterrupt if Ctrl-C comes before any did."""
     best, found = Best(), Estimate(model, model.begin, loss=loss)
     try:
-        thin = light(model.thinned(FEW))
+        thin = light(model.thinned(FEW)).with_(blur=NARROWING[0])
         minima = searched_minima(thin, starts, loss, seed, tell=tell, best=best)
-        searched = minima[0][1]
+        searched = _at_jumps(model, [x for _, x in minima], loss, tell)
         best.cost, best.searched = np.inf, searched
         found = _with_noise(model, searched, loss, tell, best)
         misses = any(size > ROUGH * model.sizes[name] for name, size in found.model.sizes.items())
@@ -78,16 +80,30 @@ def estimate(model: Model, starts: int, loss: str, seed: int, tell: Tell) -> Est
         return Estimate(found.model.with_(every=model.every), best.searched, finished=False, loss=loss)
 
 
+def _at_jumps(model: Model, minima: list[Floats], loss: str, tell: Tell) -> Floats:
+    """Return the best of some minima; where runs jump, each follows its jumps, spread less and less, to those of the record."""
+    ends = []
+    if not any(model.with_jumps(x).unsure for x in minima):
+        return minima[0]
+    for x in minima:
+        for width in NARROWING:
+            tell(f"fit to jumps that are spread over {width} samples")
+            x = solved(model.with_(blur=width).fine(x), x, loss, thorough=True)
+        ends.append((cost_of(model.with_(blur=NARROWING[-1]).residual(x), loss), x))
+    return min(ends, key=lambda one: one[0])[1]
+
+
 def _with_noise(model: Model, searched: Floats, loss: str, tell: Tell, best: Best) -> Estimate:
     """Return the best fit and the noise, estimated in turn until both stay."""
     for turn in range(ROUNDS):
         tell(f"fit {turn + 1} to all samples")
         best.cost = np.inf
         before = searched
+        model = model.with_jumps(searched).fine(searched)
         searched = solved(model, searched, loss, best, thorough=True)
         by = model.jacobian(searched, white=False)
         new = _noise(model, searched, by, loss)
-        if turn == 0 and loss == "linear" and _keeps_minimum(model, new):
+        if turn == 0 and not model.unsure and loss == "linear" and _keeps_minimum(model, new):
             return Estimate(new, searched, loss=loss)
         width = _widths(by[: model.samples])
         settled = turn > 0 and np.all(np.abs(searched - before) < SETTLED * width)

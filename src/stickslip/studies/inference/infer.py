@@ -26,6 +26,7 @@ from stickslip.studies.inference.losses import LOSSES
 from stickslip.studies.inference.model import Model
 from stickslip.studies.inference.part import Part, first_sizes
 from stickslip.studies.inference.record import Record
+from stickslip.studies.inference.resample import resampled
 from stickslip.studies.inference.sampling import sample
 from stickslip.studies.inference.search import Tell
 from stickslip.studies.inference.setup import at_rests, hints_of, own_of, parts_of, scales_of
@@ -34,8 +35,6 @@ from stickslip.studies.study import TextProgress, telling
 if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario
 
-MOST_FITTED = 100_000
-"""Largest number of samples of a part that are fitted: of more, each second, third and so on."""
 MOST_SAMPLES = 1_000_000
 """Largest number of posterior samples."""
 TIME = Quantity("s", "time of the record")
@@ -179,11 +178,22 @@ def infer(
     if wishes.parts == "rests":
         whole = [piece for part in whole for piece in at_rests(part)]
         notes.append(f"{len(whole)} parts between rests, each with a run of its own")
+    whole, notes = _resampled(whole, notes)
     share = share_of(wishes.held_out, whole)
     fitted = shortened(whole, share)
     model = _model(given, fitted, free, wishes)
     with telling(progress, "infer") as tell:
         return _inferred(model, tuple(whole), wishes, notes, tell)
+
+
+def _resampled(parts: list[Part], notes: list[str]) -> tuple[list[Part], list[str]]:
+    """Return the parts with a number of samples that can be fitted, and the notes with what was done."""
+    found = []
+    for part in parts:
+        record, said = resampled(part.record)
+        found.append(replace(part, record=record))
+        notes = [*notes, *said]
+    return found, notes
 
 
 def _time(value: Any, name: str) -> float | None:
@@ -206,7 +216,6 @@ def _model(problem: Problem, parts: list[Part], names: Sequence[str] | str, wish
     own = own_of(problem, parts, wishes.each) if wishes.parts == "rests" else []
     own = [one for one in own if one.name not in {shared.name for shared in chosen}]
     model = Model(problem, tuple(parts), (*chosen, *own), wishes.rtol, first_sizes(parts))
-    model = model.thinned(MOST_FITTED) if max(len(part.record) for part in parts) > MOST_FITTED else model
     if model.samples <= len(chosen):
         raise InputError(f"infer: {model.samples} samples cannot determine {len(chosen)} numbers: free fewer of them")
     return model

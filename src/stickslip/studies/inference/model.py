@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -14,21 +15,31 @@ from stickslip.problem.problem import Problem
 from stickslip.run.simulate import simulate
 from stickslip.solution.solution import Solution
 from stickslip.studies.inference.free import DELAY, LOAD, STATE, TREND, Free
+from stickslip.studies.inference.jumps import RAMP, Jumps, jumps_in, spread, unsure
 from stickslip.studies.inference.noise import Block, whitened
 from stickslip.studies.inference.part import Part, changed
 from stickslip.studies.inference.record import UNITS
 from stickslip.studies.study import uninterrupted
+from stickslip.trajectory.history import Side
 
 Floats = NDArray[np.float64]
 
 OF_NO_ZERO = ("slip",)
 """Quantities that a sensor measures from a zero of its own: the mean of their residual is taken away."""
+JUMPING = ("friction", "shear_stress", "shear_force", "slip_rate")
+"""Quantities that may jump in a run."""
+SEEN = 0.1
+"""Height of a jump, in standard deviations, from which it is spread between samples."""
 FAILED = 1e5
 """Residual, in standard deviations, that stands for a run that failed."""
 LARGEST = 1e7
 """Largest residual, in standard deviations, so that squares and their sums stay finite."""
 STEP = 2e-4
-"""Step of differences, in searched numbers: the square of it is the error, and 1e-8 over it the noise of runs."""
+"""Longest step of differences, in searched numbers: the square of it is the error, and 1e-8 over it the noise of runs."""
+NO_ROOM = 1e-10
+"""Step of differences that a limit leaves no room for."""
+CHANGED, ABOVE_NOISE = 0.5, 30.0
+"""Change of all residuals together that a fine step makes: in standard deviations, and in the noise of runs if that is more."""
 
 
 @dataclass
@@ -52,11 +63,15 @@ class Model:
     every
         Each how many-th sample is used.
     step
-        Step of differences, in searched numbers.
+        Step of differences, in searched numbers: one for all, or one for each.
     smooth
         Share of the samples over which residuals are averaged, so that an event at another time is felt from afar.
     max_pieces
         Largest number of pieces of a run; a run that needs more has failed.
+    blur
+        Number of samples over which a jump of a run is spread.
+    unsure
+        Standard deviation (SI) of each used sample from the unknown time of a jump beside it, by part and quantity.
     """
 
     problem: Problem
@@ -66,9 +81,11 @@ class Model:
     sizes: dict[str, float] = field(default_factory=dict)
     memory: dict[str, float] = field(default_factory=dict)
     every: int = 1
-    step: float = STEP
+    step: float | Floats = STEP
     smooth: float = 0.0
     max_pieces: int = 20_000
+    blur: int = RAMP
+    unsure: dict[tuple[int, str], Floats] = field(default_factory=dict)
     _last: dict[int, tuple[bytes, Floats]] = field(default_factory=dict)
 
     def values(self, searched: Floats) -> list[float]:
@@ -106,15 +123,29 @@ class Model:
             slip = run.slip(time)
             shift = own[TREND] * (slip - slip[0])
         for name in this.observed:
-            if name == "slip":
-                found[name] = run.slip(time) - run.problem.initial_slip
-            elif name == "slip_rate":
-                found[name] = run.slip_rate(time)
-            else:
-                force = run.load(time) if this.sensor == "spring" else run.traction(time)
-                normal = run.problem.normal
-                found[name] = force / normal + shift if name == "friction" else force + shift * normal
+            values = measured(run, name, this.sensor, time)
+            if name in JUMPING:
+                values = spread(values, time, self._jumps(run, part, name), self.blur)
+            found[name] = values + shift * (run.problem.normal if name in ("shear_stress", "shear_force") else name == "friction")
         return found
+
+    def _jumps(self, run: Solution, part: int, name: str) -> Jumps:
+        sensor, least = self.parts[part].sensor, SEEN * self.sizes.get(name, 0.0)
+        return jumps_in(lambda time, side: measured(run, name, sensor, time, side), run.breaks[1:-1], least)
+
+    def with_jumps(self, searched: Floats) -> Model:
+        """Return the model in which samples beside a jump of the run are as unsure as the time of the jump makes them."""
+        model, added = self.with_(unsure={}), dict[tuple[int, str], Floats]()
+        for i, part in enumerate(self.parts):
+            run = model.solve(searched, i)
+            if run is None:
+                continue
+            time = part.record.clock[:: self.every] - self._own(searched, i).get(DELAY, 0.0)
+            for name in part.observed:
+                jumps = model._jumps(run, i, name) if name in JUMPING else None
+                if jumps is not None and len(jumps.time):
+                    added[i, name] = unsure(time, self.data(i, name)[:: self.every], jumps)
+        return self.with_(unsure=added)
 
     def data(self, part: int, name: str) -> Floats:
         """Return the measured values of a quantity in a part (SI); slip is counted from the first sample."""
@@ -123,8 +154,12 @@ class Model:
 
     def _deviations(self, part: int, name: str) -> Floats | float:
         given = self.parts[part].record.deviations.get(name)
-        scale = self.sizes[name]
-        return scale if given is None else given[:: self.every] * scale
+        relative = self.parts[part].record.relative
+        scale: Floats | float = self.sizes[name]
+        for factor in (given, relative):
+            scale = scale if factor is None else factor[:: self.every] * scale
+        added = self.unsure.get((part, name))
+        return scale if added is None else np.hypot(scale, added)
 
     def part_residual(self, searched: Floats, part: int) -> Floats:
         """Return the residuals of a part in standard deviations: model minus data, quantity after quantity."""
@@ -192,11 +227,12 @@ class Model:
         counts = [len(one) for one in base]
         begins = np.append(0, np.cumsum(counts))
         result = np.zeros((int(begins[-1]) + len(self.priors(searched)), len(self.free)))
+        steps = np.broadcast_to(self.step, len(self.free))
         for column, one in enumerate(self.free):
             stepped = []
             for side in sides:
                 x = searched.copy()
-                x[column] = min(max(x[column] + side * self.step, lows[column]), highs[column])
+                x[column] = min(max(x[column] + side * float(steps[column]), lows[column]), highs[column])
                 stepped.append(x)
             for i in range(len(self.parts)) if one.part is None else (one.part,):
                 by = self._difference(searched, stepped, column, i, base[i])
@@ -204,10 +240,31 @@ class Model:
             result[begins[-1] :, column] = self._prior_slope(stepped, searched, column)
         return result
 
+    def fine(self, searched: Floats) -> Model:
+        """Return the model with steps of differences that stay inside the uncertainty: a sharp event bends within longer ones."""
+        change, steps = max(CHANGED, ABOVE_NOISE * self.noise), np.full(len(self.free), STEP)
+        for _ in range(3):  # beyond a bend the slope of a long step is too small, and with it the step that follows too long
+            sizes = np.linalg.norm(self.with_(step=steps).jacobian(searched, sides=(1.0,)), axis=0)
+            shorter = np.minimum(change / np.maximum(sizes, 1e-300), steps)
+            if np.all(shorter > 0.5 * steps):
+                break
+            steps = shorter
+        return self.with_(step=steps)
+
+    @property
+    def noise(self) -> float:
+        """The error of all runs together, in standard deviations, as their tolerance lets expect it."""
+        return self.rtol * math.sqrt(sum(self._squares(i) for i in range(len(self.parts))))
+
+    def _squares(self, part: int) -> float:
+        """Return the sum of squares of what was measured in a part, in standard deviations."""
+        names = self.parts[part].observed
+        return sum(float(np.nansum((self.data(part, name)[:: self.every] / self._deviations(part, name)) ** 2)) for name in names)
+
     def _difference(self, searched: Floats, stepped: list[Floats], column: int, part: int, base: Floats) -> Floats:
         ends = []
         for x in stepped:
-            if x[column] != searched[column]:
+            if abs(x[column] - searched[column]) > NO_ROOM:
                 rest = self._new_residual(x, part)
                 if len(rest) and not np.all(rest == FAILED):
                     ends.append((x[column], rest))
@@ -246,11 +303,21 @@ class Model:
     def thinned(self, most: int) -> Model:
         """Return the same model on about so many samples, but no fewer than 200 of the longest part."""
         longest = max(len(part.record) for part in self.parts)
-        return self.with_(every=max(1, -(-longest // max(most // len(self.parts), 200))))
+        return self.with_(every=max(1, -(-longest // max(most // len(self.parts), 200))), unsure={})
 
     def with_(self, **others: Any) -> Model:
         """Return the model with other settings."""
         return replace(self, **others, _last={})
+
+
+def measured(run: Solution, name: str, sensor: str, time: Floats, side: Side = "right") -> Floats:
+    """Return a quantity in a run at some times (SI), as a sensor at the contact or behind the spring measures it."""
+    if name == "slip":
+        return run.slip(time) - run.problem.initial_slip
+    if name == "slip_rate":
+        return run.slip_rate(time, side)
+    force = run.load(time, side) if sensor == "spring" else run.traction(time, side)
+    return force / run.problem.normal if name == "friction" else force
 
 
 def averaged(rest: Floats, width: int) -> Floats:

@@ -65,6 +65,8 @@ class Record:
         Name for messages and figures.
     notes
         What was done with the record, one sentence each.
+    relative
+        Noise of each sample relative to the usual one, where some are means of more samples than others, or None.
     """
 
     time: Floats
@@ -74,6 +76,7 @@ class Record:
     load_rate: Floats | None = None
     name: str = "record"
     notes: tuple[str, ...] = ()
+    relative: Floats | None = None
 
     @classmethod
     def read(cls, source: Any, begin: float | None = None, end: float | None = None) -> Record:
@@ -134,7 +137,13 @@ class Record:
         deviations = {name: values[chosen] for name, values in self.deviations.items()}
         loads = cut(self.load_point), cut(self.load_rate)
         return replace(
-            self, time=self.time[chosen], measured=measured, deviations=deviations, load_point=loads[0], load_rate=loads[1]
+            self,
+            time=self.time[chosen],
+            measured=measured,
+            deviations=deviations,
+            load_point=loads[0],
+            load_rate=loads[1],
+            relative=cut(self.relative),
         )
 
     @property

@@ -29,6 +29,8 @@ DROP, ABOVE_NOISE = 0.25, 8.0
 """Fall of shear that is a slip event: as a share of the range of the record, and in standard deviations of its noise."""
 LEAST = 8
 """Smallest number of samples of a part."""
+LATER = 0.05
+"""Share of the samples between two slip events that a part still holds after its event: noise chooses the lowest sample."""
 
 
 def parts_of(
@@ -108,14 +110,15 @@ def scales_of(part: Part, problem: Problem) -> dict[str, float]:
 
 
 def at_rests(part: Part) -> list[Part]:
-    """Return the parts of a record between its rests: each begins right after a slip event. Raises InputError without events."""
+    """Return the parts of a record between its rests: each begins soon after a slip event. Raises InputError without events."""
     record, name = part.record, part.record.shear
     if name is None:
         raise InputError(f"{record.name}: parts='rests' needs shear, whose drops are the slip events")
     arrests = arrests_in(record.measured[name])
     if not len(arrests):
         raise InputError(f"{record.name}: no drop of {name} stands out of its noise: leave parts='rests' out")
-    ends = [0, *(arrests + 1).tolist(), len(record)]
+    later = (LATER * np.diff(np.append(arrests, len(record)))).astype(int)
+    ends = [0, *(arrests + 1 + later).tolist(), len(record)]
     cuts = [(first, last) for first, last in pairwise(ends) if last - first >= LEAST]
     found = []
     for first, last in cuts:

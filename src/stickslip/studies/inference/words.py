@@ -27,8 +27,6 @@ def notes_of(study: Inference) -> Iterator[str]:
         yield "interrupted: these are the best numbers so far"
     yield from _misfit(study)
     yield from study.certainty.notes
-    if study.model.every > 1:
-        yield f"only each {study.model.every}th sample was fitted"
     for x in study.estimate.others:
         values = [f"{one.label} {brief(v, one.declared.unit, 3)}" for one, v in zip(study.free, study.model.values(x), strict=True)]
         yield f"another minimum fits almost as well: {', '.join(values[:8])}; bounds or priors choose between them"

@@ -1,0 +1,132 @@
+"""Records with too many samples: means over neighbouring ones, where nothing but noise differs from a line within them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.studies.inference.loading import GAP
+from stickslip.studies.inference.noise import noise_of, rounding_of
+from stickslip.studies.inference.record import Record
+
+Floats = NDArray[np.float64]
+
+MOST_FITTED = 100_000
+"""Largest number of samples of a part that are fitted as they are."""
+SURE, FARTHEST = 5.0, 6.0
+"""Standard deviations by which a bend, and a single sample, may differ from a line through a bin of which the mean is taken."""
+COARSEST = 1e6
+"""Largest factor on the noise with which bins are still divided."""
+SMALLEST_NOISE = 1e-9
+"""Smallest noise, as a share of the range of a quantity."""
+
+
+@dataclass(frozen=True)
+class Bins:
+    """Groups of neighbouring samples.
+
+    Parameters
+    ----------
+    first
+        Index of the first sample of each.
+    count
+        Number of samples of each.
+    """
+
+    first: NDArray[np.intp]
+    count: NDArray[np.intp]
+
+    def sums(self, values: Floats) -> Floats:
+        """Return the sum over each bin."""
+        return np.asarray(np.add.reduceat(values, self.first))
+
+    def is_mixed(self, values: Floats, noise: float) -> NDArray[np.bool_]:
+        """Return True for bins in which values differ from a line by more than noise, or only some are missing."""
+        missing = self.sums((~np.isfinite(values)).astype(float))
+        i = np.arange(len(values)) - np.repeat(self.first, self.count)
+        t = (2.0 * i + 1.0) / np.repeat(self.count, self.count) - 1.0
+        values = np.where(np.isfinite(values), values, 0.0)
+        rest = values - np.repeat(self.sums(values) / self.count, self.count)
+        slope = self.sums(rest * t) / np.maximum(self.sums(t * t), 1e-300)
+        rest = rest - np.repeat(slope, self.count) * t
+        mixed = np.maximum.reduceat(np.abs(rest), self.first) > FARTHEST * noise
+        for shape in (1.5 * t**2 - 0.5, 2.5 * t**3 - 1.5 * t):  # Legendre's polynomials: a bend, and a step
+            mixed |= np.abs(self.sums(rest * shape)) > SURE * noise * np.sqrt(self.sums(shape * shape))
+        return np.asarray((mixed | (missing > 0.0)) & (missing < self.count))
+
+    def split(self, whole: NDArray[np.bool_]) -> Bins:
+        """Return the bins in which those that are not to stay whole are single samples."""
+        single = np.repeat(~whole, self.count)
+        begins = single.copy()
+        begins[self.first] = True
+        first = np.flatnonzero(begins)
+        return Bins(first, np.diff(np.append(first, len(single))))
+
+
+def resampled(record: Record, most: int = MOST_FITTED) -> tuple[Record, tuple[str, ...]]:
+    """Return a record of about so many samples at most, and a sentence on what was done.
+
+    Samples are replaced by means over groups of them, which no gap divides. So what is faster than a group is averaged and does
+    not turn up as something slow. Where a measured quantity bends or jumps within a group, its samples stay.
+    """
+    if len(record) <= most:
+        return record, ()
+    size = -(-len(record) // most)
+    bins, between = _bins(record.time, size), _bins(record.time, size, size // 2)
+    known = {name: values for name, values in record.measured.items() if np.isfinite(values).any()}
+    noise = {name: _noise(values) for name, values in known.items()}
+    coarser = 1.0
+    while True:
+        single = np.zeros(len(record), bool)
+        single[[0, -1]] = True  # the run begins and ends with the record
+        for name, values in known.items():
+            for groups in (bins, between):
+                single |= np.repeat(groups.is_mixed(values, coarser * noise[name]), groups.count)
+        kept = bins.split(bins.sums(single.astype(float)) == 0.0)
+        if len(kept.first) <= 2 * most or coarser > COARSEST:
+            return _means(record, kept), (_told(record, kept, size, coarser),)
+        coarser *= 4.0
+
+
+def _noise(values: Floats) -> float:
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    return max(noise_of(values), rounding_of(values), SMALLEST_NOISE * max(high - low, 1e-3 * max(abs(low), abs(high)), 1e-300))
+
+
+def _bins(time: Floats, size: int, shift: int = 0) -> Bins:
+    """Return groups of so many samples, fewer before and after gaps; the first group after a gap is shorter by a shift."""
+    steps = np.diff(time)
+    begins = np.flatnonzero(np.append(True, steps > GAP * float(np.median(steps))))
+    since = np.arange(len(time)) - np.repeat(begins, np.diff(np.append(begins, len(time))))
+    first = np.flatnonzero((since == 0) | ((since + shift) % size == 0))
+    return Bins(first, np.diff(np.append(first, len(time))))
+
+
+def _means(record: Record, bins: Bins) -> Record:
+    def mean(values: Floats) -> Floats:
+        return bins.sums(values) / bins.count
+
+    usual = float(np.median(bins.count))
+    measured = {name: mean(values) for name, values in record.measured.items()}
+    deviations = {name: np.sqrt(mean(values**2) / bins.count * usual) for name, values in record.deviations.items()}
+    loads = [None if one is None else mean(one) for one in (record.load_point, record.load_rate)]
+    relative = np.sqrt(usual / bins.count)
+    return replace(
+        record,
+        time=mean(record.time),
+        measured=measured,
+        deviations=deviations,
+        load_point=loads[0],
+        load_rate=loads[1],
+        relative=relative,
+    )
+
+
+def _told(record: Record, bins: Bins, size: int, coarser: float) -> str:
+    single = int((bins.count == 1).sum())
+    text = f"the {len(record)} samples of {record.name} became {len(bins.first)}: means over {size}"
+    if single:
+        text += f", and {single} samples as they are, where a measured quantity bends or jumps"
+    return text if coarser == 1.0 else f"{text} by more than {coarser:g} times its noise"
