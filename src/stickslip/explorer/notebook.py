@@ -17,7 +17,13 @@ ROUND_TRIPS = 3.0
 """Round trips of a slab, or periods of a block, that are shown of a problem to which no duration is given."""
 
 
-def explore(problem: Problem | Scenario | str | Path = "fig6-slab", duration: float | str | WithUnit | None = None) -> Any:
+def explore(
+    problem: Problem | Scenario | str | Path = "fig6-slab",
+    duration: float | str | WithUnit | None = None,
+    *,
+    record: Any = None,
+    sensor: str = "contact",
+) -> Any:
     """Show a problem in a notebook, with controls for all of its numbers, as `stickslip explore` shows it in a browser.
 
     Parameters
@@ -27,6 +33,10 @@ def explore(problem: Problem | Scenario | str | Path = "fig6-slab", duration: fl
     duration : float or str, optional
         Duration of the run: a number in s, or a text with a unit such as "480 years". By default the scenario's duration; for a
         problem three round trips of the waves in a slab, or three periods of a block.
+    record : str, Path, DataFrame, mapping or Record, optional
+        A laboratory record that is drawn behind the runs, as `studies.infer` reads it: the page says how far each run is from it.
+    sensor : {"contact", "spring"}
+        Where the shear of the record was measured: at the contact, or by a load cell behind the spring of a block.
 
     Returns
     -------
@@ -50,4 +60,10 @@ def explore(problem: Problem | Scenario | str | Path = "fig6-slab", duration: fl
         found = Scenario(found, found.round_trip_time * ROUND_TRIPS if duration is None else duration, name="problem")
     elif duration is not None:
         found = replace(found, duration=duration)
-    return shown_in_notebook(found)
+    behind = None
+    if record is not None:
+        from stickslip.explorer.model.measured import Backdrop
+        from stickslip.studies.inference.record import Record
+
+        behind = Backdrop.of(Record.read(record), sensor, found.problem)
+    return shown_in_notebook(found, behind)

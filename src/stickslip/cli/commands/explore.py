@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from stickslip.cli.options import SCENARIO, Changes, argument, complete_scenario, option
 from stickslip.foundation.errors import InputError
+
+if TYPE_CHECKING:
+    from stickslip.explorer.model.measured import Backdrop
+    from stickslip.problem.problem import Problem
 
 SERVER = "Server"
 """Heading of the options of the server in the help."""
@@ -18,6 +22,9 @@ FIRST = "fig6-slab"
 ADDRESS = "Network address to listen on. Not given: 127.0.0.1, which can be reached from this computer only."
 ALLOW_ORIGIN = "Another host (NAME or NAME:PORT) under which the page may be reached, as behind a proxy; may be repeated."
 PORT = "Port to listen on; 0 for any free port. Not given: the first free port from 5018 on."
+RECORD = "Draw a laboratory record behind the runs (CSV, as for `stickslip infer`), and say how far they are from it."
+BEHIND = "Record"
+"""Heading of the options of a record in the help."""
 STATIC = "Write the guided tour into this new folder, as files that need neither Python nor a network, and end."
 _HOST = re.compile(r"[\w.-]+(:\d{1,5})?|\[[\da-f:]+\](:\d{1,5})?", re.IGNORECASE)
 NO_BROWSER = "Do not open a browser: only print the address."
@@ -27,6 +34,12 @@ def explore(
     scenario: Annotated[str | None, argument(SCENARIO, complete_scenario)] = None,
     *,
     changes: Changes = None,
+    record: Annotated[Path | None, option(RECORD, panel=BEHIND)] = None,
+    begin: Annotated[str | None, option("Take the record from this time on, as `infer` did.", "--from", panel=BEHIND)] = None,
+    end: Annotated[str | None, option("Take the record up to this time.", "--to", panel=BEHIND)] = None,
+    sensor: Annotated[
+        str, typer.Option(help="Where shear was measured: contact, or spring (load cell of a block).", rich_help_panel=BEHIND)
+    ] = "contact",
     port: Annotated[int | None, option(PORT, min=0, max=65535, metavar="<int>", panel=SERVER)] = None,
     address: Annotated[str, option(ADDRESS, panel=SERVER)] = "127.0.0.1",
     allow_origin: Annotated[list[str] | None, option(ALLOW_ORIGIN, panel=SERVER)] = None,
@@ -45,6 +58,7 @@ def explore(
     \b
       stickslip explore
       stickslip explore fig6-slab
+      stickslip explore best.toml --record test17.csv
       stickslip explore mine.toml --no-browser --port 5018
       stickslip explore --static tour
 
@@ -57,7 +71,7 @@ def explore(
 
     check_extra("explore")
     if static is not None:
-        _write(static, scenario, changes)
+        _write(static, scenario, changes, record)
         return
     loaded = load(scenario or FIRST, "explore", changes)
     from stickslip.explorer.model.setting import Setting
@@ -68,17 +82,33 @@ def explore(
         if not _HOST.fullmatch(name):
             raise InputError(f"explore: --allow-origin must be NAME or NAME:PORT, got {name[:60]!a}")
     endpoint = Endpoint(address=address, port=port, origins=tuple(allow_origin or ()), sessions=sessions)
-    start(Setting.of(loaded), endpoint, browser=not no_browser, say=typer.echo)
+    behind = None if record is None else _behind(record, begin, end, sensor, loaded.problem)
+    start(Setting.of(loaded), endpoint, browser=not no_browser, say=typer.echo, behind=behind)
 
 
-def _write(folder: Path, scenario: str | None, changes: list[str] | None) -> None:
+def _behind(record: Path, begin: str | None, end: str | None, sensor: str, problem: Problem) -> Backdrop:
+    """Return the record that is drawn behind all runs. Raises InputError."""
+    from stickslip.explorer.model.measured import Backdrop
+    from stickslip.foundation.quantities import Quantity
+    from stickslip.scenarios.entries import typed_number
+    from stickslip.studies.inference.record import Record
+
+    time = Quantity("s", "time of the record")
+    ends = {"begin": begin, "end": end}
+    found = {name: time.check("explore", name, typed_number(text)) for name, text in ends.items() if text is not None}
+    return Backdrop.of(Record.read(record, **found), sensor, problem)
+
+
+def _write(folder: Path, scenario: str | None, changes: list[str] | None, record: Path | None) -> None:
     """Write the tour into a folder and say how large it is. Raises InputError."""
     from stickslip.explorer.static.export import write_tour
     from stickslip.foundation.errors import InputError
     from stickslip.run.progress_line import progress_line
 
-    if scenario is not None or changes:
-        raise InputError("explore: --static writes the guided tour, which has scenarios of its own: leave out SCENARIO and --set")
+    if scenario is not None or changes or record is not None:
+        raise InputError(
+            "explore: --static writes the guided tour, which has scenarios of its own: leave out SCENARIO, --set and --record"
+        )
     with progress_line("explore:") as report:
         written = write_tour(folder, report)
     typer.echo(written)

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.scenarios.scenario import Scenario
 from stickslip.solution.solution import Solution
+
+if TYPE_CHECKING:
+    from stickslip.explorer.model.measured import Measured
 
 Floats = NDArray[np.float64]
 CurveName = Literal["law", "steady state", "law at the state of the start"]
@@ -132,7 +135,8 @@ class KeyNumber:
 class Answer:
     """All that the explorer shows of one setting.
 
-    `motions` holds the body itself first, then its companion of the other kind if there is one. `sentence` says regime, alpha over
+    `measured` is a record that is drawn behind the run, if there is one. `motions` holds the body itself first, then its companion
+    of the other kind if there is one. `sentence` says regime, alpha over
     alpha_c, what jumped, and what rests on the selection rule; `regime` is "regular", "irregular" or "continuum". `notes` are
     warnings, one line each.
     """
@@ -150,3 +154,4 @@ class Answer:
     marks: tuple[Mark, ...]
     numbers: tuple[KeyNumber, ...]
     notes: tuple[str, ...]
+    measured: Measured | None = None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from dataclasses import replace
 from functools import partial
 
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
@@ -11,6 +12,7 @@ from stickslip.explorer.model.contact_picture import contact_picture
 from stickslip.explorer.model.energy_picture import energy_picture
 from stickslip.explorer.model.findings import Found, key_numbers, marks_of
 from stickslip.explorer.model.law_picture import law_picture
+from stickslip.explorer.model.measured import Backdrop
 from stickslip.explorer.model.runs import run, run_companion
 from stickslip.explorer.model.sampled_waves import SampledWaves, Shown
 from stickslip.explorer.model.sentence import sentence
@@ -25,7 +27,7 @@ LONG = 5_000
 """Number of pieces of a run from which on its pictures take long enough to be told of."""
 
 
-def solve(scenario: Scenario, told: Told = silent) -> Answer:
+def solve(scenario: Scenario, told: Told = silent, behind: Backdrop | None = None) -> Answer:
     """Run a scenario and return all that the explorer shows of it.
 
     Parameters
@@ -35,6 +37,8 @@ def solve(scenario: Scenario, told: Told = silent) -> Answer:
     told : callable
         Called with a line on the progress of a long run, some ten times a second. If it raises `Stopped` the run ends there, and
         the answer shows it up to there.
+    behind : Backdrop, optional
+        A record that is drawn behind the run.
 
     Returns
     -------
@@ -51,7 +55,16 @@ def solve(scenario: Scenario, told: Told = silent) -> Answer:
     companion = None if solution.status.name == "interrupted" else run_companion(scenario, told)
     runs = (solution,) if companion is None else (solution, companion)
     is_long = max(len(one.history) for one in runs) > LONG
-    return answer_of(scenario, solution, companion, contact, partial(_tell, told) if is_long else silent)
+    answer = answer_of(scenario, solution, companion, contact, partial(_tell, told) if is_long else silent)
+    return answer if behind is None else _with_record(answer, behind)
+
+
+def _with_record(answer: Answer, behind: Backdrop) -> Answer:
+    """Return an answer with a record behind its run, whose misfit is among its words and numbers."""
+    found = behind.behind(answer.solution)
+    return replace(
+        answer, measured=found, sentence=f"{answer.sentence} {found.sentence}", numbers=(*answer.numbers, *found.misfits)
+    )
 
 
 def _tell(told: Told, text: str) -> None:

@@ -10,6 +10,7 @@ from typing import Any
 
 import panel as pn
 
+from stickslip.explorer.model.measured import Backdrop
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.page.explorer import Explorer
 from stickslip.explorer.server.desk import ThreadDesk
@@ -24,8 +25,11 @@ ENDED = (
 )
 
 
-def shown_in_notebook(scenario: Scenario) -> Any:
-    """Return the explorer of a scenario as an object that a notebook shows. Raises InputError where there is no notebook."""
+def shown_in_notebook(scenario: Scenario, behind: Backdrop | None = None) -> Any:
+    """Return the explorer of a scenario, with a record behind its runs, as an object that a notebook shows.
+
+    Raises InputError where there is no notebook.
+    """
     from stickslip.explorer.page.notebook_page import build_for_notebook
 
     try:
@@ -34,7 +38,7 @@ def shown_in_notebook(scenario: Scenario) -> Any:
         raise InputError("explore: there is no notebook here; `stickslip explore` opens the explorer in a browser") from None
     _bring_scripts()
     desk, files = ThreadDesk(deliver), ThreadDesk(deliver)
-    explorer = explorer_of(Setting.of(scenario), desk, files)
+    explorer = explorer_of(Setting.of(scenario), desk, files, behind)
     desk.report = explorer.told
     page = build_for_notebook(explorer)
     page.explorer = explorer

@@ -11,11 +11,15 @@ from functools import partial
 from html import escape
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
 
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.page.explorer import Explorer
 from stickslip.explorer.server.desk import ThreadDesk
 from stickslip.explorer.server.serve import Endpoint, ExplorerServer
+
+if TYPE_CHECKING:
+    from stickslip.explorer.model.measured import Backdrop
 
 WARNING = (
     "warning: listening on {address}: whoever reaches this computer over a network, and has the address with the token, can use "
@@ -31,7 +35,9 @@ LEADS_ON = """<!DOCTYPE html>
 """A page that leads to an address at once, or by its link."""
 
 
-def start(setting: Setting, endpoint: Endpoint, *, browser: bool, say: Callable[[str], object]) -> None:
+def start(
+    setting: Setting, endpoint: Endpoint, *, browser: bool, say: Callable[[str], object], behind: Backdrop | None = None
+) -> None:
     """Serve the explorer until Ctrl-C.
 
     Parameters
@@ -44,6 +50,8 @@ def start(setting: Setting, endpoint: Endpoint, *, browser: bool, say: Callable[
         True to open the page in the user's browser.
     say : callable
         Function that shows a line to the user.
+    behind : Backdrop, optional
+        A record that is drawn behind all runs.
 
     Raises
     ------
@@ -52,7 +60,7 @@ def start(setting: Setting, endpoint: Endpoint, *, browser: bool, say: Callable[
     """
     from stickslip.explorer.page.page import build
 
-    server = ExplorerServer(endpoint, partial(explorer_of, setting), build)
+    server = ExplorerServer(endpoint, partial(explorer_of, setting, behind=behind), build)
     if not endpoint.is_loopback:
         say(WARNING.format(address=endpoint.address))
     say(f"explorer: {server.url}")
@@ -63,11 +71,11 @@ def start(setting: Setting, endpoint: Endpoint, *, browser: bool, say: Callable[
         server.run()
 
 
-def explorer_of(setting: Setting, desk: ThreadDesk, files: ThreadDesk) -> Explorer:
+def explorer_of(setting: Setting, desk: ThreadDesk, files: ThreadDesk, behind: Backdrop | None = None) -> Explorer:
     """Return the explorer of a new page."""
     from stickslip.explorer.model.solve import solve  # imports the compiler, which takes a second
 
-    return Explorer(setting, desk, solve, files)
+    return Explorer(setting, desk, partial(solve, behind=behind), files)
 
 
 @contextmanager

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from stickslip.explorer.model.answer import Answer, Motion
+from stickslip.explorer.model.words import short
 from stickslip.explorer.page.look import paint
 from stickslip.explorer.page.panels.units import Curve, held, share_loads
 from stickslip.explorer.page.stage import NARROW, Stage
@@ -32,6 +33,7 @@ def data_of(answer: Answer, units: Units) -> View:
     """Return the curves of both bodies, and the times of the marks."""
     main, other = answer.motions[0], answer.motions[1:2]
     columns = {"motion": columns_of(main, units), "companion": _beside(main, other, units)}
+    behind = columns["measured"] = _measured(answer, units)
     columns["marks"] = {"time": [mark.time / units.time[1] for mark in answer.marks] if len(answer.marks) <= MOST_LINES else []}
     if main.body == "block":
         # The end of the spring that is pulled, from the law of the spring.
@@ -41,15 +43,19 @@ def data_of(answer: Answer, units: Units) -> View:
     name = FORCES["traction"] if force else CURVES["traction"][0]
     name = f"change of {name}" if units.offset else name
     keys = {name: (Key(main.name, name), *_key(answer, name)) for name in CURVE_OF}
+    for name, key in _misfits(answer).items():
+        keys[name] = (*keys[name], key)
     keys["traction"] = (*keys["traction"], Key("spring force" if force else "load", "load", "dot"))
     time = columns["motion"]["time"]
     return View(
         columns=columns,
         limits={
             "time": (float(time[0]), float(time[-1])),
-            "slip": limits(*(columns_of(body, units)["slip"] for body in held(answer, "slip"))),
+            "slip": limits(behind["slip"], *(columns_of(body, units)["slip"] for body in held(answer, "slip"))),
             "rate": _rate_limits(answer, units),
-            "traction": limits(*(columns_of(body, units)[name] for body in held(answer, "traction") for name in LOADS)),
+            "traction": limits(
+                behind["traction"], *(columns_of(body, units)[name] for body in held(answer, "traction") for name in LOADS)
+            ),
         },
         labels={
             "axis:time@traction": axis_label("time", "t", units.time[0]),
@@ -70,6 +76,34 @@ def data_of(answer: Answer, units: Units) -> View:
             "marks": [{"time": mark.time / units.time[1], "kind": mark.kind, "text": mark.text} for mark in answer.marks],
         },
     )
+
+
+def _measured(answer: Answer, units: Units) -> Columns:
+    """Return the samples of a record behind the run, NaN for what was not measured; empty columns if there is none."""
+    found = answer.measured
+    if found is None:
+        return {name: [] for name in ("time", *DRAWN.values())}
+    nothing = np.full(found.time.size, np.nan)
+    slip, rate, traction = (found.curves.get(CURVE_OF[name], nothing) for name in DRAWN)
+    rate = rate / units.rate[1]
+    return {
+        "time": found.time / units.time[1],
+        "slip": slip / units.slip[1],
+        "rate_at": np.log10(np.where(rate > 0.0, rate, np.nan)) if units.log else rate,
+        "traction": (traction - units.offset) / units.stress[1],
+    }
+
+
+def _misfits(answer: Answer) -> dict[str, Key]:
+    """Return the entry of a record in the legend of each panel that shows it, with the misfit of the run."""
+    found = answer.measured
+    if found is None:
+        return {}
+    panels: dict[str, str] = {curve: name for name, curve in CURVE_OF.items()}
+    return {
+        panels[curve]: Key(f"measured, misfit {short(one.value, one.unit)}", "muted", "ring")
+        for curve, one in zip(found.curves, found.misfits, strict=True)
+    }
 
 
 def _beside(main: Motion, other: Sequence[Motion], units: Units) -> Columns:
@@ -130,6 +164,8 @@ def _plot(stage: Stage, name: str, *, bare: bool) -> Any:
     if name == "traction":
         drawn.yaxis[0].ticker.desired_num_ticks = 3  # it often lies within a part of 10, where two would come down to one
         paint(drawn.line("time", "load", source=main, line_width=1.2, line_dash="dotted").glyph, line_color="load")
+    samples = drawn.scatter("time", column, source=stage.source("measured", "time", *DRAWN.values()), size=3, line_color=None)
+    paint(samples.glyph, fill_color="muted")
     paint(drawn.line("time", column, source=other, line_width=1.3, line_dash="dashed", line_alpha=0.65).glyph, line_color=name)
     paint(drawn.line("time", column, source=main, line_width=2).glyph, line_color=name)
     stage.cursor(name)

@@ -1,0 +1,80 @@
+"""A laboratory record behind the runs of the explorer: drawn in each panel that shows what was measured, with the misfit."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from stickslip.explorer.model.measured import Backdrop
+from stickslip.explorer.model.setting import Setting
+from stickslip.explorer.model.solve import solve
+from stickslip.explorer.page.panels import view_of
+from stickslip.scenarios.scenario import Scenario
+from stickslip.studies.inference.record import Record
+from tests.studies.laboratory import RateAndStateBlock, load_point
+
+TIMES, RATES = [0.0, 20.0], [1e-6, 1e-5]
+CLOCK = np.linspace(0.0, 60.0, 601)
+TRUE = RateAndStateBlock()
+CLEAN = TRUE.friction(CLOCK, TIMES, RATES)
+SCENARIO = Setting.of(
+    Scenario(
+        ss.Problem(
+            ss.SpringBlock(TRUE.mass, TRUE.stiffness, TRUE.normal),
+            ss.friction.RateAndState(TRUE.reference, TRUE.a, TRUE.b, TRUE.distance),
+            pull_rate=ss.loading.Steps(TIMES, RATES),
+        ),
+        60.0,
+        name="steps",
+    )
+)
+
+
+def behind(**measured: Any) -> Backdrop:
+    return Backdrop.of(Record.read({"time (s)": CLOCK + 7.0, **measured}), "contact", SCENARIO.scenario().problem)
+
+
+def test_the_misfit_is_the_distance_from_what_another_integrator_made() -> None:
+    slip = load_point(CLOCK, TIMES, RATES) - TRUE.normal * (CLEAN - CLEAN[0]) / TRUE.stiffness
+    record = behind(**{"mu": CLEAN + 3e-4 * np.where(np.arange(601) % 2, 1.0, -1.0), "slip (m)": slip + 5e-4})
+    answer = solve(SCENARIO.scenario(), behind=record)
+    assert answer.measured is not None
+    (friction, moved) = answer.measured.misfits
+    assert friction.value == pytest.approx(3e-4, rel=1e-4)
+    assert moved.value < 1e-10  # a sensor of slip has a zero of its own
+    assert answer.numbers[-2:] == (friction, moved)
+    assert "It differs from record by friction 0.0003, slip" in answer.sentence
+    view = view_of(answer)
+    assert [key.text for key in view.keys["traction"]][1] == "measured, misfit 0.0003"
+    assert len(view.columns["measured"]["time"]) == 601
+    low, high = view.limits["traction"]
+    drawn = view.columns["measured"]["traction"]
+    assert low <= drawn.min() < drawn.max() <= high
+
+
+def test_a_slider_that_leads_away_from_the_record_makes_the_misfit_larger() -> None:
+    record, sizes = behind(mu=CLEAN), []
+    for a in (TRUE.a, 1.1 * TRUE.a):
+        answer = solve(SCENARIO.with_value("friction.a", a).scenario(), behind=record)
+        assert answer.measured is not None
+        sizes.append(answer.measured.misfits[0].value)
+    assert sizes[0] < 1e-7 < 1e-4 < sizes[1]
+
+
+def test_a_run_without_a_record_has_no_samples_and_says_nothing_of_it() -> None:
+    answer = solve(SCENARIO.scenario())
+    assert answer.measured is None
+    assert "differs from" not in answer.sentence
+    assert view_of(answer).columns["measured"]["time"] == []
+
+
+def test_what_cannot_be_drawn_is_refused() -> None:
+    with pytest.raises(
+        ss.InputError, match="nothing to draw behind a spring-block; allowed: friction, shear_force, slip and slip_rate"
+    ):
+        behind(**{"tau (Pa)": 1e6 * CLEAN})
+    with pytest.raises(ss.InputError, match="did you mean 'spring'"):
+        Backdrop.of(Record.read({"time (s)": CLOCK, "mu": CLEAN}), "sprnig", SCENARIO.scenario().problem)
