@@ -43,8 +43,8 @@ class MassRedistribution:
 class LeapFrog:
     """A slab with lumped masses; `rate` holds the velocities half a step after the displacements.
 
-    The energy (v M v + u K u')/2 at a half step, with the displacements u before and u' after it, changes by the work of friction and
-    of the driver on the mean of the velocities around a step, and by nothing else. A sample has the mean of the energies around it.
+    The energy (v M v + u K u')/2 at a half step, with the displacements u before and u' after it, changes by the works of friction
+    and driver on the mean of the velocities around a step, and by nothing else. A sample has the mean of the energies around it.
     """
 
     def __init__(self, grid: Grid) -> None:

@@ -36,8 +36,8 @@ class Accelerated(Elements):
     """A slab whose state includes the accelerations of the nodes.
 
     With b = alpha (1/2 - alpha), changes du and da in a step, and the change du' in the step before, the balance stores
-    v M v/2 + u K u/2 + alpha^2 dt^2 a M a/8 + b du K du/2 and dissipates b (du - du') K (du - du')/2 + alpha^3 dt^2 da M da/4. A force
-    from outside does the work du (mean of its ends + b (its change - its change in the step before)).
+    v M v/2 + u K u/2 + alpha^2 dt^2 a M a/8 + b du K du/2 and dissipates b (du - du') K (du - du')/2 + alpha^3 dt^2 da M da/4. A
+    force from outside does the work du (mean of its ends + b (its change - its change in the step before)).
     """
 
     def __init__(self, grid: Grid, alpha: float) -> None:

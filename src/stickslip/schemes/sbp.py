@@ -1,8 +1,8 @@
 """Differences that sum by parts, with the friction imposed weakly by penalties (SAT), and Runge-Kutta's fourth-order steps.
 
 Energy is bounded as in the exact slab: a penalty only takes energy away, (Z dv - ds)^2/(4Z) per time for the differences dv and ds
-of velocity and stress between node and contact. Runge-Kutta's steps change a quadratic energy by
-dt^2/2 times the sum of (b_i a_ij + b_j a_ji - b_i b_j) k_i k_j over the slopes k of the stages. Sources: B. Strand 1994, J. Comput. Phys. 110, 47; J.E.
+of velocity and stress between node and contact. Runge-Kutta's steps change a quadratic energy by dt^2/2 times the sum of
+(b_i a_ij + b_j a_ji - b_i b_j) k_i k_j over the slopes k of the stages. Sources: B. Strand 1994, J. Comput. Phys. 110, 47; J.E.
 Kozdon, E.M. Dunham, J. Nordström 2012, J. Sci. Comput. 50, 341.
 """
 
