@@ -239,8 +239,9 @@ def _history(solution: Solution) -> dict[str, Variable]:
     for name, axes in HISTORY_AXES.items():
         meaning = f"{known[name]}, Taylor coefficients" if name in known else f"{name} of a piece of the history"
         variables[f"history_{name}"] = Variable(axes, getattr(store, name), {"units": units.get(name, "1"), "long_name": meaning})
+    end = "end of the run, less than its duration if it failed"
     variables |= {
-        "reached": Variable((), history.duration, {"units": "s", "long_name": "end of the run, before its duration if it failed"}),
+        "reached": Variable((), history.duration, {"units": "s", "long_name": end}),
         "round_trip_time": Variable((), history.round_trip_time, {"units": "s", "long_name": "length of a row of the history"}),
         "ramp": Variable((), history.ramp, {"units": load, "long_name": "load gained in a row at rest"}),
     }
