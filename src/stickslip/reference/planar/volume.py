@@ -1,0 +1,156 @@
+"""Method B: for each wave number along the contact one line of nodes through the slab, one step of time from node to node.
+
+A wave exp(i k y) obeys the Klein-Gordon equation u_tt = c^2 u_xx - w^2 u, w = |k| c. With dx = c dt the scheme
+
+    u_i(n+1) + u_i(n-1) = cos(w dt) [u_{i+1}(n) + u_{i-1}(n)]
+
+is stable for every w, of order 2, and exact for w = 0. At the contact the half cell obeys
+
+    Z [u_0(n+1) - u_0(n-1)] / (2 dt) + tau(n) = tau0 + Z [cos(w dt) u_1(n) - u_0(n-1)] / dt,
+
+where tau(n), the mean traction of two steps, is replaced by the mean of the tractions at their middles. Then each step has a
+contact equation of its own, Z v + tau(u + v dt/2, v) = load, whose load is twice the right side less the load of the step before.
+At w = 0 this is the exact mean of the load over the step. Friction is so integrated implicitly: friction that grows with slip
+or slip rate stays stable, which central differences do not achieve.
+"""
+
+from __future__ import annotations
+
+from math import inf
+
+import numpy as np
+
+from stickslip.foundation.errors import InputError
+from stickslip.reference.planar.setting import Array, PlanarCase, PlanarSeries, Waves
+
+
+class Volume:
+    """The state of the whole slab, step by step.
+
+    Parameters
+    ----------
+    case
+        What to solve.
+    steps_per_two_way_time
+        Number of steps of time in R = 2 h / c; even, because half as many cells fill the thickness.
+
+    Attributes
+    ----------
+    slip, slip_rate, traction
+        Slip now (m); slip rate (m/s) and traction (Pa) of the last step.
+    heat
+        Work of friction since the start (J per m of strike in 2D, J in 3D).
+    """
+
+    def __init__(self, case: PlanarCase, steps_per_two_way_time: int) -> None:
+        if steps_per_two_way_time < 2 or steps_per_two_way_time % 2:
+            raise InputError(f"volume: steps_per_two_way_time is {steps_per_two_way_time}, but must be even and at least 2")
+        self.case, self.cells = case, steps_per_two_way_time // 2
+        self.step_of_time, self.steps = case.two_way_time / steps_per_two_way_time, 0
+        self._cosine = np.cos(case.frequencies() * self.step_of_time)
+        self._now: Waves = np.zeros((self.cells + 1, *self._cosine.shape), complex)
+        self._before = self._now.copy()
+        self.slip = np.zeros(case.shape)
+        self.slip_rate, self.traction = np.zeros(case.shape), case.initial_load.copy()
+        self._load, self._slip_before, self.heat = np.array(case.initial_load, float), self.slip, 0.0
+
+    @property
+    def time(self) -> float:
+        """Time (s) since the start."""
+        return self.steps * self.step_of_time
+
+    def advance(self) -> None:
+        """Take one step of time."""
+        case, dt, Z = self.case, self.step_of_time, self.case.impedance
+        now, cosine = self._now, self._cosine
+        if self.steps:
+            arrived = Z / dt * (case.to_nodes(cosine * now[1]) - self._slip_before)
+            load = 2.0 * (case.load_at_rest(self.time) + arrived) - self._load
+        else:
+            load = case.load_at_rest(0.5 * dt)
+        self.slip_rate, self.traction = case.contact.solve(load, self.slip, 0.5 * dt)
+        self.heat += dt * case.node_area * float(np.sum(self.traction * self.slip_rate))
+        self._slip_before, self.slip, self._load = self.slip, self.slip + dt * self.slip_rate, load
+        after = self._before  # its memory is used again
+        far = after[-1].copy()
+        after[1:-1] = cosine * (now[2:] + now[:-2]) - after[1:-1]
+        after[-1] = self._at_driver(now[-2], far)
+        after[0] = case.to_waves(self.slip)
+        self._before, self._now = now, after
+        self.steps += 1
+
+    def _at_driver(self, neighbour: Waves, before: Waves) -> Waves | float:
+        """Return the displacement of the driver after a step, from that of the neighbouring node now and its own before."""
+        if self.case.driver_impedance == inf:
+            return 0.0
+        share = self.case.driver_impedance / self.case.impedance
+        return np.asarray((2.0 * self._cosine * neighbour - (1.0 - share) * before) / (1.0 + share))
+
+    def load_now(self) -> Array:
+        """Return the load (Pa) at this moment: the mean of those of the steps before and after, or the initial one."""
+        if not self.steps:
+            return self.case.load_at_rest(0.0)
+        arrived = self.case.to_nodes(self._cosine * self._now[1]) - self._slip_before
+        return self.case.load_at_rest(self.time) + self.case.impedance / self.step_of_time * arrived
+
+    def energy(self) -> float:
+        """Return the energy of the slab half a step ago, less that at the start (J per m of strike in 2D, J in 3D).
+
+        It is the kinetic and elastic energy of what has been added to the initial state, and the work of the initial stress, which
+        acts at the contact: -initial load times slip. The driver must be rigid and at rest.
+        """
+        case, dt = self.case, self.step_of_time
+        dx = case.wave_speed * dt
+        weights = np.full(self.cells + 1, dx)
+        weights[[0, -1]] *= 0.5
+        velocity, middle = (self._now - self._before) / dt, 0.5 * (self._now + self._before)
+        stretch, w = np.diff(middle, axis=0) / dx, case.frequencies()
+        kinetic = np.tensordot(weights, self._square(velocity), 1)
+        along = np.tensordot(weights, self._square(w / case.wave_speed * middle), 1)
+        across = dx * self._square(stretch).sum()
+        slip = 0.5 * (self.slip + self._slip_before)
+        stored = 0.5 * case.density * kinetic + 0.5 * case.shear_modulus * (along + across)
+        return float(stored - case.node_area * np.sum(case.initial_load * slip))
+
+    def _square(self, waves: Waves) -> Array:
+        """Return the integral over the contact of the square of a quantity, for each line of nodes parallel to it."""
+        count, last = int(np.prod(self.case.shape)), self.case.shape[-1]
+        twice = np.full(waves.shape[-1], 2.0)  # the real transform keeps one of each pair k, -k
+        twice[0] = 1.0
+        if last % 2 == 0:
+            twice[-1] = 1.0
+        squares = twice * np.abs(waves) ** 2
+        return np.asarray(squares.sum(axis=tuple(range(1, waves.ndim))) * self.case.node_area / count)
+
+
+def volume(case: PlanarCase, duration: float, steps_per_two_way_time: int) -> PlanarSeries:
+    """Solve a case by the volume method.
+
+    Parameters
+    ----------
+    case
+        What to solve.
+    duration
+        s; rounded to whole steps.
+    steps_per_two_way_time
+        Even number of steps of time in R = 2 h / c.
+
+    Returns
+    -------
+    PlanarSeries
+        The solution at every step.
+
+    Raises
+    ------
+    InputError
+        If several slip rates may solve the contact equation at a node.
+    """
+    run = Volume(case, steps_per_two_way_time)
+    count = round(duration / run.step_of_time)
+    found = np.empty((3, count + 1, *case.shape))
+    for n in range(count + 1):
+        found[0, n] = run.slip
+        found[1:, n] = case.contact.solve(run.load_now(), run.slip, 0.0)
+        if n < count:
+            run.advance()
+    return PlanarSeries(np.arange(count + 1) * run.step_of_time, *found)
