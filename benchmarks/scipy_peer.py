@@ -38,10 +38,8 @@ class Slab:
     def run(self) -> None:
         self.pieces, self.evaluations = [], 0
         u, t = self.problem.initial_slip, 0.0
-        breaks = [self.R * n for n in range(1, round(self.duration / self.R) + 1)]
-        if self.r != -1.0:
-            breaks = sorted({0.5 * self.R, *breaks})
-        for end in breaks:
+        apart = self.R if self.r == -1.0 else 0.5 * self.R  # a driver that gives way breaks the load at h/c, and echoes repeat that
+        for end in (apart * n for n in range(1, round(self.duration / apart) + 1)):
             load = self.load_between(t, end)
             while t < end:
                 t, u = self.stretch(t, end, u, load)

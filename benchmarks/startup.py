@@ -36,7 +36,6 @@ COMMANDS = {
     "stickslip check --map, 40 x 30": ["check", "fig6-slab", *MAP, "--figure", "{folder}/map.png"],
 }
 """Commands as a newcomer types them, and their arguments; None is the import alone."""
-START = "from stickslip.cli.main import main; main()"
 
 
 def processor_time(source: Path, arguments: list[str] | None, folder: str) -> float:
@@ -45,9 +44,9 @@ def processor_time(source: Path, arguments: list[str] | None, folder: str) -> fl
     Bytecode is kept in `folder`, as every installation keeps it.
     """
     words = [] if arguments is None else [word.format(folder=folder) for word in arguments]
-    code = "import stickslip" if arguments is None else START
+    code = ["-c", "import stickslip"] if arguments is None else ["-m", "stickslip"]
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    command = [sys.executable, "-c", code, *words]
+    command = [sys.executable, *code, *words]
     variables = os.environ | {"PYTHONPATH": str(source), "PYTHONPYCACHEPREFIX": f"{folder}/bytecode"}
     variables.pop("PYTHONDONTWRITEBYTECODE", None)
     subprocess.run(command, check=True, capture_output=True, cwd=folder, env=variables)

@@ -29,6 +29,7 @@ LAYERS = (
     ("batch",),
     ("studies", "sweeps"),
     ("figures",),
+    ("reports",),
     ("explorer", "paper"),
     ("cli",),
 )
@@ -80,7 +81,7 @@ LAZY_DOORS = {"solution/accessors.py"}
 
 ALLOWED = {
     "matplotlib": {"figures", "paper"},
-    "jinja2": {"paper"},
+    "jinja2": {"reports"},
     "typer": {"cli"},
     "xarray": {"foundation", "observables", "io", "run", "sweeps", "figures", "paper"},
 }

@@ -9,6 +9,7 @@ import pytest
 import xarray as xr
 
 import stickslip as ss
+from stickslip.foundation.netcdf_file import Variable, write, write_variables
 from tests.problems import MODULUS, SLAB, rate_law_slab, slip_law_block, slip_law_slab
 
 RUNS = {
@@ -41,6 +42,23 @@ def test_round_trip_is_bit_identical(name: str, tmp_path: Path) -> None:
     assert back.shocks.equals(run.shocks)
     again = back.to_netcdf(tmp_path / "again.nc")
     assert again.read_bytes() == (tmp_path / "run.nc").read_bytes()
+
+
+def test_arrays_make_the_same_file_as_their_dataset(tmp_path: Path) -> None:
+    """xarray writes netCDF independently; solutions are written without it, because its import takes long."""
+    variables = {
+        "time": Variable(("time",), np.linspace(0.0, 1.0, 5), {"units": "s"}),
+        "slip": Variable(("time", "piece"), np.array([[np.nan, 1.5]] * 5), {"units": "m", "long_name": "slip, µ"}),
+        "pieces": Variable(("piece",), np.arange(2), {}),
+        "cause": Variable(("shock",), np.array(["start", "écho", ""]), {"units": ""}),
+        "none": Variable(("no_shock",), np.empty(0), {"units": "Pa"}),
+        "words": Variable(("no_shock",), np.array([], dtype=str), {}),
+        "reached": Variable((), 12.0, {"units": "s"}),
+    }
+    attributes = {"title": "a run", "status_ok": 1, "rtol": 1e-10}
+    ours = write_variables(variables, attributes, tmp_path / "ours.nc")
+    other = write(xr.Dataset({name: tuple(one) for name, one in variables.items()}, attrs=attributes), tmp_path / "other.nc")
+    assert ours.read_bytes() == other.read_bytes()
 
 
 def test_file_holds_scenario_and_provenance(tmp_path: Path) -> None:

@@ -4,7 +4,7 @@ import sys
 
 if __name__ == "__main__":
     try:
-        from stickslip.cli.main import main
-    except KeyboardInterrupt:  # `main` deals with those that come later
+        from stickslip.cli.main import command_line
+    except KeyboardInterrupt:  # `command_line` deals with those that come later
         sys.exit(130)
-    main()
+    command_line()

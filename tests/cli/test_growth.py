@@ -4,12 +4,13 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import stickslip as ss
 from stickslip.cli.long_run import Growth
 from stickslip.cli.output.files import file_size
-from stickslip.io.netcdf import history_dataset, piece_size
+from stickslip.io.netcdf import history_variables, piece_size
 from stickslip.run.progress import LONG_RUN, Report
 from tests.cli.conftest import Outcome
 
@@ -33,7 +34,7 @@ def test_the_size_of_a_piece_is_that_in_files(tmp_path: Path):
 
 def test_a_law_with_a_state_adds_its_series_to_a_piece():
     run = ss.simulate(ss.load_scenario("rate-and-state-block").problem, 2e5)
-    stored = sum(one.nbytes for one in history_dataset(run).variables.values() if "piece" in one.dims)
+    stored = sum(np.asarray(one.values).nbytes for one in history_variables(run).values() if "piece" in one.dims)
     assert stored == piece_size(run.problem) * len(run.history) > piece_size(PROBLEM) * len(run.history)
 
 

@@ -76,3 +76,12 @@ def test_compare_needs_a_part_that_is_left_out(command):
     )
     assert shown.code == 2
     assert "--compare needs --held-out" in shown.err
+
+
+def test_a_report_is_written_to_a_folder_and_refused_for_a_file(command, tmp_path: Path):
+    shown = command("infer", "velocity-steps-block", "data.csv", "--free", "reference", "--starts", "1", "--report", "fitted")
+    assert shown.code == 0, shown.err
+    assert "written: fitted/report.html" in shown.out
+    assert "Fitted to data.csv" in (tmp_path / "fitted" / "report.html").read_text(encoding="utf-8")
+    refused = command("infer", "velocity-steps-block", "data.csv", "--free", "reference", "--report", "data.csv")
+    assert (refused.code, refused.err) == (2, "stickslip: --report data.csv: data.csv is not a folder\n")

@@ -36,7 +36,7 @@ main({arguments!r})
         ("stickslip.scenarios.examine", ["check", "fig6-slab"]),
         ("numba", ["run", "fig6-slab"]),
         ("stickslip.run.simulate", ["run", "fig6-slab"]),
-        ("xarray", ["run", "fig6-slab", "--out", "a.nc"]),
+        ("h5netcdf", ["run", "fig6-slab", "--out", "a.nc"]),
         ("matplotlib", ["check", "fig6-slab", "--figure", "k.png"]),
     ],
 )
@@ -87,6 +87,37 @@ def test_a_mistake_has_its_exit_code_though_nobody_reads(tmp_path: Path):
     done = run_unheard(["run", "fig6-slap"], tmp_path)
     assert done.returncode == 2
     assert done.stderr.startswith("stickslip: fig6-slap: no such file")
+
+
+ENDING = """
+import atexit, sys
+import stickslip.cli.main as main
+def told(): print("tidied up", file=sys.stderr)
+def last(): print("taken apart", file=sys.stderr)
+atexit.register(last)
+main.main = lambda: (atexit.register(told), print("said"), {ending})
+main.command_line()
+"""
+
+
+@pytest.mark.parametrize(
+    ("ending", "code", "end"),
+    [("sys.exit(3)", 3, []), ("sys.exit('a text')", 1, ["taken apart"]), ("1 / 0", 1, ["taken apart"])],
+)
+def test_a_process_ends_at_once_with_its_code_when_libraries_have_tidied_up(ending: str, code: int, end: list[str]):
+    """What was registered before the command line stands for what Python does later. A code that is no number ends as usual."""
+    done = subprocess.run([sys.executable, "-c", ENDING.format(ending=ending)], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (code, "said\n")
+    assert [line for line in done.stderr.splitlines() if line in ("tidied up", "taken apart")] == ["tidied up", *end]
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no /dev/full")
+def test_a_full_disk_under_the_summary_is_no_success(tmp_path: Path):
+    with Path("/dev/full").open("w", encoding="utf-8") as full:
+        command = [sys.executable, "-m", "stickslip", "new", "--list"]
+        done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False, cwd=tmp_path)
+    assert done.returncode != 0
+    assert "No space left on device" in done.stderr
 
 
 def test_ctrl_c_during_the_first_import_ends_without_a_traceback(monkeypatch: pytest.MonkeyPatch) -> None:

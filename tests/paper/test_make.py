@@ -12,7 +12,7 @@ import xarray as xr
 
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.paper import make
-from stickslip.paper.make import save_text
+from stickslip.reports.page import save_text
 
 
 def test_every_file_is_there_and_nothing_else(folder: Path) -> None:

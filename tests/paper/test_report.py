@@ -4,55 +4,13 @@ from __future__ import annotations
 
 import re
 from base64 import b64decode
-from html.parser import HTMLParser
-from itertools import pairwise
 from pathlib import Path
 
 import pytest
 
 from stickslip.paper.claims import STATEMENTS
-from stickslip.paper.report import number, symbols, with_unit
-
-EMPTY = {"meta", "img"}
-"""Elements without an end tag."""
-PHRASES = {"p", "h1", "h2", "h3", "summary", "span", "a", "b", "sub", "caption", "code"}
-BLOCKS = {"p", "h1", "h2", "table", "div", "section", "figure", "details", "ul", "li", "nav", "main", "header", "footer"}
-
-
-class Page(HTMLParser):
-    """The elements of a page in their order, each with its attributes and the elements around it, and its visible text."""
-
-    def __init__(self, source: str) -> None:
-        super().__init__(convert_charrefs=True)
-        self.open: list[str] = []
-        self.elements: list[tuple[str, dict[str, str], tuple[str, ...]]] = []
-        self.text: list[tuple[tuple[str, ...], str]] = []
-        self.feed(source)
-        self.close()
-        assert not self.open
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        assert len(attrs) == len(dict(attrs)), f"an attribute of {tag} is given twice"
-        self.elements.append((tag, {name: value or "" for name, value in attrs}, tuple(self.open)))
-        if tag not in EMPTY:
-            self.open.append(tag)
-
-    def handle_endtag(self, tag: str) -> None:
-        assert self.open.pop() == tag
-
-    def handle_data(self, data: str) -> None:
-        if not {"style", "title"} & set(self.open):
-            self.text.append((tuple(self.open), data))
-
-    def having(self, tag: str) -> list[dict[str, str]]:
-        return [attributes for name, attributes, _ in self.elements if name == tag]
-
-    def place(self, tag: str, **wanted: str) -> int:
-        """Return the place of the first element with this tag and these attributes."""
-        return next(i for i, (name, found, _) in enumerate(self.elements) if name == tag and wanted.items() <= found.items())
-
-    def within(self, tag: str) -> str:
-        return "".join(text for around, text in self.text if tag in around)
+from stickslip.reports.page import number, symbols, with_unit
+from tests.html_page import Page, check_alone, check_form, check_links
 
 
 @pytest.fixture(scope="module")
@@ -60,18 +18,9 @@ def page(folder: Path) -> Page:
     return Page((folder / "report.html").read_text(encoding="utf-8"))
 
 
-def test_elements_are_nested_and_ids_are_unique(page: Page) -> None:
-    for tag, _, around in page.elements:
-        assert not (tag in BLOCKS and PHRASES & set(around)), (tag, around)
-    ids = [attributes["id"] for _, attributes, _ in page.elements if "id" in attributes]
-    assert len(set(ids)) == len(ids) > 7 + 20
-
-
-def test_headings_descend_one_level_at_a_time(page: Page) -> None:
-    levels = [int(tag[1]) for tag, _, _ in page.elements if re.fullmatch("h[1-6]", tag)]
-    assert levels.count(1) == 1
-    assert levels[0] == 1
-    assert all(later - earlier <= 1 for earlier, later in pairwise(levels))
+def test_the_page_has_the_form_of_a_report(page: Page) -> None:
+    check_form(page)
+    assert sum("id" in attributes for _, attributes, _ in page.elements) > 7 + 20
 
 
 def test_the_table_of_verdicts_comes_first_then_figures_then_claims(page: Page) -> None:
@@ -97,22 +46,12 @@ def test_every_claim_is_in_the_table_and_folded_behind_its_verdict(page: Page) -
 
 
 def test_links_lead_to_places_on_the_page_or_to_files_beside_it(page: Page, folder: Path) -> None:
-    ids = {attributes["id"] for _, attributes, _ in page.elements if "id" in attributes}
-    links = [attributes["href"] for attributes in page.having("a")]
-    inside = {link[1:] for link in links if link.startswith("#")}
-    assert inside <= ids
+    inside = {link[1:] for link in check_links(page, folder) if link.startswith("#")}
     assert inside >= {"verdicts", "figures", "claims", "constants", "cases"} | {f"claim-{n}" for n in STATEMENTS}
-    beside = [link for link in links if not link.startswith("#")]
-    assert beside
-    assert all((folder / link).is_file() for link in beside)
 
 
 def test_the_report_needs_nothing_from_elsewhere(page: Page, folder: Path) -> None:
-    source = (folder / "report.html").read_text(encoding="utf-8")
-    assert "://" not in source
-    assert "url(" not in source
-    assert not {"script", "link", "iframe", "object"} & {tag for tag, _, _ in page.elements}
-    assert all(attributes["src"].startswith("data:image/svg+xml;base64,") for attributes in page.having("img"))
+    check_alone(page, (folder / "report.html").read_text(encoding="utf-8"))
 
 
 def test_pictures_are_described_and_are_those_of_the_folder(page: Page, folder: Path) -> None:

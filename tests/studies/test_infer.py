@@ -10,38 +10,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pandas as pd
 import pytest
 
 import stickslip as ss
 from stickslip.foundation.netcdf_file import read
 from stickslip.studies.inference.inference import Inference
 from stickslip.studies.inference.loading import loading_of
-from tests.studies.laboratory import CoulombBlock, RateAndStateBlock, WeakeningSlab, correlated, load_point
-
-TIMES, RATES = [0.0, 60.0, 100.0], [1e-6, 1e-5, 1e-6]
-TRUE = RateAndStateBlock()
-TRUTH = {
-    "friction.a": TRUE.a,
-    "friction.b": TRUE.b,
-    "friction.distance": TRUE.distance,
-    "body.stiffness": TRUE.stiffness,
-    "friction.reference": TRUE.reference,
-}
-GUESS = ss.Problem(ss.SpringBlock(20.0, 9e7, 5e4), ss.friction.RateAndState(0.6, 0.01, 0.013, 1e-5), pull_rate=1e-6)
-CLOCK = np.linspace(0.0, 200.0, 1501)
-CLEAN = TRUE.friction(CLOCK, TIMES, RATES)
-STEPS = ss.loading.Steps(TIMES, RATES)
-
-
-def record(noise: float = 2e-4, per_sample: float = 0.0, seed: int = 1) -> pd.DataFrame:
-    moved = load_point(CLOCK, TIMES, RATES)
-    friction = CLEAN + noise * correlated(len(CLOCK), per_sample, seed)
-    return pd.DataFrame({"time (min)": CLOCK / 60.0, "load point (um)": 1e6 * moved, "mu": friction})
-
-
-def inferred(data: Any = None, free: Any = tuple(TRUTH), **options: Any) -> Inference:
-    return ss.studies.infer(GUESS, record() if data is None else data, free, **({"starts": 1} | options))
+from tests.studies.laboratory import CoulombBlock, WeakeningSlab, correlated, load_point
+from tests.studies.velocity_steps import CLEAN, CLOCK, GUESS, RATES, STEPS, TIMES, TRUE, TRUTH, inferred, record
 
 
 @pytest.fixture(scope="module")

@@ -120,7 +120,7 @@ class Request:
         """True if only slip events are kept, and no history."""
         if self.resume is None:
             return self.catalogue is not None
-        from stickslip.io.netcdf import is_catalogue  # imports xarray, which takes a while
+        from stickslip.io.netcdf import is_catalogue
 
         return is_catalogue(self.resume)
 

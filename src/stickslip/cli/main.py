@@ -5,6 +5,8 @@ Only what every Python has at hand is imported here: the rest takes a tenth of a
 
 from __future__ import annotations
 
+import atexit
+import gc
 import os
 import signal
 import sys
@@ -15,6 +17,35 @@ from typing import Any
 
 INTERRUPTED = 130
 """Exit code after Ctrl-C, as in shells: 128 and the number of the signal."""
+COLLECT_AFTER = 100_000
+"""Number of new objects after which Python looks for cycles of unused ones in a process of the command line.
+
+With Python's 700 these searches take a fifth of a second while modules are imported, and imports leave nothing to be found.
+"""
+
+
+def command_line() -> None:
+    """Run the command line as all that its process does: `main`, with fewer searches for unused objects and a quick end."""
+    gc.set_threshold(COLLECT_AFTER)
+    code: list[int] = []
+    atexit.register(_end_at_once, code)
+    try:
+        main()
+    except SystemExit as ended:
+        if isinstance(ended.code, int):
+            code.append(ended.code)
+        raise
+
+
+def _end_at_once(code: list[int]) -> None:
+    """End the process with the code, if it has one, instead of taking apart objects one by one, which takes a tenth of a second.
+
+    What is registered first is called last: threads have ended by now, and libraries that are imported later have tidied up.
+    """
+    for one in code:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(one)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -9,9 +9,13 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from stickslip.foundation.arguments import check_ordinary
 from stickslip.foundation.atomic_write import FULL, Sink, write_atomically
@@ -29,6 +33,14 @@ SEAL = len(MARK) + 64 + 1
 """Length of the line with the checksum, in bytes."""
 AT_A_TIME = 2**20
 """Number of bytes that are read at once for the checksum, so that a large file is never held in memory."""
+
+
+class Variable(NamedTuple):
+    """An array of a file, with the names of its dimensions and with its attributes."""
+
+    dims: tuple[str, ...]
+    values: ArrayLike
+    attrs: Mapping[str, Any] = {}
 
 
 class FullDiskError(InputError):
@@ -50,6 +62,33 @@ def write(dataset: xr.Dataset, path: Path) -> Path:
         dataset.dump_to_store(H5NetCDFStore(file), encoding=encoding)
 
     return write_with(fill, path)
+
+
+def write_variables(variables: Mapping[str, Variable], attrs: Mapping[str, Any], path: Path) -> Path:
+    """Write arrays of floats, whole numbers or texts, with the guarantees and errors of `write`.
+
+    The file is the one that `write` makes of a dataset of the same arrays. xarray, which takes a third of a second to import, is
+    not needed.
+    """
+
+    def fill(file: Any) -> None:
+        file.attrs.update(attrs)
+        arrays = {name: np.asarray(variable.values) for name, variable in variables.items()}
+        sizes = [zip(variable.dims, arrays[name].shape, strict=True) for name, variable in variables.items()]
+        file.dimensions = dict(chain.from_iterable(sizes))
+        for name, variable in variables.items():
+            made = file.create_variable(name, variable.dims, _stored_type(arrays[name]))
+            made.attrs.update(variable.attrs)
+            made[...] = arrays[name]
+
+    return write_with(fill, path)
+
+
+def _stored_type(values: NDArray[Any]) -> Any:
+    """Return the type in which a file stores an array: texts have any length."""
+    import h5py
+
+    return h5py.string_dtype() if values.dtype.kind == "U" else values.dtype
 
 
 def write_with(fill: Callable[[Any], object], path: Path) -> Path:

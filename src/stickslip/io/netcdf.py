@@ -5,10 +5,9 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 import stickslip
@@ -17,11 +16,11 @@ from stickslip.engine.state.layout import HistoryPiece, Store
 from stickslip.foundation import netcdf_file
 from stickslip.foundation.arguments import as_path
 from stickslip.foundation.errors import InputError, printable
-from stickslip.foundation.netcdf_file import FullDiskError, write
+from stickslip.foundation.netcdf_file import FullDiskError, Variable, write_variables
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.io.soundness import check_history, history_table, number
 from stickslip.loading import HISTORIES, LoadingHistory
-from stickslip.observables.event_table import EVENT_COLUMNS, unit_for
+from stickslip.observables.event_table import EVENT_COLUMNS, event_columns, unit_for
 from stickslip.observables.predictability import attributes_of, is_followed, predictability
 from stickslip.problem.problem import MAY_VARY, Problem
 from stickslip.problem.selection_rule import names as rule_names
@@ -31,8 +30,12 @@ from stickslip.solution.solution import Solution
 from stickslip.solution.window import Window
 from stickslip.trajectory.checkpoint import ARRAYS, Checkpoint
 from stickslip.trajectory.history import NO_LEAPS, History
+from stickslip.trajectory.slip_events import SlipEvents, default_event_rate
 from stickslip.trajectory.status import ENOUGH_EVENTS, STATUSES, Status
-from stickslip.trajectory.tables import SHOCK_COLUMNS
+from stickslip.trajectory.tables import SHOCK_COLUMNS, rule_in_force, shock_columns
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 FORMAT = 1
 """Version of the file layout below; a file with another version is refused."""
@@ -126,12 +129,19 @@ def to_dataset(run: Readings, t: ArrayLike, x: ArrayLike | None = None) -> xr.Da
 
 
 def _readings(readings: Readings, t: ArrayLike, x: ArrayLike | None) -> xr.Dataset:
+    import xarray as xr
+
     time = np.atleast_1d(np.asarray(t, float))
-    dataset = _curves(readings, time, {name: getattr(readings, name)(time) for name in readings.curves})
-    return dataset if x is None else dataset.merge(_field(readings, time, np.atleast_1d(np.asarray(x, float))))
+    found = _curves(readings, time, {name: getattr(readings, name)(time) for name in readings.curves})
+    coords = {"time": found.pop("time")}
+    if x is not None:
+        where = np.atleast_1d(np.asarray(x, float))
+        found |= _field(readings, time, where)
+        coords["x"] = Variable(("x",), where, {"units": "m", "long_name": "distance from the contact"})
+    return xr.Dataset(found, coords=coords)
 
 
-def _field(readings: Readings, t: NDArray[np.float64], x: NDArray[np.float64]) -> xr.Dataset:
+def _field(readings: Readings, t: NDArray[np.float64], x: NDArray[np.float64]) -> dict[str, Variable]:
     """Return displacement (m), velocity (m/s) and shear stress (Pa) over times t (s) and distances x (m) from the contact."""
     found = readings.field(x, t[:, None])._asdict()
     since = "since the event began, from where the contact stood then" if "event_slip" in readings.curves else "u"
@@ -140,15 +150,16 @@ def _field(readings: Readings, t: NDArray[np.float64], x: NDArray[np.float64]) -
         "velocity": ("m s-1", "velocity, v"),
         "stress": ("Pa", "shear stress, sigma"),
     }
-    variables = {name: (("time", "x"), found[name], {"units": unit, "long_name": text}) for name, (unit, text) in about.items()}
-    return xr.Dataset(variables, coords={"x": ("x", x, {"units": "m", "long_name": "distance from the contact"})})
+    return {name: Variable(("time", "x"), found[name], {"units": unit, "long_name": text}) for name, (unit, text) in about.items()}
 
 
-def _curves(solution: Readings, t: NDArray[np.float64], values: Mapping[Curve, NDArray[np.float64]]) -> xr.Dataset:
+def _curves(solution: Readings, t: NDArray[np.float64], values: Mapping[Curve, NDArray[np.float64]]) -> dict[str, Variable]:
+    """Return the time (s), and the values of curves at these times."""
     unit = units(solution)
-    variables = {name: ("time", value, {"units": unit[name], "long_name": LONG_NAMES[name]}) for name, value in values.items()}
-    time = ("time", t, {"units": "s", "long_name": "time since the start of the run"})
-    return xr.Dataset(variables, coords={"time": time})
+    known = {
+        name: Variable(("time",), value, {"units": unit[name], "long_name": LONG_NAMES[name]}) for name, value in values.items()
+    }
+    return known | {"time": Variable(("time",), t, {"units": "s", "long_name": "time since the start of the run"})}
 
 
 def write_solution(solution: Solution, path: str | Path) -> Path:
@@ -175,9 +186,10 @@ def write_solution(solution: Solution, path: str | Path) -> Path:
         If the file cannot be written. If the disk is full, it is a FullDiskError, whose attribute `solution` is the solution, to be
         saved elsewhere; if a loading history is not registered, the file could not be read back.
     """
-    dataset = history_dataset(solution).merge(_drawing(solution)).merge(_tables(solution))
+    file = as_path("to_netcdf: path", path)
+    variables = history_variables(solution) | _drawing(solution) | _tables(solution)
     try:
-        return write(dataset.assign_attrs(provenance(solution) | {"stickslip_format": FORMAT}), as_path("to_netcdf: path", path))
+        return write_variables(variables, _engine(solution) | provenance(solution) | {"stickslip_format": FORMAT}, file)
     except FullDiskError as error:
         error.solution = solution
         raise
@@ -189,8 +201,9 @@ def save_checkpoint(solution: Solution, path: Path, about: dict[str, Any] | None
     `about` holds the attributes of a checkpoint that is not a solution. A full disk does not end the run: the previous checkpoint
     stays in the file, and a warning says so.
     """
+    attributes = _engine(solution) | origin(solution) | (about or {"stickslip_format": FORMAT})
     try:
-        write(history_dataset(solution).assign_attrs(origin(solution) | (about or {"stickslip_format": FORMAT})), path)
+        write_variables(history_variables(solution), attributes, path)
     except FullDiskError as error:
         warnings.warn(f"{error}; the run continues, and the previous file is unchanged", RuntimeWarning, stacklevel=2)
 
@@ -207,7 +220,7 @@ def piece_size(problem: Problem) -> int:
     return 8 * (numbers + at.TERMS * len(problem.friction.states))
 
 
-def history_dataset(solution: Solution) -> xr.Dataset:
+def history_variables(solution: Solution) -> dict[str, Variable]:
     """Return the history, and the state of the engine at its end if it is known.
 
     Raises InputError for a loading history that is not registered, because the file could not be read back.
@@ -216,59 +229,64 @@ def history_dataset(solution: Solution) -> xr.Dataset:
         if isinstance(loading, LoadingHistory) and HISTORIES.get(loading.kind) is not type(loading):
             name, place = type(loading).__name__, f'stickslip.loading.HISTORIES["{loading.kind}"]'
             raise InputError(f"save: files do not know {name}: set {place} = {name}")
-    if solution.checkpoint is None:
-        return _history(solution)
-    return xr.merge([_history(solution), _checkpoint(solution.checkpoint)], combine_attrs="no_conflicts")
+    return _history(solution) | ({} if solution.checkpoint is None else _checkpoint(solution.checkpoint))
 
 
-def _history(solution: Solution) -> xr.Dataset:
+def _history(solution: Solution) -> dict[str, Variable]:
     store, history, load = solution.history.store, solution.history, solution.problem.load_unit
     units, known = HISTORY_UNITS | {"load": load, "residual": load}, {"load": "load minus reference", "rate": "slip rate"}
-    variables: dict[str, Any] = {}
+    variables = {}
     for name, axes in HISTORY_AXES.items():
         meaning = f"{known[name]}, Taylor coefficients" if name in known else f"{name} of a piece of the history"
-        variables[f"history_{name}"] = (axes, getattr(store, name), {"units": units.get(name, "1"), "long_name": meaning})
+        variables[f"history_{name}"] = Variable(axes, getattr(store, name), {"units": units.get(name, "1"), "long_name": meaning})
+    end = "end of the run, less than its duration if it failed"
     variables |= {
-        "reached": ((), history.duration, {"units": "s", "long_name": "end of the run, less than its duration if it failed"}),
-        "round_trip_time": ((), history.round_trip_time, {"units": "s", "long_name": "length of a row of the history"}),
-        "ramp": ((), history.ramp, {"units": load, "long_name": "load gained in a row at rest"}),
+        "reached": Variable((), history.duration, {"units": "s", "long_name": end}),
+        "round_trip_time": Variable((), history.round_trip_time, {"units": "s", "long_name": "length of a row of the history"}),
+        "ramp": Variable((), history.ramp, {"units": load, "long_name": "load gained in a row at rest"}),
     }
     if len(history.creep):
         about = {"columns": "start_row round_trips error time_error", "units": "1 1 m s", "long_name": "leaps over creep"}
-        variables["history_creep"] = (("creep_leap", "creep_column"), history.creep, about)
+        variables["history_creep"] = Variable(("creep_leap", "creep_column"), history.creep, about)
     if solution.problem.friction.states:
         about = {"long_name": "states as the law's formulas see them, Taylor coefficients"}
-        variables["history_state"] = (("piece", "state_variable", "term"), store.state, about)
-    return xr.Dataset(variables)
+        variables["history_state"] = Variable(("piece", "state_variable", "term"), store.state, about)
+    return variables
 
 
-def _checkpoint(checkpoint: Checkpoint) -> xr.Dataset:
-    """Return the state of the engine from which `resume` continues, with the hash of the engine's code."""
+def _checkpoint(checkpoint: Checkpoint) -> dict[str, Variable]:
+    """Return the state of the engine from which `resume` continues."""
     axes = {name: tuple(f"engine_{axis}" for axis in of) for name, of in zip(ARRAYS, AXES, strict=True)}
-    variables = {f"engine_{name}": (axes[name], getattr(checkpoint, name)) for name in ARRAYS}
-    return xr.Dataset(variables, attrs={"engine": checkpoint.engine})
+    return {f"engine_{name}": Variable(axes[name], getattr(checkpoint, name)) for name in ARRAYS}
 
 
-def _drawing(solution: Solution) -> xr.Dataset:
+def _engine(solution: Solution) -> dict[str, Any]:
+    """Return the attribute with the hash of the engine's code, if the state of the engine is known."""
+    return {} if solution.checkpoint is None else {"engine": solution.checkpoint.engine}
+
+
+def _drawing(solution: Solution) -> dict[str, Variable]:
     end = float(solution.breaks[-1])
     time, values = solution.curves_together(solution.curves, 0.0, end, DRAWN_POINTS)
     return _curves(solution, time, dict(zip(solution.curves, values, strict=True)))
 
 
-def _tables(solution: Solution) -> xr.Dataset:
-    load = solution.problem.load_unit
+def _tables(solution: Solution) -> dict[str, Variable]:
+    history, load = solution.history, solution.problem.load_unit
     shock = {name: (unit, "") for name, unit in SHOCK_COLUMNS.items()}
     shock["rule"] = ("", "selection rule, where several slip rates are possible")
     event = {name: one.about for name, one in EVENT_COLUMNS.items()}
+    events = event_columns(history, SlipEvents.of(history, default_event_rate(solution.problem)))
+    shocks = shock_columns(history)
+    shocks["rule"] = [rule_in_force(solution.problem)] * len(shocks["cause"]) if shocks["cause"] else []
     variables = {}
-    for prefix, table, columns in (("event", solution.events, event), ("shock", solution.shocks, shock)):
-        for name in table.columns:
-            words = name in ("cause", "rule")
-            values = table[name].to_numpy(dtype=object if words else None)
+    for prefix, table, columns in (("event", events, event), ("shock", shocks, shock)):
+        for name, values in table.items():
             unit, meaning = columns[name]
             about = {"units": unit_for(unit, load)} | ({"long_name": meaning} if meaning else {})
-            variables[f"{prefix}_{name}"] = (prefix, values.astype(str) if words else values, about)
-    return xr.Dataset(variables)
+            found = np.asarray(values, str) if name in ("cause", "rule") else np.asarray(values)
+            variables[f"{prefix}_{name}"] = Variable((prefix,), found, about)
+    return variables
 
 
 def open_solution(path: str | Path) -> Solution:

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import stickslip as ss
-from stickslip.foundation.atomic_write import write_atomically
 from stickslip.paper.cases import REFERENCE, Runs
 from stickslip.paper.claims import CLAIMS, STATEMENTS, Verdict
 
@@ -47,6 +45,7 @@ def make(out: Path | str, progress: Callable[[str], object] | None = None, *, rt
     from stickslip.paper.plates import PLATES
     from stickslip.paper.report import report
     from stickslip.paper.tables import all_tables
+    from stickslip.reports.page import save_text
 
     say = progress or (lambda _: None)
     folder, runs = Path(out), Runs(rtol)
@@ -68,19 +67,10 @@ def make(out: Path | str, progress: Callable[[str], object] | None = None, *, rt
 
 def _make_figure(path: Path, runs: Runs, plate: Plate) -> bytes:
     """Write a figure as netCDF, PNG and SVG under a path without suffix, and return the bytes of the SVG file."""
-    from stickslip.figures.style import image
     from stickslip.foundation.netcdf_file import write
+    from stickslip.reports.page import save_figure
 
     dataset = plate.data(runs)
     about = {"Conventions": "CF-1.11", "source": f"stickslip {ss.__version__}", "references": REFERENCE, "rtol": runs.rtol}
     write(dataset.assign_attrs(about, title=plate.title, comment=plate.caption), path.with_suffix(".nc"))
-    figure = plate.draw(dataset)
-    images = {kind: image(figure, kind) for kind in ("png", "svg")}
-    for kind, content in images.items():
-        write_atomically(path.with_suffix(f".{kind}"), partial(Path.write_bytes, data=content))
-    return images["svg"]
-
-
-def save_text(path: Path, text: str) -> Path:
-    """Write text in UTF-8 with line feeds as line ends, either whole or not at all, and return the path."""
-    return write_atomically(path, lambda draft: draft.write_text(text, encoding="utf-8", newline="\n"))
+    return save_figure(path, plate.draw(dataset))

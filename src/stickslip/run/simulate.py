@@ -130,7 +130,7 @@ class WholeHistory:
     def save(self, run: Solver[Solution]) -> None:
         """Renew the checkpoint if a file for it was given."""
         if run.options.checkpoint is not None:
-            from stickslip.io.netcdf import save_checkpoint  # imports xarray, which takes a while
+            from stickslip.io.netcdf import save_checkpoint
 
             save_checkpoint(run.solution(UNDER_WAY), run.options.checkpoint)
 

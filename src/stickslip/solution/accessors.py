@@ -1,4 +1,4 @@
-"""Figures and files of a run: the only file in which a solution uses the packages above it.
+"""Figures, files and reports: the only file in which a solution, or a study, uses the packages above it.
 
 `solution.plot()` draws the default figure and `solution.plot.energy()`, `.field()` ... draw others; `to_dataset`, `to_netcdf`,
 `to_scec` and `to_seismogram` hand a run to other tools. Each imports what it needs when it is called.
@@ -307,6 +307,13 @@ def figure_of_study(study: object) -> Any:
     from stickslip.figures.studies import figure_of
 
     return figure_of(study)
+
+
+def report_of_study(study: object, folder: Path, *others: object) -> Path:
+    """Write the report of a study to a folder, and return the path of its page; `others` are studies that it is compared with."""
+    from stickslip.reports import write_report
+
+    return write_report(study, folder, *others)
 
 
 def known_to_pyplot(drawn: T, place: Place) -> T:

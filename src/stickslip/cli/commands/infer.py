@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from stickslip.cli.options import ACCURACY, RESULTS, Changes, Dpi, FigureFile, ScenarioName, Size, complete_table, option
-from stickslip.cli.output.files import Look, Target, announce, check_targets, drawing, write_files
+from stickslip.cli.output.files import Look, Target, announce, check_folder, check_targets, drawing, write_files
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
@@ -56,6 +56,7 @@ def infer(
         Path | None, option("Save all numbers and curves (.nc) or the table (.csv).", "--out", "-o", panel=RESULTS)
     ] = None,
     scenario_out: Annotated[Path | None, option("Write the scenario that runs to the curve found (.toml).", panel=RESULTS)] = None,
+    report: Annotated[Path | None, option("Write a page with all of it to this folder.", panel=RESULTS)] = None,
     figure: FigureFile = None,
     dpi: Dpi = None,
     size: Size = None,
@@ -76,6 +77,7 @@ def infer(
       stickslip infer mine.toml data.csv --free static,dynamic --parts rests
       stickslip infer a.toml data.csv --free a,b --held-out 0.3 --compare b.toml
       stickslip infer mine.toml data.csv --free a,b --scenario-out best.toml
+      stickslip infer mine.toml data.csv --free a,b --report fitted
 
     After Ctrl-C the command shows and saves the best numbers so far.
 
@@ -87,6 +89,8 @@ def infer(
     look = Look(dpi, size)
     targets = Target("--out", out, (".nc", ".csv")), Target("--scenario-out", scenario_out, (".toml",))
     check_targets(*targets, Target("--figure", figure))
+    if report is not None:
+        check_folder(report, "--report")
     look.check(figure)
     options: dict[str, Any] = {"observe": observe, "start": start, "sensor": sensor, "parts": parts, "loss": loss, "starts": starts}
     options |= {"each": each and each.split(","), "seed": seed, "profiles": profiles, "samples": samples, "rtol": rtol}
@@ -95,6 +99,7 @@ def infer(
     chosen = load(scenario, "infer", changes)
     found = _inferred(chosen, data, free, options)
     show_inference(chosen, found)
+    others: list[Inference] = []
     if compare:
         if found.prediction is None:
             raise InputError("infer: --compare needs --held-out, the part of the record that is predicted")
@@ -110,6 +115,8 @@ def infer(
         show_ranking(found, *others)
     save = found.to_netcdf if out is not None and out.suffix.lower() == ".nc" else found.to_csv
     announce(*write_files((out, save), (scenario_out, found.to_toml), (figure, drawing(found.plot, look))))
+    if report is not None:
+        announce(found.report(report, *others))
     if not found.estimate.finished:
         raise KeyboardInterrupt
 

@@ -33,6 +33,7 @@ from stickslip.foundation.errors import InputError, nearest
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.solution.evaluation import Curve, Readings, times_of
 from stickslip.solution.place import Place
+from stickslip.trajectory.tables import shock_columns
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -168,8 +169,7 @@ def draw_friction(axes: Axes, readings: Readings, span: Span, against: Literal["
 
 def mark_shocks(panels: Sequence[Axes], readings: Readings, span: Span) -> None:
     """Mark the shocks (jumps of the slip rate) by dotted lines, with an entry in the legend of the last panel."""
-    times = np.asarray(readings.shocks["time"], dtype=float)
-    times = times[(times >= span[0]) & (times <= span[1])]
+    times = shock_columns(readings.history, *span)["time"]
     size = time_unit(span[1] - span[0])[1]
     for panel in panels:
         for k, at in enumerate(times if times.size <= MOST_SHOCKS else ()):

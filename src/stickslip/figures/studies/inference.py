@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
@@ -107,7 +108,42 @@ def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     count = max(len(paired) - 1, 0)
     figure = sheet((7.2, 5.4) if count else (5.0, 5.4), **place)
     axes: Any = figure.subplot_mosaic(_layout(count), width_ratios=[2.2, *[1.0] * max(count, 0)] if count else None)
-    name = str(dataset["quantity"].values[0])
+    _draw_curves(axes, dataset, str(dataset["quantity"].values[0]))
+    _draw_pairs(axes, dataset, paired)
+    lettered = [axes["record"], axes["residual"], axes["rate"], *([axes["00"]] if count else [])]
+    letter_panels(lettered, ["record and best run", "residual", "slip rate of the best run", *(["pairs, 95 %"] if count else [])])
+    add_legend(axes["record"], [*_marks(dataset), *(_pair_marks(dataset, "(d) ") if count else [])])
+    set_title(figure, str(dataset.attrs["title"]))
+    return figure
+
+
+@styled
+def draw_curves(dataset: xr.Dataset, name: str, **place: Unpack[Place]) -> Figure:
+    """Draw one quantity of the record with the best run, what is left of it, and the slip rate."""
+    figure = sheet((6.4, 5.4), **place)
+    axes: Any = figure.subplot_mosaic([["record"], ["residual"], ["rate"]])
+    _draw_curves(axes, dataset, name)
+    letter_panels(list(axes.values()), [f"{NAMES[name][0]}, record and best run", "residual", "slip rate of the best run"])
+    add_legend(axes["record"], _marks(dataset))
+    return figure
+
+
+@styled
+def draw_pairs(dataset: xr.Dataset, most: int = MOST_PAIRED, **place: Unpack[Place]) -> Figure | None:
+    """Draw each pair of the first numbers that are determined, of `most` of them; None if there is no pair."""
+    paired = _paired(dataset, most)
+    count = len(paired) - 1
+    if count < 1:
+        return None
+    figure = sheet((1.6 + 1.5 * count, 1.2 + 1.4 * count), **place)
+    axes: Any = figure.subplot_mosaic([[f"{i}{j}" if j <= i else "." for j in range(count)] for i in range(count)])
+    _draw_pairs(axes, dataset, paired)
+    add_legend(axes["00"], _pair_marks(dataset))
+    return figure
+
+
+def _draw_curves(axes: Mapping[str, Axes], dataset: xr.Dataset, name: str) -> None:
+    """Draw in the panels "record", "residual" and "rate"."""
     unit, size = time_unit(float(np.nanmax(dataset["time"].values) - min(0.0, float(np.nanmin(dataset["time"].values)))))
     _draw_record(axes["record"], dataset, name, size)
     _draw_residual(axes["residual"], dataset, name, size)
@@ -116,14 +152,14 @@ def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
         axes[row].sharex(axes["rate"])
         axes[row].tick_params(labelbottom=False)
     axes["rate"].set_xlabel(f"time $t$ ({unit})")
+
+
+def _draw_pairs(axes: Mapping[str, Axes], dataset: xr.Dataset, paired: list[int]) -> None:
+    """Draw in the panels "00", "10", "11" and so on; the first digit is the row."""
+    count = len(paired) - 1
     for i in range(count):
         for j in range(i + 1):
             _draw_pair(axes[f"{i}{j}"], dataset, paired[j], paired[i + 1], (i == count - 1, j == 0))
-    lettered = [axes["record"], axes["residual"], axes["rate"], *([axes["00"]] if count else [])]
-    letter_panels(lettered, ["record and best run", "residual", "slip rate of the best run", *(["pairs, 95 %"] if count else [])])
-    add_legend(axes["record"], _marks(dataset, count))
-    set_title(figure, str(dataset.attrs["title"]))
-    return figure
 
 
 def _layout(count: int) -> Any:
@@ -139,10 +175,10 @@ def _layout(count: int) -> Any:
     return wide
 
 
-def _paired(dataset: xr.Dataset) -> list[int]:
+def _paired(dataset: xr.Dataset, most: int = MOST_PAIRED) -> list[int]:
     """Return the indices of the numbers that are drawn against each other: shared ones that the record determines."""
     known = np.isfinite(dataset["uncertainty"].values) & (dataset["shared"].values == 1)
-    return np.flatnonzero(known).tolist()[:MOST_PAIRED]
+    return np.flatnonzero(known).tolist()[:most]
 
 
 def _draw_record(axes: Axes, dataset: xr.Dataset, name: str, size: float) -> None:
@@ -232,15 +268,18 @@ def _label(dataset: xr.Dataset, i: int, unit: str) -> str:
     return short if unit == "1" else f"{short} ({unit})"
 
 
-def _marks(dataset: xr.Dataset, count: int) -> list[Artist]:
+def _marks(dataset: xr.Dataset) -> list[Artist]:
     marks: list[Artist] = [
         Line2D([], [], color=SKY, linestyle="none", marker="o", markersize=3, label="measured"),
         Line2D([], [], color=INK, label="best run"),
     ]
     if (dataset["fitted"].values == 0).any():
         marks.append(Patch(color=GREY, alpha=0.15, linewidth=0.0, label="left out, predicted"))
-    if count:
-        marks.append(Line2D([], [], color=BLUE, label="(d) from the curvature"))
-        if "samples" in dataset:
-            marks.append(Line2D([], [], color=SKY, linestyle="none", marker=".", label="(d) samples"))
+    return marks
+
+
+def _pair_marks(dataset: xr.Dataset, panel: str = "") -> list[Artist]:
+    marks: list[Artist] = [Line2D([], [], color=BLUE, label=f"{panel}from the curvature")]
+    if "samples" in dataset:
+        marks.append(Line2D([], [], color=SKY, linestyle="none", marker=".", label=f"{panel}samples"))
     return marks

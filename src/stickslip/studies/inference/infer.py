@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pandas as pd
 
 from stickslip.foundation.arguments import check_whole, shown
@@ -17,8 +18,9 @@ from stickslip.friction.law import FrictionLaw
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_rtol
 from stickslip.scenarios.source import read_source
-from stickslip.studies.inference.certainty import Profile, certainty_of, profile_of
-from stickslip.studies.inference.estimate import estimate
+from stickslip.studies.inference.certainty import Certainty, Profile, certainty_of, profile_of
+from stickslip.studies.inference.directions import IDLE
+from stickslip.studies.inference.estimate import Estimate, estimate
 from stickslip.studies.inference.free import read_free, with_scale
 from stickslip.studies.inference.held_out import share_of, shortened
 from stickslip.studies.inference.inference import Inference
@@ -183,7 +185,9 @@ def infer(
     fitted = shortened(whole, share)
     model = _model(given, fitted, free, wishes)
     with telling(progress, "infer") as tell:
-        return _inferred(model, tuple(whole), wishes, notes, tell)
+        found = _inferred(model, tuple(whole), wishes, notes, tell)
+    options = {"begin": begin, "end": end} | vars(wishes)
+    return replace(found, asked={name: value for name, value in options.items() if value not in (None, False)})
 
 
 def _resampled(parts: list[Part], notes: list[str]) -> tuple[list[Part], list[str]]:
@@ -225,6 +229,7 @@ def _inferred(model: Model, whole: tuple[Part, ...], wishes: Wishes, notes: list
     """Return the result of all that was asked for; Ctrl-C leaves out what was not finished."""
     found = estimate(model, wishes.starts, wishes.loss, wishes.seed, tell)
     sure = certainty_of(found)
+    found = _idle_as_given(found, sure)
     profiles: list[Profile] = []
     drawn, said, finished = None, tuple[str, ...](), found.finished
     try:
@@ -237,6 +242,14 @@ def _inferred(model: Model, whole: tuple[Part, ...], wishes: Wishes, notes: list
         finished = False
     found = replace(found, finished=finished)
     return Inference(found, sure, whole, tuple(notes), tuple(profiles), drawn, said)
+
+
+def _idle_as_given(found: Estimate, sure: Certainty) -> Estimate:
+    """Return a best fit in which numbers without influence have the values that were given."""
+    idle = np.linalg.norm(sure.slopes, axis=0) < IDLE
+    given = np.where(idle, found.model.begin, found.searched)
+    kept = idle.any() and found.cost(given) < found.cost(found.searched) + IDLE
+    return replace(found, searched=given) if kept else found
 
 
 def ranking(*found: Inference) -> pd.DataFrame:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -13,13 +13,14 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from stickslip.foundation.atomic_write import write_atomically
+from stickslip.foundation.atomic_write import write_atomically, write_table
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief, with_uncertainty
 from stickslip.foundation.netcdf_file import write
 from stickslip.io.netcdf import origin
 from stickslip.problem.problem import Problem
 from stickslip.scenarios.scenario import Scenario
+from stickslip.solution.accessors import report_of_study
 from stickslip.solution.solution import Solution
 from stickslip.studies.inference.certainty import Certainty, Profile
 from stickslip.studies.inference.estimate import Estimate
@@ -58,6 +59,8 @@ class Inference(Study):
         Searched numbers that were drawn from the posterior distribution.
     about_samples : tuple of str
         How good the samples are.
+    asked : dict
+        The options that were given, by name.
     """
 
     estimate: Estimate
@@ -67,6 +70,7 @@ class Inference(Study):
     profiles: tuple[Profile, ...] = ()
     drawn: Floats | None = None
     about_samples: tuple[str, ...] = ()
+    asked: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def model(self) -> Model:
@@ -269,6 +273,34 @@ class Inference(Study):
         """Write data, model, residual, numbers, samples and provenance, and return the path. Raises InputError if that fails."""
         provenance: dict[str, Any] = {**origin(self.runs[0]), "title": "stickslip inference", "notes": "\n".join(self.notes)}
         return write(self.to_dataset().assign_attrs(provenance | {"scenario": self.scenario.to_toml()}), Path(path))
+
+    def to_csv(self, path: str | Path) -> Path:
+        """Write the table of numbers as CSV, after the notes as comment lines (#), and return the path."""
+        return write_table(Path(path), self.table.reset_index(), [self.headline, *self.notes])
+
+    def report(self, folder: str | Path, *others: Inference) -> Path:
+        """Write a report: a page that needs no other file, with figures, numbers, best scenario and data beside it.
+
+        Parameters
+        ----------
+        folder : str or Path
+            The folder; it is made if it is missing.
+        *others : Inference
+            Inferences from the same record with other laws, which the page ranks by what they predict, as `ranking` does.
+
+        Returns
+        -------
+        Path
+            The path of the page, `report.html`.
+
+        Raises
+        ------
+        InputError
+            If the best numbers do not run to the end of the record, or if `others` are of another record.
+        OSError
+            If the folder cannot be written.
+        """
+        return report_of_study(self, Path(folder), *others)
 
     def _lines(self) -> Iterator[str]:
         yield self.headline

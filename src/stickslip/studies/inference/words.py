@@ -23,23 +23,38 @@ MANY = 1.5
 
 def notes_of(study: Inference) -> Iterator[str]:
     """Yield sentences on what is not determined, and on what else to know before the numbers are used."""
+    yield from warnings_of(study)
+    yield from study.certainty.notes
+    yield from minima_of(study)
+    yield from noise_of(study)
+    if study.prediction is not None:
+        yield f"what was left out is predicted with an error of {study.prediction:.3g} times the noise"
+    yield from study.about_samples
+    yield from study.about
+
+
+def warnings_of(study: Inference) -> Iterator[str]:
+    """Yield sentences on what speaks against the numbers as a whole."""
     if not study.estimate.finished:
         yield "interrupted: these are the best numbers so far"
     yield from _misfit(study)
-    yield from study.certainty.notes
+
+
+def minima_of(study: Inference) -> Iterator[str]:
+    """Yield a sentence on each other minimum that competes with the best one."""
     for x in study.estimate.others:
         values = [f"{one.label} {brief(v, one.declared.unit, 3)}" for one, v in zip(study.free, study.model.values(x), strict=True)]
         yield f"another minimum fits almost as well: {', '.join(values[:8])}; bounds or priors choose between them"
+
+
+def noise_of(study: Inference) -> Iterator[str]:
+    """Yield sentences on the memory of the noise, and on standard deviations that were given too small."""
     for name, memory in study.model.memory.items():
         if memory > 0.0:
             yield f"residuals of {name} remember themselves for {brief(memory, 's', 3)}; the intervals allow for it"
     for name, size in study.model.sizes.items():
         if size > MANY and any(name in part.record.deviations for part in study.parts):
             yield f"residuals of {name} are {size:.3g} times the standard deviations given; the intervals allow for it"
-    if study.prediction is not None:
-        yield f"what was left out is predicted with an error of {study.prediction:.3g} times the noise"
-    yield from study.about_samples
-    yield from study.about
 
 
 def _misfit(study: Inference) -> Iterator[str]:
