@@ -23,6 +23,8 @@ from stickslip.friction.law import FrictionLaw
 Array = NDArray[np.float64]
 Waves = NDArray[np.complex128]
 
+ROUNDING = 1e-14
+"""Relative change of a slip rate below which its iteration ends: that of Newton's method before is then below 1e-7."""
 ITERATIONS = 100
 """Largest number of steps of Newton's method or bisection at a node."""
 
@@ -263,7 +265,7 @@ class Contact:
             step = rate - (value - load) / np.where(slope > 0.0, slope, inf)
             inside = (low <= step) & (step <= high) & (slope > 0.0)
             following = np.where(inside, step, 0.5 * (low + high))
-            done = np.abs(following - rate) <= 4e-16 * rate
+            done = np.abs(following - rate) <= ROUNDING * rate
             rate = following
             if done.all():
                 break
