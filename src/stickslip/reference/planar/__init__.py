@@ -1,6 +1,6 @@
-"""Independent answers for the slab whose friction varies along the contact (2D and 3D, scalar waves): two slow methods, closed forms.
+"""Independent answers for the slab whose friction varies along the contact, in 2D and 3D: two slow methods and closed forms.
 
-They share no code with the solver under `stickslip.planar`, and use numpy alone.
+They share no code with the solver under `stickslip.planar`.
 """
 
 from stickslip.reference.planar.convolution import convolution

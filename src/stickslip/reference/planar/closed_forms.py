@@ -61,8 +61,8 @@ class SteadyFront:
 
         u = (2 drop h / (pi G)) Re arccos(exp(pi (xi + i x) / (2 h))) - drop x / G.
 
-    Behind the front, slip grows towards drop h / G without end: a steady front below c is followed by no healing. Energy, kinetic and
-    elastic, in excess of what the front has passed is E = (2 ln 2 / pi) h G0 / a at the speed V. If the front
+    Behind the front, slip grows towards drop h / G without end: a steady front below c is followed by no healing. Near the front
+    the slab holds the energy E = (2 ln 2 / pi) h G0 / a in excess of the states far ahead and far behind. If the front
     accelerates slowly, the energy that feeds this excess is missing at the front: with fracture energy Gc,
 
         Gc = G0 [1 - (2 ln 2 / pi) (h / c^2) (dV/dt) / a^3].

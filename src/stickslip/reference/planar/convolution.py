@@ -8,10 +8,7 @@ W = 2 Z v - 2 F - P leaves the contact (v is the slip rate). It crosses the slab
 
     X(t) = W(t - R) - integral from R to t of w R J1(w sqrt(a^2 - R^2)) / sqrt(a^2 - R^2) W(t - a) da.
 
-A rigid driver reflects P = -X. A driver of impedance Zd multiplies the Laplace transform by
-(Z sqrt(s^2 + w^2) - Zd s) / (Z sqrt(s^2 + w^2) + Zd s), which in time is
-
-    (Z + Zd) P + Z K * (integral of P) = (Z - Zd) X + Z K * (integral of X),    K(a) = w J1(w a) / a.
+The driver reflects P = -X if it is rigid, and P = (Z - Zd) / (Z + Zd) X if it is a half-space of impedance Zd.
 
 All quantities but the slip are means over a step of time. Each kernel is integrated over the steps by Gauss points, so that it
 may vary fast; the order is 2, and 1 where loads jump. At w = 0 the method is the exact recursion of the slab in 1D.
@@ -41,15 +38,16 @@ class _Waves:
         self.case, self.delay, self.step_of_time = case, delay, case.two_way_time / delay
         w = case.frequencies()
         self._memory, self._echo = _kernel_of_half_space(w, self.step_of_time, steps), _kernel_of_echo(w, case, steps, delay)
-        self._slip, self._outgoing, self._missing = np.zeros((3, steps, *w.shape), complex)
-        self._reflected, self._missing_now = np.zeros((2, *w.shape), complex)
-        self._half_space = self._reflected
+        Z, Zd = case.impedance, case.driver_impedance
+        self._reflection = -1.0 if Zd == inf else (Z - Zd) / (Z + Zd)
+        self._slip, self._outgoing = np.zeros((2, steps, *w.shape), complex)
+        self._half_space, self._reflected = np.zeros((2, *w.shape), complex)
 
     def arrive(self, n: int, slip: Waves) -> Waves:
         """Return F + P in step n, for which the slip at the middle is predicted."""
         self._slip[n] = slip
         self._half_space = -self.case.impedance * _convolve(self._memory, self._slip, n)
-        self._reflected = self._reflect(n, self._crossed_twice(n - self.delay))
+        self._reflected = self._reflection * self._crossed_twice(n - self.delay)
         return np.asarray(self._half_space + self._reflected)
 
     def leave(self, n: int, slip: Waves, rate: Waves) -> None:
@@ -62,18 +60,6 @@ class _Waves:
         if n < 0:
             return np.zeros_like(self._reflected)
         return np.asarray(self._outgoing[n] - _convolve(self._echo, self._outgoing, n))
-
-    def _reflect(self, n: int, arrived: Waves) -> Waves:
-        """Return P in step n from X."""
-        Z, Zd = self.case.impedance, self.case.driver_impedance
-        if Zd == inf:
-            return -arrived
-        half = 0.5 * self.step_of_time  # the integral of X - P is needed at the middles of steps; P is that of the step before
-        self._missing[n] = self._missing_now + half * (arrived - self._reflected)
-        reflected = ((Z - Zd) * arrived + Z * _convolve(self._memory, self._missing, n)) / (Z + Zd)
-        self._missing[n] = self._missing_now + half * (arrived - reflected)
-        self._missing_now = self._missing[n] + half * (arrived - reflected)
-        return np.asarray(reflected)
 
 
 def _convolve(kernel: Array, history: Waves, n: int) -> Waves:
@@ -129,7 +115,9 @@ def convolution(case: PlanarCase, duration: float, steps_per_two_way_time: int) 
     """
     enough = ceil(0.5 * case.frequencies().max() * case.two_way_time)
     if steps_per_two_way_time < enough:
-        raise InputError(f"convolution: steps_per_two_way_time is {steps_per_two_way_time}, but must be at least {enough} for this case")
+        raise InputError(
+            f"convolution: steps_per_two_way_time is {steps_per_two_way_time}, but must be at least {enough} for this case"
+        )
     steps, dt = round(duration / case.two_way_time * steps_per_two_way_time), case.two_way_time / steps_per_two_way_time
     waves = _Waves(case, steps, steps_per_two_way_time)
     slip, loads, rate = np.zeros((steps + 1, *case.shape)), np.empty((steps, *case.shape)), np.zeros(case.shape)

@@ -1,8 +1,9 @@
 """The case that both reference methods solve, and what they have in common: the contact equation node by node.
 
 A slab 0 < x < h carries scalar waves u_tt = c^2 (u_xx + u_yy + u_zz). Friction acts at x = 0, where slip u is that of the slab
-itself; at x = h is a rigid driver at rest, or a driver of impedance Zd, where the stress is -Zd times the velocity. Along the
-contact everything is periodic. Stresses are counted from the initial load, which is in equilibrium.
+itself. At x = h is a rigid driver, or a half-space of impedance Zd and of the same wave speed c, which reflects every wave by the
+factor (Z - Zd) / (Z + Zd). Zd = 0 is a dead load. Along the contact everything is periodic. Stresses are counted from the initial
+load, which is in equilibrium.
 """
 
 from __future__ import annotations
@@ -57,9 +58,7 @@ class SlipWeakeningAtNodes:
         Numbers, or arrays of this shape.
     """
 
-    def __init__(
-        self, shape: tuple[int, ...], static: float | Array, dynamic: float | Array, distance: float | Array
-    ) -> None:
+    def __init__(self, shape: tuple[int, ...], static: float | Array, dynamic: float | Array, distance: float | Array) -> None:
         self.static, self.dynamic, self.distance = (np.broadcast_to(one, shape).ravel() for one in (static, dynamic, distance))
 
     def __call__(self, slip: Array, rate: Array, nodes: NDArray[np.intp]) -> tuple[Array, Array, Array]:
@@ -119,7 +118,7 @@ class PlanarCase:
     friction
         Friction at the nodes, such as `SlipWeakeningAtNodes`, `LawAtNodes`, or a function of one's own.
     driver_impedance
-        Zd (Pa s/m); infinite for a rigid driver.
+        Zd (Pa s/m) of the half-space beyond x = h; infinite for a rigid driver, 0 for a dead load.
     locked
         True where the contact is a barrier, which never slips; an array like `initial_load`, or None.
     pull_rate
@@ -238,9 +237,7 @@ class Contact:
             rate[nodes] = way * self._root(np.abs(load[nodes]), strength[slips], self._resistance(slip[nodes], way, ahead, nodes))
         return rate.reshape(shape), (load - self.case.impedance * rate).reshape(shape)
 
-    def _resistance(
-        self, slip: Array, way: Array, ahead: float, nodes: NDArray[np.intp]
-    ) -> Callable[[Array], tuple[Array, Array]]:
+    def _resistance(self, slip: Array, way: Array, ahead: float, nodes: NDArray[np.intp]) -> Callable[[Array], tuple[Array, Array]]:
         """Return the left side of the contact equation as a function of the magnitude of the slip rate, with its slope."""
         friction, Z = self.case.friction, self.case.impedance
 

@@ -12,11 +12,16 @@ where tau(n), the mean traction of two steps, is replaced by the mean of the tra
 contact equation of its own, Z v + tau(u + v dt/2, v) = load, whose load is twice the right side less the load of the step before.
 At w = 0 this is the exact mean of the load over the step. Friction is so integrated implicitly: friction that grows with slip
 or slip rate stays stable, which central differences do not achieve.
+
+The lines end at a rigid driver. Otherwise they go on through the half-space of impedance Zd beyond x = h, so far that nothing
+comes back from their end in time. At x = h, where two half cells meet,
+
+    (Z + Zd) [u_i(n+1) + u_i(n-1)] = 2 cos(w dt) [Z u_{i-1}(n) + Zd u_{i+1}(n)].
 """
 
 from __future__ import annotations
 
-from math import inf
+from math import ceil, inf
 
 import numpy as np
 
@@ -33,6 +38,8 @@ class Volume:
         What to solve.
     steps_per_two_way_time
         Number of steps of time in R = 2 h / c; even, because half as many cells fill the thickness.
+    duration
+        How long the run may become (s).
 
     Attributes
     ----------
@@ -42,13 +49,18 @@ class Volume:
         Work of friction since the start (J per m of strike in 2D, J in 3D).
     """
 
-    def __init__(self, case: PlanarCase, steps_per_two_way_time: int) -> None:
+    def __init__(self, case: PlanarCase, steps_per_two_way_time: int, duration: float) -> None:
         if steps_per_two_way_time < 2 or steps_per_two_way_time % 2:
             raise InputError(f"volume: steps_per_two_way_time is {steps_per_two_way_time}, but must be even and at least 2")
-        self.case, self.cells = case, steps_per_two_way_time // 2
-        self.step_of_time, self.steps = case.two_way_time / steps_per_two_way_time, 0
+        self.case, self.step_of_time, self.steps = case, case.two_way_time / steps_per_two_way_time, 0
+        inside, beyond = steps_per_two_way_time // 2, 0
+        if case.driver_impedance < inf:
+            beyond = max(1, ceil(0.5 * duration / self.step_of_time) + 1 - inside)
+        density = np.repeat((case.density, case.driver_impedance / case.wave_speed), (inside, beyond))
+        self._impedance = (case.wave_speed * density).reshape(-1, *(1,) * len(case.shape))
+        """Impedance of each cell."""
         self._cosine = np.cos(case.frequencies() * self.step_of_time)
-        self._now: Waves = np.zeros((self.cells + 1, *self._cosine.shape), complex)
+        self._now: Waves = np.zeros((inside + beyond + 1, *self._cosine.shape), complex)
         self._before = self._now.copy()
         self.slip = np.zeros(case.shape)
         self.slip_rate, self.traction = np.zeros(case.shape), case.initial_load.copy()
@@ -72,19 +84,11 @@ class Volume:
         self.heat += dt * case.node_area * float(np.sum(self.traction * self.slip_rate))
         self._slip_before, self.slip, self._load = self.slip, self.slip + dt * self.slip_rate, load
         after = self._before  # its memory is used again
-        far = after[-1].copy()
-        after[1:-1] = cosine * (now[2:] + now[:-2]) - after[1:-1]
-        after[-1] = self._at_driver(now[-2], far)
+        near, far = self._impedance[:-1], self._impedance[1:]
+        after[1:-1] = cosine * 2.0 * (near * now[:-2] + far * now[2:]) / (near + far) - after[1:-1]
         after[0] = case.to_waves(self.slip)
         self._before, self._now = now, after
         self.steps += 1
-
-    def _at_driver(self, neighbour: Waves, before: Waves) -> Waves | float:
-        """Return the displacement of the driver after a step, from that of the neighbouring node now and its own before."""
-        if self.case.driver_impedance == inf:
-            return 0.0
-        share = self.case.driver_impedance / self.case.impedance
-        return np.asarray((2.0 * self._cosine * neighbour - (1.0 - share) * before) / (1.0 + share))
 
     def load_now(self) -> Array:
         """Return the load (Pa) at this moment: the mean of those of the steps before and after, or the initial one."""
@@ -94,23 +98,21 @@ class Volume:
         return self.case.load_at_rest(self.time) + self.case.impedance / self.step_of_time * arrived
 
     def energy(self) -> float:
-        """Return the energy of the slab half a step ago, less that at the start (J per m of strike in 2D, J in 3D).
+        """Return the energy of slab and driver half a step ago, less that at the start (J per m of strike in 2D, J in 3D).
 
         It is the kinetic and elastic energy of what has been added to the initial state, and the work of the initial stress, which
-        acts at the contact: -initial load times slip. The driver must be rigid and at rest.
+        acts at the contact: -initial load times slip. A rigid driver must be at rest.
         """
         case, dt = self.case, self.step_of_time
         dx = case.wave_speed * dt
-        weights = np.full(self.cells + 1, dx)
-        weights[[0, -1]] *= 0.5
+        cells = self._impedance.ravel() / case.wave_speed * dx
+        masses = 0.5 * (np.append(cells, 0.0) + np.append(0.0, cells))
         velocity, middle = (self._now - self._before) / dt, 0.5 * (self._now + self._before)
         stretch, w = np.diff(middle, axis=0) / dx, case.frequencies()
-        kinetic = np.tensordot(weights, self._square(velocity), 1)
-        along = np.tensordot(weights, self._square(w / case.wave_speed * middle), 1)
-        across = dx * self._square(stretch).sum()
+        moving = masses @ self._square(velocity)
+        along, across = masses @ self._square(w * middle), case.wave_speed**2 * (cells @ self._square(stretch))
         slip = 0.5 * (self.slip + self._slip_before)
-        stored = 0.5 * case.density * kinetic + 0.5 * case.shear_modulus * (along + across)
-        return float(stored - case.node_area * np.sum(case.initial_load * slip))
+        return float(0.5 * (moving + along + across) - case.node_area * np.sum(case.initial_load * slip))
 
     def _square(self, waves: Waves) -> Array:
         """Return the integral over the contact of the square of a quantity, for each line of nodes parallel to it."""
@@ -145,7 +147,7 @@ def volume(case: PlanarCase, duration: float, steps_per_two_way_time: int) -> Pl
     InputError
         If several slip rates may solve the contact equation at a node.
     """
-    run = Volume(case, steps_per_two_way_time)
+    run = Volume(case, steps_per_two_way_time, duration)
     count = round(duration / run.step_of_time)
     found = np.empty((3, count + 1, *case.shape))
     for n in range(count + 1):
