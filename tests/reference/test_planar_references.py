@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -43,29 +44,29 @@ def test_uniform_slip_is_that_of_the_engine_in_1d() -> None:
     load = np.full(2, float(run.load(0.0)))
     case = PlanarCase(body.density, body.wave_speed, body.thickness, (1e4,), load, friction)
     errors = []
-    for steps in (1600, 3200):
+    for steps in (1600, 1200):
         found = volume(case, 1.1 * R, steps)
         exact = run.slip(found.times[[steps // 2, steps]]) - problem.initial_slip
         errors.append(np.abs(found.slip[[steps // 2, steps], 0] - exact).max())
         assert not found.slip_rate[steps + 1 :].any()
-        assert found.slip[-1] == pytest.approx(np.full(2, 0.376105283), rel=2e-5)
-    assert errors[1] < 1e-6
-    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.1)
-    assert convolution(case, 1.1 * R, 1600).slip == pytest.approx(volume(case, 1.1 * R, 1600).slip, rel=1e-11, abs=1e-13)
+        assert found.slip[-1] == pytest.approx(np.full(2, 0.376105283), abs=5e-6 * (1200 / steps) ** 2)
+    assert errors[0] < 2.5e-6
+    assert errors[1] / errors[0] == pytest.approx((4 / 3) ** 2, rel=0.07)
+    assert convolution(case, 1.1 * R, 1200).slip == pytest.approx(found.slip, abs=1e-10)
 
 
 @pytest.mark.parametrize("method", METHODS)
 def test_uniform_slip_under_a_pull_and_under_other_drivers_is_that_of_the_engine(method: Method) -> None:
-    """Rate strengthening over three round trips, against `simulate`: rel 1e-4 of the largest slip."""
+    """Rate strengthening over three round trips, against `simulate`: within 3e-4 of the largest slip."""
     law = ss.friction.FromExpression("0.5 + 0.2*v/(0.1 + v)")
     for impedance, pull in ((math.inf, 0.05), (0.0, 0.0), (3e6, 0.0)):
         body = ss.ElasticSlab(2800.0, 3500.0, 1e4, normal_stress=1e8, driver_impedance=impedance)
-        run = ss.simulate(ss.Problem(body, law, initial_load=5.6e7, pull_rate=pull), 17.0)
+        run = ss.simulate(ss.Problem(body, law, initial_load=5.6e7, pull_rate=pull), 17.1)
         friction = LawAtNodes(law, np.full(2, 1e8))
         case = PlanarCase(2800.0, 3500.0, 1e4, (1e4,), np.full(2, 5.6e7), friction, impedance, pull_rate=pull)
-        found = method(case, 17.0, 200)
+        found = method(case, 17.0, 100)
         exact = run.slip(found.times)
-        assert found.slip[:, 1] == pytest.approx(exact, abs=1e-4 * exact.max())
+        assert found.slip[:, 1] == pytest.approx(exact, abs=3e-4 * exact.max())
         smooth = np.abs(found.times % (0.5 * body.two_way_time)) > 0.05
         assert found.slip_rate[smooth, 1] == pytest.approx(run.slip_rate(found.times[smooth]), abs=2e-3 * run.slip_rate(0.0))
 
@@ -183,12 +184,10 @@ def test_critical_patch_on_a_half_space() -> None:
     """The smallest eigenvalue, extrapolated in the period and then in dy, is 1.157774 within 3e-5."""
     spacings = []
     for patch in (16, 32, 64, 128):
-        near, far = (
-            np.linalg.eigvalsh(_stiffness(patch * share, patch, float(share), math.inf))[0] * 0.5 for share in (16, 32)
-        )
+        near, far = (np.linalg.eigvalsh(_stiffness(patch * share, patch, float(share), math.inf))[0] * 0.5 for share in (16, 32))
         spacings.append(far + (far - near) / 3.0)
     for order in (1, 2):
-        spacings = [fine + (fine - coarse) / (2**order - 1) for coarse, fine in zip(spacings, spacings[1:], strict=False)]
+        spacings = [fine + (fine - coarse) / (2**order - 1) for coarse, fine in pairwise(spacings)]
     assert spacings[-1] == pytest.approx(CRITICAL_PATCH, abs=3e-5)
 
 
@@ -205,18 +204,20 @@ def test_a_patch_breaks_if_its_weakening_exceeds_the_critical_one(share: float, 
     assert breaks or slip.max() < 0.01 * friction.distance[0]
 
 
-def test_energy_balance_of_the_volume_method() -> None:
-    """Change of energy and heat add up to nothing, with order 2 in the step of time."""
+@pytest.mark.parametrize("driver_impedance", [math.inf, 0.3, 0.0])
+def test_energy_balance_of_the_volume_method(driver_impedance: float) -> None:
+    """Energy and heat add up to a constant within 1e-12; the constant stems from the jump at the start, and is of order 1."""
     missing = []
-    for steps in (64, 128, 256):
-        run = Volume(weakening_patch(32), steps)
-        worst, before = 0.0, 0.0
-        while run.time < 3.0:
+    for steps in (64, 128):
+        run = Volume(weakening_patch(32, driver_impedance), steps, 5.0)
+        sums = []
+        while run.time < 5.0:
             run.advance()
-            worst, before = max(worst, abs(run.energy() + 0.5 * (run.heat + before))), run.heat
-        missing.append(worst / run.heat)
-    assert missing[-1] < 3e-4
-    assert missing[1] / missing[2] > 3.0
+            sums.append(run.energy() + run.heat)
+        assert np.ptp(sums) < 1e-12 * run.heat
+        missing.append(sums[-1] / run.heat)
+    assert abs(missing[1]) < 2e-3
+    assert missing[0] / missing[1] == pytest.approx(2.0, rel=0.1)
 
 
 def test_steady_front_obeys_the_conditions_at_contact_and_driver() -> None:
@@ -238,13 +239,18 @@ def test_steady_front_obeys_the_conditions_at_contact_and_driver() -> None:
 
 
 def test_inertia_of_a_front_is_the_energy_that_runs_along_with_it() -> None:
-    """The integral of G u_xi^2 over the slab is (2 ln 2 / pi) h G0: rel 1e-3, by the midpoint rule in ln and angle."""
-    size, angle = np.meshgrid(np.linspace(-12.0, 12.0, 2401)[:-1] + 0.005, (np.arange(400) + 0.5) * np.pi / 800)
-    place = np.exp(size + 1j * angle)
-    slope = (place / np.sqrt(1.0 - place**2)).real
-    integral = (slope**2).sum() * 0.01 * np.pi / 800 * (2.0 / np.pi) ** 2
+    """The integral of G u_xi^2 over the slab is (2 ln 2 / pi) h G0: rel 1e-5, by the midpoint rule, extrapolated."""
+
+    def integral(count: int) -> float:
+        size, angle = np.meshgrid(
+            24.0 * (np.arange(6 * count) + 0.5) / (6 * count) - 12.0, (np.arange(count) + 0.5) * np.pi / 2 / count
+        )
+        place = np.exp(size + 1j * angle)
+        slope = 2.0 / np.pi * (place / np.sqrt(1.0 - place**2)).real
+        return float((slope**2).sum() * 4.0 / count * np.pi / 2 / count)
+
     front = SteadyFront(1.0, 1.0, 1.0, 1.0)
-    assert integral == pytest.approx(front.INERTIA * front.released_energy, rel=1e-3)
+    assert 2.0 * integral(200) - integral(100) == pytest.approx(front.INERTIA * front.released_energy, rel=1e-5)
 
 
 def test_speed_of_a_front_solves_its_equation_of_motion() -> None:

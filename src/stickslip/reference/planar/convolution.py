@@ -131,4 +131,4 @@ def convolution(case: PlanarCase, duration: float, steps_per_two_way_time: int) 
     for n in range(steps + 1):
         load = case.load_at_rest(0.0) if n == 0 else loads[-1] if n == steps else 0.5 * (loads[n - 1] + loads[n])
         rates[n], tractions[n] = case.contact.solve(load, slip[n], 0.0)
-    return PlanarSeries(np.arange(steps + 1) * dt, slip, rates, tractions)
+    return PlanarSeries(dt * np.arange(steps + 1.0), slip, rates, tractions)

@@ -24,8 +24,8 @@ from stickslip.friction.law import FrictionLaw
 Array = NDArray[np.float64]
 Waves = NDArray[np.complex128]
 
-ROUNDING = 1e-14
-"""Relative change of a slip rate below which its iteration ends: that of Newton's method before is then below 1e-7."""
+ROUNDING = 1e-15
+"""Share of the load by which the contact equation may be missed."""
 ITERATIONS = 100
 """Largest number of steps of Newton's method or bisection at a node."""
 
@@ -90,6 +90,7 @@ class LawAtNodes:
         self.law, self.normal = law, np.asarray(normal_stress, float).ravel()
         self.initial_slip = np.broadcast_to(initial_slip, np.shape(normal_stress)).ravel()
         self._trees = law.trees()
+        self._numbers = [law.numbers(i) for i in range(len(self._trees))]
 
     def __call__(self, slip: Array, rate: Array, nodes: NDArray[np.intp]) -> tuple[Array, Array, Array]:
         """Return strength and derivatives: see `Friction`."""
@@ -97,7 +98,7 @@ class LawAtNodes:
         found, piece = np.empty((3, len(slip))), self.law.piece_at(slip, rate)
         for i in np.unique(piece).tolist():
             own = piece == i
-            value, slopes = value_and_slopes(self._trees[i], self.law.numbers(i), slip[own], rate[own], np.zeros(own.sum()))
+            value, slopes = value_and_slopes(self._trees[i], self._numbers[i], slip[own], rate[own], np.zeros(own.sum()))
             found[:, own] = value, slopes[0], slopes[1]
         strength, by_slip, by_rate = self.normal[nodes] * found
         return strength, by_slip, by_rate
@@ -262,10 +263,10 @@ class Contact:
             step = rate - (value - load) / np.where(slope > 0.0, slope, inf)
             inside = (low <= step) & (step <= high) & (slope > 0.0)
             following = np.where(inside, step, 0.5 * (low + high))
-            done = np.abs(following - rate) <= ROUNDING * rate
-            rate = following
+            done = (np.abs(value - load) <= ROUNDING * load) | (following == rate)
+            rate = np.where(done, rate, following)
             if done.all():
                 break
-        if any((left_side(share * rate)[1] <= 0.0).any() for share in (0.0, 0.5, 1.0)):
+        if (slope <= 0.0).any() or any((left_side(share * rate)[1] <= 0.0).any() for share in (0.0, 0.5)):
             raise InputError("PlanarCase: several slip rates may solve the contact equation; take shorter steps or milder friction")
         return rate
