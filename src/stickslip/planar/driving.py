@@ -37,7 +37,7 @@ def locked_load(problem: Problem, steps: int, round_trips: int) -> Floats:
     body = problem.body
     assert isinstance(body, ElasticSlab)
     impedance, trip = body.impedance, body.two_way_time
-    within = np.arange(steps + 1) * (trip / steps)
+    within: Floats = np.asarray(np.arange(steps + 1) * (trip / steps), float)
     slope, reflection = impedance * problem.first_pull_rate / (0.5 * trip), body.reflection
     found = np.empty((round_trips, steps + 1))
     found[0] = slope * within
@@ -48,7 +48,7 @@ def locked_load(problem: Problem, steps: int, round_trips: int) -> Floats:
         found[0, late] = reflection * before + _entering(problem, within[late]) - problem.load
     for n in range(1, round_trips):
         sent = -(found[n - 1] + problem.load)
-        found[n] = reflection * sent + _entering(problem, within + n * trip) - problem.load
+        found[n] = reflection * sent + _entering(problem, np.asarray(within + n * trip, float)) - problem.load
     return found
 
 

@@ -4,8 +4,8 @@ What leaves the contact, W = 2 Z v - 2 F - P, comes back as P = r exp(-2 q h) W 
 
     P(t) = r [W(t - R) - integral over th > R of w R J1(w s)/s W(t - th) dth],   s = sqrt(th^2 - R^2).
 
-W is taken as linear in time in each step, with a jump where a round trip ends, so that the echoes of shocks are exact. The integral is
-then a sum over past steps with weights that are computed once, and the sums of a whole round trip are made by Fourier transforms.
+W is taken as linear in time in each step, with a jump where a round trip ends, so that the echoes of shocks are exact. The integral
+is then a sum over past steps with weights that are computed once, and sums of a whole round trip are made by Fourier transforms.
 """
 
 from __future__ import annotations
@@ -135,5 +135,3 @@ def echo_of(sent: Any, echo: Echo, spectra: Any, reflection: float) -> tuple[Any
     integral = jnp.fft.irfft(ahead[0], n=2 * steps, axis=0)[steps:]
     integral = jnp.concatenate([echo.last[None], integral])
     return reflection * (sent - integral), Echo(ahead, integral[-1])
-
-

@@ -125,7 +125,8 @@ class Contact:
             def of_rate(v: Any) -> Any:
                 return self.impedance * v + nodes.normal * self.coefficient(nodes, slip, v, states) - size
 
-            return jax.jvp(of_rate, (rate,), (jnp.ones_like(rate),))
+            value, slope = jax.jvp(of_rate, (rate,), (jnp.ones_like(rate),))
+            return value, slope
 
         def widened(bracket: tuple[Any, Any]) -> tuple[Any, Any]:
             high, _ = bracket

@@ -1,7 +1,7 @@
 """How fields on the contact and their wavenumbers are spread over devices, and the Fourier transforms between the two.
 
-Nodes are spread along y. The wavenumbers of a line are spread along k, those of a plane along the wavenumber of z, so that a plane is
-transposed by an exchange of all devices with each other; a line, which is small, is gathered. All of this is the library's.
+Nodes are spread along y. The wavenumbers of a line are spread along k, those of a plane along the wavenumber of z, so that a plane
+is transposed by an exchange of all devices with each other; a line, which is small, is gathered. The library does all of this.
 """
 
 from __future__ import annotations
@@ -110,19 +110,22 @@ class Layout:
         whole = np.asarray(array)
         return jax.make_array_from_callback(whole.shape, NamedSharding(self.mesh, spec), lambda part: whole[part])
 
-    def on_devices(self, function: Callable[..., Any], given: Any, returned: Any, donate: tuple[int, ...] = ()) -> Callable[..., Any]:
+    def on_devices(
+        self, function: Callable[..., Any], given: Any, returned: Any, donate: tuple[int, ...] = ()
+    ) -> Callable[..., Any]:
         """Compile a function of parts of arrays so that it runs on every device, with the library's exchanges between them.
 
         `given` and `returned` say how arguments and results are spread; arguments in `donate` may be overwritten.
         """
         spread = jax.shard_map(function, mesh=self.mesh, in_specs=given, out_specs=returned, check_vma=False)
-        return jax.jit(spread, donate_argnums=donate)
+        compiled: Callable[..., Any] = jax.jit(spread, donate_argnums=donate)
+        return compiled
 
 
 def whole(array: jax.Array) -> NDArray[Any]:
     """Return an array as numpy's, gathered from all processes if there are several."""
     if array.is_fully_addressable:
         return np.asarray(array)
-    from jax.experimental import multihost_utils  # noqa: PLC0415 - only needed with several processes
+    from jax.experimental import multihost_utils
 
     return np.asarray(multihost_utils.process_allgather(array, tiled=True))

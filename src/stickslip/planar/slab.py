@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.fft import next_fast_len
 
 from stickslip.bodies import ElasticSlab
 from stickslip.contact.uniqueness import regime_of
@@ -39,17 +40,17 @@ class PlanarSlab(CheckedArguments):
     ----------
     problem
         Body (an `ElasticSlab` without contact mass), friction law, loading and start of every node.
-    length
-        Length of the contact along y (m).
     nodes
         Number of nodes along y: even.
+    length
+        Length of the contact along y (m).
     width
         Width of the contact along z (m), for a plane; None for a line, on which nothing varies with z.
     width_nodes
         Number of nodes along z: even; for a plane only.
     along
         Parameters that vary along the contact, by name: those of `problem.parameters` that belong to friction ("friction.static"),
-        "body.normal_stress", "initial.slip", and "initial.load", "initial.excess" and "initial.state". Each is an array of SI values
+        "body.normal_stress", "initial.slip", "initial.load", "initial.excess" and "initial.state". Each is an array of SI values
         with one entry for each node, or a function of y, or of y and z (m, 0 in the middle), that returns such an array.
     barrier
         Where the contact is locked and never slips: an array of booleans, or a function of y, or y and z, that returns one.
@@ -70,8 +71,8 @@ class PlanarSlab(CheckedArguments):
     """
 
     problem: Problem
-    length: Number = quantity("m", "length of the contact along y", above=0)
     nodes: int
+    length: Number = quantity("m", "length of the contact along y", above=0)
     width: OptionalNumber = quantity("m", "width of the contact along z, for a plane", above=0, default=None)
     width_nodes: int | None = None
     along: Mapping[str, Profile] = field(default_factory=dict)
@@ -94,11 +95,13 @@ class PlanarSlab(CheckedArguments):
         if problem.body.contact_mass != 0.0:
             raise InputError("PlanarSlab: contact_mass must be 0: the contact equation is solved without inertia")
         if law.reverses:
-            raise InputError(f"PlanarSlab: {type(law).__name__} has a state that reverses with slip, which planar slabs do not follow")
-        if problem.selection not in ("perfect-delay",):
             raise InputError(
-                f"PlanarSlab: selection {problem.rule!r} has no effect: laws under which several slip rates solve the contact equation"
-                " are refused, because waves along the contact make them ill-posed"
+                f"PlanarSlab: {type(law).__name__} has a state that reverses with slip, which planar slabs do not follow"
+            )
+        if problem.rule != "perfect-delay":
+            raise InputError(
+                f"PlanarSlab: the selection rule {problem.rule!r} would have no effect: laws under which it has one are refused,"
+                " because waves along the contact make them ill-posed"
             )
 
     def _check_grid(self) -> None:
@@ -113,7 +116,9 @@ class PlanarSlab(CheckedArguments):
         finest = math.sqrt(sum((math.pi / step) ** 2 for step in self.spacing))
         largest = WIDEST_STEP / (finest * min(self.spacing))
         if self.courant > largest:
-            raise InputError(f"PlanarSlab: courant must be at most {largest:.3g} here, got {self.courant:g}: steps would be unstable")
+            raise InputError(
+                f"PlanarSlab: courant must be at most {largest:.3g} here, got {self.courant:g}: steps would be unstable"
+            )
 
     def _check_uniqueness(self) -> None:
         """Refuse contacts on which several slip rates solve the contact equation: the paper's perfect delay does not carry over."""
@@ -124,10 +129,16 @@ class PlanarSlab(CheckedArguments):
             regime = regime_of(problem)
             if regime != "regular":
                 raise InputError(
-                    f"PlanarSlab: friction falls with the slip rate faster than radiation bears ({type(law).__name__} is {regime}"
-                    " under this normal stress): disturbances along the contact then grow without bound the shorter they are, so that no"
-                    " selection rule gives a solution; take slip weakening, a state, or a smaller fall of friction with the slip rate"
+                    "PlanarSlab: friction falls with the slip rate by more than radiation adds (the contact equation of this"
+                    f" {type(law).__name__} is {regime}): the shorter a disturbance along the contact, the faster it grows, without"
+                    " bound, so that no selection rule gives a solution; take slip weakening, a state, or a smaller fall"
                 )
+
+    @property
+    def body(self) -> ElasticSlab:
+        """The slab of every node; only its normal stress may vary."""
+        assert isinstance(self.problem.body, ElasticSlab)
+        return self.problem.body
 
     @property
     def is_plane(self) -> bool:
@@ -167,8 +178,36 @@ class PlanarSlab(CheckedArguments):
     @property
     def steps_per_round_trip(self) -> int:
         """The smallest number of time steps in a two-way travel time R that keeps to `courant`."""
-        body = self.problem.body
-        return math.ceil(body.round_trip_time * float(body.wave_speed) / (self.courant * min(self.spacing)) - 1e-9)  # type: ignore[union-attr]
+        return math.ceil(2.0 * self.body.thickness / (self.courant * min(self.spacing)) - 1e-9)
+
+    def alone_for(self, duration: float) -> tuple[PlanarSlab, tuple[slice, ...]]:
+        """Return a periodic slab that holds this contact so far from its replicas that no wave of them arrives in time.
+
+        Parameters
+        ----------
+        duration
+            Time (s).
+
+        Returns
+        -------
+        tuple
+            The slab, which is locked outside of this contact, and where in it the nodes of this contact are. For a contact with
+            replicas they are this slab and all its nodes.
+        """
+        if self.replicas:
+            return self, tuple(slice(None) for _ in self.shape)
+        reach = self.body.wave_speed * duration
+        counts = [
+            2 * next_fast_len(math.ceil((count + reach / step) / 2)) for count, step in zip(self.shape, self.spacing, strict=True)
+        ]
+        more = [large - count for large, count in zip(counts, self.shape, strict=True)]
+        room = [(extra // 2, extra - extra // 2) for extra in more]
+        along = {name: np.pad(self.at_nodes(name, given), room, mode="edge") for name, given in self.along.items()}
+        sizes = [count * step for count, step in zip(counts, self.spacing, strict=True)]
+        width = {"width": sizes[1], "width_nodes": counts[1]} if self.is_plane else {}
+        barrier = np.pad(self.locked, room, constant_values=True)
+        large = replace(self, nodes=counts[0], length=sizes[0], along=along, barrier=barrier, replicas=True, **width)
+        return large, tuple(slice(before, before + count) for (before, _), count in zip(room, self.shape, strict=True))
 
     def at_nodes(self, name: str, given: Profile, kind: type = float) -> NDArray[Any]:
         """Return the values of a profile at the nodes, with the shape `shape`.
@@ -200,4 +239,4 @@ class PlanarSlab(CheckedArguments):
 
 
 def _positions(count: int, spacing: float) -> NDArray[np.float64]:
-    return (np.arange(count) - count // 2) * spacing
+    return np.asarray((np.arange(count) - count // 2) * spacing, float)

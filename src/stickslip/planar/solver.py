@@ -4,8 +4,8 @@ Everything reaches the contact as a load: Z v + tau = beta(y, t) at every node (
 
     beta = initial load + loading + F + P,
 
-F from the memory of the half-space (`memory.py`), P from the driver (`echo.py`), and the loading as in 1D, because it is the same at
-all nodes. The error is of order 2 in the time step where the motion is smooth, and of order 1 where nodes begin or end to slip.
+F from the memory of the half-space (`memory.py`), P from the driver (`echo.py`), and the loading as in 1D, because it is the same
+at all nodes. The error is of order 2 in the time step where the motion is smooth, and of order 1 where nodes begin or end to slip.
 """
 
 from __future__ import annotations
@@ -22,7 +22,6 @@ import numpy as np
 from jax.sharding import PartitionSpec
 from numpy.typing import NDArray
 
-from stickslip.bodies import ElasticSlab
 from stickslip.planar.driving import locked_load
 from stickslip.planar.echo import Echo, echo_of, echo_weights, kernel_spectra, silent
 from stickslip.planar.friction import Contact, Nodes
@@ -48,6 +47,10 @@ class Motion(NamedTuple):
     """States in the form that the formulas use, one more axis in front."""
     heat: Any
     """Work of friction since the start, J/m^2."""
+
+    def at(self, nodes: tuple[slice, ...]) -> Motion:
+        """Return the motion of some of the nodes."""
+        return Motion(*(one[(..., *nodes)] for one in self))
 
 
 class Waves(NamedTuple):
@@ -106,9 +109,8 @@ class PlanarSolver:
 
     def __post_init__(self) -> None:
         self.steps = self.steps_per_round_trip or self.slab.steps_per_round_trip
-        body = self.slab.problem.body
-        assert isinstance(body, ElasticSlab)
-        self.body, self.dt = body, body.two_way_time / self.steps
+        self.body = body = self.slab.body
+        self.dt = body.two_way_time / self.steps
         self.trips = max(1, int(np.ceil(self.duration / body.two_way_time - 1e-9)))
         self.layout = Layout(self.slab.shape, self.slab.spacing, self.devices)
         self.contact = Contact(self.slab.values.law, body.impedance)
@@ -130,7 +132,7 @@ class PlanarSolver:
         """Load of a contact that never slips, minus the initial load, at the steps of each round trip (Pa)."""
         return locked_load(self.slab.problem, self.steps, self.trips)
 
-    # ---- the start --------------------------------------------------------------------------------------------------------------
+    # ---- the start ---------------------------------------------------------------------------------------------------------------
 
     def _begin(self) -> None:
         layout, values = self.layout, self.slab.values
@@ -160,7 +162,7 @@ class PlanarSolver:
     def _put(self, arrays: Any, specs: Any) -> Any:
         return jax.tree.map(self.layout.put, arrays, specs, is_leaf=lambda one: isinstance(one, np.ndarray))
 
-    # ---- how arrays are spread over devices -----------------------------------------------------------------------------------------
+    # ---- how arrays are spread over devices --------------------------------------------------------------------------------------
 
     @property
     def _spread_motion(self) -> Motion:
@@ -183,24 +185,22 @@ class PlanarSolver:
         rank = len(self.slab.shape)
         y, more = self.layout.along_y(rank), self.layout.along_y(rank + 1)
         numbers = dict.fromkeys(self.slab.values.numbers[0], more)
-        return Constants(
-            Nodes(y, y, more, numbers, y), y, y, *(self.layout.along_k(rank + 2),) * 2, self.layout.along_k(rank)
-        )
+        return Constants(Nodes(y, y, more, numbers, y), y, y, *(self.layout.along_k(rank + 2),) * 2, self.layout.along_k(rank))
 
-    # ---- compiled functions ------------------------------------------------------------------------------------------------------------
+    # ---- compiled functions ------------------------------------------------------------------------------------------------------
 
     @cached_property
     def _march(self) -> Any:
         """Take a number of steps: compiled once, for any number."""
 
-        def march(motion: Motion, waves: Waves, constants: Constants, loading: Any, first: Any, count: Any) -> Any:
-            def one(i: Any, now: tuple[Motion, Waves]) -> tuple[Motion, Waves]:
-                return self._one_step(now, constants, loading[first + i + 1], first + i + 1)
+        def march(motion: Motion, waves: Waves, constants: Constants, loading: Any, between: Any) -> Any:
+            def one(step: Any, now: tuple[Motion, Waves]) -> tuple[Motion, Waves]:
+                return self._one_step(now, constants, loading[step + 1], step + 1)
 
-            return jax.lax.fori_loop(0, count, one, (motion, waves))
+            return jax.lax.fori_loop(between[0], between[1], one, (motion, waves))
 
         alike, spread = PartitionSpec(), (self._spread_motion, self._spread_waves)
-        return self.layout.on_devices(march, (*spread, self._spread_constants, alike, alike, alike), spread, donate=(0, 1))
+        return self.layout.on_devices(march, (*spread, self._spread_constants, alike, alike), spread, donate=(0, 1))
 
     @cached_property
     def _open(self) -> Any:
@@ -241,7 +241,7 @@ class PlanarSolver:
         return found, Waves(advanced, jnp.sum(advanced.real, axis=0), memory, waves.arriving, sent)
 
     def _moved(self, motion: Motion, guess: Any, waves: Waves, constants: Constants, loads: tuple[Any, Any]) -> Any:
-        """Return the motion after a step from a guess of it: the slip rate there at first, then the motion; and slip and F there."""
+        """Return motion, slip and F after a step, from a guess: the slip rate after it at first, then the motion."""
         late = guess.rate if isinstance(guess, Motion) else guess
         mean = 0.5 * (motion.rate + late)
         slip = motion.slip + self.dt * mean
@@ -266,7 +266,7 @@ class PlanarSolver:
         middle = (0.5 * (motion.seen + seen), jnp.abs(mean))
         return seen, self.contact.advanced_states(constants.nodes, middle, (motion.states, about), self.dt)
 
-    # ---- the run ---------------------------------------------------------------------------------------------------------------------
+    # ---- the run -----------------------------------------------------------------------------------------------------------------
 
     def advance(self, count: int) -> int:
         """Take at most `count` steps, no further than the end of the round trip or of the run; return how many were taken."""
@@ -276,8 +276,8 @@ class PlanarSolver:
             left = self.last_step - self.trip * self.steps
             taken = max(0, min(count, self.steps - self.step, left - self.step))
             if taken:
-                loading = self.loading[self.trip]
-                self.motion, self.waves = self._march(self.motion, self.waves, self.constants, loading, self.step, taken)
+                loading, between = self.loading[self.trip], np.array([self.step, self.step + taken])
+                self.motion, self.waves = self._march(self.motion, self.waves, self.constants, loading, between)
                 self.step += taken
             return taken
 
