@@ -10,18 +10,17 @@ import sys
 
 import numpy as np
 import pytest
+from scipy.special import j1
+from tests.planar.patches import LAW, SLAB, patch
 
 import stickslip as ss
 from stickslip.planar.memory import exponentials
 from stickslip.planar.solver import PlanarSolver
 
-scipy_special = pytest.importorskip("scipy.special")
-
 DENSITY, SPEED, THICKNESS, STRESS = 2800.0, 3500.0, 1e4, 1e8
 MODULUS = DENSITY * SPEED**2
 WEAKENING = 1.5 / THICKNESS  # alpha_w = -S mu'/G, so that alpha_w h = 1.5
 DISTANCE = 1e3
-SLAB = ss.ElasticSlab(DENSITY, SPEED, THICKNESS, STRESS)
 
 
 def weakening_law() -> ss.friction.LinearSlipWeakening:
@@ -44,7 +43,7 @@ def test_exponentials_sum_to_the_bessel_kernel(longest: float) -> None:
     poles, weights = exponentials(longest)
     x = np.concatenate([np.linspace(1e-3, min(longest, 60.0), 2000), np.linspace(1e-3, longest, 2001)])
     found = np.sum(weights[:, None] * np.exp(poles[:, None] * x), axis=0).real
-    assert np.abs(found - scipy_special.j1(x) / x).max() < 2e-9
+    assert np.abs(found - j1(x) / x).max() < 2e-9
     assert poles.real.max() <= 0.0
 
 
@@ -138,18 +137,8 @@ def test_a_disturbance_on_a_half_space_grows_as_the_closed_form_says() -> None:
     assert grows == pytest.approx(SPEED * math.sqrt(WEAKENING**2 - wavenumber**2), rel=1e-4, abs=0.0)
 
 
-def patch(**grid: float) -> ss.PlanarSlab:
-    law = ss.friction.LinearSlipWeakening(static=0.7, dynamic=0.5, distance=0.4)
-    problem = ss.Problem(SLAB, law, initial_load=60e6)
-
-    def load(*at: np.ndarray) -> np.ndarray:
-        return np.where(np.hypot(at[0], at[-1] if len(at) > 1 else 0.0) < 4e3, 71e6, 60e6)
-
-    return ss.PlanarSlab(problem, along={"load": load}, barrier=lambda y, *_: np.abs(y) > 9e3, **grid)  # type: ignore[arg-type]
-
-
 def test_a_plane_on_which_nothing_varies_with_z_is_a_line() -> None:
-    problem = ss.Problem(SLAB, ss.friction.LinearSlipWeakening(static=0.7, dynamic=0.5, distance=0.4), initial_load=60e6)
+    problem = ss.Problem(SLAB, LAW, initial_load=60e6)
     nucleus = {"load": lambda y, *_: np.where(np.abs(y) < 4e3, 71e6, 60e6)}
     line = ss.simulate(ss.PlanarSlab(problem, nodes=64, length=2e4, along=nucleus), 8.0, frames=10)
     plane = ss.PlanarSlab(problem, nodes=64, length=2e4, width=1e4, width_nodes=32, along=nucleus)
@@ -178,7 +167,7 @@ def test_slip_of_one_contact_is_symmetric_and_locked_nodes_rest() -> None:
 SEVERAL = """
 import json, sys
 import numpy as np
-from tests.planar.test_planar_solver import patch
+from tests.planar.patches import patch
 from stickslip.planar.solver import PlanarSolver
 import jax
 found = []
