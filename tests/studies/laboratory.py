@@ -84,17 +84,19 @@ class CoulombBlock:
     dynamic: float = 0.5
     pull: float = 1e-3
 
-    def sampled(self, time: Floats, spring: float) -> tuple[Floats, Floats]:
-        """Spring force (N) and slip (m) at sample times, from rest at a spring force."""
+    def sampled(self, time: Floats, spring: float, scatter: float = 0.0, seed: int = 0) -> tuple[Floats, Floats]:
+        """Spring force (N) and slip (m) at sample times, from rest at a spring force; static friction may scatter."""
+        random, strength = np.random.default_rng(seed), self.static * self.normal
         frequency = math.sqrt(self.stiffness / self.mass)
         force, slip = np.zeros(len(time)), np.zeros(len(time))
         at, moved, sticks, load = 0.0, 0.0, True, spring
         while at < time[-1]:
             if sticks:
-                lasts = (self.static * self.normal - load) / (self.stiffness * self.pull)
+                strength = (self.static + scatter * random.standard_normal()) * self.normal
+                lasts = (strength - load) / (self.stiffness * self.pull)
                 inside = (time >= at) & (time <= at + lasts)
                 force[inside], slip[inside] = load + self.stiffness * self.pull * (time[inside] - at), moved
-                load = self.static * self.normal
+                load = strength
             else:
                 # F - Fd = A cos(w t) + B sin(w t), v = V - F'/K, at rest again where v = 0
                 above, sine = load - self.dynamic * self.normal, self.stiffness * self.pull / frequency

@@ -178,7 +178,7 @@ class Inference(Study):
         return tuple(run for run in found if run is not None)
 
     def _fitted_until(self, part: int) -> float:
-        return self.model.parts[part].duration if part < len(self.model.parts) else -1.0
+        return float(self.model.parts[part].record.clock[-1]) if part < len(self.model.parts) else -1.0
 
     @cached_property
     def curves(self) -> pd.DataFrame:

@@ -84,6 +84,14 @@ def whitened(residual: Floats, blocks: list[Block], memory: float) -> Floats:
     return result
 
 
+def independent(time: Floats, memory: float) -> float:
+    """Return how many independent samples there are among those at some times, as many as the memory of the noise leaves."""
+    if memory <= 0.0 or len(time) < 2:
+        return float(len(time))
+    rho = math.exp(-float(np.median(np.diff(time))) / memory)
+    return max(1.0, len(time) * (1.0 - rho) / (1.0 + rho))
+
+
 class Memory(NamedTuple):
     """Time over which residuals remember themselves (s; 0 for white noise), and their size relative to the assumed one."""
 
