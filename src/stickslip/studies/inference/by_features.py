@@ -26,6 +26,8 @@ SPARE = 3
 """Number of events beyond the number of features, of which the scatter of features and their correlation are estimated."""
 COARSE, FINE = 2000, 400
 """Numbers of times at which a run is looked at as a whole, and between two times, besides the ends of its pieces."""
+COARSER = 1e-2
+"""Step of differences, in searched numbers: waves on their way shift features of a slab by a share of 1e-4 or so."""
 FEWEST = 4.0
 """Number of samples in a fall from which its duration and peak rate can be told."""
 
@@ -151,9 +153,13 @@ class FeatureModel(Model):
         spare = [len(part.record) - 1 - max(len(part.observed) - numbers, 0) for part in self.parts]
         return float(sum(spare) + numbers)
 
+    def fine(self, searched: Floats) -> Model:
+        """Return the model with steps of differences in which waves on their way do not show."""
+        return self.with_(step=COARSER)
+
     def thinned(self, most: int) -> Model:
         """Return the same model: events are few."""
-        return self.with_()
+        return self.with_(step=COARSER)
 
 
 def _inverse_root(features: Floats) -> Floats:
