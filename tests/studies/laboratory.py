@@ -213,3 +213,28 @@ class CoulombSlab:
         all_loads, all_rates = np.concatenate(loads), np.concatenate(rates)
         shear = np.where(all_rates > 0.0, kinetic, all_loads)
         return self.trip / steps * np.arange(len(shear)), shear, all_rates
+
+    def stick_slip(self, stress: float, duration: float, scatter: float = 0.0, seed: int = 0) -> tuple[Floats, Floats, Floats]:
+        """Times (s), shear stress at the contact (Pa) and slip (m) over many events, along characteristics, 80 steps a round trip.
+
+        Static friction may scatter from event to event.
+        """
+        random, steps, impedance = np.random.default_rng(seed), 80, self.density * self.wave_speed
+        step, drag = self.trip / steps, self.dynamic * self.normal
+        load = stress + self._rise * step * np.arange(steps)
+        strength, sliding, slip = self.normal * (self.static + scatter * random.standard_normal()), False, 0.0
+        shears, slips = list[Floats](), list[Floats]()
+        for _ in range(int(duration / self.trip) + 1):
+            rate, shear = np.zeros(steps), load.copy()
+            if sliding or load.max() >= strength:
+                for i, beta in enumerate(load.tolist()):
+                    sliding = sliding or beta >= strength
+                    rate[i] = max(beta - drag, 0.0) / impedance if sliding else 0.0
+                    shear[i] = drag if rate[i] > 0.0 else beta
+                    if sliding and rate[i] == 0.0:
+                        sliding, strength = False, self.normal * (self.static + scatter * random.standard_normal())
+            shears.append(shear)
+            slips.append(slip + step * np.cumsum(rate))
+            slip = float(slips[-1][-1])
+            load = load + 2.0 * impedance * (self.pull - rate)
+        return step * np.arange(steps * len(shears)), np.concatenate(shears), np.concatenate(slips)

@@ -18,13 +18,13 @@ from stickslip.studies.inference.record import Record
 
 Floats = NDArray[np.float64]
 
-CYCLES = 8.0
+CYCLES = 6.0
 """Length of a run in times between events of the record; its first events are passed over."""
 SETTLING = 2
 """Number of events of a run after which its features count."""
 SPARE = 3
 """Number of events beyond the number of features, of which the scatter of features and their correlation are estimated."""
-COARSE, FINE = 2000, 400
+COARSE, FINE = 1000, 200
 """Numbers of times at which a run is looked at as a whole, and between two times, besides the ends of its pieces."""
 COARSER = 1e-2
 """Step of differences, in searched numbers: waves on their way shift features of a slab by a share of 1e-4 or so."""
@@ -156,6 +156,12 @@ class FeatureModel(Model):
     def fine(self, searched: Floats) -> Model:
         """Return the model with steps of differences in which waves on their way do not show."""
         return self.with_(step=COARSER)
+
+    @property
+    def counted(self) -> str:
+        """What is fitted, as text."""
+        each = dict.fromkeys(name for part in self.parts for name in part.observed)
+        return f"{len(each)} features of {sum(len(part.record) for part in self.parts)} slip events"
 
     def thinned(self, most: int) -> Model:
         """Return the same model: events are few."""

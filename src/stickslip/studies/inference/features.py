@@ -102,7 +102,8 @@ def _measured(fall: Fall, between: Between, shear: str) -> dict[str, float] | No
     before, after = (begin - BESIDE * (fall.at - fall.after), begin), (end, end + BESIDE * (fall.before - fall.at))
     if before[0] < fall.after or after[1] > fall.before or fall.lasts <= 0.0:
         return None
-    upper, lower = (_line(between(*window), shear) for window in (before, after))
+    beside = [between(*window) for window in (before, after)]
+    upper, lower = (_line(one, shear) for one in beside)
     if upper is None or lower is None:
         return None
     inside = between(begin, end)
@@ -114,7 +115,7 @@ def _measured(fall: Fall, between: Between, shear: str) -> dict[str, float] | No
     found = {"time": at, f"{shear}_drop": upper(at) - lower(at)}
     found["duration"] = 2.0 * math.sqrt(spread) if spread > 0.0 else math.nan
     if "slip" in inside.values:
-        ends = [_line(between(*window), "slip") for window in (before, after)]
+        ends = [_line(one, "slip") for one in beside]
         found["event_slip"] = math.nan if ends[0] is None or ends[1] is None else ends[1](at) - ends[0](at)
     if "slip_rate" in inside.values:
         found["peak_rate"] = _peak(inside, SMOOTHED * found["duration"])

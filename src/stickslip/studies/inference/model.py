@@ -301,6 +301,11 @@ class Model:
         return sum(block.rows.stop - block.rows.start for i in range(len(self.parts)) for _, block in self.blocks(i))
 
     @property
+    def counted(self) -> str:
+        """What is fitted, as text."""
+        return f"{self.samples} samples"
+
+    @property
     def independent(self) -> float:
         """The number of independent samples, as many as the memory of the noise leaves."""
         blocks = [one for i in range(len(self.parts)) for one in self.blocks(i)]
