@@ -66,7 +66,7 @@ ROOMS = {
         ("regularised",),
         ("registry", "run"),
     ),
-    "reference": (("rate_and_state",), ("block", "slab"), ("method_of_steps",)),
+    "reference": (("rate_and_state",), ("block", "planar", "slab"), ("method_of_steps",)),
     "cli": (
         ("output", "overrides", "installation"),
         ("long_run", "options"),

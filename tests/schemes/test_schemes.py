@@ -51,24 +51,15 @@ def test_finer_meshes_come_closer_together_for_regularised_friction_but_not_to_f
     assert error("regularised", 160, exact) > 5.0 * error("central-differences", 160, exact)
 
 
-@pytest.mark.parametrize("name", STICK)
-def test_no_scheme_makes_energy_where_slip_is_smooth(name: str) -> None:
-    study = schemes(SMOOTH, 4.0, name, [100])
-    drift = float(study.table.energy_drift.iloc[0])
-    assert abs(drift) < (0.2 if SCHEMES[name].order == 1.0 else 1e-2)
-    if name in ("backward-euler", "theta"):
-        assert drift < -1e-3  # they damp
-
-
 @pytest.mark.parametrize(("inside", "degree"), [(2, 1), (4, 2), (6, 3)])
 def test_differences_sum_by_parts_and_are_exact_for_polynomials(inside: int, degree: int) -> None:
-    slope, corner = difference(inside, 30)
+    slope, norm = difference(inside, 30)
     x = np.arange(31.0)
     for power in range(degree + 1):
         assert slope @ x**power == pytest.approx(power * x ** max(power - 1, 0), rel=1e-9, abs=1e-9)
     weights, ends = np.ones(31), np.array(NORMS[inside])
     weights[: len(ends)], weights[-len(ends) :] = ends, ends[::-1]
-    assert weights[0] == corner
+    assert norm.tolist() == weights.tolist()
     both = np.diag(weights) @ slope.todense()
     assert np.abs(both + both.T - np.diag(np.eye(31)[-1] - np.eye(31)[0])).max() < 1e-12
 
@@ -86,13 +77,6 @@ def test_characteristics_have_the_rate_of_the_exact_solution_after_a_shock() -> 
 def test_the_search_of_the_contact_decides_which_rule_characteristics_follow(search: str, rule: str) -> None:
     study = schemes(LOOP, None, "characteristics", [100], search=search)
     assert study.verdicts == {"characteristics": rule}
-    assert study.table.slip_error.iloc[0] == pytest.approx(study.errors(study.series[0])[study.groups[0]], rel=1e-12, abs=0.0)
-
-
-def test_one_solution_of_all_rules_is_called_unique() -> None:
-    study = schemes(SMOOTH, 1.0, ["hht", "sbp4"], [20, 40])
-    assert study.verdicts == {"hht": "unique", "sbp4": "unique"}
-    assert "all selection rules have the same solution" in repr(study)
 
 
 @pytest.mark.parametrize("search", SEARCHES)
@@ -224,11 +208,3 @@ def test_finite_elements_have_the_effective_impedance_of_the_closed_form(name: s
     assert isinstance(motion, Elements)
     kappa = 1.0 / float(motion.reply[0]) / SLAB.impedance
     assert kappa == pytest.approx(np.sqrt(1.0 + 1.0 / (12.0 * theta**2 * courant**2)), rel=1e-9, abs=0.0)
-
-
-def test_ringing_schemes_are_near_a_rule_without_converging_to_it() -> None:
-    study = schemes(LOOP, None, ["central-differences", "sbp4"], [50, 100, 200], search="continue")
-    assert study.verdicts == {"central-differences": "near perfect-delay, without converging to it", "sbp4": "perfect-delay"}
-    limit = study.limit("sbp4")
-    assert limit is not None
-    assert limit.rules == ("perfect-delay",)

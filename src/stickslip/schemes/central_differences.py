@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from stickslip.schemes.contract import Answer, Contact, Floats, Grid, Meeting, Sample, energy_of
+from stickslip.schemes.contract import Contact, Energies, Floats, Grid, Meeting, Sample, strain_energy
 
 
 class CentralDifferences:
@@ -41,15 +41,21 @@ class MassRedistribution:
 
 
 class LeapFrog:
-    """A slab with lumped masses; `rate` holds the velocities half a step after the displacements."""
+    """A slab with lumped masses; `rate` holds the velocities half a step after the displacements.
+
+    The energy (v M v + u K u')/2 at a half step, with the displacements u before and u' after it, changes by the works of friction
+    and driver on the mean of the velocities around a step, and by nothing else. A sample has the mean of the energies around it.
+    """
 
     def __init__(self, grid: Grid) -> None:
-        self.grid, self.step, self.work = grid, 0, 0.0
+        self.grid, self.step = grid, 0
+        self.driver, self.friction = 0.0, 0.0
         self.displacement: Floats = np.zeros(grid.cells + 1)
         self.rate: Floats = grid.start_rates
         self.contact_rate = 0.0
         self.mass = np.full(grid.cells + 1, grid.density * grid.dx)
         self.mass[[0, -1]] *= 0.5
+        self.energies = Energies(0.5 * float(self.mass @ self.rate**2), 0.0, 0.0, 0.0)
 
     def _forces(self) -> Floats:
         """Return the elastic force on each node, Pa; displacements count from the start."""
@@ -89,33 +95,46 @@ class LeapFrog:
         meeting = Meeting(held + (share - 1.0) * inertia * before[0], share * inertia, grid.slip + self.displacement[0])
         rate, traction = contact.meet(meeting, self.contact_rate)
         sticks = rate == 0.0
+        traction = held if sticks else traction
         self.rate[0] = 0.0 if sticks else share * rate - (share - 1.0) * before[0]
         self.contact_rate = rate
-        middle = self.rate.copy() if start else 0.5 * (before + self.rate)
-        self.work += grid.dt * (0.5 if start else 1.0) * push * float(middle[-1])
-        energy = energy_of(grid, self.displacement, middle)
-        shown = Answer(rate, held if sticks else traction)
-        return Sample(self.step * grid.dt, float(self.displacement[0]), *shown, energy, self.work)
+        self.driver += step * push * 0.5 * float(before[-1] + self.rate[-1])
+        self.friction += step * (traction - grid.stress) * 0.5 * float(before[0] + self.rate[0])
+        earlier = self.energies
+        self._count(self.displacement, self.displacement + grid.dt * self.rate)
+        shown = earlier if start else Energies(*(0.5 * (a + b) for a, b in zip(earlier, self.energies, strict=True)))
+        return Sample(self.step * grid.dt, float(self.displacement[0]), rate, traction, shown)
+
+    def _count(self, before: Floats, after: Floats) -> None:
+        """Take over the energies at a half step, with the displacements (m) before and after it."""
+        stored = 0.5 * float(self.mass @ self.rate**2) + strain_energy(self.grid, before, after)
+        middle = 0.5 * (before + after)
+        own = Energies(stored, self.driver, self.friction, 0.0)
+        self.energies = own.beside(self.grid.stress, float(middle[0]), float(middle[-1]))
 
 
 class MasslessContact(LeapFrog):
-    """A slab whose contact node has no mass."""
+    """A slab whose contact node has no mass. A sample has the energies of half a step before, the last that are known."""
 
     def __init__(self, grid: Grid) -> None:
         super().__init__(grid)
         self.mass[1] += self.mass[0]
         self.mass[0] = 0.0
+        self.energies = Energies(0.5 * float(self.mass @ self.rate**2), 0.0, 0.0, 0.0)
+        self.before: Floats = self.displacement.copy()
+        self.excess = 0.0
 
     def first(self, contact: Contact) -> Sample:
         """Return the state at t = 0, at which nothing has moved."""
-        grid = self.grid
+        grid, last = self.grid, float(self.rate[-1])
         push = self._kick_interior(self._forces(), 0.5 * grid.dt)
-        self.work += 0.5 * grid.dt * push * float(self.rate[-1])
-        return Sample(0.0, 0.0, 0.0, grid.stress, energy_of(grid, self.displacement, self.rate), self.work)
+        self.driver += 0.5 * grid.dt * push * 0.5 * (last + float(self.rate[-1]))
+        return Sample(0.0, 0.0, 0.0, grid.stress, self.energies)
 
     def advance(self, contact: Contact) -> Sample:
         """Move all nodes but the contact's by one step, put the contact in balance with them, and kick."""
-        grid, node = self.grid, float(self.displacement[0])
+        grid, node, last = self.grid, float(self.displacement[0]), float(self.rate[-1])
+        earlier, self.before = float(self.before[0]), self.displacement.copy()
         self.displacement[1:] += grid.dt * self.rate[1:]
         self.step += 1
         stiffness = grid.shear_modulus / grid.dx
@@ -123,10 +142,9 @@ class MasslessContact(LeapFrog):
         meeting = Meeting(load, stiffness * grid.dt, grid.slip + node, grid.dt)
         self.contact_rate, traction = contact.meet(meeting, self.contact_rate)
         self.displacement[0] = node + grid.dt * self.contact_rate
-        before = self.rate.copy()
+        self.friction += 0.5 * self.excess * (float(self.displacement[0]) - earlier)
+        self.excess = traction - grid.stress
+        self._count(self.before, self.displacement)
         push = self._kick_interior(self._forces(), grid.dt)
-        middle = 0.5 * (before + self.rate)
-        middle[0] = self.contact_rate
-        self.work += grid.dt * push * float(middle[-1])
-        energy = energy_of(grid, self.displacement, middle)
-        return Sample(self.step * grid.dt, float(self.displacement[0]), self.contact_rate, traction, energy, self.work)
+        self.driver += grid.dt * push * 0.5 * (last + float(self.rate[-1]))
+        return Sample(self.step * grid.dt, float(self.displacement[0]), self.contact_rate, traction, self.energies)

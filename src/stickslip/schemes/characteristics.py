@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from stickslip.schemes.contract import Contact, Floats, Grid, Meeting, Sample
+from stickslip.schemes.contract import Contact, Energies, Floats, Grid, Meeting, Sample
 
 
 class Characteristics:
@@ -24,7 +24,8 @@ class Waves:
         self.grid, self.step = grid, 0
         self.to_contact: Floats = grid.impedance * grid.start_rates
         self.to_driver: Floats = self.to_contact.copy()
-        self.slip, self.rate, self.work = 0.0, 0.0, 0.0
+        self.slip, self.rate, self.excess, self.driven = 0.0, 0.0, 0.0, 0.0
+        self.driver, self.friction = 0.0, 0.0
 
     def first(self, contact: Contact) -> Sample:
         """Return the state just after t = 0."""
@@ -33,7 +34,7 @@ class Waves:
     def advance(self, contact: Contact) -> Sample:
         """Move each wave by one cell, and meet the driver and the contact."""
         grid, self.step = self.grid, self.step + 1
-        power = self._driver_power()
+        rate_before, power_before = self._driver()
         self.to_contact = np.append(self.to_contact[1:], 0.0)
         self.to_driver = np.append(0.0, self.to_driver[:-1])
         wave, Z = float(self.to_driver[-1]), grid.impedance
@@ -42,20 +43,27 @@ class Waves:
         else:
             rate = (wave + grid.push(self.step * grid.dt)) / (Z + grid.driver_impedance)
             self.to_contact[-1] = 2.0 * Z * rate - wave
-        self.work += 0.5 * grid.dt * (power + self._driver_power())
+        rate_after, power_after = self._driver()
+        self.driven += 0.5 * grid.dt * (rate_before + rate_after)
+        self.driver += 0.5 * grid.dt * (power_before + power_after)
         return self._meet(contact, grid.dt)
 
-    def _driver_power(self) -> float:
+    def _driver(self) -> tuple[float, float]:
+        """Return the rate of the driver (m/s), and its power beyond that of the uniform stress, W/m^2."""
         incoming, outgoing = float(self.to_contact[-1]), float(self.to_driver[-1])
-        return (incoming + outgoing) * (incoming - outgoing) / (4.0 * self.grid.impedance)
+        rate = (incoming + outgoing) / (2.0 * self.grid.impedance)
+        return rate, 0.5 * (incoming - outgoing) * rate
 
     def _meet(self, contact: Contact, step: float) -> Sample:
         grid = self.grid
         load, half = grid.stress + float(self.to_contact[0]), 0.5 * step
         slip = grid.slip + self.slip + half * self.rate
         rate, traction = contact.meet(Meeting(load, grid.impedance, slip, half), self.rate)
+        excess = traction - grid.stress
         self.slip += half * (self.rate + rate)
-        self.rate = rate
-        self.to_driver[0] = grid.impedance * rate - (traction - grid.stress)
+        self.friction += half * (self.excess * self.rate + excess * rate)
+        self.rate, self.excess = rate, excess
+        self.to_driver[0] = grid.impedance * rate - excess
         density = (self.to_contact**2 + self.to_driver**2) / (4.0 * grid.shear_modulus)
-        return Sample(self.step * grid.dt, self.slip, rate, traction, float(np.trapezoid(density, dx=grid.dx)), self.work)
+        own = Energies(float(np.trapezoid(density, dx=grid.dx)), self.driver, self.friction, 0.0)
+        return Sample(self.step * grid.dt, self.slip, rate, traction, own.beside(grid.stress, self.slip, self.driven))

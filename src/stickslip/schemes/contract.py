@@ -110,6 +110,31 @@ class Contact(Protocol):
         """Solve the contact equation of a step; `before` is the slip rate (m/s) of the step before."""
 
 
+class Energies(NamedTuple):
+    """The balance of a scheme's own energy since t = 0, J/m^2: stored + friction + damped - driver is constant.
+
+    Each scheme counts in the way in which the balance of its discrete equations closes to rounding: with velocities of half steps,
+    the norm of its differences, or means of two tractions. All of these tend to the energies of the exact slab.
+    """
+
+    stored: float
+    """Kinetic energy, and strain energy without that of the uniform stress at t = 0."""
+    driver: float
+    """Work of the driver."""
+    friction: float
+    """Work against friction, that is heat."""
+    damped: float
+    """Energy that the scheme itself dissipates, by a formula of its own; negative if it makes energy."""
+
+    def beside(self, stress: float, slip: float, driven: float) -> Energies:
+        """Return the whole energies, if these are of stresses beyond the uniform one (Pa) of the start.
+
+        `slip` and `driven` are the displacements (m) of the contact and of the driver.
+        """
+        stored, driver, friction, damped = self
+        return Energies(stored + stress * (driven - slip), driver + stress * driven, friction + stress * slip, damped)
+
+
 class Sample(NamedTuple):
     """What a scheme shows at the end of a step."""
 
@@ -121,10 +146,8 @@ class Sample(NamedTuple):
     """Slip rate, m/s."""
     traction: float
     """Traction at the contact, Pa."""
-    energy: float
-    """Kinetic energy and strain energy of displacements from the start, J/m^2."""
-    driver_work: float
-    """Work of the driver on these displacements, J/m^2; the uniform stress of the start is left out."""
+    energies: Energies | None = None
+    """The balance of energy; None if the scheme does not count it."""
 
 
 class Motion(Protocol):
@@ -153,8 +176,11 @@ class Scheme(Protocol):
         """Return the slab at rest against its contact, at t = 0."""
 
 
-def energy_of(grid: Grid, displacement: Floats, rate: Floats) -> float:
-    """Return the energy (J/m^2) of displacements from the start and of velocities at the nodes, by the trapezoidal rule."""
-    kinetic = 0.5 * grid.density * grid.dx * (float(rate @ rate) - 0.5 * (rate[0] ** 2 + rate[-1] ** 2))
+def strain_energy(grid: Grid, displacement: Floats, later: Floats | None = None) -> float:
+    """Return the strain energy (J/m^2) of displacements from the start on linear elements, without that of the uniform stress.
+
+    With displacements of the step after, the result changes by the work of the elastic forces at the step between two such results.
+    """
     strain = np.diff(displacement)
-    return float(kinetic + 0.5 * grid.shear_modulus / grid.dx * (strain @ strain))
+    other = strain if later is None else np.diff(later)
+    return 0.5 * grid.shear_modulus / grid.dx * float(strain @ other)

@@ -8,17 +8,19 @@ import numpy as np
 from scipy.sparse import csc_matrix, diags_array
 from scipy.sparse.linalg import splu
 
-from stickslip.schemes.contract import Contact, Floats, Grid, Meeting, Sample, energy_of
+from stickslip.schemes.contract import Contact, Energies, Floats, Grid, Meeting, Sample, strain_energy
 
 
 class Elements(ABC):
     """A slab of linear elements with consistent mass; `force` is what accelerated the nodes at the last step, Pa.
 
     A step is linear but for the friction: the velocities at its end are `free` minus `reply` times the traction of the contact.
+    Energy is counted with the matrices of the elements, and with the forces at the ends that the scheme takes in a step.
     """
 
     def __init__(self, grid: Grid) -> None:
-        self.grid, self.step, self.work = grid, 0, 0.0
+        self.grid, self.step = grid, 0
+        self.driver, self.friction, self.damped = 0.0, 0.0, 0.0
         count = grid.cells + 1
         ends = np.ones(count)
         ends[[0, -1]] = 0.5
@@ -31,7 +33,7 @@ class Elements(ABC):
         self.drag = diags_array(drag)
         self.displacement: Floats = np.zeros(count)
         self.rate: Floats = grid.start_rates
-        self.contact_rate, self.traction = 0.0, grid.stress
+        self.contact_rate, self.traction, self.excess_before = 0.0, grid.stress, 0.0
 
     def solver(self, matrix: csc_matrix, weight: float) -> None:
         """Factorise the matrix of a step for the velocities at its end, in which the new traction has a weight."""
@@ -54,8 +56,13 @@ class Elements(ABC):
     def imbalance(self) -> Floats:
         """Return the force on each node at the last step, Pa."""
         force: Floats = self.push(self.step) - self.stiffness @ self.displacement - self.drag @ self.rate
-        force[0] -= self.traction - self.grid.stress
+        force[0] -= self.excess
         return force
+
+    @property
+    def excess(self) -> float:
+        """Return the traction of the contact at the last step minus the uniform stress at t = 0, Pa."""
+        return self.traction - self.grid.stress
 
     def first(self, contact: Contact) -> Sample:
         """Return the state just after t = 0: the traction of sudden slip, before any node has moved."""
@@ -81,7 +88,7 @@ class Elements(ABC):
 
     def advance(self, contact: Contact) -> Sample:
         """Move by one step of time."""
-        grid, power = self.grid, self._driver_power()
+        grid = self.grid
         right, per_rate = self.predict()
         right[0] += self.weight * grid.stress
         if grid.is_rigid:
@@ -89,24 +96,26 @@ class Elements(ABC):
         free = self.system.solve(right)
         impedance = 1.0 / float(self.reply[0])
         meeting = Meeting(impedance * float(free[0]), impedance, grid.slip + self.base(), per_rate)
+        self.excess_before = self.excess
         self.contact_rate, self.traction = contact.meet(meeting, self.contact_rate)
         rate = free - self.reply * self.traction
         rate[0] = self.contact_rate
         self.step += 1
         self.finish(rate)
-        self.work += 0.5 * grid.dt * (power + self._driver_power())
         return self._sample()
 
     weight = 1.0
     """Weight of the new traction in a step."""
 
-    def _driver_power(self) -> float:
-        rate = float(self.rate[-1])
-        if self.grid.is_rigid:
-            return rate * float((self.stiffness @ self.displacement)[-1])
-        return rate * (self.grid.push(self.step * self.grid.dt) - self.grid.driver_impedance * rate)
+    def kinetic_energy(self, rate: Floats) -> float:
+        """Return the kinetic energy of velocities at the nodes, J/m^2."""
+        return 0.5 * float(rate @ (self.mass @ rate))
+
+    def stored(self) -> float:
+        """Return the energy that the balance of the scheme counts, without that of the uniform stress, J/m^2."""
+        return self.kinetic_energy(self.rate) + strain_energy(self.grid, self.displacement)
 
     def _sample(self) -> Sample:
-        energy = energy_of(self.grid, self.displacement, self.rate)
-        slip = float(self.displacement[0])
-        return Sample(self.step * self.grid.dt, slip, self.contact_rate, self.traction, energy, self.work)
+        slip, driven = float(self.displacement[0]), float(self.displacement[-1])
+        own = Energies(self.stored(), self.driver, self.friction, self.damped)
+        return Sample(self.step * self.grid.dt, slip, self.contact_rate, self.traction, own.beside(self.grid.stress, slip, driven))

@@ -11,7 +11,7 @@ import math
 import numpy as np
 from scipy.sparse.linalg import spsolve
 
-from stickslip.schemes.contract import Floats, Grid
+from stickslip.schemes.contract import Floats, Grid, strain_energy
 from stickslip.schemes.finite_elements import Elements
 
 
@@ -33,13 +33,18 @@ class Newmark:
 
 
 class Accelerated(Elements):
-    """A slab whose state includes the accelerations of the nodes."""
+    """A slab whose state includes the accelerations of the nodes.
+
+    With b = alpha (1/2 - alpha), changes du and da in a step, and the change du' in the step before, the balance stores
+    v M v/2 + u K u/2 + alpha^2 dt^2 a M a/8 + b du K du/2 and dissipates b (du - du') K (du - du')/2 + alpha^3 dt^2 da M da/4. A
+    force from outside does the work du (mean of its ends + b (its change - its change in the step before)).
+    """
 
     def __init__(self, grid: Grid, alpha: float) -> None:
         super().__init__(grid)
         self.alpha, self.weight = alpha, 1.0 - alpha
         self.gamma, self.beta = 0.5 + alpha, 0.25 * (1.0 + alpha) ** 2
-        self.per_rate = self.beta * grid.dt / self.gamma
+        self.per_rate, self.mixed = self.beta * grid.dt / self.gamma, alpha * (0.5 - alpha)
         matrix = self.mass / (self.gamma * grid.dt) + self.weight * (self.drag + self.per_rate * self.stiffness)
         self.solver(matrix, self.weight)
 
@@ -50,6 +55,9 @@ class Accelerated(Elements):
             mass[-1, :] = 0.0
             mass[-1, -1], force[-1] = 1.0, 0.0
         self.acceleration: Floats = np.asarray(spsolve(mass.tocsc(), force))
+        self.moved: Floats = np.zeros_like(force)
+        self.push_before = float((self.mass @ self.acceleration)[-1])  # the driver's traction; nothing has moved
+        self.push_change = self.excess_change = 0.0
 
     def predict(self) -> tuple[Floats, float]:
         """Return the right-hand side without the new traction, and the increase of a displacement with the new velocity, s."""
@@ -67,6 +75,26 @@ class Accelerated(Elements):
 
     def finish(self, rate: Floats) -> None:
         """Take over the velocities at the end of the step."""
+        alpha, before, moved_before, old = self.alpha, self.displacement, self.moved, self.acceleration
+        elastic_before = float((self.stiffness @ before)[-1])
         self.displacement = self.still + self.per_rate * rate
         self.acceleration = (rate - self.rate_guess) / (self.gamma * self.grid.dt)
-        self.rate = rate
+        self.rate, self.moved = rate, self.displacement - before
+        force = float((self.mass @ self.acceleration)[-1]) - alpha * (self.push_before - elastic_before)
+        push = force / (1.0 - alpha) + float((self.stiffness @ self.displacement)[-1])
+        self.driver += self._work(-1, (self.push_before, push), self.push_change)
+        self.friction += self._work(0, (self.excess_before, self.excess), self.excess_change)
+        self.push_change, self.excess_change = push - self.push_before, self.excess - self.excess_before
+        self.push_before = push
+        strain = strain_energy(self.grid, self.moved - moved_before)
+        self.damped += self.mixed * strain + 0.5 * alpha**3 * self.grid.dt**2 * self.kinetic_energy(self.acceleration - old)
+
+    def _work(self, node: int, ends: tuple[float, float], change: float) -> float:
+        """Return the work (J/m^2) of a force on a node with values at both ends of the step (Pa), and its change before."""
+        first, last = ends
+        return float(self.moved[node]) * (0.5 * (first + last) + self.mixed * (last - first - change))
+
+    def stored(self) -> float:
+        """Return the energy that the balance of the scheme counts, without that of the uniform stress, J/m^2."""
+        inertia = 0.25 * self.alpha**2 * self.grid.dt**2 * self.kinetic_energy(self.acceleration)
+        return super().stored() + inertia + self.mixed * strain_energy(self.grid, self.moved)

@@ -97,7 +97,9 @@ def run_scheme(
     samples: list[Sample] = [motion.first(contact)]
     for _ in range(steps):
         samples.append(motion.advance(contact))
-        if not math.isfinite(samples[-1].energy):
+        if not math.isfinite(samples[-1].slip + samples[-1].rate + samples[-1].traction):
             raise InputError(f"schemes: {scheme.name} with {cells} cells: not finite after {len(samples) - 1} steps")
-    time, slip, rate, traction, energy, work = np.array(samples, float).T
-    return Series(time, slip, rate, traction, scheme.name, cells, energy, work)
+    time, slip, rate, traction = np.array([sample[:4] for sample in samples], float).T
+    counted = [sample.energies for sample in samples if sample.energies is not None]
+    energies = np.array(counted, float) if len(counted) == len(samples) else None
+    return Series(time, slip, rate, traction, scheme.name, cells, energies)

@@ -1,6 +1,8 @@
 """Differences that sum by parts, with the friction imposed weakly by penalties (SAT), and Runge-Kutta's fourth-order steps.
 
-Energy is bounded as in the exact slab: the penalty only takes energy away. Sources: B. Strand 1994, J. Comput. Phys. 110, 47; J.E.
+Energy is bounded as in the exact slab: a penalty only takes energy away, (Z dv - ds)^2/(4Z) per time for the differences dv and ds
+of velocity and stress between node and contact. Runge-Kutta's steps change a quadratic energy by dt^2/2 times the sum of
+(b_i a_ij + b_j a_ji - b_i b_j) k_i k_j over the slopes k of the stages. Sources: B. Strand 1994, J. Comput. Phys. 110, 47; J.E.
 Kozdon, E.M. Dunham, J. Nordström 2012, J. Sci. Comput. 50, 341.
 """
 
@@ -11,7 +13,7 @@ from functools import cache
 import numpy as np
 from scipy.sparse import csr_array, lil_array
 
-from stickslip.schemes.contract import Contact, Floats, Grid, Meeting, Sample
+from stickslip.schemes.contract import Contact, Energies, Floats, Grid, Meeting, Sample
 
 NORMS = {
     2: (1 / 2,),
@@ -23,6 +25,10 @@ INSIDE = {2: (1 / 2,), 4: (2 / 3, -1 / 12), 6: (3 / 4, -3 / 20, 1 / 60)}
 """Weights of the nodes to the right in a first difference; those to the left have the other sign."""
 STAGES = ((0.5, 1 / 6), (0.5, 1 / 3), (1.0, 1 / 3), (0.0, 1 / 6))
 """Of each stage: the share of the step at which the next stage is taken, and the weight."""
+SHARES = np.array([weight for _, weight in STAGES])
+PRODUCTS = SHARES[:, None] * np.diag([share for share, _ in STAGES[:-1]], -1)
+DEFECT = PRODUCTS + PRODUCTS.T - np.outer(SHARES, SHARES)
+"""Weights with which a Runge-Kutta step changes an energy: products of the slopes of two stages."""
 
 
 class SummationByParts:
@@ -69,8 +75,8 @@ def closure(inside: int) -> Floats:
 
 
 @cache
-def difference(inside: int, cells: int) -> tuple[csr_array, float]:
-    """Return the first difference on a grid of a number of cells, for a cell of length 1, and the weight of a boundary node."""
+def difference(inside: int, cells: int) -> tuple[csr_array, Floats]:
+    """Return the first difference on a grid of a number of cells, for a cell of length 1, and the weights of the nodes."""
     count, block, arms = cells + 1, closure(inside), INSIDE[inside]
     size = len(block)
     Q = lil_array((count, count))
@@ -82,17 +88,23 @@ def difference(inside: int, cells: int) -> tuple[csr_array, float]:
     Q[-size:, -size:] = -block[::-1, ::-1]
     weights = np.ones(count)
     weights[:size], weights[-size:] = NORMS[inside], NORMS[inside][::-1]
-    return csr_array(Q.multiply(1.0 / weights[:, None])), float(weights[0])
+    return csr_array(Q.multiply(1.0 / weights[:, None])), weights
 
 
 class Weak:
-    """Velocity and stress (minus that of the start) at the nodes, with the slip of the contact."""
+    """Velocity and stress (minus that of the start) at the nodes.
+
+    Behind them are the slip of the contact, the displacement of the driver, the work of the driver, the work of friction, and what
+    the penalties dissipate; works are of stresses minus that of the start.
+    """
 
     def __init__(self, grid: Grid, inside: int) -> None:
-        self.grid, self.step, self.work = grid, 0, 0.0
-        self.slope, corner = difference(inside, max(grid.cells, 2 * len(NORMS[inside])))
-        self.penalty = 1.0 / (corner * grid.dx)
-        self.state = np.concatenate([grid.start_rates, np.zeros(grid.cells + 1), [0.0, 0.0]])
+        self.grid, self.step, self.damped = grid, 0, 0.0
+        self.slope, weights = difference(inside, max(grid.cells, 2 * len(NORMS[inside])))
+        self.penalty = 1.0 / (float(weights[0]) * grid.dx)
+        self.nodes = 2 * (grid.cells + 1)
+        self.norm = grid.dx * np.concatenate([weights * grid.density, weights / grid.shear_modulus])
+        self.state = np.concatenate([grid.start_rates, np.zeros(grid.cells + 1), np.zeros(5)])
         self.contact_rate = 0.0
 
     def first(self, contact: Contact) -> Sample:
@@ -101,14 +113,15 @@ class Weak:
 
     def advance(self, contact: Contact) -> Sample:
         """Move by one step of time."""
-        start, change, stage = self.state, np.zeros_like(self.state), self.state
+        start, stage = self.state, self.state
         time = self.step * self.grid.dt
-        begun = time
-        for share, weight in STAGES:
-            slope = self._slope(stage, begun, contact)
-            change = change + weight * slope
-            stage, begun = start + share * self.grid.dt * slope, time + share * self.grid.dt
-        self.state = start + self.grid.dt * change
+        begun, slopes = time, []
+        for share, _ in STAGES:
+            slopes.append(self._slope(stage, begun, contact))
+            stage, begun = start + share * self.grid.dt * slopes[-1], time + share * self.grid.dt
+        self.state = start + self.grid.dt * sum(weight * slope for (_, weight), slope in zip(STAGES, slopes, strict=True))
+        waves = np.array(slopes)[:, : self.nodes]
+        self.damped += 0.5 * self.grid.dt**2 * float((DEFECT * ((waves * self.norm) @ waves.T)).sum())
         self.step += 1
         return self._sample(contact)
 
@@ -116,29 +129,31 @@ class Weak:
         """Return slip rate and traction of the contact."""
         grid = self.grid
         load = grid.stress + grid.impedance * float(state[0]) + float(state[grid.cells + 1])
-        return contact.meet(Meeting(load, grid.impedance, grid.slip + float(state[-2])), self.contact_rate)
+        return contact.meet(Meeting(load, grid.impedance, grid.slip + float(state[self.nodes])), self.contact_rate)
 
     def _slope(self, state: Floats, time: float, contact: Contact) -> Floats:
-        """Return the rate of change of velocities, stresses, slip and the work of the driver."""
+        """Return the rate of change of the state."""
         grid, nodes = self.grid, self.grid.cells + 1
         Z, rho, G = grid.impedance, grid.density, grid.shear_modulus
-        rate, stress = state[:nodes], state[nodes:-2]
+        rate, stress = state[:nodes], state[nodes : self.nodes]
         accelerations = self.slope @ stress / (rho * grid.dx)
         stressing = G * (self.slope @ rate) / grid.dx
         slip_rate, traction = self._meet(state, contact)
-        miss = Z * rate[0] - stress[0] - (Z * slip_rate - (traction - grid.stress))
-        accelerations[0] -= 0.5 * self.penalty * miss / rho
-        stressing[0] += 0.5 * self.penalty * miss * G / Z
+        at_contact = Z * rate[0] - stress[0] - (Z * slip_rate - (traction - grid.stress))
+        accelerations[0] -= 0.5 * self.penalty * at_contact / rho
+        stressing[0] += 0.5 * self.penalty * at_contact * G / Z
         wave = Z * float(rate[-1]) - float(stress[-1])
         driven = grid.pull_rate if grid.is_rigid else (wave + grid.push(time)) / (Z + grid.driver_impedance)
-        miss = Z * rate[-1] + stress[-1] - (2.0 * Z * driven - wave)
-        accelerations[-1] -= 0.5 * self.penalty * miss / rho
-        stressing[-1] -= 0.5 * self.penalty * miss * G / Z
-        return np.concatenate([accelerations, stressing, [slip_rate, driven * (Z * driven - wave)]])
+        at_driver = Z * rate[-1] + stress[-1] - (2.0 * Z * driven - wave)
+        accelerations[-1] -= 0.5 * self.penalty * at_driver / rho
+        stressing[-1] -= 0.5 * self.penalty * at_driver * G / Z
+        works = [driven * (Z * driven - wave), slip_rate * (traction - grid.stress), (at_contact**2 + at_driver**2) / (4.0 * Z)]
+        return np.concatenate([accelerations, stressing, [slip_rate, driven, *works]])
 
     def _sample(self, contact: Contact) -> Sample:
-        grid, nodes = self.grid, self.grid.cells + 1
         self.contact_rate, traction = self._meet(self.state, contact)
-        density = 0.5 * grid.density * self.state[:nodes] ** 2 + 0.5 * self.state[nodes:-2] ** 2 / grid.shear_modulus
-        energy = float(np.trapezoid(density, dx=grid.dx))
-        return Sample(self.step * grid.dt, float(self.state[-2]), self.contact_rate, traction, energy, float(self.state[-1]))
+        waves = self.state[: self.nodes]
+        slip, driven, driver, friction, penalised = self.state[self.nodes :].tolist()
+        own = Energies(0.5 * float(self.norm @ waves**2), driver, friction, self.damped + penalised)
+        energies = own.beside(self.grid.stress, slip, driven)
+        return Sample(self.step * self.grid.dt, slip, self.contact_rate, traction, energies)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from stickslip.foundation.errors import InputError
-from stickslip.schemes.contract import Floats
+from stickslip.schemes.contract import Energies, Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,8 +28,8 @@ class Series:
         Name of the scheme or program.
     cells
         Number of cells in the thickness; 0 if unknown.
-    energy, driver_work
-        Energy of the displacements from the start, and the work of the driver on them, J/m^2; None if unknown.
+    energies
+        A row of `Energies` (J/m^2) for each time; None if they are unknown.
 
     Raises
     ------
@@ -43,8 +43,7 @@ class Series:
     traction: Floats
     name: str = "series"
     cells: int = 0
-    energy: Floats | None = None
-    driver_work: Floats | None = None
+    energies: Floats | None = None
 
     def __post_init__(self) -> None:
         if self.time.size < 3 or (np.diff(self.time) <= 0.0).any():
@@ -55,6 +54,11 @@ class Series:
                 raise InputError(f"{self.name}: {name} must have as many numbers as there are times")
             if not np.isfinite(values).all():
                 raise InputError(f"{self.name}: {name}: a number is not finite")
+
+    @property
+    def last_energies(self) -> Energies | None:
+        """The energies at the last time, J/m^2; None if they are unknown."""
+        return None if self.energies is None else Energies(*self.energies[-1].tolist())
 
     @property
     def step(self) -> float:

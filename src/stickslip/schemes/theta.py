@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from stickslip.schemes.contract import Floats, Grid
+from stickslip.schemes.contract import Floats, Grid, strain_energy
 from stickslip.schemes.finite_elements import Elements
 
 
@@ -26,7 +26,10 @@ class Theta:
 
 
 class Weighted(Elements):
-    """A slab that moves by the theta method."""
+    """A slab that moves by the theta method.
+
+    A step dissipates (theta - 1/2) (dv M dv + du K du), with the changes dv and du of the velocities and displacements.
+    """
 
     def __init__(self, grid: Grid, theta: float) -> None:
         super().__init__(grid)
@@ -48,5 +51,11 @@ class Weighted(Elements):
 
     def finish(self, rate: Floats) -> None:
         """Take over the velocities at the end of the step."""
-        self.displacement = self.still + self.theta * self.grid.dt * rate
+        theta, step, change, before = self.theta, self.grid.dt, rate - self.rate, self.displacement
+        self.displacement = self.still + theta * step * rate
+        moved = self.displacement - before
+        self.damped += (2.0 * theta - 1.0) * (self.kinetic_energy(change) + strain_energy(self.grid, moved))
+        self.friction += float(moved[0]) * (theta * self.excess + (1.0 - theta) * self.excess_before)
+        force = self.mass @ change / step + self.stiffness @ (before + theta * moved)
+        self.driver += float(moved[-1]) * float(force[-1])
         self.rate = rate

@@ -9,14 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.bodies import as_slab
+from stickslip.schemes.contract import Energies
 from stickslip.schemes.series import Series
 from stickslip.solution.solution import Solution
+from stickslip.studies.scheme_shocks import Shock, shadow, shocks_of
 from stickslip.trajectory.history import Floats
 from stickslip.trajectory.slip_events import default_event_rate
-
-CELLS_NEAR_SHOCK = 4.0
-"""Travel time, in cells, on either side of a shock in which the slip rate of a grid is not compared."""
 
 COLUMNS = {
     "scheme": ("", "name of the scheme, or of the program"),
@@ -32,11 +30,17 @@ COLUMNS = {
     "pulses": ("", "maxima of |v| separated by minima below half the lower one"),
     "arrest": ("s", "time from which on the contact stays at rest; NaN if it slips at the end"),
     "shocks": ("", "how many of the exact shocks the series makes"),
+    "own_shocks": ("", "shocks that the series makes and the exact solution does not"),
     "shock_delay": ("s", "delay of the largest shock; NaN if it is not made"),
     "shock_size": ("", "size of the largest shock, as a share of the exact size"),
-    "energy_drift": ("", "energy that has appeared (negative: that has been damped away), as a share of the friction heat"),
+    "stored": ("J/m^2", "change of kinetic and strain energy since t = 0, as the scheme counts it; NaN if it counts none"),
+    "driver_work": ("J/m^2", "work of the driver, likewise"),
+    "heat": ("J/m^2", "work against friction; of a series without energies, by the trapezoidal rule"),
+    "damped": ("J/m^2", "energy that the scheme itself dissipates; negative if it makes energy"),
+    "energy_drift": ("", "stored + heat + damped - driver_work, as a share of heat: what the balance of the scheme leaves open"),
+    "heat_error": ("", "heat minus the exact heat, as a share of that"),
     "oscillation": ("", "total variation of the slip rate beyond the exact one's, as a share of that"),
-    "rule": ("", "selection rules whose exact solution the series follows; none; or unique if all rules have the same"),
+    "rule": ("", "selection rule whose exact path the series follows; none; or cannot tell, if it could be any rule's"),
 }
 """Columns of the table, each with its unit and meaning."""
 
@@ -115,9 +119,7 @@ class Measured:
     @property
     def shadow(self) -> float:
         """Time on either side of a shock in which the slip rate is not compared, s."""
-        slab = as_slab(self.exact.problem.body, "schemes: a block has no grid")
-        cell = slab.thickness / slab.wave_speed / self.series.cells if self.series.cells else self.series.step
-        return CELLS_NEAR_SHOCK * max(cell, self.series.step)
+        return shadow(self.series, self.exact)
 
     @property
     def rate_error(self) -> float:
@@ -133,47 +135,38 @@ class Measured:
         own, exact = (float(np.abs(np.diff(rate)).sum()) for rate in (self.rate, self.exact_rate))
         return (own - exact) / exact if exact else math.nan
 
-    @property
-    def energy_drift(self) -> float:
-        """Energy that has appeared, by the balance of the scheme's own motion, as a share of the friction heat.
+    def energies(self) -> dict[str, float]:
+        """Return the columns of the balance of energy.
 
-        A negative share has been damped away. Where the series has no energies it is the work of friction minus the exact one, as a
-        share of the latter; both are sums over the samples.
+        A series without energies has its heat only. It is compared with the exact one by the same sum over the same samples.
         """
-        series, stress = self.series, self.exact.problem.load
-        heat = float(np.trapezoid(series.traction * series.rate, series.time))
-        if series.energy is None or series.driver_work is None:
-            done = float(np.trapezoid(self.exact.traction(self.time) * self.exact_rate, self.time))
-            own = float(np.trapezoid((series.traction * series.rate)[self._kept], self.time))
-            return (own - done) / done if done else math.nan
-        spent = float(np.trapezoid((series.traction - stress) * series.rate, series.time))
-        gained = float(series.energy[-1] - series.energy[0] - series.driver_work[-1]) + spent
-        return gained / heat if heat else math.nan
+        own, series = self.series.energies, self.series
+        if own is None:
+            heat = float(np.trapezoid((series.traction * series.rate)[self._kept], self.time))
+            exact = float(np.trapezoid(self.exact.traction(self.time) * self.exact_rate, self.time))
+            unknown = dict.fromkeys(("stored", "driver_work", "damped", "energy_drift"), math.nan)
+            return unknown | {"heat": heat, "heat_error": (heat - exact) / exact if exact else math.nan}
+        first, last = Energies(*own[0]), Energies(*own[self._kept][-1].tolist())
+        exact = float(self.exact.energy(self.time[-1:]).heat[0])
+        left = last.stored - float(first.stored) + last.friction + last.damped - last.driver
+        return {
+            "stored": last.stored - float(first.stored),
+            "driver_work": last.driver,
+            "heat": last.friction,
+            "damped": last.damped,
+            "energy_drift": left / last.friction if last.friction else math.nan,
+            "heat_error": (last.friction - exact) / exact if exact else math.nan,
+        }
 
-    def shocks(self) -> tuple[int, float, float]:
-        """Return how many exact shocks the series makes, and of the largest one the delay (s) and the size as a share of the exact.
-
-        A series makes a shock if it passes the middle of the two slip rates, in the right direction, no further away than twice the
-        `shadow`. The size is taken between the edges of the shadow.
-        """
-        made, delay, size, largest = 0, math.nan, math.nan, 0.0
-        for time, before, after in self.exact.shocks[["time", "rate_before", "rate_after"]].to_numpy(float):
-            near = np.abs(self.time - time) <= 2.0 * self.shadow
-            beyond = (self.rate > 0.5 * (before + after)) == (after > before)
-            turned = np.flatnonzero(beyond & np.append(time <= self.time[0], ~beyond[:-1]) & near)
-            made += bool(turned.size)
-            if abs(after - before) > largest:
-                largest = abs(after - before)
-                first = turned[np.argmin(np.abs(self.time[turned] - time))] if turned.size else -1
-                delay = float(self.time[first] - time) if turned.size else math.nan
-                sides = (time - self.shadow, time + self.shadow)
-                own = np.interp(sides, self.time, self.rate, left=0.0)
-                size = float((own[1] - own[0]) / (after - before))
-        return made, delay, size
+    @cached_property
+    def shocks(self) -> list[Shock]:
+        """The exact shocks beside those of the series, and then shocks of its own."""
+        return shocks_of(self.series, self.exact, self.until)
 
     def row(self) -> dict[str, Any]:
         """Return the columns of the table that a series has by itself and against this solution."""
-        made, delay, size = self.shocks()
+        exact = [shock for shock in self.shocks if not math.isnan(shock.exact_time)]
+        largest = max(exact, key=lambda shock: shock.jump, default=None)
         return {
             "slip_error": self.slip_error,
             "largest_error": float(np.abs(self.gap).max()),
@@ -182,9 +175,10 @@ class Measured:
             "peak_rate": float(np.abs(self.rate).max()),
             "pulses": pulses_in(self.rate, self.threshold),
             "arrest": arrest_in(self.time, self.rate, self.threshold),
-            "shocks": made,
-            "shock_delay": delay,
-            "shock_size": size,
-            "energy_drift": self.energy_drift,
+            "shocks": sum(not math.isnan(shock.time) for shock in exact),
+            "own_shocks": len(self.shocks) - len(exact),
+            "shock_delay": largest.delay if largest else math.nan,
+            "shock_size": largest.size if largest else math.nan,
+            **self.energies(),
             "oscillation": self.oscillation,
         }

@@ -10,14 +10,14 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import combinations, pairwise
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
 import pandas as pd
 
 import stickslip
+from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.netcdf_file import write
@@ -30,18 +30,18 @@ from stickslip.schemes.registry import scheme_of
 from stickslip.schemes.run import check_suitable, run_scheme
 from stickslip.schemes.series import Series
 from stickslip.solution.solution import Solution
-from stickslip.studies.run_distance import difference
+from stickslip.studies.rule_followed import NONE, UNTOLD, RulePaths
 from stickslip.studies.scheme_measures import COLUMNS, Measured
+from stickslip.studies.scheme_shocks import SHOCK_COLUMNS
 from stickslip.studies.study import Study, TextProgress, telling, uninterrupted
-from stickslip.studies.verdict import CLEARLY, FEWEST, Errors, Verdict, groups, judge
 
 if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario
 
 CELLS = (25, 50, 100, 200)
 """Meshes that are taken if none are given."""
-SAME = 1e-8
-"""Solutions of rules whose mean slip differs by less than this share of the final slip are the same."""
+FEWEST, FALLING, NEGLIGIBLE = 3, 0.75, 0.02
+"""On three meshes or more, a distance from a rule that stays above 2 % must fall below 3/4 of the coarsest mesh's."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -76,93 +76,96 @@ class Schemes(Study):
         return self.exact[self.problem.rule]
 
     @cached_property
-    def _apart(self) -> dict[tuple[str, str], float]:
-        found = {(rule, rule): 0.0 for rule in self.exact}
-        for a, b in combinations(self.exact, 2):
-            found[a, b] = found[b, a] = difference(self.exact[a], self.exact[b], self.until).mean
-        return found
+    def paths(self) -> RulePaths:
+        """The exact paths of all rules, with the distances between them."""
+        return RulePaths(self.exact, self.until)
 
     @cached_property
-    def groups(self) -> tuple[tuple[str, ...], ...]:
-        """The rules in groups that have the same exact solution."""
-        floor = SAME * max(abs(float(self.own.slip(self.until)) - self.problem.initial_slip), 1e-300)
-        return tuple(groups(tuple(self.exact), self._apart, floor))
-
-    @cached_property
-    def distance(self) -> dict[tuple[str, ...], float]:
-        """The mean slip difference (m) from the solution of each group of rules to the nearest other one; inf if there is none."""
-        return {a: min([math.inf, *(self._apart[a[0], b[0]] for b in self.groups if b != a)]) for a in self.groups}
-
-    def errors(self, series: Series) -> dict[tuple[str, ...], float]:
-        """Return the mean slip difference (m) of a series from the exact solution of each group of rules."""
-        return {group: Measured(series, self.exact[group[0]], self.until).slip_error for group in self.groups}
-
-    def rule_of(self, series: Series) -> str:
-        """Return the rules that a series follows: it is clearly nearer to their solution than that is to any other."""
-        if len(self.groups) == 1:
-            return "unique"
-        errors = self.errors(series)
-        best = min(errors, key=lambda group: errors[group])
-        return ", ".join(best) if errors[best] < CLEARLY * self.distance[best] else "none"
+    def measured(self) -> tuple[Measured, ...]:
+        """Each series beside the exact solution under the problem's own rule."""
+        return tuple(Measured(one, self.own, self.until) for one in self.series)
 
     @cached_property
     def table(self) -> pd.DataFrame:
-        """The table with a row for each scheme and mesh; columns and units are in `stickslip.studies.scheme_measures.COLUMNS`."""
+        """The table with a row for each scheme and mesh; `columns` has their units and meanings."""
         rows = []
-        for one in self.series:
-            own = {"scheme": one.name, "cells": one.cells, "step": one.step, "rule": self.rule_of(one)}
-            rows.append(own | Measured(one, self.own, self.until).row())
-        table = pd.DataFrame(rows, columns=list(COLUMNS))
+        for one in self.measured:
+            own = {"scheme": one.series.name, "cells": one.series.cells, "step": one.series.step}
+            misses = {f"miss_{rule}": miss for rule, miss in self.paths.misses(one.series).items()}
+            rows.append(own | one.row() | misses | {"rule": self.paths.followed(one.series)})
+        table = pd.DataFrame(rows, columns=list(self.columns))
         for name in ("slip", "rate"):
             table[f"{name}_order"] = _orders(table, f"{name}_error")
         return table
 
+    @property
+    def columns(self) -> dict[str, tuple[str, str]]:
+        """The columns of the table, each with its unit and meaning."""
+        meaning = "distance from the exact path of {}, as a share of the distance from that to the next rule's path"
+        return COLUMNS | {f"miss_{rule}": ("", meaning.format(rule)) for rule in self.exact}
+
+    @cached_property
+    def shocks(self) -> pd.DataFrame:
+        """Each exact shock beside that of each series; columns and units are in `stickslip.studies.scheme_shocks.SHOCK_COLUMNS`."""
+        pairs = [(one.series, shock) for one in self.measured for shock in one.shocks]
+        rows = [{"scheme": series.name, "cells": series.cells, **shock._asdict()} for series, shock in pairs]
+        return pd.DataFrame(rows, columns=list(SHOCK_COLUMNS))
+
     @cached_property
     def verdicts(self) -> dict[str, str]:
-        """What each scheme follows on all meshes: a rule, with or without convergence to it; "none"; "unique"; or it depends."""
+        """What each scheme follows on all meshes: a rule, maybe from some mesh on; none; cannot tell; or it depends on the mesh."""
         return {str(scheme): self._verdict(str(scheme)) for scheme in self.table.scheme.unique()}
 
     def _verdict(self, scheme: str) -> str:
-        found = list(dict.fromkeys(self.table.rule[self.table.scheme == scheme]))
-        if len(found) > 1:
-            return f"depends on the mesh ({'; '.join(found)})"
-        limit = self.limit(scheme)
-        converges = found[0] in ("unique", "none") or limit is None or limit.rules
-        return found[0] if converges else f"near {found[0]}, without converging to it"
-
-    def limit(self, scheme: str) -> Verdict | None:
-        """Return the rule to which the runs of a scheme converge, as `regularise` decides it; None for fewer than three meshes."""
-        runs = sorted((one for one in self.series if one.name == scheme), key=lambda one: -one.step)
-        if len(runs) < FEWEST:
-            return None
-        errors = [self.errors(one) for one in runs]
-        time = np.linspace(0.0, self.until, 2001)
-        slips = [np.interp(time, one.time, one.slip) for one in runs]
-        changes = np.array([np.nan, *(float(np.abs(b - a).mean()) for a, b in pairwise(slips))])
-        against = {group: np.array([error[group] for error in errors]) for group in self.groups}
-        return judge(Errors(np.array([one.step for one in runs]), against, changes, self.distance, 0.0))
+        rows = self.table[self.table.scheme == scheme].sort_values("step", ascending=False, kind="stable")
+        found = rows.rule.tolist()
+        last = found[-1]
+        if last in (NONE, UNTOLD):
+            return last if len(set(found)) == 1 else _depends(found)
+        misses = rows[f"miss_{last.split(' or ')[0]}"].tolist()
+        stays = misses[-1] > NEGLIGIBLE and misses[-1] > FALLING * misses[0]
+        if len(found) >= FEWEST and stays:
+            return f"{NONE}: near {last}, without coming closer to it on finer meshes"
+        first = next(k for k in range(len(found)) if set(found[k:]) == {last})
+        if set(found[:first]) - {NONE, UNTOLD}:
+            return _depends(found)
+        cells = int(rows.cells.iloc[first])
+        return f"{last}, from {cells} cells on" if first and cells else last
 
     def to_netcdf(self, path: str | Path) -> Path:
         """Write the table and what `plot` draws as netCDF, and return the path."""
         dataset = self.table.rename_axis("row").to_xarray()
-        for name, (unit, meaning) in COLUMNS.items():
+        shocks = self.shocks.add_prefix("shock_").rename_axis("shock").to_xarray().drop_vars(["shock"])
+        dataset = dataset.assign(shocks.data_vars)
+        for name, (unit, meaning) in SHOCK_COLUMNS.items():
+            dataset[f"shock_{name}"].attrs = {"long_name": meaning, "units": unit or "1"}
+        for name, (unit, meaning) in self.columns.items():
             dataset[name].attrs = {"long_name": meaning, "units": unit or "1"}
         drawn = self.to_dataset()
         return write(dataset.merge(drawn.drop_vars(set(dataset.variables) & set(drawn.variables))), Path(path))
 
+    def shocks_to_csv(self, path: str | Path) -> Path:
+        """Write the table of shocks as CSV, with the meaning of its columns in comment lines (#), and return its path."""
+        about = [f"{name}{f' ({unit})' if unit else ''}: {meaning}" for name, (unit, meaning) in SHOCK_COLUMNS.items()]
+        return write_table(Path(path), self.shocks, about)
+
     def _about(self) -> Iterator[str]:
         yield f"stickslip {stickslip.__version__}: numerical schemes beside the exact solution"
-        for name, (unit, meaning) in COLUMNS.items():
+        for name, (unit, meaning) in self.columns.items():
             yield f"{name}{f' ({unit})' if unit else ''}: {meaning}"
 
     def _lines(self) -> Iterator[str]:
         yield f"{len(self.series)} runs, compared up to {self.until:.6g} s"
         if self.interrupted:
             yield "interrupted: these are the runs that were finished"
-        if len(self.groups) == 1:
+        if len(self.paths.groups()) == 1:
             yield "all selection rules have the same solution here"
         else:
             yield from (f"{scheme} follows {rule}" for scheme, rule in self.verdicts.items())
+
+
+def _depends(found: list[str]) -> str:
+    return f"depends on the mesh ({'; '.join(dict.fromkeys(found))})"
 
 
 def _orders(table: pd.DataFrame, column: str) -> list[float]:

@@ -21,7 +21,7 @@ def benchmark(
     *,
     name: Annotated[str | None, option("Judge: the problem; by default it has the name of the file.")] = None,
     folder: Annotated[Path, typer.Option(help="Get: where the files go.")] = Path(),
-    out: Annotated[Path | None, option("Judge: save the table (.csv).", "--out", "-o")] = None,
+    out: Annotated[Path | None, option("Judge: save the table (.csv, shocks in NAME-shocks.csv; .nc: all).", "--out", "-o")] = None,
     figure: FigureFile = None,
     dpi: Dpi = None,
     size: Size = None,
@@ -52,7 +52,7 @@ def benchmark(
         announce(*write_benchmark(what, folder))
         return
     look = Look(dpi, size)
-    check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))
+    check_targets(Target("--out", out, (".csv", ".nc")), Target("--figure", figure))
     look.check(figure)
     _judge(Path(what), name, out, (figure, look))
 
@@ -65,7 +65,7 @@ def _list() -> None:
 
 
 def _judge(file: Path, name: str | None, out: Path | None, picture: tuple[Path | None, Look]) -> None:
-    from stickslip.cli.output.schemes import show_schemes
+    from stickslip.cli.output.schemes import show_schemes, tables_of
     from stickslip.run.progress_line import progress_line
     from stickslip.studies.benchmarks import benchmark_of, judge_benchmark
 
@@ -74,4 +74,4 @@ def _judge(file: Path, name: str | None, out: Path | None, picture: tuple[Path |
         study = judge_benchmark(file, asked.name, progress=tell)
     show_schemes(asked.scenario, study)
     figure, look = picture
-    announce(*write_files((out, study.to_csv), (figure, drawing(study.plot, look))))
+    announce(*write_files(*tables_of(study, out), (figure, drawing(study.plot, look))))

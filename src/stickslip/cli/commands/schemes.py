@@ -27,7 +27,7 @@ def schemes(
     ] = "stick-first",
     courant: Annotated[float | None, option("Courant number, in place of each scheme's own.")] = None,
     files: Annotated[list[Path] | None, option("Judge the series in a file instead; may be repeated.", "--series")] = None,
-    out: Annotated[Path | None, option("Save the table (.csv; .nc with the curves).", "--out", "-o")] = None,
+    out: Annotated[Path | None, option("Save the table (.csv, shocks in NAME-shocks.csv; .nc: all).", "--out", "-o")] = None,
     figure: FigureFile = None,
     dpi: Dpi = None,
     size: Size = None,
@@ -50,17 +50,16 @@ def schemes(
 
     Exit code: 0 done, 2 unusable input, 130 interrupted.
     """
-    from stickslip.cli.output.schemes import show_schemes
+    from stickslip.cli.output.schemes import show_schemes, tables_of
     from stickslip.cli.overrides import load_with
 
     look = Look(dpi, size)
-    check_targets(Target("--out", out, (".csv", ".nc")), Target("--figure", figure))
+    check_targets(Target("--out", out, (".csv", ".nc")), Target("--figure", figure))  # the file of shocks goes beside it
     look.check(figure)
     chosen = load_with("schemes", scenario, changes, duration=duration, rtol=rtol)
     study = _judged(chosen, files) if files else _study(chosen, scheme, _cells(nx), search, courant)
     show_schemes(chosen, study)
-    table = study.to_netcdf if out is not None and out.suffix == ".nc" else study.to_csv
-    announce(*write_files((out, table), (figure, drawing(study.plot, look))))
+    announce(*write_files(*tables_of(study, out), (figure, drawing(study.plot, look))))
     if study.interrupted:
         raise KeyboardInterrupt
 

@@ -40,8 +40,8 @@ def data(study: Schemes) -> xr.Dataset:
     for i, one in enumerate(finest):
         kept = one.time <= study.until
         contents |= _curves(f"run{i}", one.time[kept], one.slip[kept], one.rate[kept])
-    own_group = next(group for group in study.groups if study.problem.rule in group)
-    ordered = [own_group, *(group for group in study.groups if group != own_group)]
+    own_group = next(group for group in study.paths.groups() if study.problem.rule in group)
+    ordered = [own_group, *(group for group in study.paths.groups() if group != own_group)]
     for i, group in enumerate(ordered):
         run = study.exact[group[0]]
         time = np.unique(np.concatenate([np.linspace(0.0, study.until, POINTS), run.breaks[run.breaks <= study.until]]))

@@ -1,0 +1,127 @@
+"""Each shock of a series beside the exact one: its time and its two slip rates; and shocks that are not in the exact solution."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from stickslip.schemes.series import Series
+from stickslip.solution.solution import Solution
+from stickslip.studies.rule_followed import cell_time
+from stickslip.trajectory.history import Floats
+
+CELLS_NEAR_SHOCK = 4.0
+"""Travel time, in cells, on either side of a shock over which a grid spreads it."""
+MADE = 0.5
+"""Smallest share of the exact change of slip rate at which a shock counts as made."""
+
+SHOCK_COLUMNS = {
+    "scheme": ("", "name of the scheme, or of the program"),
+    "cells": ("", "cells in the thickness; 0 if unknown"),
+    "exact_time": ("s", "time of the exact shock; NaN for a shock that the exact solution does not have"),
+    "exact_before": ("m/s", "exact slip rate before it"),
+    "exact_after": ("m/s", "exact slip rate after it"),
+    "time": ("s", "time at which the slip rate of the series passes the middle of both; NaN if it makes no such shock"),
+    "before": ("m/s", "slip rate of the series before it, by the time over which a grid spreads a shock"),
+    "after": ("m/s", "slip rate of the series after it, by the same time"),
+    "delay": ("s", "time minus exact_time"),
+    "size": ("", "change of the slip rate as a share of the exact change between times as far from the exact shock"),
+}
+"""Columns of the table of shocks, each with its unit and meaning."""
+
+
+class Shock(NamedTuple):
+    """A shock of the exact solution beside the one that a series makes; the fields are in SHOCK_COLUMNS."""
+
+    exact_time: float
+    exact_before: float
+    exact_after: float
+    time: float = math.nan
+    before: float = math.nan
+    after: float = math.nan
+    delay: float = math.nan
+    size: float = math.nan
+
+    @property
+    def jump(self) -> float:
+        """Magnitude of the exact jump, m/s."""
+        return abs(self.exact_after - self.exact_before)
+
+
+def shadow(series: Series, exact: Solution) -> float:
+    """Return the time (s) on either side of a shock over which a series spreads it."""
+    return CELLS_NEAR_SHOCK * cell_time(series, exact)
+
+
+def shocks_of(series: Series, exact: Solution, until: float) -> list[Shock]:
+    """Return the shocks of the exact solution up to a time (s), each beside that of a series, and then shocks of its own.
+
+    A series makes a shock where its slip rate passes the middle of the two exact ones in the same direction, and changes by at
+    least half as much. The nearest such passage in time counts, how far away it may be, and each counts once. A change of half the
+    largest exact jump elsewhere is a shock of the series' own. It is not looked for where the exact slip rate, too, changes as fast
+    without a shock.
+    """
+    kept = series.time <= until
+    time, rate, width = series.time[kept], series.rate[kept], shadow(series, exact)
+    found: list[Shock] = []
+    used: list[float] = []
+    for at, before, after in exact.shocks[["time", "rate_before", "rate_after"]].to_numpy(float):
+        if at <= until:
+            found.append(_beside(Shock(at, before, after), (time, rate), (exact, width), used))
+    return found + _own(found, (time, rate), (exact, width), used)
+
+
+def _change(time: Floats, rate: Floats, at: Floats, width: float) -> tuple[Floats, Floats]:
+    """Return the slip rates before and after times, by a width (s); before t = 0 the contact is at rest."""
+    return np.interp(at - width, time, rate, left=0.0), np.interp(at + width, time, rate, left=0.0)
+
+
+def _beside(shock: Shock, series: tuple[Floats, Floats], how: tuple[Solution, float], used: list[float]) -> Shock:
+    """Return a shock with what the series makes of it, and note the time of the series' own in `used`."""
+    (time, rate), (exact, width) = series, how
+    beyond = (rate > 0.5 * (shock.exact_before + shock.exact_after)) == (shock.exact_after > shock.exact_before)
+    at_start = shock.exact_time <= float(time[0])
+    turned = np.flatnonzero(beyond & np.append(at_start, ~beyond[:-1]))
+    last = float(time[-1])
+    sides = np.clip([shock.exact_time - width, shock.exact_time + width], 0.0, last)
+    exact_rates = [0.0 if at_start else float(exact.slip_rate(sides[0])), float(exact.slip_rate(sides[1]))]
+    whole = exact_rates[1] - exact_rates[0] or shock.exact_after - shock.exact_before
+    passages = np.where(turned > 0, _middle(time, rate, turned, 0.5 * (shock.exact_before + shock.exact_after)), time[turned])
+    for at in passages[np.argsort(np.abs(passages - shock.exact_time))].tolist():
+        before, after = (float(side) for side in _change(time, rate, np.array(at), width))
+        if at not in used and (after - before) / whole >= MADE:
+            used.append(at)
+            return shock._replace(time=at, before=before, after=after, delay=at - shock.exact_time, size=(after - before) / whole)
+    return shock
+
+
+def _middle(time: Floats, rate: Floats, turned: np.ndarray[tuple[int], np.dtype[np.intp]], level: float) -> Floats:
+    """Return the times at which the slip rate passes a level before each of some samples."""
+    before = np.maximum(turned - 1, 0)
+    rise = rate[turned] - rate[before]
+    share = np.divide(level - rate[before], rise, out=np.zeros_like(rise), where=rise != 0.0)
+    return time[before] + np.clip(share, 0.0, 1.0) * (time[turned] - time[before])
+
+
+def _own(found: list[Shock], series: tuple[Floats, Floats], how: tuple[Solution, float], used: list[float]) -> list[Shock]:
+    """Return the shocks of a series that the exact solution does not have."""
+    (time, rate), (exact, width) = series, how
+    least = MADE * max((shock.jump for shock in found), default=math.inf)
+    places = np.array([shock.exact_time for shock in found])
+    far = (np.abs(time[:, None] - places) > 2.0 * width).all(axis=1)
+    before, after = _change(time, exact.slip_rate(time), time, width)
+    if (np.abs(after - before)[far] >= least).any():
+        return []
+    before, after = _change(time, rate, time, width)
+    large = np.where(np.abs(after - before) >= least, np.sign(after - before), 0.0)
+    starts = np.flatnonzero((large != 0.0) & (large != np.append(0.0, large[:-1])))
+    ends = np.flatnonzero((large != 0.0) & (large != np.append(large[1:], 0.0)))
+    shocks = []
+    for start, end in zip(starts.tolist(), ends.tolist(), strict=True):
+        if not any(time[start] - width <= at <= time[end] + width for at in used):
+            k = start + int(np.argmax(np.abs(after - before)[start : end + 1]))
+            middle = 0.5 * (time[start] + time[end])
+            shocks.append(Shock(math.nan, math.nan, math.nan, float(middle), float(before[k]), float(after[k])))
+    return shocks

@@ -1,0 +1,142 @@
+"""Verdicts on the rule that a series follows, and shocks and ringing beside the exact ones."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from stickslip.schemes.series import Series
+from stickslip.studies.rule_followed import NONE, STRICT, UNTOLD
+from stickslip.studies.schemes import Schemes, judge_series, schemes
+
+LOOP = ss.load_scenario("fig4-loop")
+TIME = np.linspace(0.0, 5.7, 2001)
+SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)
+SMOOTH = ss.Problem(SLAB, ss.friction.SinusoidalSlip(1.0, 0.5, 2.0), pull_rate=0.3, initial_slip=np.pi / 4, initial_excess=0.0)
+
+
+def exact(rule: str, problem: ss.Problem = LOOP.problem, time: np.ndarray = TIME, name: str = "series") -> Series:  # type: ignore[type-arg]
+    run = ss.simulate(replace(problem, selection=rule), float(time[-1]))
+    return Series(time, run.slip(time) - problem.initial_slip, run.slip_rate(time), run.traction(time), name)
+
+
+def judged(*series: Series) -> Schemes:
+    return judge_series(series, LOOP)
+
+
+@pytest.mark.parametrize("rule", ["perfect-delay", "minimal", "maxwell", "maximal"])
+def test_the_exact_path_of_each_rule_follows_that_rule(rule: str) -> None:
+    study = judged(exact(rule))
+    assert study.verdicts == {"series": rule}
+    assert study.table[f"miss_{rule}"].iloc[0] < 0.01
+
+
+@pytest.mark.parametrize("share", [0.2, 0.4, 0.5, 0.6, 0.8])
+def test_a_path_between_two_rules_follows_none(share: float) -> None:
+    """Closed form: of a path at a share of the way from one rule to the next, the miss of the first is that share."""
+    one, other = exact("perfect-delay"), exact("minimal")
+    mixed = replace(one, slip=one.slip + share * (other.slip - one.slip), rate=one.rate + share * (other.rate - one.rate))
+    study = judged(mixed)
+    assert study.table.rule.iloc[0] == NONE
+    assert study.table["miss_perfect-delay"].iloc[0] == pytest.approx(share, rel=1e-2, abs=0.0)
+    assert study.table["miss_minimal"].iloc[0] == pytest.approx(1.0 - share, rel=1e-2, abs=0.0)
+
+
+def test_garbage_follows_no_rule() -> None:
+    random = np.random.default_rng(3)
+    rate = random.uniform(0.0, 5.0, TIME.size)
+    noise = Series(TIME, np.cumsum(rate) * TIME[1], rate, np.full(TIME.size, 5e7), "noise")
+    rest = Series(TIME, 0.0 * TIME, 0.0 * TIME, np.full(TIME.size, 6e7), "rest")
+    assert judged(noise, rest).verdicts == {"noise": NONE, "rest": NONE}
+
+
+def test_the_right_slip_with_a_slip_rate_that_stops_and_starts_follows_none() -> None:
+    right = exact("perfect-delay")
+    chopped = replace(right, rate=np.where(np.arange(TIME.size) // 20 % 2, 2.0 * right.rate, 0.0))
+    assert judged(chopped).table.rule.iloc[0] == NONE
+
+
+def test_where_all_rules_have_one_path_a_right_series_cannot_tell_and_garbage_still_follows_none() -> None:
+    time = np.linspace(0.0, 4.0, 2001)
+    right = exact("perfect-delay", SMOOTH, time)
+    wrong = replace(right, slip=1.3 * right.slip, rate=1.3 * right.rate, name="wrong")
+    study = judge_series([right, wrong], SMOOTH)
+    assert study.verdicts == {"series": UNTOLD, "wrong": NONE}
+    assert study.table["miss_minimal"].iloc[1] == pytest.approx(0.3, rel=1e-3, abs=0.0)
+    assert "all selection rules have the same solution" in repr(study)
+
+
+def test_a_series_too_coarse_for_two_rules_does_not_choose_between_them() -> None:
+    """A shift by one step of the peak, 5 m/s times 0.28 s, is more than Maxwell's and the maximal rule lie apart."""
+    coarse = exact("maxwell", time=np.linspace(0.0, 5.7, 21))
+    assert judged(coarse).table.rule.iloc[0] == "maxwell or maximal"
+
+
+def test_verdicts_on_several_meshes() -> None:
+    right = replace(exact("perfect-delay"), name="scheme")
+    other = replace(exact("minimal"), name="scheme")
+    half = replace(right, slip=0.8 * right.slip, rate=0.8 * right.rate)
+
+    def verdict(*runs: Series) -> str:
+        times = [replace(run, time=run.time * (1.0 - 1e-9 * k), cells=20 * 2**k) for k, run in enumerate(runs)]
+        return judged(*times).verdicts["scheme"]
+
+    assert verdict(right, right) == "perfect-delay"
+    assert verdict(half, right) == "perfect-delay, from 40 cells on"
+    assert verdict(other, right) == "depends on the mesh (minimal; perfect-delay)"
+    assert verdict(right, half) == f"depends on the mesh (perfect-delay; {NONE})"
+    off = replace(right, slip=0.97 * right.slip, rate=0.97 * right.rate)
+    assert STRICT > judged(off).table["miss_perfect-delay"].iloc[0] > 0.02
+    assert verdict(off, off, off).startswith("none: near perfect-delay, without coming closer")
+
+
+def test_each_shock_stands_beside_the_exact_one_and_others_are_the_schemes_own() -> None:
+    """Shocks at 2.2427 s and 5.2128 s (closed forms of the folds: tests of the engine); a series late by 0.1 s, with a gap."""
+    late = exact("perfect-delay", time=TIME)
+    rate = np.interp(TIME - 0.1, TIME, late.rate, left=0.0)
+    rate[(TIME > 4.0) & (TIME < 4.3)] = 0.0
+    shocks = judged(replace(late, rate=rate)).shocks
+    both, own = shocks[shocks.exact_time.notna()], shocks[shocks.exact_time.isna()]
+    assert both.exact_time.to_numpy() == pytest.approx([2.242655, 5.212841], abs=1e-6, rel=0.0)
+    assert both.delay.to_numpy() == pytest.approx([0.1, 0.1], abs=TIME[1], rel=0.0)
+    assert both["size"].to_numpy() == pytest.approx([1.0, 1.0], abs=0.02, rel=0.0)
+    assert own.time.to_numpy() == pytest.approx([4.0, 4.3], abs=2.0 * TIME[1], rel=0.0)
+    assert own.before.iloc[0] > 3.0 > 1e-9 > own.after.iloc[0]
+
+
+def test_a_shock_that_is_not_made_has_no_time() -> None:
+    run = exact("perfect-delay")
+    smooth = replace(run, rate=np.convolve(run.rate, np.full(401, 1.0 / 401.0), "same"))
+    study = judged(smooth)
+    assert study.table.shocks.iloc[0] == 0
+    assert np.isnan(study.shocks.time).all()
+
+
+def test_ringing_is_measured_as_the_variation_that_was_added() -> None:
+    """Added: 20 saw teeth of 0.1 m/s up and down, 4 m/s; the exact slip rate varies by V = its total variation on the samples."""
+    run = exact("perfect-delay")
+    rate = run.rate.copy()
+    while_slipping = np.flatnonzero((TIME > 2.4) & (TIME < 3.0))[:40]
+    flat = np.full(40, rate[while_slipping[0] - 1])
+    rate[while_slipping] = flat
+    plain = judged(replace(run, rate=rate)).table.oscillation.iloc[0]
+    rate[while_slipping[::2]] += 0.1
+    found = judged(replace(run, rate=rate)).table.oscillation.iloc[0]
+    whole = np.abs(np.diff(run.rate)).sum()
+    assert found - plain == pytest.approx(4.0 / whole, rel=0.06, abs=0.0)
+
+
+def test_of_the_schemes_only_those_without_numerical_waves_do_not_ring() -> None:
+    names = ["characteristics", "central-differences-cfl1", "backward-euler", "central-differences", "newmark"]
+    ringing = schemes(LOOP, None, names, [100], search="continue").table.set_index("scheme").oscillation
+    assert (ringing[names[:3]] < 0.05).all()
+    assert (ringing[names[3:]] > 5.0).all()
+
+
+@pytest.mark.parametrize(("search", "expected"), [("stick-first", "minimal"), ("continue", "perfect-delay")])
+def test_verdicts_by_scheme_on_the_loop(search: str, expected: str) -> None:
+    found = schemes(LOOP, None, ["sbp4", "newmark", "backward-euler"], [50, 100], search=search).verdicts
+    assert found == {"sbp4": expected, "newmark": NONE, "backward-euler": NONE if search == "stick-first" else expected}
