@@ -20,7 +20,7 @@ LAYERS = (
     ("bodies", "engine", "loading"),
     ("problem",),
     ("contact", "reference"),
-    ("engine_input", "schemes"),
+    ("engine_input", "planar", "schemes"),
     ("scenarios", "trajectory"),
     ("creep", "observables"),
     ("solution",),
