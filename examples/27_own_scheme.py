@@ -3,7 +3,7 @@ Your own numerical scheme
 =========================
 
 A scheme is an object with a name and `begin(grid)`, which returns a body that can make its `first` state and `advance` by one step.
-How friction is met is left to the package. This one is the upwind scheme: in each step a wave passes a share of its cell to the next.
+How friction is met is left to the package. This one is the upwind scheme: in a step a wave passes a share of its cell to the next.
 
 You learn to write a scheme of your own, to count the energy that it dissipates, and to read its order and the rule that it follows.
 """
@@ -15,9 +15,12 @@ from stickslip.schemes.contract import Energies, Meeting, Sample
 
 
 class Upwind:
+    """What the scheme says about itself."""
+
     name, title, order, courant, largest_courant = "upwind", "first-order upwind on waves", 1.0, 0.5, 1.0
 
     def begin(self, grid):
+        """Return the slab at t = 0."""
         return Cells(grid)
 
 
@@ -27,6 +30,8 @@ class Upwind:
 
 
 class Cells:
+    """The slab: waves down to the contact and up to the driver, Pa."""
+
     def __init__(self, grid):
         self.grid, self.steps, self.slip, self.driven = grid, 0, 0.0, 0.0
         middle = 0.5 * (grid.start_rates[1:] + grid.start_rates[:-1])
@@ -34,9 +39,11 @@ class Cells:
         self.driver = self.friction = self.damped = self.rate = 0.0
 
     def first(self, contact):
+        """Return the state just after t = 0."""
         return self.meet(contact)
 
     def advance(self, contact):
+        """Move all waves by one step."""
         grid, nu, Z = self.grid, self.grid.courant, self.grid.impedance
         wave = self.up[-1]
         pull = grid.pull_rate if grid.is_rigid else (wave + grid.push(self.steps * grid.dt)) / (Z + grid.driver_impedance)
@@ -44,14 +51,14 @@ class Cells:
         up = np.append(Z * self.rate - self.excess, self.up)
         self.driver += grid.dt * (Z * pull - wave) * pull
         self.friction += grid.dt * self.excess * self.rate
-        self.damped += (
-            nu * (1 - nu) * grid.dx / (4 * grid.shear_modulus) * (np.diff(down) @ np.diff(down) + np.diff(up) @ np.diff(up))
-        )
-        self.down, self.up = down[:-1] + nu * np.diff(down), up[1:] - nu * np.diff(up)
+        lower, upper = np.diff(down), np.diff(up)
+        self.damped += nu * (1 - nu) * grid.dx / (4 * grid.shear_modulus) * (lower @ lower + upper @ upper)
+        self.down, self.up = down[:-1] + nu * lower, up[1:] - nu * upper
         self.slip, self.driven, self.steps = self.slip + grid.dt * self.rate, self.driven + grid.dt * pull, self.steps + 1
         return self.meet(contact)
 
     def meet(self, contact):
+        """Let the contact find its slip rate, and say how things are."""
         grid = self.grid
         load = grid.stress + self.down[0]
         self.rate, traction = contact.meet(Meeting(load, grid.impedance, grid.slip + self.slip), self.rate)
