@@ -12,8 +12,8 @@ import pytest
 from numba import njit
 
 from stickslip.batch.workspace import apart
-from stickslip.engine.codegen.compiler import ahead, floats
-from stickslip.engine.codegen.simd import WIDTH, lanes_at
+from stickslip.engine.codegen.compiler import ahead, floats, integers
+from stickslip.engine.codegen.simd import WIDTH, chosen, lanes_at, store_across
 from stickslip.engine.series.polynomial import bound_below, magnitude, moment, multiply, powers_of, total
 from stickslip.engine.series.sine import sine, versine
 from stickslip.engine.series.step_size import length_at
@@ -87,6 +87,37 @@ def test_multiplying_by_powers_has_the_same_bits_in_lanes() -> None:
         column, own_powers, own = np.ascontiguousarray(block[:, n]), np.zeros(TERMS), np.zeros(TERMS)
         alone(column.ctypes.data, own_powers.ctypes.data, own.ctypes.data)
         assert out[:, n].tolist() == own.tolist()
+
+
+def test_comparisons_choose_lane_by_lane() -> None:
+    @njit
+    def side_by_side(block: int, out: int) -> int:
+        a, b = lanes_at(block)[0], lanes_at(block)[1]
+        lanes_at(out)[0] = chosen((a > b) & ~(a >= 3.0), a, -b)
+        lanes_at(out)[1] = chosen(a == b, 1.0, b)
+        return (a < b) | (a <= 0.0)
+
+    block, out = aligned(2), aligned(2)
+    block[0], block[1] = [1.0, -1.0, 3.0, 2.0, np.nan, 0.0, 7.0, 2.5], [0.0, 2.0, 0.0, 2.0, 1.0, np.nan, 9.0, 2.0]
+    bits = side_by_side(block.ctypes.data, out.ctypes.data)
+    a, b = block
+    assert np.array_equal(out[0], np.where((a > b) & ~(a >= 3.0), a, -b), equal_nan=True)
+    assert np.array_equal(out[1], np.where(a == b, 1.0, b), equal_nan=True)
+    assert bits == sum(int(x) << n for n, x in enumerate((a < b) | (a <= 0.0)))
+
+
+def test_rows_in_lanes_are_stored_across_as_columns() -> None:
+    @njit
+    def store(block: int, targets: int) -> None:
+        store_across(lanes_at(block), integers(targets), 2)
+
+    block, out = aligned(WIDTH + 2), np.zeros((WIDTH, WIDTH + 3))
+    block[:] = np.arange(block.size).reshape(block.shape)
+    targets = np.array([row.ctypes.data for row in out])
+    store(block.ctypes.data, targets.ctypes.data)
+    assert np.array_equal(out[:, 2 : WIDTH + 2], block[2:].T)
+    assert not out[:, :2].any()
+    assert not out[:, WIDTH + 2 :].any()
 
 
 @pytest.mark.sampled(every=3)

@@ -7,7 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stickslip.batch.kernels.lanes import Block, Waits
+from stickslip.batch.kernels.lane_block import Block
+from stickslip.batch.kernels.lanes import Waits
 from stickslip.batch.kernels.points import POINTS_PER_PIECE, Points, new_points
 from stickslip.batch.kernels.runs import Stage
 from stickslip.batch.setups import Setups

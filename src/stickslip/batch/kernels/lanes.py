@@ -1,97 +1,72 @@
 """Take one explicit step of slip for several members at once, side by side in lanes of the processor's registers.
 
 The series of a step is a long chain in which each coefficient waits for those before it, so that one run alone leaves most of a
-processor idle. Control flow runs per member, with the functions of single runs. Arithmetic runs on all lanes at once, with the same
-functions and identical bits. A step in which slip may end, or which meets a knot of the law, is left to the engine.
+processor idle. Arithmetic runs on all lanes at once, with the functions of single runs and identical bits, and so does what a step
+leaves in the history. Only what few steps need runs per member: the search for a length that can be proven, and the force that a
+step from rest ignores. A step in which slip may end, or which meets a knot of the law, is left to the engine.
 """
 
 from __future__ import annotations
 
 import math
 from enum import IntEnum
-from typing import Any
+from typing import NamedTuple
 
-from stickslip.engine.codegen.compiler import ahead, call_jet, call_radii, call_values, inlined, kernel
-from stickslip.engine.codegen.lane_records import all_lanes, floats_of, one_lane
-from stickslip.engine.codegen.records import Record, floats_inside, inside
-from stickslip.engine.codegen.simd import WIDTH
-from stickslip.engine.contact.contact_equation import constants_of
-from stickslip.engine.contact.stiffness import judge_stiffness
+from stickslip.batch.kernels.lane_block import (
+    Block,
+    block_in_all_lanes,
+    block_in_one_lane,
+    lend_rate,
+    lend_step,
+    note_disc,
+    put_in,
+    take_out,
+)
+from stickslip.engine.codegen.compiler import ahead, call_jet, call_radii, call_values, inlined, integers, kernel
+from stickslip.engine.codegen.lane_records import floats_of, rows_of
+from stickslip.engine.codegen.simd import WIDTH, chosen, store_across
+from stickslip.engine.contact.pieces import note_slip
+from stickslip.engine.contact.stiffness import CHECKED, judge_stiffness
 from stickslip.engine.contact_step.certificate import (
-    RATIOS,
-    SHRUNK,
-    SHRUNK_SLOPE,
+    ALLOWED,
+    ALLOWED_SLOPE,
+    NEGLIGIBLE,
+    ROUGH,
+    ROUGH_SLOPE,
     SMALLEST,
-    allowed,
     begin_step,
     force_on_disc,
     imbalance,
-    is_negative,
     load_at_end,
     load_on_disc,
     missed_by_motion,
     missed_by_rate,
-    note_residual,
     proven_length,
     put_discs,
-    rough,
     size_at_end,
     size_of_rate,
     slope_on_disc,
 )
-from stickslip.engine.contact_step.keep_step import move
+from stickslip.engine.contact_step.keep_step import unload_bent, unload_straight
 from stickslip.engine.contact_step.negative_friction import goes_below_zero
 from stickslip.engine.contact_step.step_events import knot_crossing
-from stickslip.engine.contact_step.taylor_step import first_guess, length_to, note_shock, prepare_series, settle_length
+from stickslip.engine.contact_step.taylor_step import duration_of, guess_from, note_shock
 from stickslip.engine.loop import ROOM
-from stickslip.engine.series.polynomial import NONE, bound_below, fill, moment, multiply, powers_of, total
+from stickslip.engine.series.polynomial import NONE, bound_below, moment, multiply, powers_of, scale_low, shift_low, total
 from stickslip.engine.series.step_size import FAR_FROM_GUESS, length_at, usable_length
-from stickslip.engine.state.layout import TERMS, Ball, Floats, Integers, LawValue, SeriesInput
+from stickslip.engine.state.layout import TERMS, HistoryPiece, Integers, State
 from stickslip.engine.state.workspace import RUN_SIZE, Run, borrow
-
-
-class Block(Record):
-    """Hold the numbers of a step in lanes; each place holds one number for every lane."""
-
-    k: SeriesInput = inside(SeriesInput)  # input of the series
-    load_along_slip: Floats = floats_inside(TERMS)  # as in `engine.state.workspace.Run`
-    local: Floats = floats_inside(TERMS)
-    jet: Floats = floats_inside(TERMS)  # the law's functions write `centres` right after it
-    centres: Floats = floats_inside(TERMS)
-    disc_powers: Floats = floats_inside(TERMS)  # powers of the radius of the disc on which a step is proven, in guesses
-    ball: Ball = inside(Ball)  # radii on that disc
-    ratio: float  # 1: radius of that disc, in lengths of the step
-    shrunk: float  # 1: factor by which what the step misses is smaller on the step than on that disc
-    disc: float  # 1: number of the disc that served the step before
-    share: float  # 1: bound of what the step misses, as a share (`contact_step.certificate`)
-    powers: Floats = floats_inside(TERMS)
-    rate: Floats = floats_inside(TERMS)  # m/s: slip rate over the step, as a polynomial on [0, 1]
-    load: Floats = floats_inside(TERMS)  # Pa or N: load over the step
-    usable: float  # length that the error allows the step, in guesses
-    length: float  # length of the step, in guesses
-    bound: float  # m/s: lower bound of the slip rate
-    grown: float  # m: slip in the step
-    last: float  # m/s: slip rate at the end of the step
-    guess: float  # 1: unit of the series, in xi
-    reached: float  # 1 if the step reaches the target of the run, else 0
-    last_step: float  # s: length that the error allowed the step before to have
-    unbalanced: float  # Pa or N: force that the step ignores at its start
-    place: Floats = floats_inside(2)  # m, m/s: slip of the law and slip rate at the end of the step
-    value: LawValue = inside(LawValue)  # friction there
-    size: float  # m/s: size of the slip rate, with which errors at the end are compared
-    missed: float  # m/s: what the contact equation lacks there, in terms of the slip rate
-    tolerance: float  # 1: local error allowed to the step
-    constants: Floats = floats_inside(0)  # constants of the law, as many as it has
-
-
-block_in_all_lanes: Any = all_lanes(Block)
-"""Function for compiled code that sees the block at an address in all lanes at once."""
-block_in_one_lane: Any = one_lane(Block)
-"""Function for compiled code that sees the block at an address in lane 0."""
-
 
 PARTS = 3
 """Number of functions of a formula that work on lanes."""
+ROW = HistoryPiece.total
+"""Number of places of a piece of the history."""
+FIRST_FLOAT = HistoryPiece.places["phase_from"].first
+"""First place of a piece of the history that is a float, as all that follow."""
+HISTORY, TARGETS, NOWHERE = Run.places["history"].first, Block.places["targets"].first, Block.places["nowhere"].first
+"""Places of these fields."""
+ALL_LANES = 2**WIDTH - 1
+"""A bit for each lane."""
 
 
 class Waits(IntEnum):
@@ -106,6 +81,16 @@ class Waits(IntEnum):
     """A step that the engine must take."""
 
 
+class Step(NamedTuple):
+    """A step that some lanes take together."""
+
+    table: Integers  # memory of the runs in the lanes
+    block: int  # address of the numbers in lanes
+    taking: int  # lanes that take the step, a bit for each
+    moves: bool  # True if the contacts have inertia
+    degree: int  # largest degree of their loads
+
+
 @kernel
 def step_side_by_side(table: Integers, waits: Integers, jets: Integers, block: int) -> None:
     """Take one step in each lane that waits for one; lanes under the same formula of the law step together.
@@ -118,13 +103,13 @@ def step_side_by_side(table: Integers, waits: Integers, jets: Integers, block: i
             waits[lane] = -waits[lane]
     for lane in range(WIDTH):
         if waits[lane] < 0:
-            step_under(ahead(jets, PARTS * piece_of(table, lane)), table, waits, jets, block)
+            step_under(ahead(jets, PARTS * run_in(table, lane).counts.piece), table, waits, jets, block)
 
 
 @inlined
-def piece_of(table: Integers, lane: int) -> int:
-    """Return the piece of the law under which the member in a lane slips."""
-    return borrow(ahead(table, lane * RUN_SIZE)).counts.piece
+def run_in(table: Integers, lane: int) -> Run:
+    """Return the run in a lane."""
+    return borrow(ahead(table, lane * RUN_SIZE))
 
 
 @kernel
@@ -133,160 +118,240 @@ def step_under(formula: Integers, table: Integers, waits: Integers, jets: Intege
 
     `formula` points to the addresses of its series, of its radii and of its values.
     """
-    rows, lane_0, taking, moves, degree = block_in_all_lanes(block), block_in_one_lane(block), 0, False, 1
+    rows, lane_0, taking, fresh, degree = block_in_all_lanes(block), block_in_one_lane(block), 0, 0, 1
+    targets, moves, is_block = integers(block + 8 * WIDTH * TARGETS), False, False
     for lane in range(WIDTH):
-        if waits[lane] < 0 and jets[PARTS * piece_of(table, lane)] == formula[0]:
-            moves = borrow(ahead(table, lane * RUN_SIZE)).counts.has_inertia == 1
-            put_in(borrow(ahead(table, lane * RUN_SIZE)), lane_0[lane], -waits[lane] == Waits.FRESH)
-            degree = max(degree, borrow(ahead(table, lane * RUN_SIZE)).counts.degree)
-            waits[lane], taking = Waits.SLIPPING, taking | 1 << lane
-    call_jet(formula[0], floats_of(rows.constants), floats_of(rows.k), floats_of(rows.load_along_slip), floats_of(rows.jet))
-    rows.length = length_at(rows.jet, rows.tolerance, 0.5)
-    for lane in range(WIDTH):
-        if taking >> lane & 1:
-            take_length(borrow(ahead(table, lane * RUN_SIZE)), lane_0[lane])
-    prove(rows, formula[1], moves, degree)
-    for lane in range(WIDTH):
-        if taking >> lane & 1:
-            settle(borrow(ahead(table, lane * RUN_SIZE)), lane_0[lane])
+        run, targets[lane] = run_in(table, lane), block + 8 * WIDTH * NOWHERE
+        if waits[lane] < 0 and jets[PARTS * run.counts.piece] == formula[0]:
+            if waits[lane] == -Waits.FRESH:
+                put_in(run, lane_0[lane])
+                fresh |= 1 << lane
+            moves, is_block, degree = run.counts.has_inertia == 1, run.counts.is_block == 1, max(degree, run.counts.degree)
+            targets[lane] = table[lane * RUN_SIZE + HISTORY] + 8 * ROW * run.counts.length
+            lane_0[lane].disc, waits[lane], taking = run.counts.disc, Waits.SLIPPING, taking | 1 << lane
+    choose_length(formula, Step(table, block, taking, moves, degree))
+    reached = settle(rows)
     calculate(rows, degree)
-    check_end(rows, formula[2], moves, degree)
+    sound = check_end(rows, formula[2], moves, degree)
+    move(rows, reached, is_block)
+    store(rows, targets)
+    kept = 0
+    for lane in range(WIDTH):
+        if taking >> lane & 1 and is_simple(run_in(table, lane), lane_0[lane], sound >> lane & 1 == 1):
+            kept |= 1 << lane
+    keep(rows, kept)
     for lane in range(WIDTH):
         if taking >> lane & 1:
-            waits[lane] = take_out(borrow(ahead(table, lane * RUN_SIZE)), lane_0[lane])
+            run, own = run_in(table, lane), lane_0[lane]
+            if kept >> lane & 1:
+                waits[lane] = append(run, own, fresh >> lane & 1 == 1)
+            else:
+                run.counts.disc, run.counts.breach, waits[lane] = int(own.disc), 0, Waits.ALONE
+            if waits[lane] != Waits.SLIPPING:
+                take_out(run, own)
 
 
 @inlined
-def put_in(run: Run, own: Block, fresh: bool) -> None:
-    """Copy the input of a run's series into its lane of the block; if `fresh`, also what is constant on a piece of load."""
-    guess = first_guess(run, run.state.target - run.state.xi)
-    prepare_series(run, guess)
-    k, last, own.guess = run.k, run.counts.degree, guess
-    own.k.speed, own.k.bend, own.k.slip = k.speed, k.bend, k.slip
-    own.k.rate, own.k.free, own.k.force = k.rate, k.free, k.force
-    if fresh:
-        own.k.damping, own.k.normal, own.k.chi = k.damping, k.normal, k.chi
-        own.k.offset, own.k.inertia, own.k.stiffness = k.offset, k.inertia, k.stiffness
-        own.tolerance, last = run.params.tolerance, TERMS - 1
-        constants = constants_of(run, run.counts.piece)
-        for n in range(run.size):
-            own.constants[n] = constants[n]
-    for n in range(last + 1):
-        own.load_along_slip[n] = run.load_along_slip[n]
-        own.local[n] = run.local[n]
+def choose_length(formula: Integers, step: Step) -> None:
+    """Expand the series in all lanes, and find the lengths that the error allows and that can be proven, as `usable`."""
+    table, block, taking, moves, degree = step
+    rows, lane_0 = block_in_all_lanes(block), block_in_one_lane(block)
+    begin(rows, degree)
+    call_jet(formula[0], floats_of(rows.constants), floats_of(rows.k), floats_of(rows.load_along_slip), floats_of(rows.jet))
+    rows.usable = length_at(rows.jet, rows.tolerance, 0.5)
+    odd = taking & ~((rows.usable >= FAR_FROM_GUESS) & ~(rows.jet[TERMS - 1] == 0.0))
+    for lane in range(WIDTH):
+        if odd >> lane & 1:
+            lend_step(run_in(table, lane), lane_0[lane])
+            lane_0[lane].usable = usable_length(run_in(table, lane).jet, lane_0[lane].tolerance)
+    rows.limit = (rows.state.target - rows.state.xi) / rows.guess
+    rows.length = min(rows.usable, rows.limit)
+    prove(rows, formula[1], moves, degree)
+    odd = taking & ~((rows.share <= (ALLOWED_SLOPE if moves else ALLOWED)) & (rows.k.free == 1.0))
+    for lane in range(WIDTH):
+        if odd >> lane & 1:
+            prove_alone(run_in(table, lane), lane_0[lane])
 
 
 @inlined
-def take_length(run: Run, own: Block) -> None:
-    """Store the length of a run's step that must be proven, in units of the guess, in the run's lane of the block."""
-    usable = own.length
-    if not usable >= FAR_FROM_GUESS or own.jet[TERMS - 1] == 0.0:  # `length_at` alone does not decide here
-        for k in range(TERMS):
-            run.jet[k] = own.jet[k]
-        usable = usable_length(run.jet, run.params.tolerance)
-    own.usable, own.length = usable, min(usable, length_to(run, run.state.target, own.guess))
-    moves, disc = run.counts.has_inertia == 1, run.counts.disc
-    own.ratio, own.shrunk = RATIOS[disc], SHRUNK_SLOPE[disc] if moves else SHRUNK[disc]
+def begin(rows: Block, degree: int) -> None:
+    """Calculate the input of the series in all lanes, as `taylor_step.prepare_series` does.
+
+    `degree` is the largest of the loads' degrees, here and below.
+    """
+    state, k, local, seen = rows.state, rows.k, rows.local, rows.load_along_slip
+    pace = state.speed + 2.0 * state.bend * state.xi
+    rows.guess = guess_from(state.target - state.xi, pace, state.last_step)
+    for n in range(degree + 1):
+        local[n] = rows.load[n]
+    if (state.xi == 0.0) != ALL_LANES:
+        shift_low(local, degree, state.xi)
+    scale_low(local, degree, rows.guess)
+    for n in range(1, degree + 1):
+        seen[n] = rows.direction * local[n]
+    for n in range(degree + 1, TERMS):
+        local[n] = seen[n] = 0.0
+    seen[0] = chosen(rows.direction > 0.0, local[0], -local[0] - 2.0 * rows.reference)
+    k.speed, k.bend = pace * rows.guess, 2.0 * state.bend * rows.guess * rows.guess
+    k.slip, k.rate = state.law_slip + rows.slip_shift, abs(state.rate_now)
 
 
 @inlined
 def prove(rows: Block, radii: int, moves: bool, degree: int) -> None:
-    """Calculate in all lanes what a step may miss, as `certificate.share_on_disc` does; with inertia if the contact `moves`.
-
-    `degree` is the largest of the loads' degrees, here and below.
-    """
+    """Calculate in all lanes what a step may miss, as `certificate.share_on_disc` does; with inertia if the contact `moves`."""
     powers = rows.disc_powers
     powers_of(rows.ratio * rows.length, powers)
     put_discs(rows.k, rows.jet, powers, rows.ball)
     call_radii(radii, floats_of(rows.constants), floats_of(rows.jet), floats_of(rows.ball))
     force = force_on_disc(rows.k, rows.ball, load_on_disc(rows.load_along_slip, powers, degree))
+    size = rows.tolerance * size_of_rate(rows.jet, rows.length)
     if moves:
         missed = rows.length * (abs(rows.k.speed) / rows.k.inertia * force + slope_on_disc(rows.jet, powers)) * rows.shrunk
+        resistance = rows.k.inertia / (rows.length * abs(rows.k.speed))
     else:
         missed = force / rows.k.damping * rows.shrunk
-    rows.share = missed / max(rows.tolerance * size_of_rate(rows.jet, rows.length), SMALLEST)
+        resistance = rows.k.damping
+    rows.share = missed / max(size, SMALLEST)
+    rows.state.residual = resistance * rows.share * rows.tolerance * size_of_rate(rows.jet, rows.length)
+    rows.state.unbalanced = 0.0
+
+
+@kernel
+def prove_alone(run: Run, own: Block) -> None:
+    """Find a length that can be proven for the step in a run's lane, and the force that it ignores at its start."""
+    lend_step(run, own)
+    proven = proven_length(run, own.length)
+    if proven < own.length:
+        own.usable = proven
+    begin_step(run)
+    own.state.residual, own.state.unbalanced = run.state.residual, run.state.unbalanced
+    note_disc(run, own)
 
 
 @inlined
-def settle(run: Run, own: Block) -> None:
-    """Choose the length of a run's step, now that it is proven or not, and store it in the run's lane of the block."""
-    own.last_step, own.disc, length = run.state.last_step, run.counts.disc, own.usable
-    if own.share <= allowed(run):
-        run.jet[0], run.jet[1], run.jet[2], run.jet[3] = own.jet[0], own.jet[1], own.jet[2], own.jet[3]
-        note_residual(run, own.length, own.share)
-    else:
-        for k in range(TERMS):
-            run.jet[k], run.centres[k] = own.jet[k], own.centres[k]
-        proven = proven_length(run, own.length)
-        length = proven if proven < own.length else length
-    length, reached = settle_length(run, run.state.target, own.guess, length)
-    begin_step(run)
-    own.length, own.reached, own.unbalanced = length, 1.0 if reached else 0.0, run.state.unbalanced
+def settle(rows: Block) -> int:
+    """Choose the lengths of proven steps, as `taylor_step.settle_length` does; return the lanes that reach their target."""
+    rows.last_step = duration_of(rows.k, rows.usable)
+    reached = rows.usable >= rows.limit
+    half = 0.5 * rows.limit
+    rows.length = chosen(reached, rows.limit, chosen(rows.usable > half, half, rows.usable))
+    return reached
 
 
 @inlined
 def calculate(rows: Block, degree: int) -> None:
-    """Calculate in all lanes slip rate and load over the step, slip in it, and the rate's value at the end and lower bound.
+    """Calculate slip rate and load over the step, slip in it, and the slip rate at its end.
 
     The calculations are those of `step_events.stretch` and `keep_step.keep_step`.
     """
-    length, rate = rows.length, rows.rate
+    length, rate, load = rows.length, rows.rate, rows.row.load
     powers_of(length, rows.powers)
     multiply(rows.jet, rows.powers, rate)
-    if degree == 1:
-        rows.load[0], rows.load[1] = rows.local[0], rows.local[1] * rows.powers[1]
-    else:
-        multiply(rows.local, rows.powers, rows.load)
+    multiply(rows.local, rows.powers, load)
     straight = rows.k.speed * length * moment(rate, 1)
     rows.grown = straight + rows.k.bend * length * length * moment(rate, 2)
-    rows.last = total(rate)
-    rows.bound = bound_below(rate)
+    rows.rate_end = total(rate)
 
 
 @inlined
-def check_end(rows: Block, values: int, moves: bool, degree: int) -> None:
-    """Put the end of a step into the contact equation in all lanes, as `certificate.measure_rounding` does."""
-    k, rate, place, value = rows.k, rows.rate, rows.place, rows.value
-    place[0], place[1] = k.slip + k.chi * rows.grown, rows.last
-    call_values(values, floats_of(rows.constants), floats_of(place), floats_of(value))
-    missing = imbalance(k, load_at_end(rows.load_along_slip, rows.powers, degree), value, rows.last, rows.unbalanced)
-    rows.size = size_at_end(rate, rows.last)
-    if moves:
-        rows.missed = missed_by_motion(k, missing, rate, rows.length, rows.grown)
-    else:
-        rows.missed = missed_by_rate(k, missing, value)
+def check_end(rows: Block, values: int, moves: bool, degree: int) -> int:
+    """Return the lanes whose step is sound: slip rate and friction stay above zero, and rounding hides nothing at the end.
 
-
-@inlined
-def take_out(run: Run, own: Block) -> int:
-    """Append the step to the run's history if it is a simple one, and return what the lane waits for then.
-
-    A step is simple if it is proven, rounding hides nothing at its end, slip rate and friction stay positive and no knot is met.
-    Otherwise the step is dropped and Waits.ALONE is returned.
+    The end is put into the contact equation, as `certificate.measure_rounding` does.
     """
-    length, target = own.length, run.state.target
-    rate, load = run.history[run.counts.length].rate, run.history[run.counts.length].load
-    for k in range(TERMS):
-        rate[k] = own.rate[k]
-    if run.counts.degree == 1:
-        fill(load, 0.0)
-        load[0], load[1] = own.load[0], own.load[1]
+    k, rate, place, value = rows.k, rows.rate, rows.at_end, rows.value
+    place[0], place[1] = k.slip + k.chi * rows.grown, rows.rate_end
+    call_values(values, floats_of(rows.constants), floats_of(place), floats_of(value))
+    missing = imbalance(k, load_at_end(rows.load_along_slip, rows.powers, degree), value, rows.rate_end, rows.state.unbalanced)
+    if moves:
+        missed, rough = missed_by_motion(k, missing, rate, rows.length, rows.grown), ROUGH_SLOPE
     else:
-        for k in range(TERMS):
-            load[k] = own.load[k]
-    simple = run.counts.breach == 0 and rate[0] > 0.0 and own.bound > 0.0 and math.isfinite(own.last)
-    grown, rate_end, run.value.mu = own.grown, own.last, own.value.mu
-    simple = simple and own.missed <= rough(run) * own.tolerance * own.size and not is_negative(run)
-    if simple and run.params.can_be_negative != 0.0:
-        powers_of(length, run.powers)
-        simple = not goes_below_zero(run, rate, length)
-    if not simple or (run.pieces > 1 and knot_crossing(run, rate, length, 1.0) != NONE):
-        run.state.last_step, run.counts.disc, run.counts.breach = own.last_step, int(own.disc), 0
-        return Waits.ALONE
-    run.jet[0] = own.jet[0]
-    note_shock(run)
-    to = target if own.reached == 1.0 else run.state.xi + length * own.guess
-    move(run, length, grown, rate_end, to)
-    judge_stiffness(run)
-    goes_on = run.state.xi < target and run.counts.stalled == 0 and run.counts.stiff == 0
-    return Waits.SLIPPING if goes_on and run.counts.length + ROOM <= run.capacity else Waits.NONE
+        missed, rough = missed_by_rate(k, missing, value), ROUGH
+    sound = (missed <= rough * rows.tolerance * size_at_end(rate, rows.rate_end)) & (abs(rows.rate_end) < math.inf)
+    sound &= (rate[0] > 0.0) & (bound_below(rate) > 0.0)
+    return sound & ~(rows.reference + k.normal * (value.mu + k.offset) < -NEGLIGIBLE * k.normal)
+
+
+@inlined
+def move(rows: Block, reached: int, is_block: bool) -> None:
+    """Calculate what the step leaves in the history, as `keep_step.move` and `pieces.record` do."""
+    state, k, row, length = rows.state, rows.k, rows.row, rows.length
+    rows.to = chosen(reached, state.target, state.xi + length * rows.guess)
+    width = rows.to - state.xi
+    row.phase_from = phase_in(state, state.xi)
+    row.phase_to = phase_in(state, rows.to)
+    row.speed = (state.speed + 2.0 * state.bend * state.xi) * width
+    row.bend = state.bend * width * width
+    row.slip, row.law_slip, row.residual = state.slip_now, state.law_slip, state.residual
+    row.gain = math.nan
+    if is_block:
+        unload_straight(rows.direction * rows.stiffness * (k.speed * length), rows.rate, row.load)
+        if (k.bend == 0.0) != ALL_LANES:
+            unload_bent(rows.direction * rows.stiffness * (k.bend * length * length), rows.rate, row.load)
+    for n in range(TERMS):
+        row.rate[n] = rows.direction * rows.rate[n]
+
+
+@inlined
+def phase_in(state: State, xi: float) -> float:
+    """Return the phase (s) at the place xi of the piece of load in all lanes, as `pieces.phase_at` does."""
+    return chosen(xi >= 1.0, state.phase_to, state.phase_from + xi * (state.speed + xi * state.bend))
+
+
+@inlined
+def store(rows: Block, targets: Integers) -> None:
+    """Write what the step leaves in the history there, but for whole numbers, where something else is left for `append`."""
+    places = rows_of(rows.row)
+    for first in range(ROW - WIDTH, FIRST_FLOAT - WIDTH, -WIDTH):
+        store_across(places, targets, max(first, 0))
+
+
+@inlined
+def is_simple(run: Run, own: Block, sound: bool) -> bool:
+    """Return True if a step in a run's lane may be kept: it is sound, takes time, is proven and meets no knot of the law."""
+    if not sound or run.counts.breach != 0 or not own.row.phase_to > own.row.phase_from:
+        return False
+    if run.params.can_be_negative != 0.0 and goes_below_zero(run, lend_rate(run, own), own.length):
+        return False
+    return run.pieces == 1 or knot_crossing(run, lend_rate(run, own), own.length, 1.0) == NONE
+
+
+@inlined
+def keep(rows: Block, kept: int) -> None:
+    """Move to the end of the step in the lanes that keep it."""
+    state, signed = rows.state, rows.direction * rows.grown
+    state.xi = chosen(kept, rows.to, state.xi)
+    state.slip_now = chosen(kept, state.slip_now + signed, state.slip_now)
+    state.law_slip = chosen(kept, state.law_slip + rows.k.chi * rows.grown, state.law_slip)
+    state.rate_now = chosen(kept, rows.direction * max(rows.rate_end, 0.0), state.rate_now)
+    state.last_step = chosen(kept, rows.last_step, state.last_step)
+    state.largest_residual = chosen(kept, max(state.largest_residual, state.residual), state.largest_residual)
+    rows.load[0] = chosen(kept, rows.load[0] - rows.stiffness * signed, rows.load[0])
+    rows.k.free, rows.k.force = chosen(kept, 1.0, rows.k.free), chosen(kept, 0.0, rows.k.force)
+
+
+@inlined
+def append(run: Run, own: Block, first: bool) -> int:
+    """Count the step in a run's lane, and write its whole numbers into the history; return what the lane waits for then.
+
+    `first` is True if it is the first on its piece of load, and may be the first of a slip.
+    """
+    counts, n = run.counts, run.counts.length
+    row = run.history[n]
+    row.trip, row.mode, row.law_piece, row.echo_of = counts.trip, counts.mode, counts.piece, counts.echo_of
+    row.jump = row.cause = 0
+    if first:
+        run.jet[0] = own.jet[0]
+        note_shock(run)
+        row.jump, row.cause = counts.jump, counts.cause
+        note_slip(run, n, own.row.phase_from)
+        counts.jump = counts.cause = counts.stalled = counts.leaving_rest = 0
+        counts.moved = 1
+    counts.length = n + 1
+    if counts.steps % CHECKED == CHECKED - 1:
+        take_out(run, own)
+        judge_stiffness(run)
+    else:
+        counts.steps += 1
+    goes_on = own.state.xi < own.state.target and counts.stiff == 0 and n + 1 + ROOM <= run.capacity
+    return Waits.SLIPPING if goes_on else Waits.NONE

@@ -154,6 +154,16 @@ def floats_of(typingctx: Any, pointer: Any) -> Any:
     return FLOATS(pointer), codegen
 
 
+@intrinsic
+def rows_of(typingctx: Any, record: Any) -> Any:
+    """Return a record in all lanes as a pointer to the vector at its first place, which is indexed like an array."""
+
+    def codegen(context: Any, builder: Any, called: Any, arguments: Any) -> Any:
+        return arguments[0]
+
+    return POINTER(record), codegen
+
+
 def _at(kind: Any) -> Any:
     """Return a function for compiled code that sees the memory at an address as a record in lanes."""
 

@@ -62,14 +62,14 @@ def _cast(context: Any, builder: Any, from_type: Any, to_type: Any, number: Any)
     return _in_every_lane(builder, context.cast(builder, number, from_type, types.float64))
 
 
-def _define(function: Any, arguments: int, write: Writer) -> None:
+def _define(function: Any, arguments: int, write: Writer, result: Any = LANES) -> None:
     """Define a function for lanes, with the given number of arguments; an argument that is a single number holds in every lane."""
 
     def generic(self: Any, args: tuple[Any, ...], keywords: Any) -> Any:
         known = all(kind == LANES or isinstance(kind, (types.Float, types.Integer)) for kind in args)
         if len(args) != arguments or LANES not in args or not known:
             return None
-        return signature(LANES, *(kind if kind == LANES else types.float64 for kind in args))
+        return signature(result, *(kind if kind == LANES else types.float64 for kind in args))
 
     infer_global(function)(type(f"Lanes_{function.__name__}", (AbstractTemplate,), {"generic": generic}))
 
@@ -106,6 +106,15 @@ def _larger(context: Any, builder: Any, args: list[Any]) -> Any:
     return builder.select(builder.fcmp_ordered(">", args[1], args[0]), args[1], args[0])
 
 
+def _comparison(sign: str) -> Writer:
+    """Return the writer of a comparison. Its result is a whole number with one bit for each lane, the lowest for lane 0."""
+
+    def write(context: Any, builder: Any, args: list[Any]) -> Any:
+        return builder.zext(builder.bitcast(builder.fcmp_ordered(sign, *args), ir.IntType(WIDTH)), WHOLE)
+
+    return write
+
+
 def _each_by_itself(function: Any) -> Writer:
     """Return the writer of a function that is called for one lane after the other, to get the same bits as for floats."""
     of_float = signature(types.float64, types.float64)
@@ -129,6 +138,8 @@ for _operators, _name in (
 ):
     for _operator in _operators:
         _define(_operator, 2, _instruction(_name))
+for _operator, _sign in ((operator.lt, "<"), (operator.le, "<="), (operator.gt, ">"), (operator.ge, ">="), (operator.eq, "==")):
+    _define(_operator, 2, _comparison(_sign), types.int64)
 _define(operator.neg, 1, _instruction("fneg"))
 _define(abs, 1, _of_the_processor("fabs"))
 _define(math.sqrt, 1, _of_the_processor("sqrt"))
@@ -137,6 +148,41 @@ _define(min, 2, _smaller)
 _define(max, 2, _larger)
 for _function in (math.sin, math.cos, math.exp, math.expm1, math.log, math.log1p, math.tanh, math.asinh):
     _define(_function, 1, _each_by_itself(_function))
+
+
+@intrinsic
+def chosen(typingctx: Any, which: Any, yes: Any, no: Any) -> Any:
+    """Return `yes` where a comparison of lanes holds and `no` elsewhere; a single float holds in every lane."""
+
+    def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        mask = builder.bitcast(builder.trunc(args[0], ir.IntType(WIDTH)), ir.VectorType(ir.IntType(1), WIDTH))
+        lanes = [x if kind == LANES else _in_every_lane(builder, x) for x, kind in zip(args[1:], sig.args[1:], strict=True)]
+        return builder.select(mask, *lanes)
+
+    return LANES(types.int64, yes, no), codegen
+
+
+@intrinsic
+def store_across(typingctx: Any, rows: Any, targets: Any, first: Any) -> Any:
+    """Store the places from `first` to `first` + WIDTH - 1 of rows in lanes: for lane n at the address targets[n] + 8 `first`."""
+
+    def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        lines = [builder.load(builder.gep(args[0], [builder.add(args[2], _constant(WHOLE, n))])) for n in range(WIDTH)]
+        for apart in (1, 2, 4):
+            lines = [_exchanged(builder, lines[n & ~apart], lines[n | apart], apart, bool(n & apart)) for n in range(WIDTH)]
+        for n, line in enumerate(lines):
+            address = builder.load(builder.gep(args[1], [_constant(WHOLE, n)]))
+            target = builder.gep(builder.inttoptr(address, ir.DoubleType().as_pointer()), [args[2]])
+            builder.store(line, builder.bitcast(target, VECTOR.as_pointer()), align=8)
+        return context.get_dummy_value()
+
+    return types.void(POINTER, types.CPointer(types.int64), types.int64), codegen
+
+
+def _exchanged(builder: Any, low: Any, high: Any, apart: int, upper: bool) -> Any:
+    """Write one of two vectors whose numbers `apart` places from each other are exchanged: a step of turning rows into columns."""
+    places = [n + upper * apart if not n & apart else WIDTH + n - apart + upper * apart for n in range(WIDTH)]
+    return builder.shuffle_vector(low, high, ir.Constant(ir.VectorType(INDEX, WIDTH), places))
 
 
 @intrinsic

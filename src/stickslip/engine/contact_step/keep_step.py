@@ -65,8 +65,20 @@ def unload_spring(straight: float, bent: float, rate: Floats, load: Floats) -> N
 
     `straight` and `bent` are the stiffness times A and times B of dphase = (A + B eta) d eta (N s/m, signed).
     """
-    for k in range(1, at.TERMS):
-        load[k] -= straight * RECIPROCAL[k] * rate[k - 1]
+    unload_straight(straight, rate, load)
     if bent != 0.0:
-        for k in range(2, at.TERMS):
-            load[k] -= bent * RECIPROCAL[k] * rate[k - 2]
+        unload_bent(bent, rate, load)
+
+
+@inlined
+def unload_straight(straight: float, rate: Floats, load: Floats) -> None:
+    """Do the part of `unload_spring` that comes from A."""
+    for k in range(1, at.TERMS):
+        load[k] = load[k] - straight * RECIPROCAL[k] * rate[k - 1]
+
+
+@inlined
+def unload_bent(bent: float, rate: Floats, load: Floats) -> None:
+    """Do the part of `unload_spring` that comes from B."""
+    for k in range(2, at.TERMS):
+        load[k] = load[k] - bent * RECIPROCAL[k] * rate[k - 2]

@@ -23,7 +23,7 @@ from stickslip.engine.folds.fold import last_to_fold, reach_end, straight_from_f
 from stickslip.engine.series.polynomial import multiply, total
 from stickslip.engine.series.step_size import usable_length
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Cause, NearFold, StepEvent, Stop
+from stickslip.engine.state.layout import Cause, NearFold, SeriesInput, StepEvent, Stop
 from stickslip.engine.state.workspace import Run
 
 LONGEST_GUESS = 2.0
@@ -41,8 +41,14 @@ def first_guess(run: Run, left: float) -> float:
 
     It is near the length of the step that will be taken, so that no coefficient overflows.
     """
-    speed = abs(run.state.speed + 2.0 * run.state.bend * run.state.xi)
-    return min(left, max(LONGEST_GUESS * run.state.last_step / speed, SHORTEST_GUESS * left)) if speed > 0.0 else left
+    speed = run.state.speed + 2.0 * run.state.bend * run.state.xi
+    return guess_from(left, speed, run.state.last_step) if speed != 0.0 else left
+
+
+@inlined
+def guess_from(left: float, speed: float, last_step: float) -> float:
+    """Return the guess (in xi) from the way that is left (in xi), dphase/dxi (s) and the length of the last step (s)."""
+    return min(left, max(LONGEST_GUESS * last_step / abs(speed), SHORTEST_GUESS * left))
 
 
 @kernel
@@ -141,7 +147,7 @@ def take_planned_step(run: Run, plan: StepPlan, guess: float) -> None:
         if halving == HALVINGS:
             run.counts.breach = Stop.NEGATIVE_FRICTION
         length *= 0.5 * cut.end
-        reached, run.state.last_step = False, min(run.state.last_step, duration_of(run, length))
+        reached, run.state.last_step = False, min(run.state.last_step, duration_of(run.k, length))
     multiply(run.local, run.powers, kept.load)
     to = plan.target if reached and cut.end == 1.0 else run.state.xi + cut.end * length * guess
     move(run, cut.end * length, grown, rate_end, to)
@@ -177,7 +183,7 @@ def settle_length(run: Run, target: float, guess: float, length: float) -> tuple
     """Return the length of a proven step so that no tiny step is left before the target, and whether it reaches the target."""
     limit = length_to(run, target, guess)
     # Store the error-controlled length: truncation at an event must not shrink the next guess.
-    run.state.last_step = duration_of(run, length)
+    run.state.last_step = duration_of(run.k, length)
     reached = length >= limit
     if reached:
         length = limit
@@ -186,7 +192,7 @@ def settle_length(run: Run, target: float, guess: float, length: float) -> tuple
     return length, reached
 
 
-@kernel
-def duration_of(run: Run, length: float) -> float:
+@inlined
+def duration_of(k: SeriesInput, length: float) -> float:
     """Return the duration (s) of a step of the given length (in guesses)."""
-    return length * abs(run.k.speed + 0.5 * run.k.bend * min(length, 1.0))
+    return length * abs(k.speed + 0.5 * k.bend * min(length, 1.0))

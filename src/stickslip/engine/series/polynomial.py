@@ -113,13 +113,25 @@ def restrict_low(c: Floats, n: int, start: float, width: float, out: Floats) -> 
     for k in range(n + 1):
         out[k] = c[k]
     if start != 0.0:
-        for j in range(n):
-            for k in range(n - 1, j - 1, -1):
-                out[k] += start * out[k + 1]
+        shift_low(out, n, start)
+    scale_low(out, n, width)
+
+
+@inlined
+def shift_low(c: Floats, n: int, start: float) -> None:
+    """Turn the coefficients of a polynomial p(x) of degree n into those of p(start + x), in place."""
+    for j in range(n):
+        for k in range(n - 1, j - 1, -1):
+            c[k] = c[k] + start * c[k + 1]
+
+
+@inlined
+def scale_low(c: Floats, n: int, width: float) -> None:
+    """Turn the coefficients of a polynomial p(x) of degree n into those of p(width x), in place."""
     power = width
     for k in range(1, n + 1):
-        out[k] *= power
-        power *= width
+        c[k] = c[k] * power
+        power = power * width
 
 
 @kernel

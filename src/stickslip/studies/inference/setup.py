@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.friction.law import FrictionLaw
 from stickslip.problem.problem import Problem
+from stickslip.studies.inference.features import arrests_in
 from stickslip.studies.inference.free import LOAD, STATE, TREND, Free, Prior, known_numbers
 from stickslip.studies.inference.loading import loading_of
-from stickslip.studies.inference.noise import noise_of
 from stickslip.studies.inference.part import Part
 from stickslip.studies.inference.record import MEASURED, SHEAR, Record
 
@@ -25,8 +25,6 @@ STARTS = ("steady", "record", "problem")
 """How a run may begin: in steady sliding at the first rate, with the load of the first samples, or as the problem says."""
 SENSORS = ("contact", "spring")
 """Where shear is measured."""
-DROP, ABOVE_NOISE = 0.25, 8.0
-"""Fall of shear that is a slip event: as a share of the range of the record, and in standard deviations of its noise."""
 LEAST = 8
 """Smallest number of samples of a part."""
 LATER = 0.05
@@ -69,6 +67,11 @@ def _observed(record: Record, observe: Any, problem: Problem) -> tuple[str, ...]
     for name in names:
         if name not in record.measured:
             raise InputError(f"infer: observe: the record has no {ascii(name)[:40]}; {nearest(str(name), record.measured)}")
+    for name in names:
+        if name in SHEAR and np.nanmin(record.measured[name]) == np.nanmax(record.measured[name]):
+            raise InputError(
+                f"{record.name}: {name} is the same number in all rows: its sensor was off, or another column is meant"
+            )
     if "shear_stress" in names and not problem.body.has_waves:
         cure = "give normal_stress beside it, so that it becomes friction, or the force as shear_force"
         raise InputError(f"{record.name}: the loads of a block are forces (N), and shear_stress is in Pa: {cure}")
@@ -126,29 +129,6 @@ def at_rests(part: Part) -> list[Part]:
         loading = loading_of(piece) if part.loading is not None else None
         found.append(replace(part, record=piece, loading=None if loading is None else loading.rate, start="record"))
     return found
-
-
-def arrests_in(values: Floats) -> NDArray[np.intp]:
-    """Return the indices of the lowest samples after each large drop."""
-    known = np.flatnonzero(np.isfinite(values))
-    shear = values[known]
-    low, high = np.quantile(shear, [0.01, 0.99])
-    drop = max(DROP * float(high - low), ABOVE_NOISE * noise_of(shear))
-    found, falling, top, bottom = [], False, 0, 0
-    for i, value in enumerate(shear.tolist()):
-        if falling:
-            if value < shear[bottom]:
-                bottom = i
-            elif value > shear[bottom] + 0.5 * drop:
-                found.append(bottom)
-                falling, top = False, i
-        elif value > shear[top]:
-            top = i
-        elif value < shear[top] - drop:
-            falling, bottom = True, i
-    if falling and bottom < len(shear) - 1:
-        found.append(bottom)
-    return np.asarray(known[np.array(found, int)], np.intp)
 
 
 def own_of(problem: Problem, parts: Sequence[Part], wanted: Iterable[str] | None) -> list[Free]:
