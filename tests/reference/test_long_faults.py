@@ -88,6 +88,19 @@ def test_a_front_speeds_up_or_stops_as_fracture_energy_says() -> None:
     assert stopped.run.slip_rate.max() < 0.02
 
 
+def test_a_front_that_speeds_up_leaves_a_pulse_of_slip() -> None:
+    """Gc = 0.6 G0: slip passes drop h / G, to 1.145 (120 nodes in h) within 2 %, and rests 0.2 to 0.8 h / c after the front."""
+    front, place, found = start(22.0, 40, 12.0, 2.0, 0.4, 3.0, 0.08, 0.0, share=0.6), 22 * 20 + 200, []
+    while np.isnan(front.passed[22 * 20 + 320]):
+        front.advance()
+        found.append((front.run.time - front.passed[place], front.run.slip_rate[place]))
+    assert front.y[place] == pytest.approx(5.0)
+    after, rate = np.array(found).T
+    assert front.run.slip[place] == pytest.approx(1.145, rel=0.02)
+    assert 0.2 < after[(after > 0.0) & (rate == 0.0)].min() < 0.8
+    assert rate[after > 1.0].max() < 0.03 * rate[after > 0.0].max()
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(("share", "speed", "end"), [(0.8, 0.4, 10.0), (0.9, 0.4, 12.0), (0.95, 0.4, 12.0), (1.02, 0.6, 10.5)])
 def test_a_front_has_the_inertia_of_the_closed_form(share: float, speed: float, end: float) -> None:
