@@ -121,8 +121,8 @@ class PlanarSolution:
 
     @property
     def stress_drop(self) -> Floats:
-        """Traction at the start minus traction at the last frame, at each node (Pa)."""
-        return np.asarray(self.traction[0] - self.traction[-1], float)
+        """Initial load minus traction at the last frame, at each node (Pa)."""
+        return np.asarray(self.slab.values.load - self.traction[-1], float)
 
     @property
     def nodes_per_process_zone(self) -> float:
@@ -131,13 +131,7 @@ class PlanarSolution:
         It is 9 pi/16 G divided by the largest fall of strength with slip (Pa/m) and by the distance of nodes (Day et al. 2005, for
         linear slip weakening; twice their length, because G acts on one side here). Fronts that run fast have shorter ones.
         """
-        falls = []
-        for one in self.slab.values.problems:
-            if one.friction.states or not one.friction.depends_on_slip:
-                continue
-            seen = one.law_slip + np.linspace(0.0, float(np.ptp(self.slip)), 201)[:-1]
-            falls.append(max(-one.normal * one.friction.slopes(float(u))[0] for u in seen))
-        fall = max(falls, default=0.0)
+        fall, _ = self.slab.values.slopes(float(np.ptp(self.slip, axis=0).max()) or 1e-6)
         return PROCESS_ZONE * self.slab.body.shear_modulus / fall / max(self.slab.spacing) if fall > 0.0 else math.nan
 
     def middle(self, values: NDArray[np.generic]) -> float:
