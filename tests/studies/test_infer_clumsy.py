@@ -9,6 +9,7 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
+from stickslip.foundation.errors import InputWarning
 from tests.studies.laboratory import correlated, load_point
 
 CLOCK = np.linspace(0.0, 100.0, 401)
@@ -52,6 +53,12 @@ REFUSED: list[tuple[Any, dict[str, Any], str]] = [
     (GOOD, {"sensor": "sprnig"}, "infer: sensor 'sprnig' is unknown; did you mean 'spring'?"),
     (GOOD, {"held_out": 2.0}, "infer: held_out must be a share between 0 and 1"),
     (GOOD, {"start": "stuck"}, "infer: start 'stuck' is unknown"),
+    ({**GOOD, "load point (m)": np.full(len(CLOCK), np.nan)}, {}, "record: load_point has no number in any row"),
+    ({**GOOD, "friction": np.full(len(CLOCK), 0.6)}, {}, "record: friction is the same number in all rows"),
+    ({**GOOD, "time (s)": pd.date_range("2026", periods=len(CLOCK))}, {}, "record: time holds dates: write seconds"),
+    ({**GOOD, "friction": FRICTION > 0.6}, {}, "record: friction must be a column of numbers, got truth values"),
+    ({**GOOD, "friction": FRICTION + 0j}, {}, "record: friction must be a column of numbers, got complex numbers"),
+    ({}, {}, "record: no column 'time'; there are no headings: is it empty?"),
     ("no.csv", {}, "no.csv: no such file"),
     (3.0, {}, "infer: record must be a CSV file"),
 ]
@@ -100,6 +107,59 @@ def test_a_saturated_sensor_is_left_out_and_told() -> None:
     read = Record.read({**GOOD, "friction": np.where((CLOCK > 60.0) & (CLOCK < 65.0), 0.7, FRICTION)})
     assert np.isnan(read.measured["friction"]).sum() == 19
     assert "the sensor was saturated there" in read.notes[0]
+
+
+def test_marks_of_missing_numbers_are_left_out_and_told() -> None:
+    """Programs write -999 where nothing was measured; a slip event, however large, lasts for more samples."""
+    read = Record.read({**GOOD, "friction": np.where(np.isin(np.arange(len(CLOCK)), [7, 8, 300]), -999.0, FRICTION)})
+    assert np.flatnonzero(np.isnan(read.measured["friction"])).tolist() == [7, 8, 300]
+    assert read.notes == ("friction is far beyond the rest in 3 lone samples, as at -999: they are left out",)
+    preload = np.where(np.arange(len(CLOCK)) > 380, FRICTION, 1e-4)
+    assert np.isfinite(Record.read({**GOOD, "friction": preload}).measured["friction"]).all()
+
+
+def test_a_load_point_that_counts_backwards_is_asked_about() -> None:
+    (note,) = Record.read({**GOOD, "load point (m)": -MOVED}).notes
+    assert note == "load_point falls while friction is positive: does its sensor count backwards, so that its sign must be turned?"
+    assert Record.read({**GOOD, "load point (m)": -MOVED, "friction": -FRICTION}).notes == ()
+
+
+def test_stress_in_newtons_is_asked_about_where_no_run_succeeds() -> None:
+    newtons = {"time (s)": CLOCK, "load point (m)": MOVED, "tau (Pa)": 3e4 * FRICTION, "sigma (MPa)": np.full(len(CLOCK), 5.0)}
+    with pytest.raises(ss.InputError, match="are the units of shear and normal stress in the headings right"):
+        ss.studies.infer(GUESS, newtons, ["a"], starts=1)
+
+
+def test_a_load_point_that_is_hardly_in_metres_is_warned_about() -> None:
+    with pytest.warns(InputWarning, match="load_point, has no unit and is read in m"):
+        Record.read({"time (s)": CLOCK, "load_point": 1e6 * MOVED, "friction": FRICTION})
+
+
+FILES = [
+    ("", "no column 'time'; there are no headings: is it empty?"),
+    ("time (s),load point (m),mu\n", "at least two rows with a time are needed, got 0"),
+    ("time (s);load point (m);mu\n0,1;0,0;0,6\n", "has a decimal comma; decimal commas are not read"),
+    ("time (s),load point (m),mu\n0,1,0,0,0,6\n", "6 cells, but the header has 3; decimal commas?"),
+    ("time,load point (m),mu\n2026-05-01 12:00:07,0,0.6\n", "times of day are not read, write seconds from the start"),
+    ("time,load point,mu\n(s),(um),(-)\n0,0,0.6\n", "a unit belongs in the heading, as in time (s)"),
+    ("time load_point mu\n0 0 0.6\n", "columns are separated by commas, semicolons or tabs"),
+    ("time (s),mu\n0,0.6\n1,0.6\nend of test\n", "time must be a number, got text"),
+]
+
+
+@pytest.mark.parametrize(("text", "message"), FILES, ids=[message[:40] for _, message in FILES])
+def test_files_that_cannot_be_read_are_refused_in_one_line(tmp_path: Any, text: str, message: str) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text(text)
+    with pytest.raises(ss.InputError) as caught:
+        Record.read(path)
+    assert message in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_folder_in_place_of_a_file_is_refused(tmp_path: Any) -> None:
+    with pytest.raises(ss.InputError, match="Is a directory"):
+        Record.read(tmp_path)
 
 
 def test_values_in_steps_of_the_digitiser_are_no_saturation() -> None:

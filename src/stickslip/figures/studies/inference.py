@@ -24,6 +24,8 @@ from stickslip.solution.place import Place
 if TYPE_CHECKING:
     from stickslip.studies.inference.inference import Inference
 
+MANY = 200
+"""Number of points from which they are drawn small."""
 MOST_PAIRED = 4
 """Largest number of parameters that are drawn against each other."""
 NAMES = {
@@ -35,8 +37,8 @@ NAMES = {
     "friction_drop": ("drop of friction", r"\Delta\mu", "1"),
     "shear_stress_drop": ("stress drop", r"\Delta\tau", "Pa"),
     "shear_force_drop": ("drop of force", r"\Delta F", "N"),
-    "recurrence": ("time between events", "T", "s"),
-    "duration": ("duration of the fall", r"\delta t", "s"),
+    "recurrence": ("recurrence", "T", "s"),
+    "duration": ("duration", r"\delta t", "s"),
     "event_slip": ("slip of an event", r"\Delta u", "m"),
     "peak_rate": ("peak slip rate", "v_{max}", "m/s"),
 }
@@ -193,10 +195,11 @@ def _draw_record(axes: Axes, dataset: xr.Dataset, name: str, size: float) -> Non
     title, letter, si = NAMES[name]
     of = dataset["quantity"].values == name
     unit, scale = unit_of(si, dataset["data"].values[of])
+    dots = 2 if of.sum() > MANY else 5
     for part in np.unique(dataset["part"].values):
         chosen = of & (dataset["part"].values == part)
         time = dataset["time"].values[chosen] / size
-        axes.plot(time, dataset["data"].values[chosen] / scale, ".", color=SKY, markersize=2, rasterized=True)
+        axes.plot(time, dataset["data"].values[chosen] / scale, ".", color=SKY, markersize=dots, rasterized=True)
         axes.plot(time, dataset["model"].values[chosen] / scale, color=INK, linewidth=1.0)
     left_out = of & (dataset["fitted"].values == 0)
     if left_out.any():
@@ -211,7 +214,14 @@ def _draw_residual(axes: Axes, dataset: xr.Dataset, name: str, size: float) -> N
     rest = dataset["residual"].values[of]
     unit, scale = unit_of(si, rest)
     power = 10.0 ** math.floor(math.log10(np.nanmax(np.abs(rest)) or 1.0)) if si == "1" else 1.0
-    axes.plot(dataset["time"].values[of] / size, rest / scale / power, ".", color=BLUE, markersize=1.5, rasterized=True)
+    axes.plot(
+        dataset["time"].values[of] / size,
+        rest / scale / power,
+        ".",
+        color=BLUE,
+        markersize=1.5 if of.sum() > MANY else 4,
+        rasterized=True,
+    )
     zero_line(axes)
     digits = f"$10^{{{round(math.log10(power))}}}$" if si == "1" else unit
     axes.set_ylabel(f"${letter}$, measured\nminus run ({digits})")

@@ -110,7 +110,9 @@ def _record_of(part: Part) -> tuple[Record, list[str]]:
     found = features_in(Samples(time, values), between, shear)
     at = found.pop("time", np.zeros(0))
     if not len(at):
-        raise InputError(f"{record.name}: no two drops of {shear} stand out of its noise: there are no events with features")
+        raise InputError(
+            f"{record.name}: no two drops of {shear} stand out of its noise: there are no events with features; fit samples"
+        )
     notes = []
     samples = float(np.median(found["duration"])) / float(np.median(np.diff(time)))
     if not samples >= FEWEST:

@@ -204,7 +204,11 @@ def infer(
         notes += said
     model = _model(given, fitted, free, wishes)
     with telling(progress, "infer") as tell:
-        found = _inferred(model, tuple(whole), wishes, notes, tell)
+        try:
+            found = _inferred(model, tuple(whole), wishes, notes, tell)
+        except InputError as error:
+            doubts = [note for note in notes if note.endswith("?")]  # a unit or a sign may be why no run succeeds
+            raise InputError("; ".join([str(error), *doubts])) from None
     options = {"begin": begin, "end": end} | vars(wishes)
     return replace(found, asked={name: value for name, value in options.items() if value not in (None, False)})
 

@@ -67,6 +67,11 @@ def _observed(record: Record, observe: Any, problem: Problem) -> tuple[str, ...]
     for name in names:
         if name not in record.measured:
             raise InputError(f"infer: observe: the record has no {ascii(name)[:40]}; {nearest(str(name), record.measured)}")
+    for name in names:
+        if name in SHEAR and np.nanmin(record.measured[name]) == np.nanmax(record.measured[name]):
+            raise InputError(
+                f"{record.name}: {name} is the same number in all rows: its sensor was off, or another column is meant"
+            )
     if "shear_stress" in names and not problem.body.has_waves:
         cure = "give normal_stress beside it, so that it becomes friction, or the force as shear_force"
         raise InputError(f"{record.name}: the loads of a block are forces (N), and shear_stress is in Pa: {cure}")
