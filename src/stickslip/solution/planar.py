@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from stickslip.foundation.formatting import brief
 from stickslip.observables.planar import pulses, rupture_speed, rupture_times
 from stickslip.planar.slab import PlanarSlab
+from stickslip.solution.accessors import draw_planar
 from stickslip.solution.place import Place
 from stickslip.trajectory.slip_events import default_event_rate
 
@@ -144,10 +145,7 @@ class PlanarSolution:
 
     def plot(self, **place: Unpack[Place]) -> Figure:
         """Draw the slip rate over y and time, and the motion in the middle against time; keywords as those of `Solution.plot`."""
-        from stickslip.figures.runs import planar
-        from stickslip.figures.sheet import known_to_pyplot
-
-        return known_to_pyplot(planar.draw(self, **place), place)
+        return draw_planar(self, **place)
 
     def dataset(self) -> xr.Dataset:
         """Return slip, slip rate, traction and heat as an xarray dataset over time, y and, for a plane, z (SI units)."""
