@@ -25,7 +25,7 @@ from stickslip.problem.problem import Problem
 from stickslip.scenarios.source import read_duration_and_problem, read_source
 from stickslip.schemes.contract import Scheme
 from stickslip.schemes.registry import scheme_of
-from stickslip.schemes.run import check_suitable, run_scheme
+from stickslip.schemes.run import check_runs, check_suitable, run_scheme
 from stickslip.schemes.series import Series
 from stickslip.solution.solution import Solution
 from stickslip.studies.rule_followed import NONE, UNTOLD, RulePaths, exact_runs
@@ -222,12 +222,12 @@ def schemes(
         If the user presses Ctrl-C before the first run of a scheme is finished.
     """
     lasts, given = read_duration_and_problem("schemes", problem, duration)
-    check_suitable(given)
     several = [scheme] if isinstance(scheme, str) or not isinstance(scheme, Sequence) else scheme
     chosen = [scheme_of(one) for one in several]
     meshes = sorted({int(count) for count in cells})
     if not meshes or not chosen:
         raise InputError("schemes: needs a scheme and a mesh or more")
+    check_runs(given, lasts, chosen, meshes, search=search, courant=courant)
     done: list[Series] = []
     interrupted = False
     with telling(progress, "schemes") as tell:
