@@ -196,3 +196,39 @@ def test_columns_that_are_not_understood_are_told_where_there_is_no_load_point()
     record = ss.studies.Record.read({"time": [0.0, 1.0, 2.0], "mu": [0.6, 0.61, 0.62], "Displ (um)": [0.0, 1.0, 2.0]})
     (note,) = record.notes
     assert note.startswith("columns that were not understood: 'Displ (um)'; the displacement of the machine is called load_point")
+
+
+def test_a_few_samples_at_the_end_of_a_range_are_saturated_if_noise_would_move_them() -> None:
+    """A short peak is cut off at three samples only, which would nearly double the direct effect that is found."""
+    noise = 3e-4 * correlated(len(CLOCK), 0.0, 4)
+    peak = 0.6 + 0.01 * np.exp(-0.5 * ((CLOCK - 50.0) / 0.5) ** 2)
+    cut = np.minimum(np.round(peak + noise, 5), 0.605)
+    read = Record.read({**GOOD, "friction": cut})
+    assert np.isnan(read.measured["friction"]).sum() == (cut == 0.605).sum() >= 3
+    whole = Record.read({**GOOD, "friction": np.round(peak + noise, 5)})
+    assert np.isfinite(whole.measured["friction"]).all()
+
+
+def test_a_run_of_equal_samples_without_noise_is_not_saturated() -> None:
+    rest = np.where(CLOCK < 90.0, 0.6 + 1e-4 * CLOCK, 0.609)
+    assert np.isfinite(
+        Record.read({**GOOD, "friction": np.where((CLOCK > 90.0) & (CLOCK < 91.2), 0.61, rest)}).measured["friction"]
+    ).all()
+
+
+def test_a_load_point_in_another_unit_is_doubted() -> None:
+    study = ss.studies.infer(GUESS, {**GOOD, "load point (m)": 1e3 * MOVED}, ["reference"], starts=1)
+    assert any("the load point moves at 1 mm/s, and at 1 um/s in the problem: are the units" in note for note in study.notes)
+
+
+def test_slip_in_place_of_the_load_point_is_doubted_where_it_does_not_jump() -> None:
+    slip = 1e-6 * (CLOCK + 20.0 * np.sin(CLOCK / 3.0) * np.exp(-CLOCK / 30.0))
+    study = ss.studies.infer(GUESS, {**GOOD, "load point (m)": slip}, ["reference"], starts=1)
+    assert any("as slip does and a driven machine hardly" in note for note in study.notes)
+
+
+def test_a_force_that_is_no_friction_under_the_normal_force_is_refused() -> None:
+    data = {"time (s)": CLOCK, "load point (m)": MOVED, "shear force (N)": 30.0 * FRICTION}
+    message = "record: shear_force is 0.00036 times the problem's normal force of 50 kN, in the median: is its unit"
+    with pytest.raises(ss.InputError, match=message):
+        ss.studies.infer(GUESS, data, ["reference"], starts=1)

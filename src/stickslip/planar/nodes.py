@@ -43,6 +43,26 @@ class NodeValues:
     numbers: tuple[dict[str, Floats], ...]
     """The parameters of the formulas by name, for each piece of the law."""
 
+    def slopes(self, reach: float) -> tuple[float, float]:
+        """Return the steepest fall and the steepest rise of strength with slip (Pa/m), at any node.
+
+        They are 0 for friction that depends on a state, or not on slip.
+
+        Parameters
+        ----------
+        reach
+            Slip (m) from the start up to which strength is looked at: at 1000 places, half of them close to the start.
+        """
+        fall = rise = 0.0
+        for problem in self.problems:
+            law = problem.friction
+            if law.states or not law.depends_on_slip:
+                continue
+            slip = problem.law_slip + np.union1d(np.linspace(0.0, reach, 500), np.geomspace(1e-6 * reach, reach, 500))
+            slopes = problem.normal * np.diff(law.coefficient(slip)) / np.diff(slip)
+            fall, rise = max(fall, -float(slopes.min())), max(rise, float(slopes.max()))
+        return fall, rise
+
     @property
     def law(self) -> FrictionLaw:
         """The law of one of the nodes; all nodes have the same formulas."""

@@ -67,10 +67,10 @@ class SteadyFront:
 
         Gc = G0 [1 - (2 ln 2 / pi) (h / c^2) (dV/dt) / a^3].
 
-    So V / a grows linearly in time, as the momentum of a relativistic particle under a constant force. A process zone that is not
-    short beside h lowers the inertia. This has the form of the equation that Weng & Ampuero 2019 (J. Geophys. Res. 124, 8584) found
-    for a fault of finite width in a full space, with the constant of a slab; Goldman, Livne & Fineberg 2010 (Phys. Rev. Lett. 104,
-    114301) have it for tension in a strip.
+    So V / a grows linearly in time, as the momentum of a relativistic particle under a constant force. This has the form of the
+    equation that Weng & Ampuero 2019 (J. Geophys. Res. 124, 8584) found for a fault of finite width in a full space, with the
+    constant of a slab, and the same for fronts that slow down; Goldman, Livne & Fineberg 2010 (Phys. Rev. Lett. 104, 114301) found
+    such an inertia for tension in a strip. A process zone that is not short beside h lowers the inertia.
     """
 
     stress_drop: float

@@ -5,12 +5,18 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.studies.inference.noise import noise_of, rounding_of
+
 Floats = NDArray[np.float64]
 
 RAIL = 8
 """Number of equal samples at the end of the range of a quantity from which its sensor counts as saturated."""
 LONE = 10.0
 """Factor by which such a run is longer than other runs of equal samples."""
+FEW, DIGITS_OF_NOISE = 3, 10.0
+"""Number of equal samples that noise makes unlikely, and its size, in steps of the digitiser, from which it does."""
+LEAST_NOISE = 1e-4
+"""The same as a share of the range: a record without noise may rest at one value."""
 BEYOND = 10.0
 """Factor by which a lone sample is larger than nine of ten samples: noise, and the marks of a missing number, as -999."""
 MOMENT = 3
@@ -25,9 +31,12 @@ def saturated(values: Floats) -> NDArray[np.bool_]:
     begins = np.flatnonzero(np.append(True, values[1:] != values[:-1]))
     lengths = np.diff(np.append(begins, len(values)))
     usual = float(np.quantile(lengths, 0.9))
+    step = 2.0 * rounding_of(values)
+    noisy = noise_of(values) > max(DIGITS_OF_NOISE * step, LEAST_NOISE * float(np.nanmax(values) - np.nanmin(values)))
+    longest = max(FEW, 2.0 * usual) if noisy and step > 0.0 else max(RAIL, LONE * usual)
     ends = (np.nanmin(values), np.nanmax(values))
     for begin, length in zip(begins.tolist(), lengths.tolist(), strict=True):
-        if length >= max(RAIL, LONE * usual) and length < 0.5 * len(values) and values[begin] in ends:
+        if length >= longest and length < 0.5 * len(values) and values[begin] in ends:
             flat[begin : begin + length] = True
     return flat
 
