@@ -59,7 +59,7 @@ def test_priors_bounds_and_begins_are_read(command):
         (["--free", "a", "--prior", "a"], "infer: --prior must be NAME=VALUE"),
         (["--free", "a", "--out", "a.txt"], "--out a.txt: the name must end in .nc or .csv"),
         (["--free", "a", "--parts", "events"], "infer: parts must be 'rests' or left out, got 'events'"),
-        (["--free", "a", "--by", "events"], "infer: by 'events' is unknown; allowed: samples, features"),
+        (["--free", "a", "--by", "events"], "infer: by 'events' is unknown; allowed: features, samples"),
         (["--free", "a", "--by", "features"], "data.csv: "),
         (["--free", "a", "--from", "1 kg"], "infer: begin must be"),
         ([], "infer: --free is missing"),
