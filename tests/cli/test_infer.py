@@ -59,6 +59,8 @@ def test_priors_bounds_and_begins_are_read(command):
         (["--free", "a", "--prior", "a"], "infer: --prior must be NAME=VALUE"),
         (["--free", "a", "--out", "a.txt"], "--out a.txt: the name must end in .nc or .csv"),
         (["--free", "a", "--parts", "events"], "infer: parts must be 'rests' or left out, got 'events'"),
+        (["--free", "a", "--by", "events"], "infer: by 'events' is unknown; allowed: features, samples"),
+        (["--free", "a", "--by", "features"], "data.csv: "),
         (["--free", "a", "--from", "1 kg"], "infer: begin must be"),
         ([], "infer: --free is missing"),
     ],
@@ -85,3 +87,9 @@ def test_a_report_is_written_to_a_folder_and_refused_for_a_file(command, tmp_pat
     assert "Fitted to data.csv" in (tmp_path / "fitted" / "report.html").read_text(encoding="utf-8")
     refused = command("infer", "velocity-steps-block", "data.csv", "--free", "reference", "--report", "data.csv")
     assert (refused.code, refused.err) == (2, "stickslip: --report data.csv: data.csv is not a folder\n")
+
+
+def test_the_help_of_by_names_what_infer_can_fit_and_not_what_another_command_can(command):
+    shown = command("infer", "--help")
+    assert "features of slip events" in " ".join(shown.out.split())
+    assert "contact-mass" not in shown.out

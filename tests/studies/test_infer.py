@@ -130,6 +130,9 @@ def test_a_trend_and_the_clock_of_the_record_can_be_free() -> None:
     study = inferred(data, [*TRUTH, "record.trend", "record.delay"])
     assert study.values["record.delay"] == pytest.approx(1.5, abs=0.05)
     assert study.values["record.trend"] == pytest.approx(5.0, rel=0.05)
+    assert any(
+        "belong to the record: the run of the best scenario, and the explorer, are without them" in one for one in study.notes
+    )
 
 
 def test_two_records_share_the_numbers() -> None:

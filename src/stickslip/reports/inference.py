@@ -15,7 +15,7 @@ from stickslip.foundation.formatting import about_time, number
 from stickslip.reports.page import DIGITS, picture, rendered, save_figure, save_text, superscript, with_unit
 from stickslip.studies.inference.infer import ranking
 from stickslip.studies.inference.inference import Inference
-from stickslip.studies.inference.words import minima_of, noise_of, warnings_of
+from stickslip.studies.inference.words import minima_of, noise_of, record_of, warnings_of
 
 PAGE = "report.html"
 """Name of the page in the folder of a report."""
@@ -45,7 +45,7 @@ def write(study: Inference, folder: Path, *others: Inference) -> Path:
         body=study.best.body.kind,
         warnings=list(warnings_of(study)),
         known=list(_known(study)),
-        about=[_sentence(text) for text in (*study.about_samples, *study.about)],
+        about=[_sentence(text) for text in (*record_of(study), *study.about_samples, *study.about)],
         tables=[table for table in (_numbers(study, own=False), _numbers(study, own=True)) if table],
         fit=_fit(study),
         prediction=None if study.prediction is None else number(study.prediction, 3),

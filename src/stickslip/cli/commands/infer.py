@@ -35,7 +35,7 @@ def infer(
     changes: Changes = None,
     begin: Annotated[str | None, option("Take the record from this time on (s, or with a unit).", "--from")] = None,
     end: Annotated[str | None, option("Take the record up to this time.", "--to")] = None,
-    by: Annotated[str, typer.Option(help=BY)] = "samples",
+    by_what: Annotated[str, option(BY, "--by")] = "samples",
     observe: Annotated[str | None, option(OBSERVE)] = None,
     start: Annotated[str | None, option(START)] = None,
     sensor: Annotated[str, typer.Option(help="Where shear is measured: contact, or spring (load cell of a block).")] = "contact",
@@ -95,7 +95,7 @@ def infer(
         check_folder(report, "--report")
     look.check(figure)
     options: dict[str, Any] = {
-        "by": by,
+        "by": by_what,
         "observe": observe,
         "start": start,
         "sensor": sensor,

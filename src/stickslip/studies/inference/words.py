@@ -9,6 +9,7 @@ import numpy as np
 
 from stickslip.foundation.formatting import brief
 from stickslip.studies.inference.features import arrests_in
+from stickslip.studies.inference.free import DELAY, TREND
 from stickslip.studies.inference.part import first_sizes
 from stickslip.studies.inference.record import SHEAR
 
@@ -29,6 +30,7 @@ def notes_of(study: Inference) -> Iterator[str]:
     yield from noise_of(study)
     if study.prediction is not None:
         yield f"what was left out is predicted with an error of {study.prediction:.3g} times the noise"
+    yield from record_of(study)
     yield from study.about_samples
     yield from study.about
 
@@ -55,6 +57,13 @@ def noise_of(study: Inference) -> Iterator[str]:
     for name, size in study.model.sizes.items():
         if size > MANY and any(name in part.record.deviations for part in study.parts):
             yield f"residuals of {name} are {size:.3g} times the standard deviations given; the intervals allow for it"
+
+
+def record_of(study: Inference) -> Iterator[str]:
+    """Yield a sentence if numbers of the record itself were found, which no scenario holds."""
+    own = [f"{name} = {study.values[name]:.4g}" for name in (TREND, DELAY) if name in study.values]
+    if own:
+        yield f"{' and '.join(own)} belong to the record: the run of the best scenario, and the explorer, are without them"
 
 
 def _misfit(study: Inference) -> Iterator[str]:
