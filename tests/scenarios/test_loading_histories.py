@@ -164,7 +164,7 @@ def test_a_data_file_is_read(tmp_path: Path) -> None:
             "time pull_rate\n0 1\n1 2\n",
             ": 'pull.csv', line 1: no column 'pull_rate' in the header; columns are separated by commas, semicolons or tabs",
         ),
-        ("", ": 'pull.csv', line 1: no column 'pull_rate' in the header; write it as pull_rate (m/s)"),
+        ("", ": 'pull.csv', line 1: no column 'pull_rate' in the header; there are no headings: is it empty?"),
         ("time,pull_rate\n1,1\n0,2\n", ": 'pull.csv', line 3: time must ascend, but 0 follows 1; sort the rows"),
         ("time,pull_rate\n-1,1\n0,2\n", ": 'pull.csv', line 2: time must not be negative, got -1"),
         ("time,pull_rate\n0,nan\n1,2\n", ": 'pull.csv', line 2: pull_rate must be finite, got 'nan'; leave out such rows"),
