@@ -32,9 +32,11 @@ def series(formula: Expression, x_ref: float, slip: list[float], rate: list[floa
     The second result is the difference of the formula from its value at x_ref and rate 0. Both come from the generated text.
     """
     writer = Recurrences(formula, ())
+    writer.direct.clear()  # slip is no integral of the slip rate here
     names: dict[str, Any] = MATHS | HELPERS | {"sine": sine, "versine": versine, "x_ref": x_ref, "c": [0.0] * writer.size}
     names |= {"dx": slip[0], "p": []} | {f"s_{k}": rate[k] for k in range(ORDER + 1)}
-    lines = [f"c[{writer.index[node]}] = {writer.reference_value(node)}" for node in writer.nodes] + writer.order_zero()
+    lines = [f"c[{writer.index[node]}] = {writer.reference_value(node)}" for node in writer.nodes]
+    lines += [*writer.order_zero(), *writer.before_orders("1.0", "0.0")]
     for k in range(1, ORDER + 1):
         names[f"x_{k}"] = slip[k]
         lines += [*writer.order(k), *writer.weights(k)]

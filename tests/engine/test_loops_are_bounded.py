@@ -26,6 +26,8 @@ OTHER_LOOPS = {
     ("runs.py", "run_group"): "looks at the flag that stops the batch after each step; every member's run ends",
     ("runs.py", "advance_member"): "looks at the flag that stops the batch after each call of the engine, which is bounded",
     ("certificate.py", "least_share"): "each pass goes to the next disc of a list, in one direction",
+    ("lanes.py", "step_under"): "each pass takes one of the eight lanes off a set of lanes",
+    ("lanes.py", "choose_length"): "each pass takes one of the eight lanes off a set of lanes",
     ("turning_points.py", "piece_next_to_rest"): "each pass goes to the next piece of a history, in one direction",
 }
 """Loops that no syntax tells to end, by file and function, with the reason why they do."""
