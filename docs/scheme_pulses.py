@@ -36,15 +36,17 @@ RUNS = (
 )
 """Schemes, with their Courant numbers."""
 SMALLEST_DAMPING = 1.193
-"""Damping of the pendulum phi'' + damping phi' + sin phi = 1 above which it does not roll on. Source: M. Urabe 1955."""
+"""Damping of the pendulum phi'' + damping phi' + sin phi = 1 above which it does not roll on: see tests/schemes/test_pulses.py."""
+SIDE = (5.0, 0.1, 0.95)
+"""A side test: wavenumber (1/m), start beyond the maximum (m), and load beyond the mean friction as a share of S a."""
 MASS = "exact, mass rho dx/2"
 
 
-def problem(wavenumber: float, beyond: float) -> ss.Problem:
-    """Return the slab with its load exactly at the friction maximum, started beyond it, under a driver at rest."""
+def problem(wavenumber: float, beyond: float, load: float = 1.0) -> ss.Problem:
+    """Return the slab started beyond the friction maximum, under a driver at rest; its load is exactly the maximum, or a share."""
     law = ss.friction.SinusoidalSlip(1.0, 0.5, wavenumber)
     slab = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)
-    excess = slab.normal_stress * law.amplitude * (1.0 - math.cos(wavenumber * beyond))
+    excess = slab.normal_stress * law.amplitude * (load - math.cos(wavenumber * beyond))
     return ss.Problem(slab, law, initial_slip=0.5 * math.pi / wavenumber + beyond, initial_excess=excess)
 
 
@@ -74,6 +76,22 @@ def counts(wavenumber: float, beyond: float) -> dict[str, list[int]]:
     return found
 
 
+def print_side_test() -> None:
+    """Print the pulses of the two schemes with the most of them, for a load below the friction maximum."""
+    wavenumber, beyond, _ = SIDE
+    given = problem(*SIDE)
+    slab = given.body
+    assert isinstance(slab, ss.ElasticSlab)
+    print(f"wavenumber {wavenumber:g} /m, {beyond:g} m beyond the maximum, load {100 * (1 - SIDE[2]):.0f} % of S a below it")
+    for name in ("central-differences", "newmark"):
+        found = []
+        for gamma in MESHES:
+            cells = round(slab.thickness * slab.normal_stress * 0.5 * wavenumber / (slab.shear_modulus * gamma))
+            series = run_scheme(given, slab.two_way_time, SCHEMES[name], cells, courant=0.5)
+            found.append(pulses(float(np.interp(slab.two_way_time, series.time, series.slip)), wavenumber, beyond))
+        print(f"{name:24}", *(f"{value:5d}" for value in found), flush=True)
+
+
 def main() -> None:
     """Measure, print the table, and draw."""
     threshold = 2.0 / SMALLEST_DAMPING**2
@@ -97,6 +115,7 @@ def main() -> None:
         )
         panel.minorticks_off()
         panel.set_title(rf"$\omega$ = {wavenumber:g} /m, $u_0 = u_c$ + {1e3 * beyond:g} mm", fontsize=10)
+    print_side_test()
     panels[0].set_ylabel("pulses in one round trip of the waves")
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8, frameon=False)

@@ -20,7 +20,7 @@ LAYERS = (
     ("bodies", "engine", "loading"),
     ("problem",),
     ("contact", "reference"),
-    ("engine_input", "schemes"),
+    ("engine_input", "planar", "schemes"),
     ("scenarios", "trajectory"),
     ("creep", "observables"),
     ("solution",),
@@ -66,7 +66,7 @@ ROOMS = {
         ("regularised",),
         ("registry", "run"),
     ),
-    "reference": (("rate_and_state",), ("block", "slab"), ("method_of_steps",)),
+    "reference": (("rate_and_state",), ("block", "planar", "slab"), ("method_of_steps",)),
     "cli": (
         ("output", "overrides", "installation"),
         ("long_run", "options"),

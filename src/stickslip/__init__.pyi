@@ -10,6 +10,7 @@ from .explorer.notebook import explore
 from .foundation.constants import YEAR
 from .foundation.errors import InputError
 from .io.netcdf import open_solution
+from .planar.slab import PlanarSlab
 from .problem import Problem, selection
 from .run.catalogue import catalogue
 from .run.resume import resume
@@ -27,6 +28,7 @@ __all__ = [
     "YEAR",
     "ElasticSlab",
     "InputError",
+    "PlanarSlab",
     "Problem",
     "Solution",
     "SpringBlock",

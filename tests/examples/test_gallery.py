@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+import runpy
 import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -243,6 +244,27 @@ def _own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Non
     mpl.use("agg")
     yield
     pyplot.close("all")
+
+
+@check
+def own_scheme(names: Names) -> None:
+    """The upwind scheme is of first order, and its formula of what it dissipates closes the balance to rounding."""
+    close(names["order"].slip_order.iloc[1:], [1.0, 1.0], 0.02)
+    assert (names["order"].energy_drift.abs() < 1e-13).all()
+    assert names["rules"] == {"stick-first": "minimal", "continue": "perfect-delay"}
+
+
+@check
+def judge_another_code(names: Names) -> None:
+    """The file is what the other program writes; the folds give the exact times, 4.102 m/s the exact jump of the first."""
+    other = runpy.run_path(str(names["file"].with_suffix(".py")))["run"]()[::4]
+    np.testing.assert_allclose(np.loadtxt(names["file"], delimiter=",", skiprows=1), other, rtol=1e-6, atol=1e-6)
+    shocks = names["study"].shocks
+    close(shocks.exact_time, [2.242655, 5.212841], 1e-6)
+    close(shocks.exact_after.iloc[0], 4.10204081633)
+    assert abs(shocks.delay.iloc[0]) < names["study"].table.step.iloc[0]
+    assert -1.0 < shocks.delay.iloc[1] < -0.8
+    assert names["study"].verdicts == {"staggered_grid": "none"}
 
 
 def name_of(path: Path) -> str:

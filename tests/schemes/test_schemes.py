@@ -168,7 +168,7 @@ def test_interrupted_studies_keep_the_rows_that_were_finished() -> None:
         (lambda: schemes("fig6-slab", 1e6, cells=[1000]), "schemes: .* steps of"),
         (lambda: scheme_of(object()), "schemes: a scheme needs name, title"),
         (lambda: read_series("no-such-file.csv"), "no-such-file.csv: cannot be read"),
-        (lambda: Series(np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3)), "series: a series needs three or more times"),
+        (lambda: Series(np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3)), "series: times must ascend, but 0 s"),
     ],
 )
 def test_mistakes_are_refused_in_one_line(call, message: str) -> None:  # type: ignore[no-untyped-def]
@@ -186,18 +186,6 @@ def test_backward_euler_stops_where_its_effective_impedance_says() -> None:
     for cells in (50, 200):
         study = schemes(LOOP, None, "backward-euler", [cells], courant=courant)
         assert 0.0 <= study.table.arrest.iloc[0] - expected < 2.0 * study.table.step.iloc[0]
-
-
-@pytest.mark.parametrize(("gamma", "rolls"), [(1.38, False), (1.43, True)])
-def test_a_massive_contact_rolls_over_the_next_barrier_beyond_urabes_damping(gamma: float, rolls: bool) -> None:
-    assert (gamma > 2.0 / 1.193**2) == rolls
-    mass = 0.5 * 2800.0 * gamma * SLAB.shear_modulus / (1e8 * 0.5 * 50.0)
-    law = ss.friction.SinusoidalSlip(1.0, 0.5, 50.0)
-    problem = ss.Problem(
-        replace(SLAB, contact_mass=mass), law, initial_slip=np.pi / 100 + 1e-3, initial_excess=5e7 * (1.0 - np.cos(0.05))
-    )
-    slip = float(ss.simulate(problem, 5.7).slip(5.7)) - problem.initial_slip
-    assert (slip > 2.5 * np.pi / 50.0) == rolls
 
 
 @pytest.mark.parametrize(("name", "courant"), [("newmark", 0.5), ("newmark", 2.0), ("theta", 0.3), ("backward-euler", 1.0)])

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import re
+import runpy
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -140,3 +143,14 @@ def test_of_the_schemes_only_those_without_numerical_waves_do_not_ring() -> None
 def test_verdicts_by_scheme_on_the_loop(search: str, expected: str) -> None:
     found = schemes(LOOP, None, ["sbp4", "newmark", "backward-euler"], [50, 100], search=search).verdicts
     assert found == {"sbp4": expected, "newmark": NONE, "backward-euler": NONE if search == "stick-first" else expected}
+
+
+@pytest.mark.parametrize("search", ["stick-first", "continue"])
+def test_the_table_of_the_page_is_what_its_script_measures(search: str) -> None:
+    """On the two coarsest meshes here; the script measures all six."""
+    docs = Path(__file__).parents[2] / "docs"
+    column = {"stick-first": 1, "continue": 2}[search]
+    text = (docs / "schemes.md").read_text(encoding="utf-8")
+    page = re.findall(r"^\| (.*?) \| `([-DmMx?]{6})` \| `([-DmMx?]{6})` \|$", text, re.MULTILINE)
+    found = runpy.run_path(str(docs / "scheme_verdicts.py"))["verdicts"](search, (25, 50))
+    assert {row[0]: row[column][:2] for row in page} == found

@@ -84,17 +84,19 @@ class CoulombBlock:
     dynamic: float = 0.5
     pull: float = 1e-3
 
-    def sampled(self, time: Floats, spring: float) -> tuple[Floats, Floats]:
-        """Spring force (N) and slip (m) at sample times, from rest at a spring force."""
+    def sampled(self, time: Floats, spring: float, scatter: float = 0.0, seed: int = 0) -> tuple[Floats, Floats]:
+        """Spring force (N) and slip (m) at sample times, from rest at a spring force; static friction may scatter."""
+        random, strength = np.random.default_rng(seed), self.static * self.normal
         frequency = math.sqrt(self.stiffness / self.mass)
         force, slip = np.zeros(len(time)), np.zeros(len(time))
         at, moved, sticks, load = 0.0, 0.0, True, spring
         while at < time[-1]:
             if sticks:
-                lasts = (self.static * self.normal - load) / (self.stiffness * self.pull)
+                strength = (self.static + scatter * random.standard_normal()) * self.normal
+                lasts = (strength - load) / (self.stiffness * self.pull)
                 inside = (time >= at) & (time <= at + lasts)
                 force[inside], slip[inside] = load + self.stiffness * self.pull * (time[inside] - at), moved
-                load = self.static * self.normal
+                load = strength
             else:
                 # F - Fd = A cos(w t) + B sin(w t), v = V - F'/K, at rest again where v = 0
                 above, sine = load - self.dynamic * self.normal, self.stiffness * self.pull / frequency
@@ -182,3 +184,57 @@ class CoulombSlab:
         lasts = np.clip(time - begin, 0.0, self.trip)
         slip = ((self.static - self.dynamic) * self.normal * lasts + 0.5 * self._rise * lasts**2) / impedance
         return np.where(time <= end, before, after), slip
+
+    def events(self, stress: float, strengths: Sequence[float], steps: int) -> tuple[Floats, Floats, Floats]:
+        """Times (s), shear stress (Pa) and slip rate (m/s) of many events, each with a static friction of its own.
+
+        Characteristics on a grid that divides the two-way travel time: what arrives is what left a trip ago, and Coulomb friction
+        is linear in it.
+        """
+        impedance, kinetic, left = self.density * self.wave_speed, self.dynamic * self.normal, list(strengths)
+        load, slips = stress + self._rise * self.trip * np.arange(steps) / steps, False
+        loads, rates = list[Floats](), list[Floats]()
+        while left:
+            rate, i = np.zeros(steps), 0
+            while i < steps:
+                ends = np.flatnonzero(load[i:] <= kinetic) if slips else np.flatnonzero(load[i:] >= left[0] * self.normal)
+                end = i + int(ends[0]) if len(ends) else steps
+                rate[i:end] = (load[i:end] - kinetic) / impedance if slips else 0.0
+                if end < steps:
+                    slips = not slips
+                    if not slips:
+                        left.pop(0)
+                        if not left:
+                            break
+                i = end
+            loads.append(load)
+            rates.append(rate)
+            load = load - 2.0 * impedance * rate + 2.0 * impedance * self.pull
+        all_loads, all_rates = np.concatenate(loads), np.concatenate(rates)
+        shear = np.where(all_rates > 0.0, kinetic, all_loads)
+        return self.trip / steps * np.arange(len(shear)), shear, all_rates
+
+    def stick_slip(self, stress: float, duration: float, scatter: float = 0.0, seed: int = 0) -> tuple[Floats, Floats, Floats]:
+        """Times (s), shear stress at the contact (Pa) and slip (m) over many events, along characteristics, 80 steps a round trip.
+
+        Static friction may scatter from event to event.
+        """
+        random, steps, impedance = np.random.default_rng(seed), 80, self.density * self.wave_speed
+        step, drag = self.trip / steps, self.dynamic * self.normal
+        load = stress + self._rise * step * np.arange(steps)
+        strength, sliding, slip = self.normal * (self.static + scatter * random.standard_normal()), False, 0.0
+        shears, slips = list[Floats](), list[Floats]()
+        for _ in range(int(duration / self.trip) + 1):
+            rate, shear = np.zeros(steps), load.copy()
+            if sliding or load.max() >= strength:
+                for i, beta in enumerate(load.tolist()):
+                    sliding = sliding or beta >= strength
+                    rate[i] = max(beta - drag, 0.0) / impedance if sliding else 0.0
+                    shear[i] = drag if rate[i] > 0.0 else beta
+                    if sliding and rate[i] == 0.0:
+                        sliding, strength = False, self.normal * (self.static + scatter * random.standard_normal())
+            shears.append(shear)
+            slips.append(slip + step * np.cumsum(rate))
+            slip = float(slips[-1][-1])
+            load = load + 2.0 * impedance * (self.pull - rate)
+        return step * np.arange(steps * len(shears)), np.concatenate(shears), np.concatenate(slips)

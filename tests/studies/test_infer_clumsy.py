@@ -9,6 +9,7 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
+from stickslip.foundation.errors import InputWarning
 from tests.studies.laboratory import correlated, load_point
 
 CLOCK = np.linspace(0.0, 100.0, 401)
@@ -52,6 +53,12 @@ REFUSED: list[tuple[Any, dict[str, Any], str]] = [
     (GOOD, {"sensor": "sprnig"}, "infer: sensor 'sprnig' is unknown; did you mean 'spring'?"),
     (GOOD, {"held_out": 2.0}, "infer: held_out must be a share between 0 and 1"),
     (GOOD, {"start": "stuck"}, "infer: start 'stuck' is unknown"),
+    ({**GOOD, "load point (m)": np.full(len(CLOCK), np.nan)}, {}, "record: load_point has no number in any row"),
+    ({**GOOD, "friction": np.full(len(CLOCK), 0.6)}, {}, "record: friction is the same number in all rows"),
+    ({**GOOD, "time (s)": pd.date_range("2026", periods=len(CLOCK))}, {}, "record: time holds dates: write seconds"),
+    ({**GOOD, "friction": FRICTION > 0.6}, {}, "record: friction must be a column of numbers, got truth values"),
+    ({**GOOD, "friction": FRICTION + 0j}, {}, "record: friction must be a column of numbers, got complex numbers"),
+    ({}, {}, "record: no column 'time'; there are no headings: is it empty?"),
     ("no.csv", {}, "no.csv: no such file"),
     (3.0, {}, "infer: record must be a CSV file"),
 ]
@@ -102,6 +109,59 @@ def test_a_saturated_sensor_is_left_out_and_told() -> None:
     assert "the sensor was saturated there" in read.notes[0]
 
 
+def test_marks_of_missing_numbers_are_left_out_and_told() -> None:
+    """Programs write -999 where nothing was measured; a slip event, however large, lasts for more samples."""
+    read = Record.read({**GOOD, "friction": np.where(np.isin(np.arange(len(CLOCK)), [7, 8, 300]), -999.0, FRICTION)})
+    assert np.flatnonzero(np.isnan(read.measured["friction"])).tolist() == [7, 8, 300]
+    assert read.notes == ("friction is far beyond the rest in 3 lone samples, as at -999: they are left out",)
+    preload = np.where(np.arange(len(CLOCK)) > 380, FRICTION, 1e-4)
+    assert np.isfinite(Record.read({**GOOD, "friction": preload}).measured["friction"]).all()
+
+
+def test_a_load_point_that_counts_backwards_is_asked_about() -> None:
+    (note,) = Record.read({**GOOD, "load point (m)": -MOVED}).notes
+    assert note == "load_point falls while friction is positive: does its sensor count backwards, so that its sign must be turned?"
+    assert Record.read({**GOOD, "load point (m)": -MOVED, "friction": -FRICTION}).notes == ()
+
+
+def test_stress_in_newtons_is_asked_about_where_no_run_succeeds() -> None:
+    newtons = {"time (s)": CLOCK, "load point (m)": MOVED, "tau (Pa)": 3e4 * FRICTION, "sigma (MPa)": np.full(len(CLOCK), 5.0)}
+    with pytest.raises(ss.InputError, match="are the units of shear and normal stress in the headings right"):
+        ss.studies.infer(GUESS, newtons, ["a"], starts=1)
+
+
+def test_a_load_point_that_is_hardly_in_metres_is_warned_about() -> None:
+    with pytest.warns(InputWarning, match="load_point, has no unit and is read in m"):
+        Record.read({"time (s)": CLOCK, "load_point": 1e6 * MOVED, "friction": FRICTION})
+
+
+FILES = [
+    ("", "no column 'time'; there are no headings: is it empty?"),
+    ("time (s),load point (m),mu\n", "at least two rows with a time are needed, got 0"),
+    ("time (s);load point (m);mu\n0,1;0,0;0,6\n", "has a decimal comma; decimal commas are not read"),
+    ("time (s),load point (m),mu\n0,1,0,0,0,6\n", "6 cells, but the header has 3; decimal commas?"),
+    ("time,load point (m),mu\n2026-05-01 12:00:07,0,0.6\n", "times of day are not read, write seconds from the start"),
+    ("time,load point,mu\n(s),(um),(-)\n0,0,0.6\n", "a unit belongs in the heading, as in time (s)"),
+    ("time load_point mu\n0 0 0.6\n", "columns are separated by commas, semicolons or tabs"),
+    ("time (s),mu\n0,0.6\n1,0.6\nend of test\n", "time must be a number, got text"),
+]
+
+
+@pytest.mark.parametrize(("text", "message"), FILES, ids=[message[:40] for _, message in FILES])
+def test_files_that_cannot_be_read_are_refused_in_one_line(tmp_path: Any, text: str, message: str) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text(text)
+    with pytest.raises(ss.InputError) as caught:
+        Record.read(path)
+    assert message in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_folder_in_place_of_a_file_is_refused(tmp_path: Any) -> None:
+    with pytest.raises(ss.InputError, match="Is a directory"):
+        Record.read(tmp_path)
+
+
 def test_values_in_steps_of_the_digitiser_are_no_saturation() -> None:
     read = Record.read({**GOOD, "friction": np.round(FRICTION, 3)})
     assert read.notes == ()
@@ -136,3 +196,39 @@ def test_columns_that_are_not_understood_are_told_where_there_is_no_load_point()
     record = ss.studies.Record.read({"time": [0.0, 1.0, 2.0], "mu": [0.6, 0.61, 0.62], "Displ (um)": [0.0, 1.0, 2.0]})
     (note,) = record.notes
     assert note.startswith("columns that were not understood: 'Displ (um)'; the displacement of the machine is called load_point")
+
+
+def test_a_few_samples_at_the_end_of_a_range_are_saturated_if_noise_would_move_them() -> None:
+    """A short peak is cut off at three samples only, which would nearly double the direct effect that is found."""
+    noise = 3e-4 * correlated(len(CLOCK), 0.0, 4)
+    peak = 0.6 + 0.01 * np.exp(-0.5 * ((CLOCK - 50.0) / 0.5) ** 2)
+    cut = np.minimum(np.round(peak + noise, 5), 0.605)
+    read = Record.read({**GOOD, "friction": cut})
+    assert np.isnan(read.measured["friction"]).sum() == (cut == 0.605).sum() >= 3
+    whole = Record.read({**GOOD, "friction": np.round(peak + noise, 5)})
+    assert np.isfinite(whole.measured["friction"]).all()
+
+
+def test_a_run_of_equal_samples_without_noise_is_not_saturated() -> None:
+    rest = np.where(CLOCK < 90.0, 0.6 + 1e-4 * CLOCK, 0.609)
+    assert np.isfinite(
+        Record.read({**GOOD, "friction": np.where((CLOCK > 90.0) & (CLOCK < 91.2), 0.61, rest)}).measured["friction"]
+    ).all()
+
+
+def test_a_load_point_in_another_unit_is_doubted() -> None:
+    study = ss.studies.infer(GUESS, {**GOOD, "load point (m)": 1e3 * MOVED}, ["reference"], starts=1)
+    assert any("the load point moves at 1 mm/s, and at 1 um/s in the problem: are the units" in note for note in study.notes)
+
+
+def test_slip_in_place_of_the_load_point_is_doubted_where_it_does_not_jump() -> None:
+    slip = 1e-6 * (CLOCK + 20.0 * np.sin(CLOCK / 3.0) * np.exp(-CLOCK / 30.0))
+    study = ss.studies.infer(GUESS, {**GOOD, "load point (m)": slip}, ["reference"], starts=1)
+    assert any("as slip does and a driven machine hardly" in note for note in study.notes)
+
+
+def test_a_force_that_is_no_friction_under_the_normal_force_is_refused() -> None:
+    data = {"time (s)": CLOCK, "load point (m)": MOVED, "shear force (N)": 30.0 * FRICTION}
+    message = "record: shear_force is 0.00036 times the problem's normal force of 50 kN, in the median: is its unit"
+    with pytest.raises(ss.InputError, match=message):
+        ss.studies.infer(GUESS, data, ["reference"], starts=1)

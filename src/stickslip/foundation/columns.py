@@ -63,7 +63,7 @@ COLUMNS: Mapping[str, Column] = {
     "far_stress": Column("Pa", signed=True),
 }
 """The columns that are known, by their plain heading. Capitals, spaces, - and _ make no difference."""
-LARGEST: Mapping[str, float] = {"slip": 100.0, "slip_rate": 100.0}
+LARGEST: Mapping[str, float] = {"slip": 100.0, "slip_rate": 100.0, "load_point": 100.0, "load_rate": 100.0}
 """Largest values (SI) that no friction test reaches: beyond them the numbers are hardly in SI."""
 LONGEST_LINE = 50_000
 """Largest number of characters of a line."""
@@ -163,9 +163,11 @@ def read_mapping(table: Any, wanted: Sequence[str], place: str, *, raw: bool = F
             plain |= {} if has_unit(given) else {name: i}
             if has_unit(given):  # a unit of its own outweighs one in the heading
                 given, factor = given.to(COLUMNS[name].unit).magnitude, Fraction(1)
-            numbers = np.asarray(given, dtype=float)
+            kind = np.asarray(given).dtype.kind
+            numbers = np.asarray(given if kind != "c" else np.real(given), dtype=float)
         except (TypeError, ValueError):
             raise InputError(f"{place}: {name} must be a column of numbers") from None
+        _check_kind(kind, name, place)
         if numbers.ndim != 1:
             raise InputError(f"{place}: {name} must be a column of numbers, got an array of {numbers.ndim} dimensions")
         columns[name] = _scaled(numbers, factor)
@@ -178,6 +180,16 @@ def read_mapping(table: Any, wanted: Sequence[str], place: str, *, raw: bool = F
             _check(float(numbers[i]), name, made.at(i))
     note_units(header, plain, columns, place)
     return made
+
+
+def _check_kind(kind: str, name: str, place: str) -> None:
+    """Raise InputError for dates and spans of time, which count nanoseconds, and for truth values and complex numbers."""
+    if kind in "mM":
+        raise InputError(
+            f"{place}: {name} holds dates: write seconds, as (table.time - table.time[0]).dt.total_seconds() gives them"
+        )
+    if kind in "bc":
+        raise InputError(f"{place}: {name} must be a column of numbers, got {'truth values' if kind == 'b' else 'complex numbers'}")
 
 
 def note_units(header: Sequence[str], chosen: Mapping[str, int], columns: Mapping[str, Floats], place: str) -> None:
@@ -225,6 +237,8 @@ def _names(header: Sequence[str]) -> list[str]:
 
 def missing(header: Sequence[str], column: str) -> str:
     """Return a hint for a header that lacks a column: the heading that could be meant, or how a header is written."""
+    if not any(cell.strip() for cell in header):
+        return "there are no headings: is it empty?"
     if len(header) == 1 and len(header[0].split()) > 1:
         return "columns are separated by commas, semicolons or tabs"
     if column == "friction" and not _headings("shear_stress").isdisjoint(_names(header)):
@@ -331,6 +345,7 @@ def _number(text: str, column: str, place: str, first: bool) -> float:
         if _COMMA.fullmatch(text):
             raise InputError(f"{place}: {column} has a decimal comma; {DECIMAL_COMMA}") from None
         hint = f"; a unit belongs in the heading, as in {_example(column)}" if first and text else ""
+        hint = "; times of day are not read, write seconds from the start" if column == "time" and ":" in text else hint
         raise InputError(f"{place}: {column} must be a number, got {'text' if text else 'nothing'}{hint}") from None
     return _check(value, column, place)
 

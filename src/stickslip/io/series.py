@@ -67,7 +67,9 @@ def _column(file: Path, table: pd.DataFrame, name: str) -> np.ndarray[tuple[int]
     known = NAMES[name]
     found = next((one for one in known if one in table.columns), None)
     if found is None:
-        raise InputError(f"{file}: no column for the {name.replace('rate', 'slip rate')}: call it {' or '.join(known)}")
+        wanted = f"no column for the {name.replace('rate', 'slip rate')}: call it {' or '.join(known)}"
+        there = ", ".join(str(one) for one in table.columns)
+        raise InputError(f"{file}: {wanted}; its columns are {ascii(there)[1:-1][:80]}")
     values = pd.to_numeric(table[found], errors="coerce").to_numpy(float) * known[found]
     if not np.isfinite(values).all():
         raise InputError(f"{file}: column {found}: line {int(np.argmin(np.isfinite(values))) + 1} is not a finite number")

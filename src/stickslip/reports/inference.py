@@ -68,8 +68,9 @@ def _figures(study: Inference, dataset: Any) -> Iterator[tuple[str, str, str, An
     """Yield name, title, caption and drawing of each figure."""
     for name in study.model.sizes:
         title = f"{figures.NAMES[name][0].capitalize()}, record and best run"
+        points = "what was measured of each event" if study.asked.get("by") == "features" else "the samples of the record"
         caption = (
-            "Above: the samples of the record, and the run with the best numbers. Middle: what is left, which should look like "
+            f"Above: {points}, and the run with the best numbers. Middle: what is left, which should look like "
             "noise; a pattern is what the model lacks. Below: the slip rate of that run."
         )
         yield f"figure-{name.replace('_', '-')}", title, caption, figures.draw_curves(dataset, name)
@@ -112,7 +113,7 @@ def _listed(texts: list[str]) -> str:
 def _sentence(text: str) -> str:
     """Return a note as a sentence; names of numbers at its begin stay in lower case."""
     first = text if "." in text.split(maxsplit=1)[0] else text[:1].upper() + text[1:]
-    return f"{first.rstrip('.')}."
+    return first if first.endswith("?") else f"{first.rstrip('.')}."
 
 
 def _numbers(study: Inference, *, own: bool) -> list[list[str]]:

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, overload
 
 from stickslip.foundation.arguments import as_path
 from stickslip.foundation.conversion import WithUnit
+from stickslip.foundation.errors import InputError
+from stickslip.planar.slab import PlanarSlab
 from stickslip.problem.problem import Problem
 from stickslip.run.monitor import run_to_end
 from stickslip.run.options import CHECKPOINT_EVERY, problem_and_options
+from stickslip.run.planar_run import PlanarProgress, simulate_planar
 from stickslip.run.progress import Progress
 from stickslip.run.progress_line import told
 from stickslip.run.session import Session
 from stickslip.run.solver import Events, NewEvents, Solver
+from stickslip.solution.planar import PlanarSolution
 from stickslip.solution.solution import Solution
 from stickslip.trajectory.status import UNDER_WAY
 
@@ -21,6 +25,17 @@ if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario
 
 
+@overload
+def simulate(
+    problem: PlanarSlab,
+    duration: float | str | WithUnit,
+    *,
+    frames: int | None = None,
+    progress: PlanarProgress | bool | None = None,
+) -> PlanarSolution: ...
+
+
+@overload
 def simulate(
     problem: Problem | Scenario | str | Path,
     duration: float | str | WithUnit | None = None,
@@ -34,19 +49,38 @@ def simulate(
     checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
     max_pieces: int | None = None,
     title: str = "",
-) -> Solution:
+) -> Solution: ...
+
+
+def simulate(
+    problem: Problem | Scenario | PlanarSlab | str | Path,
+    duration: float | str | WithUnit | None = None,
+    rtol: float | None = None,
+    *,
+    frames: int | None = None,
+    creep_rtol: float | None = None,
+    shortest_event: float | str | WithUnit | None = None,
+    max_events: int | None = None,
+    progress: Any = None,
+    checkpoint: str | Path | None = None,
+    checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
+    max_pieces: int | None = None,
+    title: str = "",
+) -> Solution | PlanarSolution:
     """Run a problem, or a scenario, from t = 0: `simulate(problem, 10.0)`, `simulate("fig6-slab")`, `simulate("mine.toml")`.
 
     Parameters
     ----------
-    problem : Problem, Scenario, str or Path
+    problem : Problem, Scenario, PlanarSlab, str or Path
         The problem itself, a scenario, the name of a bundled scenario (`stickslip.scenarios` lists them), or a scenario file.
-        Options that you leave out come from the scenario.
+        Options that you leave out come from the scenario. A `PlanarSlab` takes `duration`, `frames` and `progress` only.
     duration : float or str
         Latest end of the run: a number in s, or a text with a unit such as "480 years". A scenario has one; a problem has none.
         Other times may be given as texts, too, and as quantities of the library pint.
     rtol : float, optional
         Relative tolerance of the run, between 1e-15 and 1e-2; 1e-10 by default.
+    frames : int, optional
+        For a `PlanarSlab`, the number of frames that are kept of each two-way travel time; 100 by default.
     creep_rtol : float, optional
         Error of slip that leaps over creep may cause, as a share of the slip since the start: up to 1e-2, and 0 for no leaps.
         Automatic by default (see Notes).
@@ -71,7 +105,7 @@ def simulate(
 
     Returns
     -------
-    Solution
+    Solution or PlanarSolution
         The run; its `status` says what ended it. Ctrl-C ends the run with a valid solution up to that time.
 
     Raises
@@ -96,6 +130,19 @@ def simulate(
     it was. With max_pieces the file is written whatever ended the run.
     """
     with told(progress, "simulate") as report:
+        if isinstance(problem, PlanarSlab):
+            others: dict[str, Any] = {
+                "rtol": rtol,
+                "creep_rtol": creep_rtol,
+                "shortest_event": shortest_event,
+                "max_events": max_events,
+            }
+            others |= {"checkpoint": checkpoint, "max_pieces": max_pieces}
+            if needless := [name for name, value in others.items() if value is not None]:
+                raise InputError(f"simulate: a PlanarSlab has no {needless[0]}: its nodes and its courant set the accuracy")
+            return simulate_planar(problem, duration, frames=frames, progress=report)
+        if frames is not None:
+            raise InputError("simulate: frames is for a PlanarSlab: a slab in 1D is known at all times")
         given, options = problem_and_options(
             "simulate",
             problem,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -50,6 +51,40 @@ def grid_of(problem: Problem, cells: int, courant: float) -> Grid:
     )
 
 
+def _grid_and_steps(problem: Problem, duration: float, scheme: Scheme, cells: int, courant: float | None) -> tuple[Grid, int]:
+    """Return the grid and the number of steps of a run. Raises InputError for numbers out of range."""
+    check_suitable(problem)
+    number = scheme.courant if courant is None else courant
+    if not 0.0 < number <= scheme.largest_courant:
+        raise InputError(f"schemes: {scheme.name}: the Courant number must lie in (0, {scheme.largest_courant:g}], got {number:g}")
+    if scheme.name == "characteristics" and number != 1.0:
+        raise InputError("schemes: characteristics: the Courant number is 1, because waves move by one cell in a step")
+    grid = grid_of(problem, cells, number)
+    steps = math.ceil(duration / grid.dt * (1.0 - 1e-12))
+    if steps > LARGEST_STEPS:
+        raise InputError(
+            f"schemes: {steps} steps of {grid.dt:g} s are more than {LARGEST_STEPS}: shorten the run or coarsen the grid"
+        )
+    return grid, steps
+
+
+def check_runs(
+    problem: Problem,
+    duration: float,
+    schemes: Sequence[Scheme],
+    meshes: Sequence[int],
+    *,
+    search: str = "stick-first",
+    courant: float | None = None,
+) -> None:
+    """Raise InputError for what `run_scheme` would refuse before its first step, on any of the schemes and meshes."""
+    check_suitable(problem)
+    GridContact(problem, search)
+    for scheme in schemes:
+        for cells in meshes:
+            _grid_and_steps(problem, duration, scheme, cells, courant)
+
+
 def run_scheme(
     problem: Problem, duration: float, scheme: Scheme, cells: int, *, search: str = "stick-first", courant: float | None = None
 ) -> Series:
@@ -80,18 +115,7 @@ def run_scheme(
     InputError
         If the problem does not suit, if cells, steps or the Courant number are out of range, or if the run becomes infinite.
     """
-    check_suitable(problem)
-    number = scheme.courant if courant is None else courant
-    if not 0.0 < number <= scheme.largest_courant:
-        raise InputError(f"schemes: {scheme.name}: the Courant number must lie in (0, {scheme.largest_courant:g}], got {number:g}")
-    if scheme.name == "characteristics" and number != 1.0:
-        raise InputError("schemes: characteristics: the Courant number is 1, because waves move by one cell in a step")
-    grid = grid_of(problem, cells, number)
-    steps = math.ceil(duration / grid.dt * (1.0 - 1e-12))
-    if steps > LARGEST_STEPS:
-        raise InputError(
-            f"schemes: {steps} steps of {grid.dt:g} s are more than {LARGEST_STEPS}: shorten the run or coarsen the grid"
-        )
+    grid, steps = _grid_and_steps(problem, duration, scheme, cells, courant)
     smoothing = getattr(scheme, "smoothing", 0.0) * problem.normal * problem.friction.variation / grid.impedance
     contact, motion = GridContact(problem, search, smoothing), scheme.begin(grid)
     samples: list[Sample] = [motion.first(contact)]

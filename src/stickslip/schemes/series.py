@@ -46,8 +46,12 @@ class Series:
     energies: Floats | None = None
 
     def __post_init__(self) -> None:
-        if self.time.size < 3 or (np.diff(self.time) <= 0.0).any():
-            raise InputError(f"{self.name}: a series needs three or more times that ascend")
+        if self.time.size < 3:
+            raise InputError(f"{self.name}: a series needs three or more times, got {self.time.size}")
+        back = np.flatnonzero(np.diff(self.time) <= 0.0)
+        if back.size:
+            before, after = self.time[back[0] : back[0] + 2].tolist()
+            raise InputError(f"{self.name}: times must ascend, but {after:.12g} s (sample {back[0] + 2}) follows {before:.12g} s")
         for name in ("time", "slip", "rate", "traction"):
             values = getattr(self, name)
             if values.shape != self.time.shape:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from stickslip.solution.place import Place
+    from stickslip.solution.planar import PlanarSolution
     from stickslip.solution.solution import Solution
 
 MOST_VALUES = 20_000_000
@@ -328,3 +329,10 @@ def check_size(t: ArrayLike, x: ArrayLike | None) -> None:
     wanted = np.size(t) * (1 if x is None else np.size(x))
     if wanted > MOST_VALUES:
         raise InputError(f"to_dataset: {wanted:.3g} values are too many: take fewer times or places (at most {MOST_VALUES:.0e})")
+
+
+def draw_planar(run: PlanarSolution, **place: Unpack[Place]) -> Figure:
+    """Draw the slip rate over y and time of a planar slab, and the motion in the middle."""
+    from stickslip.figures.runs import planar
+
+    return known_to_pyplot(planar.draw(run, **place), place)

@@ -6,7 +6,7 @@ Slip alone is too kind: a contact that stops and starts again several times can 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
 from typing import NamedTuple
@@ -14,8 +14,12 @@ from typing import NamedTuple
 import numpy as np
 
 from stickslip.bodies import as_slab
+from stickslip.problem.problem import Problem
+from stickslip.problem.selection_rule import SELECTION_RULES
+from stickslip.run.simulate import simulate
 from stickslip.schemes.series import Series
 from stickslip.solution.solution import Solution
+from stickslip.studies.study import TextProgress, uninterrupted
 from stickslip.studies.verdict import groups
 from stickslip.trajectory.history import Floats
 
@@ -123,3 +127,13 @@ class RulePaths:
         misses, told = self.misses(series), self.groups(cell_time(series, self.exact[next(iter(self.exact))]))
         group = next((group for group in told if min(misses[rule] for rule in group) < STRICT), ())
         return UNTOLD if len(told) == 1 and group else " or ".join(group) or NONE
+
+
+def exact_runs(problem: Problem, duration: float, rtol: float, tell: TextProgress) -> dict[str, Solution]:
+    """Return the exact solution of a problem under its own selection rule and under all built-in ones."""
+    found = {}
+    for rule in dict.fromkeys((problem.rule, *SELECTION_RULES)):
+        tell(f"exact answer, {rule}")
+        selected = problem if rule == problem.rule else replace(problem, selection=rule)
+        found[rule] = uninterrupted(simulate(selected, duration, rtol))
+    return found

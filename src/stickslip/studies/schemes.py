@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
@@ -22,18 +22,17 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.netcdf_file import write
 from stickslip.problem.problem import Problem
-from stickslip.problem.selection_rule import SELECTION_RULES
-from stickslip.run.simulate import simulate
-from stickslip.scenarios.source import read_duration_and_problem
+from stickslip.scenarios.source import read_duration_and_problem, read_source
 from stickslip.schemes.contract import Scheme
 from stickslip.schemes.registry import scheme_of
-from stickslip.schemes.run import check_suitable, run_scheme
+from stickslip.schemes.run import check_runs, check_suitable, run_scheme
 from stickslip.schemes.series import Series
 from stickslip.solution.solution import Solution
-from stickslip.studies.rule_followed import NONE, UNTOLD, RulePaths
+from stickslip.studies.rule_followed import NONE, UNTOLD, RulePaths, exact_runs
 from stickslip.studies.scheme_measures import COLUMNS, Measured
 from stickslip.studies.scheme_shocks import SHOCK_COLUMNS
-from stickslip.studies.study import Study, TextProgress, telling, uninterrupted
+from stickslip.studies.series_check import check_length, check_units
+from stickslip.studies.study import Study, TextProgress, telling
 
 if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario
@@ -177,16 +176,6 @@ def _orders(table: pd.DataFrame, column: str) -> list[float]:
     return found[: len(table)]
 
 
-def exact_runs(problem: Problem, duration: float, rtol: float, tell: TextProgress) -> dict[str, Solution]:
-    """Return the exact solution of a problem under its own selection rule and under all built-in ones."""
-    found = {}
-    for rule in dict.fromkeys((problem.rule, *SELECTION_RULES)):
-        tell(f"exact answer, {rule}")
-        selected = problem if rule == problem.rule else replace(problem, selection=rule)
-        found[rule] = uninterrupted(simulate(selected, duration, rtol))
-    return found
-
-
 def schemes(
     problem: Problem | Scenario | str | Path,
     duration: float | str | WithUnit | None = None,
@@ -233,12 +222,12 @@ def schemes(
         If the user presses Ctrl-C before the first run of a scheme is finished.
     """
     lasts, given = read_duration_and_problem("schemes", problem, duration)
-    check_suitable(given)
     several = [scheme] if isinstance(scheme, str) or not isinstance(scheme, Sequence) else scheme
     chosen = [scheme_of(one) for one in several]
     meshes = sorted({int(count) for count in cells})
     if not meshes or not chosen:
         raise InputError("schemes: needs a scheme and a mesh or more")
+    check_runs(given, lasts, chosen, meshes, search=search, courant=courant)
     done: list[Series] = []
     interrupted = False
     with telling(progress, "schemes") as tell:
@@ -283,14 +272,22 @@ def judge_series(
     Raises
     ------
     InputError
-        If the problem is not a slab's, or no series is given.
+        If the problem is not a slab's, if no series is given, or if one does not begin at t = 0, is shorter than the scenario's
+        duration, or has slip, slip rate or traction in wrong units.
     KeyboardInterrupt
         If the user presses Ctrl-C.
     """
     several = (series,) if isinstance(series, Series) else tuple(series)
     if not several:
         raise InputError("judge_series: needs a series or more")
-    lasts = max(float(one.time[-1]) for one in several)
-    _, given = read_duration_and_problem("judge_series", problem, lasts)
+    source = read_source("judge_series", problem)
+    ends = max(float(one.time[-1]) for one in several) if isinstance(source, Problem) else None
+    lasts, given = read_duration_and_problem("judge_series", source, ends)
+    check_suitable(given)
+    for one in several:
+        check_length(one, lasts if ends is None else float(one.time[-1]))
     with telling(progress, "judge_series") as tell:
-        return Schemes(given, exact_runs(given, lasts, rtol, tell), several)
+        exact = exact_runs(given, lasts, rtol, tell)
+    for one in several:
+        check_units(one, exact[given.rule], given)
+    return Schemes(given, exact, several)

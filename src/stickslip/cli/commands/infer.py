@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from stickslip.studies.inference.inference import Inference
 
 FREE = 'The numbers to find, with commas: "a,b,body.stiffness".'
+BY = "What is fitted: samples, or features of slip events."
+OBSERVE = "Which of them: friction, shear_stress, shear_force, slip, slip_rate; drop, recurrence, duration, event_slip, peak_rate."
 START = "How the run begins: steady, record (load of the first samples) or problem."
 PRIOR = 'What is known before: "friction.a=normal(0.01, 0.002)"; lognormal and uniform too.'
 BOUND = 'Limits of a number: "friction.a=0.001..0.1".'
@@ -33,9 +35,8 @@ def infer(
     changes: Changes = None,
     begin: Annotated[str | None, option("Take the record from this time on (s, or with a unit).", "--from")] = None,
     end: Annotated[str | None, option("Take the record up to this time.", "--to")] = None,
-    observe: Annotated[
-        str | None, option("What is fitted, with commas: friction, shear_stress, shear_force, slip, slip_rate.")
-    ] = None,
+    by: Annotated[str, typer.Option(help=BY)] = "samples",
+    observe: Annotated[str | None, option(OBSERVE)] = None,
     start: Annotated[str | None, option(START)] = None,
     sensor: Annotated[str, typer.Option(help="Where shear is measured: contact, or spring (load cell of a block).")] = "contact",
     parts: Annotated[str | None, option("rests: a run of its own after each slip event of the record.")] = None,
@@ -75,6 +76,7 @@ def infer(
       stickslip infer velocity-steps-block data.csv --free a,b,stiffness
       stickslip infer mine.toml data.csv --free a --prior "a=normal(0.01, 0.002)"
       stickslip infer mine.toml data.csv --free static,dynamic --parts rests
+      stickslip infer mine.toml data.csv --free static,dynamic --by features
       stickslip infer a.toml data.csv --free a,b --held-out 0.3 --compare b.toml
       stickslip infer mine.toml data.csv --free a,b --scenario-out best.toml
       stickslip infer mine.toml data.csv --free a,b --report fitted
@@ -92,7 +94,15 @@ def infer(
     if report is not None:
         check_folder(report, "--report")
     look.check(figure)
-    options: dict[str, Any] = {"observe": observe, "start": start, "sensor": sensor, "parts": parts, "loss": loss, "starts": starts}
+    options: dict[str, Any] = {
+        "by": by,
+        "observe": observe,
+        "start": start,
+        "sensor": sensor,
+        "parts": parts,
+        "loss": loss,
+        "starts": starts,
+    }
     options |= {"each": each and each.split(","), "seed": seed, "profiles": profiles, "samples": samples, "rtol": rtol}
     options |= {"held_out": _typed(held_out), "begin": _typed(begin), "end": _typed(end)}
     options |= {"bounds": _bounds(bound), "priors": _values(prior, "--prior"), "begin_at": _values(begin_at, "--begin-at")}

@@ -60,7 +60,7 @@ def titled(scenario: Scenario) -> Console:
 
 def print_sentences(screen: Console, *texts: str) -> None:
     """Print texts as sentences, each on a line of its own; empty ones are left out."""
-    say(screen, *(f"{text[0].upper()}{text[1:]}." for text in texts if text))
+    say(screen, *(f"{text[0].upper()}{text[1:]}{'' if text[-1] in '?!' else '.'}" for text in texts if text))
 
 
 def print_numbers(screen: Console, headings: Sequence[str], rows: Rows, *, text: int = 0) -> None:

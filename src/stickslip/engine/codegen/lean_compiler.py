@@ -47,18 +47,30 @@ def _remembered(operator: Any, context: Any, arguments: Any, keywords: Any) -> A
 def _at_speed() -> Iterator[None]:
     """Compile inside this context with remembered definitions, while the collector of garbage waits: hardly anything can go.
 
-    Numba's lock is held meanwhile, and everybody else's code is compiled as always.
+    Numba's lock is held meanwhile, and everybody else's code is compiled as always. A function that is compiled because another
+    one calls it is compiled inside the context of the other one.
     """
-    collecting, before = gc.isenabled(), Function.get_call_type
+    if Function.get_call_type is _remembered:
+        yield
+        return
+    collecting = gc.isenabled()
     gc.disable()
     Function.get_call_type = _remembered
     try:
         yield
     finally:
-        Function.get_call_type = before
+        Function.get_call_type = _search
         _found.clear()
         if collecting:
+            _put_off_search()
             gc.enable()
+
+
+def _put_off_search() -> None:
+    """Leave what is new to the next full search for garbage: a search at once takes a tenth of the time of the compilation."""
+    if not gc.get_freeze_count():  # else somebody keeps frozen objects
+        gc.freeze()
+        gc.unfreeze()
 
 
 class LeanCompiler(Compiler):  # type: ignore[misc] # numba is untyped

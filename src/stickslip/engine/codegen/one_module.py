@@ -23,8 +23,14 @@ class FunctionCode(JITCodeLibrary):  # type: ignore[misc] # numba is untyped
     """The code of one function that others call. It is not linked, not optimised and not turned into machine code."""
 
     def finalize(self) -> None:
-        """Close the library without linking anything; the `Whole` that includes this function links the functions that it calls."""
+        """Close the library without linking anything; the `Whole` that includes this function links the functions that it calls.
+
+        The linkage is weak: a linker may drop a function of linkage "linkonce" that nobody has asked for yet, and a part that is
+        linked later may ask for it.
+        """
         self._raise_if_finalized()
+        for before in (llvm.Linkage.external, llvm.Linkage.linkonce_odr):
+            set_linkage(self._final_module, before, llvm.Linkage.weak_odr)
         self._finalized = True
 
     @property
@@ -41,14 +47,8 @@ class FunctionCode(JITCodeLibrary):  # type: ignore[misc] # numba is untyped
         return 0
 
     def own_module(self) -> Any:
-        """Return the code of this function alone; it may be linked into several modules.
-
-        Its linkage is weak: a linker may drop a function of linkage "linkonce" that nobody has asked for yet, and a part that is
-        linked later may ask for it.
-        """
-        module = super()._get_module_for_linking().clone()
-        set_linkage(module, llvm.Linkage.linkonce_odr, llvm.Linkage.weak_odr)
-        return module
+        """Return the code of this function alone, of which copies are linked into several modules."""
+        return super()._get_module_for_linking()
 
     def _get_module_for_linking(self) -> Any:
         """Return the code of this function with all functions that it calls, for modules of numba's own kind."""

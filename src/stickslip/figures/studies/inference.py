@@ -24,6 +24,8 @@ from stickslip.solution.place import Place
 if TYPE_CHECKING:
     from stickslip.studies.inference.inference import Inference
 
+MANY = 200
+"""Number of points from which they are drawn small."""
 MOST_PAIRED = 4
 """Largest number of parameters that are drawn against each other."""
 NAMES = {
@@ -32,6 +34,13 @@ NAMES = {
     "shear_force": ("shear force", "F", "N"),
     "slip": ("slip", "u", "m"),
     "slip_rate": ("slip rate", "v", "m/s"),
+    "friction_drop": ("drop of friction", r"\Delta\mu", "1"),
+    "shear_stress_drop": ("stress drop", r"\Delta\tau", "Pa"),
+    "shear_force_drop": ("drop of force", r"\Delta F", "N"),
+    "recurrence": ("recurrence", "T", "s"),
+    "duration": ("duration", r"\delta t", "s"),
+    "event_slip": ("slip of an event", r"\Delta u", "m"),
+    "peak_rate": ("peak slip rate", "v_{max}", "m/s"),
 }
 """Names, symbols and units of what is measured."""
 JOINT = 2.4477468306808166
@@ -43,7 +52,7 @@ FRAMES = 4000
 def data(study: Inference) -> xr.Dataset:
     """Return data, model and residual of each sample, the slip rate of the runs, and the numbers with their covariance, in SI."""
     table = study.curves
-    begins = np.array([part.record.time[0] for part in study.parts])
+    begins = np.array([part.record.time[0] for part in study.parts])  # the first sample, or the first event
     of = table.part.to_numpy()
     contents: dict[str, Any] = {
         "time": quantity("sample", table.time.to_numpy() + begins[of], "time", "t", "s"),
@@ -55,7 +64,7 @@ def data(study: Inference) -> xr.Dataset:
     unit = units.pop() if len(units) == 1 else "SI"
     for name, text in (("data", "measured"), ("model", "best run"), ("residual", "measured minus best run")):
         contents[name] = quantity("sample", table[name].to_numpy(), text, "", unit)
-    contents |= _rates(study, begins) | _numbers(study)
+    contents |= _rates(study) | _numbers(study)
     line = study.scenario.title.partition(", part 1")[0]
     attributes = {
         "notes": "\n".join(study.notes),
@@ -65,13 +74,14 @@ def data(study: Inference) -> xr.Dataset:
     return xr.Dataset(contents, attrs=attributes)
 
 
-def _rates(study: Inference, begins: Any) -> dict[str, xr.Variable]:
+def _rates(study: Inference) -> dict[str, xr.Variable]:
     times, rates = list[Any](), list[Any]()
-    for run, part, begin in zip(study.runs, study.parts, begins, strict=True):
-        clock = part.record.clock
+    for run, part in zip(study.runs, study.parts, strict=True):
+        clock = part.record.time - part.begins
+        clock = clock[clock <= part.duration]
         clock = clock if len(clock) < FRAMES else clock[:: len(clock) // FRAMES]
         at = np.union1d(np.linspace(0.0, part.duration, FRAMES // len(study.runs) + 2), clock)
-        times += [at + begin, [math.nan]]
+        times += [at + part.begins, [math.nan]]
         rates += [run.slip_rate(at), [math.nan]]
     return {
         "run_time": quantity("frame", np.concatenate(times), "time", "t", "s"),
@@ -185,10 +195,11 @@ def _draw_record(axes: Axes, dataset: xr.Dataset, name: str, size: float) -> Non
     title, letter, si = NAMES[name]
     of = dataset["quantity"].values == name
     unit, scale = unit_of(si, dataset["data"].values[of])
+    dots = 2 if of.sum() > MANY else 5
     for part in np.unique(dataset["part"].values):
         chosen = of & (dataset["part"].values == part)
         time = dataset["time"].values[chosen] / size
-        axes.plot(time, dataset["data"].values[chosen] / scale, ".", color=SKY, markersize=2, rasterized=True)
+        axes.plot(time, dataset["data"].values[chosen] / scale, ".", color=SKY, markersize=dots, rasterized=True)
         axes.plot(time, dataset["model"].values[chosen] / scale, color=INK, linewidth=1.0)
     left_out = of & (dataset["fitted"].values == 0)
     if left_out.any():
@@ -203,7 +214,14 @@ def _draw_residual(axes: Axes, dataset: xr.Dataset, name: str, size: float) -> N
     rest = dataset["residual"].values[of]
     unit, scale = unit_of(si, rest)
     power = 10.0 ** math.floor(math.log10(np.nanmax(np.abs(rest)) or 1.0)) if si == "1" else 1.0
-    axes.plot(dataset["time"].values[of] / size, rest / scale / power, ".", color=BLUE, markersize=1.5, rasterized=True)
+    axes.plot(
+        dataset["time"].values[of] / size,
+        rest / scale / power,
+        ".",
+        color=BLUE,
+        markersize=1.5 if of.sum() > MANY else 4,
+        rasterized=True,
+    )
     zero_line(axes)
     digits = f"$10^{{{round(math.log10(power))}}}$" if si == "1" else unit
     axes.set_ylabel(f"${letter}$, measured\nminus run ({digits})")

@@ -87,7 +87,7 @@ def certainty_of(found: Estimate) -> Certainty:
     covariance[idle] = covariance[:, idle] = np.nan
     covariance[on_bound] = covariance[:, on_bound] = 0.0
     widths, correlation = sizes_and_correlation(covariance)
-    degrees = max(_independent(model) - len(inner), 1.0)
+    degrees = max(model.independent - len(inner), 1.0)
     factor = float(student.ppf(HALF, degrees))
     notes = [f"{model.free[i].label} has no influence on what is fitted: fix it" for i in np.flatnonzero(idle)]
     values = model.values(x)
@@ -153,19 +153,6 @@ def _slopes(model: Model, x: Floats) -> tuple[Floats, dict[int, str]]:
                 "such samples are left out of its interval, which is rough: a profile tells more"
             )
     return np.where(rough.any(axis=1)[:, None], 0.0, 0.5 * (right + left)), notes
-
-
-def _independent(model: Model) -> float:
-    """Return how many independent samples there are, as many as the memory of the noise leaves."""
-    count = 0.0
-    for i in range(len(model.parts)):
-        for name, block in model.blocks(i):
-            n, memory = len(block.time), model.memory.get(name, 0.0)
-            if memory > 0.0 and n > 1:
-                rho = math.exp(-float(np.median(np.diff(block.time))) / memory)
-                n = max(1.0, n * (1.0 - rho) / (1.0 + rho))  # type: ignore[assignment]
-            count += n
-    return count
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,7 @@ from stickslip.friction.law import FrictionLaw
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_rtol
 from stickslip.scenarios.source import read_source
+from stickslip.studies.inference.by_features import FeatureModel, by_features
 from stickslip.studies.inference.certainty import Certainty, Profile, certainty_of, profile_of
 from stickslip.studies.inference.directions import IDLE
 from stickslip.studies.inference.estimate import Estimate, estimate
@@ -37,6 +38,8 @@ from stickslip.studies.study import TextProgress, telling
 if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario
 
+WAYS = ("samples", "features")
+"""What of a record is fitted: each sample, or features of its slip events."""
 MOST_SAMPLES = 1_000_000
 """Largest number of posterior samples."""
 TIME = Quantity("s", "time of the record")
@@ -48,6 +51,7 @@ RTOL = 1e-8
 class Wishes:
     """The options of `infer`, where they are described."""
 
+    by: str
     observe: Sequence[str] | str | None
     start: str | None
     sensor: str
@@ -68,6 +72,10 @@ class Wishes:
         """Raise InputError for options that are out of range."""
         if self.loss not in LOSSES:
             raise InputError(f"infer: loss {ascii(self.loss)[:40]} is unknown; {nearest(str(self.loss), LOSSES)}")
+        if self.by not in WAYS:
+            raise InputError(f"infer: by {ascii(self.by)[:40]} is unknown; {nearest(str(self.by), WAYS)}")
+        if self.by == "features" and self.parts is not None:
+            raise InputError("infer: by='features' and parts='rests' are two ways to fit stick-slip: choose one")
         if self.parts not in (None, "rests"):
             raise InputError(f"infer: parts must be 'rests' or left out, got {shown(self.parts)}")
         for name, least, most in (("starts", 1, 1000), ("samples", 0, MOST_SAMPLES), ("seed", 0, 2**32 - 1)):
@@ -83,6 +91,7 @@ def infer(
     begin: float | str | WithUnit | None = None,
     end: float | str | WithUnit | None = None,
     progress: TextProgress | bool | None = None,
+    by: str = "samples",
     observe: Sequence[str] | str | None = None,
     start: str | None = None,
     sensor: str = "contact",
@@ -114,8 +123,12 @@ def infer(
         The part of the record that is taken: times (s, as in the record, or texts with a unit).
     progress : bool or callable, optional
         True shows the progress in one line. A function is called with a line of text.
+    by : {"samples", "features"}
+        What of the record is fitted: its samples, or features of its slip events (stick-slip), with their scatter from event to
+        event.
     observe : str or list of str, optional
-        What is fitted: friction, shear_stress or shear_force, slip, slip_rate. By default shear, or else all that is there.
+        What is fitted: friction, shear_stress or shear_force, slip, slip_rate. By default shear, or else all that is there. Of
+        features: drop, recurrence, duration, event_slip, peak_rate; by default all that the record tells.
     start : {"steady", "record", "problem"}, optional
         How the run begins: in steady sliding at the first pull rate (default for a law with a state that never sticks), with the
         load of the first samples (default for others), or as the problem says.
@@ -169,23 +182,33 @@ def infer(
     whitened (generalised least squares). Intervals are of 95 %.
     """
     wishes = Wishes(
-        observe=observe, start=start, sensor=sensor, parts=parts, each=each, held_out=held_out, profiles=profiles, samples=samples,
+        by=by, observe=observe, start=start,
+        sensor=sensor, parts=parts, each=each, held_out=held_out, profiles=profiles, samples=samples,
         bounds=bounds, priors=priors, begin_at=begin_at, loss=loss, starts=starts, seed=seed, rtol=rtol,
     )  # fmt: skip
     wishes.check()
     source = read_source("infer", problem)
     given = source if isinstance(source, Problem) else source.problem
     records = _records(record, _time(begin, "begin"), _time(end, "end"))
-    whole, notes = parts_of(given, records, wishes.observe, wishes.start, wishes.sensor)
+    observed = wishes.observe if by == "samples" else None
+    whole, notes = parts_of(given, records, observed, wishes.start, wishes.sensor)
     if wishes.parts == "rests":
         whole = [piece for part in whole for piece in at_rests(part)]
         notes.append(f"{len(whole)} parts between rests, each with a run of its own")
     whole, notes = _resampled(whole, notes)
     share = share_of(wishes.held_out, whole)
     fitted = shortened(whole, share)
+    if by == "features":
+        fitted, _ = by_features(fitted, wishes.observe)
+        whole, said = by_features(whole, wishes.observe)
+        notes += said
     model = _model(given, fitted, free, wishes)
     with telling(progress, "infer") as tell:
-        found = _inferred(model, tuple(whole), wishes, notes, tell)
+        try:
+            found = _inferred(model, tuple(whole), wishes, notes, tell)
+        except InputError as error:
+            doubts = [note for note in notes if note.endswith("?")]  # a unit or a sign may be why no run succeeds
+            raise InputError("; ".join([str(error), *doubts])) from None
     options = {"begin": begin, "end": end} | vars(wishes)
     return replace(found, asked={name: value for name, value in options.items() if value not in (None, False)})
 
@@ -219,7 +242,11 @@ def _model(problem: Problem, parts: list[Part], names: Sequence[str] | str, wish
     chosen = with_scale(chosen, scales_of(parts[0], problem))
     own = own_of(problem, parts, wishes.each) if wishes.parts == "rests" else []
     own = [one for one in own if one.name not in {shared.name for shared in chosen}]
-    model = Model(problem, tuple(parts), (*chosen, *own), wishes.rtol, first_sizes(parts))
+    kind = FeatureModel if wishes.by == "features" else Model
+    model = kind(problem, tuple(parts), (*chosen, *own), wishes.rtol, first_sizes(parts))
+    if wishes.by == "features" and sum(len(part.observed) for part in parts) < len(chosen):
+        names = ", ".join(parts[0].observed)
+        raise InputError(f"infer: {names} cannot determine {len(chosen)} numbers: free fewer of them, or record slip too")
     if model.samples <= len(chosen):
         raise InputError(f"infer: {model.samples} samples cannot determine {len(chosen)} numbers: free fewer of them")
     return model

@@ -178,7 +178,7 @@ class Inference(Study):
         return tuple(run for run in found if run is not None)
 
     def _fitted_until(self, part: int) -> float:
-        return self.model.parts[part].duration if part < len(self.model.parts) else -1.0
+        return float(self.model.parts[part].record.clock[-1]) if part < len(self.model.parts) else -1.0
 
     @cached_property
     def curves(self) -> pd.DataFrame:
@@ -267,7 +267,7 @@ class Inference(Study):
         """What was found from what, in one line."""
         shared = sum(one.part is None for one in self.free)
         noise = ", ".join(f"{name} {brief(size, unit_of(name), 3)}" for name, size in self.model.sizes.items())
-        return f"{shared} numbers from {self.model.samples} samples, noise: {noise}; intervals of 95 %"
+        return f"{shared} numbers from {self.model.counted}, noise: {noise}; intervals of 95 %"
 
     def to_netcdf(self, path: str | Path) -> Path:
         """Write data, model, residual, numbers, samples and provenance, and return the path. Raises InputError if that fails."""

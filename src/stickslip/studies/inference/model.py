@@ -16,7 +16,7 @@ from stickslip.run.simulate import simulate
 from stickslip.solution.solution import Solution
 from stickslip.studies.inference.free import DELAY, LOAD, STATE, TREND, Free
 from stickslip.studies.inference.jumps import RAMP, Jumps, jumps_in, spread, unsure
-from stickslip.studies.inference.noise import Block, whitened
+from stickslip.studies.inference.noise import Block, independent, whitened
 from stickslip.studies.inference.part import Part, changed
 from stickslip.studies.inference.record import UNITS
 from stickslip.studies.study import uninterrupted
@@ -299,6 +299,17 @@ class Model:
     def samples(self) -> int:
         """The number of measured values that are fitted."""
         return sum(block.rows.stop - block.rows.start for i in range(len(self.parts)) for _, block in self.blocks(i))
+
+    @property
+    def counted(self) -> str:
+        """What is fitted, as text."""
+        return f"{self.samples} samples"
+
+    @property
+    def independent(self) -> float:
+        """The number of independent samples, as many as the memory of the noise leaves."""
+        blocks = [one for i in range(len(self.parts)) for one in self.blocks(i)]
+        return sum(independent(block.time, self.memory.get(name, 0.0)) for name, block in blocks)
 
     def thinned(self, most: int) -> Model:
         """Return the same model on about so many samples, but no fewer than 200 of the longest part."""

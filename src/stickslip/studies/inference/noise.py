@@ -84,6 +84,14 @@ def whitened(residual: Floats, blocks: list[Block], memory: float) -> Floats:
     return result
 
 
+def independent(time: Floats, memory: float) -> float:
+    """Return how many independent samples there are among those at some times, as many as the memory of the noise leaves."""
+    if memory <= 0.0 or len(time) < 2:
+        return float(len(time))
+    rho = math.exp(-float(np.median(np.diff(time))) / memory)
+    return max(1.0, len(time) * (1.0 - rho) / (1.0 + rho))
+
+
 class Memory(NamedTuple):
     """Time over which residuals remember themselves (s; 0 for white noise), and their size relative to the assumed one."""
 
@@ -100,6 +108,7 @@ def memory_of(residual: Floats, slopes: Floats, blocks: list[Block]) -> Memory:
     from scipy.optimize import minimize_scalar
 
     steps = np.concatenate([np.diff(time) for _, time in blocks]) if blocks else np.zeros(0)
+    slopes = _independent_columns(slopes)
     n, p = slopes.shape
     if n < p + 10 or not len(steps):
         return Memory(0.0, _size(residual, slopes))
@@ -122,6 +131,13 @@ def memory_of(residual: Floats, slopes: Floats, blocks: list[Block]) -> Memory:
         return Memory(0.0, size)
     memory = math.exp(found.x)
     return Memory(memory, _size(whitened(residual, blocks, memory), whitened(slopes, blocks, memory)))
+
+
+def _independent_columns(slopes: Floats) -> Floats:
+    """Return columns of unit length, and at right angles, for all that the parameters can change together."""
+    sizes = np.linalg.norm(slopes, axis=0)
+    left, seen, _ = np.linalg.svd(slopes[:, sizes > 0.0] / sizes[sizes > 0.0], full_matrices=False)
+    return np.asarray(left[:, seen**2 > UNSEEN])
 
 
 def _size(residual: Floats, slopes: Floats) -> float:

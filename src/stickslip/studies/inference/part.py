@@ -53,6 +53,11 @@ class Part:
         """The length of the run (s)."""
         return float(self.record.clock[-1])
 
+    @property
+    def begins(self) -> float:
+        """The time of the record at which the run begins (s)."""
+        return float(self.record.time[0])
+
     @cached_property
     def first(self) -> dict[str, tuple[float, float]]:
         """The value of each measured quantity at the first sample, with its standard error (SI)."""

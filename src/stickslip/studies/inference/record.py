@@ -17,6 +17,7 @@ from stickslip.foundation.columns import Table, find, missing, read_mapping, rea
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief
 from stickslip.studies.inference.noise import noise_of
+from stickslip.studies.inference.sensors import saturated, spikes
 
 Floats = NDArray[np.float64]
 
@@ -30,17 +31,15 @@ MEASURED = (*SHEAR, "slip", "slip_rate")
 """Everything that may be fitted."""
 LOADING = ("load_point", "load_rate")
 UNITS = {"friction": "1", "shear_stress": "Pa", "shear_force": "N", "slip": "m", "slip_rate": "m/s"}
+UNITS |= {f"{name}_drop": UNITS[name] for name in SHEAR}
+UNITS |= {"recurrence": "s", "duration": "s", "event_slip": "m", "peak_rate": "m/s"}
 WANTED = ("time", *LOADING, *MEASURED, "normal_stress", "normal_force", *(f"{name}_deviation" for name in MEASURED))
 """The columns that are looked for."""
-RAIL = 8
-"""Number of equal samples at the end of the range of a quantity from which its sensor counts as saturated."""
-LONE = 10.0
-"""Factor by which such a run is longer than other runs of equal samples."""
 BACKWARD = 0.9
 """Share of shear stresses below 0 from which the sign of a record is turned."""
 FALLING = 0.7
 """Share of its fast samples in which shear drops, from which a load point is slip."""
-HIGHEST, LOWEST = 3.0, 1e-3
+HIGHEST, LOWEST = 3.0, 1e-2
 """Friction coefficients beyond which a record is refused, or doubted."""
 
 
@@ -166,14 +165,16 @@ class Record:
     def _checked(self) -> Record:
         """Return the record with forward shear positive and without samples of a saturated sensor. Raises InputError."""
         notes, measured = list(self.notes), dict(self.measured)
-        for name in MEASURED:
-            if name in measured and not np.isfinite(measured[name]).any():
+        driven = {name: values for name in LOADING if (values := getattr(self, name)) is not None}
+        for name, values in {**measured, **driven}.items():
+            if not np.isfinite(values).any():
                 raise InputError(f"{self.name}: {name} has no number in any row")
-        forward = self.load_point is None or self.load_point[np.isfinite(self.load_point)][-1] >= np.nanmin(self.load_point[:1])
+        _check_signs(measured, self.load_point, notes)
         for name in SHEAR:
-            if name in measured and forward and np.nanmean(measured[name] < 0.0) > BACKWARD:
-                measured[name] = -measured[name]
-                notes.append(f"{name} is negative while the machine moves forwards: its sign was turned")
+            if name in measured and (lone := spikes(measured[name])).any():
+                worst = brief(float(measured[name][lone][0]), UNITS[name])
+                measured[name] = np.where(lone, np.nan, measured[name])
+                notes.append(f"{name} is far beyond the rest in {int(lone.sum())} lone samples, as at {worst}: they are left out")
         if "friction" in measured:
             _check_friction(float(np.nanmedian(np.abs(measured["friction"]))), self.name, notes)
         for name, values in measured.items():
@@ -209,19 +210,18 @@ class Record:
             raise InputError(f"{self.name}: load_point looks like slip: {why}; call the column slip, and give the load rate")
 
 
-def saturated(values: Floats) -> NDArray[np.bool_]:
-    """Return True for samples of a run of one value at an end of the range, which is longer than other runs of equal samples."""
-    flat = np.zeros(len(values), bool)
-    if len(values) < 2 * RAIL:
-        return flat
-    begins = np.flatnonzero(np.append(True, values[1:] != values[:-1]))
-    lengths = np.diff(np.append(begins, len(values)))
-    usual = float(np.quantile(lengths, 0.9))
-    ends = (np.nanmin(values), np.nanmax(values))
-    for begin, length in zip(begins.tolist(), lengths.tolist(), strict=True):
-        if length >= max(RAIL, LONE * usual) and length < 0.5 * len(values) and values[begin] in ends:
-            flat[begin : begin + length] = True
-    return flat
+def _check_signs(measured: dict[str, Floats], moved: Floats | None, notes: list[str]) -> None:
+    """Turn the sign of shear that is negative while the machine moves forwards, and doubt a machine that moves against shear."""
+    ends = None if moved is None else moved[np.isfinite(moved)][[0, -1]]
+    for name in (name for name in SHEAR if name in measured):
+        negative = float(np.nanmean(measured[name] < 0.0))
+        if negative > BACKWARD and (ends is None or ends[1] >= ends[0]):
+            measured[name] = -measured[name]
+            notes.append(f"{name} is negative while the machine moves forwards: its sign was turned")
+        elif negative < 1.0 - BACKWARD and ends is not None and ends[1] < ends[0]:
+            notes.append(
+                f"load_point falls while {name} is positive: does its sensor count backwards, so that its sign must be turned?"
+            )
 
 
 def _check_friction(size: float, name: str, notes: list[str]) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from typing import Any
@@ -11,13 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.formatting import brief
 from stickslip.friction.law import FrictionLaw
+from stickslip.loading import LoadingHistory
 from stickslip.problem.problem import Problem
+from stickslip.studies.inference.features import arrests_in
 from stickslip.studies.inference.free import LOAD, STATE, TREND, Free, Prior, known_numbers
 from stickslip.studies.inference.loading import loading_of
-from stickslip.studies.inference.noise import noise_of
 from stickslip.studies.inference.part import Part
-from stickslip.studies.inference.record import MEASURED, SHEAR, Record
+from stickslip.studies.inference.record import HIGHEST, LOWEST, MEASURED, SHEAR, Record
 
 Floats = NDArray[np.float64]
 
@@ -25,8 +27,10 @@ STARTS = ("steady", "record", "problem")
 """How a run may begin: in steady sliding at the first rate, with the load of the first samples, or as the problem says."""
 SENSORS = ("contact", "spring")
 """Where shear is measured."""
-DROP, ABOVE_NOISE = 0.25, 8.0
-"""Fall of shear that is a slip event: as a share of the range of the record, and in standard deviations of its noise."""
+MANY_RATES = 40
+"""Number of rates from which a load point is doubted."""
+FAR = 100.0
+"""Factor between the pull rates of record and problem from which the units of the record are doubted."""
 LEAST = 8
 """Smallest number of samples of a part."""
 LATER = 0.05
@@ -53,11 +57,34 @@ def parts_of(
             raise InputError(f"{record.name}: the record has no duration")
         found.append(Part(record, None if loading is None else loading.rate, observed, sensor, begins))
         before = f"{record.name}: " if len(records) > 1 else ""
-        said = [*record.notes, *(() if loading is None else loading.notes)]
+        said = [*record.notes, *(() if loading is None else (*loading.notes, *_doubts(problem, loading.rate)))]
         if loading is None:
             said.append("the record has no load point: the loading is that of the problem")
         notes += [before + one for one in said]
     return found, list(dict.fromkeys(notes))
+
+
+def _doubts(problem: Problem, rate: LoadingHistory | float) -> Iterator[str]:
+    """Yield sentences on a load point that moves as a machine hardly does."""
+    segments = np.array(rate.segments)[:, 1] if isinstance(rate, LoadingHistory) else np.array([rate])
+    if len(segments) > MANY_RATES:
+        cure = "if the column is slip, call it slip and give the load rate"
+        yield f"the rate of the load point changes in {len(segments) - 1} places, as slip does and a driven machine hardly: {cure}"
+    moving, assumed = np.abs(segments[segments != 0.0]), abs(problem.first_pull_rate)
+    usual = float(moving[0]) if len(moving) else 0.0
+    if assumed > 0.0 and usual > 0.0 and not assumed / FAR < usual < assumed * FAR:
+        speeds = f"{brief(usual, 'm/s', 3)}, and at {brief(assumed, 'm/s', 3)} in the problem"
+        yield f"the load point moves at {speeds}: are the units of time and load point in their headings?"
+
+
+def _check_force(record: Record, normal: float) -> None:
+    """Raise InputError if shear force is no friction under the normal force of the problem (N)."""
+    size = float(np.nanmedian(np.abs(record.measured["shear_force"]))) / normal
+    if not LOWEST < size < HIGHEST:
+        raise InputError(
+            f"{record.name}: shear_force is {size:.3g} times the problem's normal force of {brief(normal, 'N', 3)}, in the median: "
+            "is its unit in the heading, as shear_force (kN)?"
+        )
 
 
 def _observed(record: Record, observe: Any, problem: Problem) -> tuple[str, ...]:
@@ -69,11 +96,18 @@ def _observed(record: Record, observe: Any, problem: Problem) -> tuple[str, ...]
     for name in names:
         if name not in record.measured:
             raise InputError(f"infer: observe: the record has no {ascii(name)[:40]}; {nearest(str(name), record.measured)}")
+    for name in names:
+        if name in SHEAR and np.nanmin(record.measured[name]) == np.nanmax(record.measured[name]):
+            raise InputError(
+                f"{record.name}: {name} is the same number in all rows: its sensor was off, or another column is meant"
+            )
     if "shear_stress" in names and not problem.body.has_waves:
         cure = "give normal_stress beside it, so that it becomes friction, or the force as shear_force"
         raise InputError(f"{record.name}: the loads of a block are forces (N), and shear_stress is in Pa: {cure}")
     if "shear_force" in names and problem.body.has_waves:
         raise InputError(f"{record.name}: the loads of a slab are stresses (Pa): divide shear_force by the area of the contact")
+    if "shear_force" in names:
+        _check_force(record, problem.normal)
     if sum(name in SHEAR for name in names) > 1:
         raise InputError(f"infer: observe: {' and '.join(one for one in names if one in SHEAR)} are one measurement: choose one")
     return tuple(names)
@@ -126,29 +160,6 @@ def at_rests(part: Part) -> list[Part]:
         loading = loading_of(piece) if part.loading is not None else None
         found.append(replace(part, record=piece, loading=None if loading is None else loading.rate, start="record"))
     return found
-
-
-def arrests_in(values: Floats) -> NDArray[np.intp]:
-    """Return the indices of the lowest samples after each large drop."""
-    known = np.flatnonzero(np.isfinite(values))
-    shear = values[known]
-    low, high = np.quantile(shear, [0.01, 0.99])
-    drop = max(DROP * float(high - low), ABOVE_NOISE * noise_of(shear))
-    found, falling, top, bottom = [], False, 0, 0
-    for i, value in enumerate(shear.tolist()):
-        if falling:
-            if value < shear[bottom]:
-                bottom = i
-            elif value > shear[bottom] + 0.5 * drop:
-                found.append(bottom)
-                falling, top = False, i
-        elif value > shear[top]:
-            top = i
-        elif value < shear[top] - drop:
-            falling, bottom = True, i
-    if falling and bottom < len(shear) - 1:
-        found.append(bottom)
-    return np.asarray(known[np.array(found, int)], np.intp)
 
 
 def own_of(problem: Problem, parts: Sequence[Part], wanted: Iterable[str] | None) -> list[Free]:

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stickslip.foundation.formatting import brief
+from stickslip.studies.inference.features import arrests_in
 from stickslip.studies.inference.part import first_sizes
 from stickslip.studies.inference.record import SHEAR
-from stickslip.studies.inference.setup import arrests_in
 
 if TYPE_CHECKING:
     from stickslip.studies.inference.inference import Inference

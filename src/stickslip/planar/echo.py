@@ -1,0 +1,137 @@
+"""The echo: what comes back to the contact from the driver, wavenumber by wavenumber.
+
+What leaves the contact, W = 2 Z v - 2 F - P, comes back as P = r exp(-2 q h) W with q = sqrt(s^2 + w^2)/c, in time
+
+    P(t) = r [W(t - R) - integral over th > R of w R J1(w s)/s W(t - th) dth],   s = sqrt(th^2 - R^2).
+
+W is taken as linear in time in each step, with a jump where a round trip ends, so that the echoes of shocks are exact. The integral
+is then a sum over past steps with weights that are computed once, and sums of a whole round trip are made by Fourier transforms.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import jax.numpy as jnp
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import j1, roots_legendre
+
+Floats = NDArray[np.float64]
+FEWEST, MOST = 8, 1024
+"""Gauss points of one step of the integral: the fewest, and the most that are used where J1 oscillates many times within a step."""
+BLOCK = 4_000_000
+"""Evaluations of J1 at a time."""
+
+
+class Weights(NamedTuple):
+    """Weights of W at the late and the early end of a step that lies a number of steps before t - R: (steps, wavenumbers)."""
+
+    late: Floats
+    early: Floats
+
+
+def echo_weights(frequencies: Floats, steps_per_round_trip: int, two_way_time: float, steps: int) -> Weights:
+    """Return the weights of the integral for the last `steps` steps before t - R.
+
+    Parameters
+    ----------
+    frequencies
+        w = |k| c (rad/s), one-dimensional.
+    steps_per_round_trip
+        Number of time steps in R.
+    two_way_time
+        R (s).
+    steps
+        Number of steps.
+
+    Returns
+    -------
+    Weights
+        Without unit, each of shape (steps, len(frequencies)).
+    """
+    step = two_way_time / steps_per_round_trip
+    passed = np.arange(steps + 1)
+    edges = step * np.sqrt(passed * (2.0 * steps_per_round_trip + passed))  # s at the ends of the steps
+    late, early = np.zeros((steps, frequencies.size)), np.zeros((steps, frequencies.size))
+    phases = frequencies * np.diff(edges)[:, None]
+    wanted = np.clip(2.0 ** np.ceil(np.log2(0.6 * phases + FEWEST)), FEWEST, MOST).astype(int)
+    for points in np.unique(wanted).tolist():
+        nodes, gauss = roots_legendre(points)
+        rows, columns = np.nonzero((wanted == points) & (frequencies > 0.0))
+        for part in np.array_split(np.arange(rows.size), max(1, -(-rows.size * points // BLOCK))):
+            row, w = rows[part], frequencies[columns[part]][:, None]
+            half = 0.5 * np.diff(edges)[row][:, None]
+            s = edges[row][:, None] + half * (1.0 + nodes)
+            age = np.sqrt(two_way_time**2 + s**2)
+            share = s**2 / (age + two_way_time) / step - row[:, None]  # of the step that has passed
+            kernel = half * gauss * w * two_way_time * j1(w * s) / age
+            late[row, columns[part]] = np.sum(kernel * (1.0 - share), axis=1)
+            early[row, columns[part]] = np.sum(kernel * share, axis=1)
+    return Weights(late, early)
+
+
+def kernel_spectra(weights: Weights, steps_per_round_trip: int, unique: NDArray[np.intp]) -> NDArray[np.complex128]:
+    """Return Fourier transforms of the weights, in segments of two round trips of which each overlaps the next by one.
+
+    Parameters
+    ----------
+    weights
+        Weights for a whole number of round trips.
+    steps_per_round_trip
+        Number of time steps in R.
+    unique
+        For each wavenumber of the contact the column of the weights that belongs to it, of any shape.
+
+    Returns
+    -------
+    array
+        Shape (round trips, 2, steps_per_round_trip + 1, *unique.shape): late and early.
+    """
+    n = steps_per_round_trip
+    both = np.stack(weights)
+    padded = np.concatenate([np.zeros_like(both[:, :n]), both], axis=1)
+    segments = [padded[:, i * n : (i + 2) * n] for i in range(both.shape[1] // n)]
+    return np.stack([np.fft.rfft(segment, axis=1)[..., unique] for segment in segments])
+
+
+class Echo(NamedTuple):
+    """Echoes of what has been sent so far. The last axes of all arrays are those of the amplitudes: 2 and the wavenumbers."""
+
+    ahead: Any
+    """Fourier transforms of the integrals of the coming round trips, the next one first: (round trips, steps + 1, ...)."""
+    last: Any
+    """The integral at the end of the present round trip."""
+
+
+def silent(round_trips: int, steps: int, shape: tuple[int, ...]) -> Echo:
+    """Return the echo of a contact that has not slipped, for a number of coming round trips."""
+    return Echo(np.zeros((round_trips, steps + 1, *shape), complex), np.zeros(shape))
+
+
+def echo_of(sent: Any, echo: Echo, spectra: Any, reflection: float) -> tuple[Any, Echo]:
+    """Return the echo P of the coming round trip, and the echo that is prepared for those after it.
+
+    Parameters
+    ----------
+    sent
+        W of the round trip that ends, at its steps + 1 moments (Pa): (steps + 1, 2, wavenumbers).
+    echo
+        What was sent before.
+    spectra
+        See `kernel_spectra`.
+    reflection
+        r.
+
+    Returns
+    -------
+    tuple
+        P (Pa), with the shape of `sent`, and the next `Echo`.
+    """
+    steps = sent.shape[0] - 1
+    late, early = (jnp.fft.rfft(part, n=2 * steps, axis=0) for part in (sent[1:], sent[:-1]))
+    new = spectra[:, 0, :, None] * late + spectra[:, 1, :, None] * early
+    ahead = new + jnp.concatenate([echo.ahead[1:], jnp.zeros_like(echo.ahead[:1])])
+    integral = jnp.fft.irfft(ahead[0], n=2 * steps, axis=0)[steps:]
+    integral = jnp.concatenate([echo.last[None], integral])
+    return reflection * (sent - integral), Echo(ahead, integral[-1])

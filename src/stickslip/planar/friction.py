@@ -1,0 +1,182 @@
+"""The friction law and the contact equation at all nodes, in JAX: the formulas that the engine compiles, as `contact/on_arrays.py`.
+
+Each node has its own parameters. Nodes in different pieces of a law share the formula where they can, and only its numbers differ.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from stickslip.friction.formula.denominators import LARGEST_EXPONENT, harmless_overflows
+from stickslip.friction.formula.expression import STATES, VARIABLES, Expression, nodes_of
+from stickslip.friction.law import FrictionLaw
+from stickslip.planar.nodes import NodeValues
+
+ITERATIONS = 80
+"""Largest number of steps of Newton's method or bisection; from the slip rate of the step before it takes two to four."""
+OPERATIONS = {
+    "add": jnp.add,
+    "sub": jnp.subtract,
+    "mul": jnp.multiply,
+    "div": jnp.divide,
+    "pow": jnp.power,
+    **{name: getattr(jnp, name) for name in ("sin", "cos", "exp", "log", "sqrt", "tanh", "arcsinh", "expm1", "log1p")},
+}
+"""Function of each operation of a formula."""
+
+
+def evaluated(tree: Expression, numbers: dict[str, Any], variables: tuple[Any, ...]) -> Any:
+    """Return a formula from the parameters by name and the variables: slip (m), slip rate (m/s), states."""
+    found: dict[Expression, Any] = dict.fromkeys(STATES, 0.0) | dict(zip(VARIABLES, variables, strict=False))
+    limited = {node for node in harmless_overflows(nodes_of(tree)) if node.operation in ("exp", "expm1")}
+    for node in nodes_of(tree):
+        if node.operation == "parameter":
+            found[node] = numbers[node.name]
+        elif node.operation == "constant":
+            found[node] = node.value
+        elif node.arguments:
+            given = [found[argument] for argument in node.arguments]
+            if node in limited:
+                given = [jnp.minimum(given[0], LARGEST_EXPONENT)]
+            found[node] = OPERATIONS[node.operation](*given)
+    return found[tree]
+
+
+class Nodes(NamedTuple):
+    """What the contact equation needs of the nodes, as arrays whose last axes are those of the contact: see `NodeValues`."""
+
+    normal: Any
+    static_excess: Any
+    knots: Any
+    numbers: dict[str, Any]
+    """For each parameter an array with the pieces of the law in front."""
+    free: Any
+    """False at nodes that are locked."""
+
+    @classmethod
+    def of(cls, values: NodeValues, locked: Any) -> Nodes:
+        """Return the arrays of the nodes, in numpy."""
+        numbers = {name: np.stack([piece[name] for piece in values.numbers]) for name in values.numbers[0]}
+        return cls(values.normal, values.static_excess, values.knots, numbers, ~locked)
+
+
+@dataclass(frozen=True)
+class Contact:
+    """A law on a contact whose slip sends waves of an impedance (Pa s/m) away."""
+
+    law: FrictionLaw
+    impedance: float
+
+    def coefficient(self, nodes: Nodes, slip: Any, rate: Any, states: Any) -> Any:
+        """Return mu at slip (m) as the law counts it and slip rate (m/s), not negative, in given states."""
+        trees = self.law.trees()
+        if len(trees) == 1:
+            return evaluated(trees[0], {name: value[0] for name, value in nodes.numbers.items()}, (slip, rate, *states))
+        variable = slip if self.law.knot_variable == "slip" else rate
+        piece = jnp.sum(jnp.broadcast_to(variable, slip.shape) >= nodes.knots, axis=0)
+        numbers = {name: jnp.take_along_axis(value, piece[None], axis=0)[0] for name, value in nodes.numbers.items()}
+        found = jnp.zeros(slip.shape)
+        for tree in dict.fromkeys(trees):
+            own = np.array([tree == one for one in trees])
+            value = evaluated(tree, numbers, (slip, rate, *states))
+            found = jnp.where(jnp.asarray(own)[piece], value, found)
+        return found
+
+    def rate(self, nodes: Nodes, load: Any, slip: Any, states: Any, guess: Any) -> Any:
+        """Solve Z v + tau = load at each node (paper eqs 12-13), with tau against the direction of slip.
+
+        Parameters
+        ----------
+        nodes
+            The numbers of the nodes.
+        load
+            Load (Pa), of any sign.
+        slip
+            Slip as the law counts it (m).
+        states
+            States in the form that the formulas use, one more axis in front.
+        guess
+            A slip rate (m/s) from which the search begins.
+
+        Returns
+        -------
+        array
+            The slip rate (m/s), with the sign of the load; 0 where the strength bears it, and where the contact is locked.
+        """
+        size = jnp.abs(load)
+        at_rest = nodes.normal * self.coefficient(nodes, slip, jnp.zeros_like(slip), states)
+        slips = nodes.free & (size > at_rest + nodes.normal * nodes.static_excess)
+        if self.law.depends_on_rate or self.law.states:
+            found = self._root(nodes, size, (slip, states, at_rest), jnp.abs(guess))
+        else:
+            found = (size - at_rest) / self.impedance
+        return jnp.where(slips, jnp.sign(load) * found, 0.0)
+
+    def _root(self, nodes: Nodes, size: Any, at: tuple[Any, Any, Any], guess: Any) -> Any:
+        """Return the root of each node by Newton's method, which bisects where it would leave the bracket."""
+        slip, states, at_rest = at
+
+        def missing(rate: Any) -> tuple[Any, Any]:
+            def of_rate(v: Any) -> Any:
+                return self.impedance * v + nodes.normal * self.coefficient(nodes, slip, v, states) - size
+
+            value, slope = jax.jvp(of_rate, (rate,), (jnp.ones_like(rate),))
+            return value, slope
+
+        def widened(bracket: tuple[Any, Any]) -> tuple[Any, Any]:
+            high, _ = bracket
+            short = missing(high)[0] < 0.0
+            return jnp.where(short, 2.0 * high, high), short
+
+        def step(search: tuple[Any, ...]) -> tuple[Any, ...]:
+            low, high, rate, _, count = search
+            value, slope = missing(rate)
+            low, high = jnp.where(value <= 0.0, rate, low), jnp.where(value > 0.0, rate, high)
+            newton = rate - value / slope
+            middle = jnp.where(low > 0.0, jnp.sqrt(low) * jnp.sqrt(high), 1e-3 * high)
+            following = jnp.where((low < newton) & (newton < high), newton, middle)
+            # the next step of Newton's method would change the rate by less than the square of this
+            done = jnp.abs(following - rate) <= 1e-9 * rate
+            return low, high, following, done, count + 1
+
+        tiny = jnp.finfo(jnp.float64).tiny
+        high = jnp.maximum((size - at_rest) / self.impedance, tiny)
+        high, _ = jax.lax.while_loop(lambda bracket: jnp.any(bracket[1]), widened, (high, jnp.ones(high.shape, bool)))
+        start = jnp.where((guess > 0.0) & (guess < high), guess, 0.5 * high)
+        search = (jnp.zeros_like(high), high, start, jnp.zeros(high.shape, bool), 0)
+        search = jax.lax.while_loop(lambda now: ~jnp.all(now[3]) & (now[4] < ITERATIONS), step, search)
+        return search[2]
+
+    def advanced_states(self, nodes: Nodes, motion: tuple[Any, Any], states: tuple[Any, Any], step: float) -> Any:
+        """Return the states after a step, for slip and slip rate that are constant in it: order 2 with those of its middle.
+
+        Parameters
+        ----------
+        nodes
+            The numbers of the nodes.
+        motion
+            Slip (m) as the law counts it, and slip rate (m/s), not negative.
+        states
+            The states at the beginning, and those about which their evolution is made linear.
+        step
+            Length of the step (s).
+        """
+        begin, about = states
+        found = []
+        numbers = {name: value[0] for name, value in nodes.numbers.items()}
+        for i, tree in enumerate(self.law.state_trees()):
+
+            def of_state(w: Any, i: int = i, tree: Expression = tree) -> Any:
+                return evaluated(tree, numbers, (*motion, *(w if j == i else about[j] for j in range(len(about)))))
+
+            value, slope = jax.jvp(of_state, (about[i],), (jnp.ones_like(about[i]),))
+            value = jnp.broadcast_to(value, about[i].shape)
+            linear = step * slope
+            share = jnp.where(jnp.abs(linear) < 1e-12, 1.0, jnp.expm1(linear) / jnp.where(linear == 0.0, 1.0, linear))
+            found.append(begin[i] + step * share * (value - slope * (about[i] - begin[i])))
+        return jnp.stack(found) if found else begin

@@ -1,0 +1,131 @@
+"""The numbers of each node of a planar contact, each checked as those of a problem are."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.foundation.errors import InputError, full_name
+from stickslip.friction import FrictionLaw
+from stickslip.problem.problem import Problem
+
+Floats = NDArray[np.float64]
+START = {"initial.load": "initial_load", "initial.excess": "initial_excess", "initial.state": "initial_state"}
+"""Names of numbers of the start that may vary beside those in `problem.parameters`, and the fields of `Problem` that hold them."""
+MAY_VARY = ("friction.", "body.normal_stress", "initial.")
+"""Beginnings of the names of what may vary along the contact."""
+
+
+@dataclass(frozen=True)
+class NodeValues:
+    """The numbers of each node. Arrays have the shape of the contact, after the axes that are mentioned."""
+
+    problems: tuple[Problem, ...]
+    """The different problems of the nodes."""
+    normal: Floats
+    """Normal stress, Pa."""
+    load: Floats
+    """Load at t = 0, Pa."""
+    slip: Floats
+    """Slip at t = 0, m."""
+    law_slip: Floats
+    """Slip at t = 0 as the law counts it, m."""
+    states: Floats
+    """States at t = 0 in the form that the formulas use; one more axis in front, for the states."""
+    static_excess: Floats
+    """Static friction minus the formula at v = 0+."""
+    knots: Floats
+    """Places where one piece of the law ends and the next begins, m or m/s; one more axis in front, for the knots."""
+    numbers: tuple[dict[str, Floats], ...]
+    """The parameters of the formulas by name, for each piece of the law."""
+
+    def slopes(self, reach: float) -> tuple[float, float]:
+        """Return the steepest fall and the steepest rise of strength with slip (Pa/m), at any node.
+
+        They are 0 for friction that depends on a state, or not on slip.
+
+        Parameters
+        ----------
+        reach
+            Slip (m) from the start up to which strength is looked at: at 1000 places, half of them close to the start.
+        """
+        fall = rise = 0.0
+        for problem in self.problems:
+            law = problem.friction
+            if law.states or not law.depends_on_slip:
+                continue
+            slip = problem.law_slip + np.union1d(np.linspace(0.0, reach, 500), np.geomspace(1e-6 * reach, reach, 500))
+            slopes = problem.normal * np.diff(law.coefficient(slip)) / np.diff(slip)
+            fall, rise = max(fall, -float(slopes.min())), max(rise, float(slopes.max()))
+        return fall, rise
+
+    @property
+    def law(self) -> FrictionLaw:
+        """The law of one of the nodes; all nodes have the same formulas."""
+        return self.problems[0].friction
+
+
+def node_values(problem: Problem, along: Mapping[str, Floats], shape: tuple[int, ...]) -> NodeValues:
+    """Return the numbers of the nodes of a contact.
+
+    Parameters
+    ----------
+    problem
+        The problem of every node.
+    along
+        Values (SI) of the parameters that vary, by name, each with the shape `shape`.
+    shape
+        The number of nodes along each axis.
+
+    Raises
+    ------
+    InputError
+        If a name is unknown, or a node would have a number that its problem does not allow.
+    """
+    names = {name: _full_name(problem, name) for name in along}
+    if not along:
+        problems, which = [problem], np.zeros(int(np.prod(shape)), int)
+    else:
+        rows, which = np.unique(np.stack([values.ravel() for values in along.values()], axis=1), axis=0, return_inverse=True)
+        problems = [_with(problem, dict(zip(names.values(), row.tolist(), strict=True))) for row in rows]
+    laws = [one.friction for one in problems]
+    if any(law.trees() != laws[0].trees() for law in laws):
+        raise InputError(f"PlanarSlab: {', '.join(names)}: the formula of friction would differ from node to node")
+
+    def spread(values: Any) -> Floats:
+        """Return an array whose last axis, over the problems, is replaced by the axes of the contact."""
+        found = np.asarray(values, float)[..., np.ravel(which)]
+        return found.reshape(*found.shape[:-1], *shape)
+
+    pieces = range(len(laws[0].pieces))
+    return NodeValues(
+        problems=tuple(problems),
+        normal=spread([one.normal for one in problems]),
+        load=spread([one.strength + one.excess for one in problems]),
+        slip=spread([one.initial_slip for one in problems]),
+        law_slip=spread([one.law_slip for one in problems]),
+        states=spread(np.reshape([one.states for one in problems], (len(problems), -1)).T),
+        static_excess=spread([law.static_excess for law in laws]),
+        knots=spread(np.reshape([law.knots for law in laws], (len(laws), -1)).T),
+        numbers=tuple({name: spread([law.numbers(i)[name] for law in laws]) for name in laws[0].parameters()} for i in pieces),
+    )
+
+
+def _full_name(problem: Problem, name: str) -> str:
+    allowed = [one for one in (*problem.parameters, *START) if one.startswith(MAY_VARY)]
+    return full_name(name, allowed, "PlanarSlab: along: ", "is not a number that can vary along the contact")
+
+
+def _with(problem: Problem, values: Mapping[str, float]) -> Problem:
+    """Return the problem with other values of some of its numbers."""
+    for name, value in values.items():
+        if name in START:
+            others: dict[str, Any] = {"initial_load": None, "initial_excess": None} if START[name] != "initial_state" else {}
+            problem = replace(problem, **(others | {START[name]: value}))
+        else:
+            problem = problem.parameters[name].put(value)
+    return problem

@@ -1,0 +1,303 @@
+"""March a planar slab in time: predictor and corrector for slip, exponentials for the half-space, echoes round trip by round trip.
+
+Everything reaches the contact as a load: Z v + tau = beta(y, t) at every node (paper eqs 12-13), with
+
+    beta = initial load + loading + F + P,
+
+F from the memory of the half-space (`memory.py`), P from the driver (`echo.py`), and the loading as in 1D, because it is the same
+at all nodes. The error is of order 2 in the time step where the motion is smooth, and of order 1 where nodes begin or end to slip.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax.sharding import PartitionSpec
+from numpy.typing import NDArray
+
+from stickslip.planar.driving import locked_load
+from stickslip.planar.echo import Echo, echo_of, echo_weights, kernel_spectra, silent
+from stickslip.planar.friction import Contact, Nodes
+from stickslip.planar.layout import Layout, whole
+from stickslip.planar.memory import recurrence
+from stickslip.planar.slab import PlanarSlab
+
+Floats = NDArray[np.float64]
+
+
+class Motion(NamedTuple):
+    """The contact at one moment, as arrays over the nodes."""
+
+    slip: Any
+    """Slip, m."""
+    rate: Any
+    """Slip rate, m/s."""
+    traction: Any
+    """Friction, Pa, with the sign of the slip rate; at rest the load."""
+    seen: Any
+    """Slip as the law counts it, m."""
+    states: Any
+    """States in the form that the formulas use, one more axis in front."""
+    heat: Any
+    """Work of friction since the start, J/m^2."""
+
+    def at(self, nodes: tuple[slice, ...]) -> Motion:
+        """Return the motion of some of the nodes."""
+        return Motion(*(one[(..., *nodes)] for one in self))
+
+
+class Waves(NamedTuple):
+    """What waves do, as amplitudes over the wavenumbers: the last axes are 2 (real and imaginary part) and the wavenumbers."""
+
+    memory: Any
+    """The exponentials of the half-space, one more axis in front."""
+    inherited: Any
+    """The part of F at the end of the next step that does not depend on slip there, Pa."""
+    now: Any
+    """F at the present moment, Pa."""
+    arriving: Any
+    """P at the steps of this round trip, Pa."""
+    sent: Any
+    """W at the steps of this round trip so far, Pa."""
+
+
+class Constants(NamedTuple):
+    """What does not change in a run."""
+
+    nodes: Nodes
+    initial_slip: Any
+    initial_load: Any
+    decay: Any
+    gain: Any
+    now: Any
+
+
+@dataclass(eq=False)
+class PlanarSolver:
+    """A run of a planar slab in progress.
+
+    Parameters
+    ----------
+    slab
+        What is solved.
+    duration
+        Time (s) up to which the run may go.
+    steps_per_round_trip
+        Number of time steps in a two-way travel time, or None for the smallest that keeps to the slab's `courant`.
+    devices
+        Number of devices over which the contact is spread, or None for all.
+    """
+
+    slab: PlanarSlab
+    duration: float
+    steps_per_round_trip: int | None = None
+    devices: int | None = None
+    motion: Motion = field(init=False)
+    waves: Waves = field(init=False)
+    echo: Echo = field(init=False)
+    trip: int = field(init=False, default=0)
+    """Number of whole round trips that have passed."""
+    step: int = field(init=False, default=0)
+    """Number of steps since the round trip began."""
+
+    def __post_init__(self) -> None:
+        self.steps = self.steps_per_round_trip or self.slab.steps_per_round_trip
+        self.body = body = self.slab.body
+        self.dt = body.two_way_time / self.steps
+        self.trips = max(1, int(np.ceil(self.duration / body.two_way_time - 1e-9)))
+        self.layout = Layout(self.slab.shape, self.slab.spacing, self.devices)
+        self.contact = Contact(self.slab.values.law, body.impedance)
+        with in_double_precision():
+            self._begin()
+
+    @property
+    def time(self) -> float:
+        """The simulated time, s."""
+        return float(self.trip * self.body.two_way_time + self.step * self.dt)
+
+    @property
+    def last_step(self) -> int:
+        """The number of steps in the whole run."""
+        return int(np.ceil(self.duration / self.dt - 1e-9))
+
+    @cached_property
+    def loading(self) -> Floats:
+        """Load of a contact that never slips, minus the initial load, at the steps of each round trip (Pa)."""
+        return locked_load(self.slab.problem, self.steps, self.trips)
+
+    # ---- the start ---------------------------------------------------------------------------------------------------------------
+
+    def _begin(self) -> None:
+        layout, values = self.layout, self.slab.values
+        frequencies = layout.wavenumbers * self.body.wave_speed
+        law_of_waves = recurrence(frequencies, self.body.impedance, self.dt, self.trips * self.body.two_way_time)
+        nodes = Nodes.of(values, self.slab.locked)
+        decay, gain, now = law_of_waves.decay[:, None], law_of_waves.gain[:, None], law_of_waves.now
+        self.constants = self._put(Constants(nodes, values.slip, values.load, decay, gain, now), self._spread_constants)
+        none, amplitudes = np.zeros(self.slab.shape), (2, *layout.modes)
+        path = np.zeros((self.steps + 1, *amplitudes))
+        memory = np.zeros((law_of_waves.decay.shape[0], *amplitudes), complex)
+        self.motion = self._put(Motion(values.slip, none, values.load, values.law_slip, values.states, none), self._spread_motion)
+        self.waves = self._put(Waves(memory, path[0], path[0], path, path), self._spread_waves)
+        self.echo = self._put(silent(self.trips - 1, self.steps, amplitudes), self._spread_echo)
+        self.spectra = layout.put(self._spectra(frequencies), layout.along_k(2 + 1 + len(layout.modes)))
+        self._open_round_trip()
+
+    def _spectra(self, frequencies: Floats) -> NDArray[np.complex128]:
+        """Return the Fourier transforms of the weights of echoes, for all round trips after the first."""
+        unique, which = np.unique(frequencies.round(9), return_inverse=True)
+        count = (self.trips - 1) * self.steps
+        weights = echo_weights(unique, self.steps, self.body.two_way_time, count)
+        if not count:
+            return np.zeros((0, 2, self.steps + 1, *frequencies.shape), complex)
+        return kernel_spectra(weights, self.steps, np.reshape(which, frequencies.shape))
+
+    def _put(self, arrays: Any, specs: Any) -> Any:
+        return jax.tree.map(self.layout.put, arrays, specs, is_leaf=lambda one: isinstance(one, np.ndarray))
+
+    # ---- how arrays are spread over devices --------------------------------------------------------------------------------------
+
+    @property
+    def _spread_motion(self) -> Motion:
+        y, more = self.layout.along_y(len(self.slab.shape)), self.layout.along_y(1 + len(self.slab.shape))
+        return Motion(y, y, y, y, more, y)
+
+    @property
+    def _spread_waves(self) -> Waves:
+        rank = 1 + len(self.slab.shape)
+        k, more = self.layout.along_k(rank), self.layout.along_k(rank + 1)
+        return Waves(more, k, k, more, more)
+
+    @property
+    def _spread_echo(self) -> Echo:
+        rank = 1 + len(self.slab.shape)
+        return Echo(self.layout.along_k(rank + 2), self.layout.along_k(rank))
+
+    @property
+    def _spread_constants(self) -> Constants:
+        rank = len(self.slab.shape)
+        y, more = self.layout.along_y(rank), self.layout.along_y(rank + 1)
+        numbers = dict.fromkeys(self.slab.values.numbers[0], more)
+        return Constants(Nodes(y, y, more, numbers, y), y, y, *(self.layout.along_k(rank + 2),) * 2, self.layout.along_k(rank))
+
+    # ---- compiled functions ------------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def _march(self) -> Any:
+        """Take a number of steps: compiled once, for any number."""
+
+        def march(motion: Motion, waves: Waves, constants: Constants, loading: Any, between: Any) -> Any:
+            def one(step: Any, now: tuple[Motion, Waves]) -> tuple[Motion, Waves]:
+                return self._one_step(now, constants, loading[step + 1], step + 1)
+
+            return jax.lax.fori_loop(between[0], between[1], one, (motion, waves))
+
+        alike, spread = PartitionSpec(), (self._spread_motion, self._spread_waves)
+        return self.layout.on_devices(march, (*spread, self._spread_constants, alike, alike), spread, donate=(0, 1))
+
+    @cached_property
+    def _open(self) -> Any:
+        """Find the motion just after a round trip has begun, when its echo has arrived."""
+
+        def open_round_trip(motion: Motion, waves: Waves, constants: Constants, loading: Any) -> tuple[Motion, Waves]:
+            load = constants.initial_load + loading[0] + self.layout.field(waves.now + waves.arriving[0])
+            rate = self.contact.rate(constants.nodes, load, motion.seen, motion.states, motion.rate)
+            motion = motion._replace(rate=rate, traction=load - self.body.impedance * rate)
+            return motion, waves._replace(sent=waves.sent.at[0].set(self._leaving(rate, waves.now, waves.arriving[0])))
+
+        spread = (self._spread_motion, self._spread_waves)
+        return self.layout.on_devices(open_round_trip, (*spread, self._spread_constants, PartitionSpec()), spread, donate=(0, 1))
+
+    @cached_property
+    def _turn(self) -> Any:
+        """Turn what was sent in a round trip into what arrives in the next."""
+
+        def turn(sent: Any, echo: Echo, spectra: Any) -> tuple[Any, Echo]:
+            return echo_of(sent, echo, spectra, self.body.reflection)
+
+        rank = 1 + len(self.slab.shape)
+        path = self.layout.along_k(rank + 1)
+        given = (path, self._spread_echo, self.layout.along_k(rank + 2))
+        return self.layout.on_devices(turn, given, (path, self._spread_echo), donate=(1,))
+
+    def _leaving(self, rate: Any, memory: Any, arriving: Any) -> Any:
+        return 2.0 * self.body.impedance * self.layout.amplitudes(rate) - 2.0 * memory - arriving
+
+    def _one_step(self, now: tuple[Motion, Waves], constants: Constants, loading: Any, step: Any) -> tuple[Motion, Waves]:
+        motion, waves = now
+        arriving = jax.lax.dynamic_index_in_dim(waves.arriving, step, keepdims=False)
+        known = constants.initial_load + loading
+        guess, _, _ = self._moved(motion, motion.rate, waves, constants, (known, arriving))
+        found, slipped, memory = self._moved(motion, guess, waves, constants, (known, arriving))
+        advanced = constants.decay * waves.memory + constants.gain * slipped
+        sent = jax.lax.dynamic_update_index_in_dim(waves.sent, self._leaving(found.rate, memory, arriving), step, 0)
+        return found, Waves(advanced, jnp.sum(advanced.real, axis=0), memory, waves.arriving, sent)
+
+    def _moved(self, motion: Motion, guess: Any, waves: Waves, constants: Constants, loads: tuple[Any, Any]) -> Any:
+        """Return motion, slip and F after a step, from a guess: the slip rate after it at first, then the motion."""
+        late = guess.rate if isinstance(guess, Motion) else guess
+        mean = 0.5 * (motion.rate + late)
+        slip = motion.slip + self.dt * mean
+        seen, states = self._counted(motion, mean, guess, constants)
+        slipped = self.layout.amplitudes(slip - constants.initial_slip)
+        memory = waves.inherited + constants.now * slipped
+        load = loads[0] + self.layout.field(memory + loads[1])
+        rate = self.contact.rate(constants.nodes, load, seen, states, late)
+        traction = load - self.body.impedance * rate
+        if self.contact.law.memory == "since-arrest":
+            seen = jnp.where(rate == 0.0, 0.0, seen)
+        heat = motion.heat + 0.5 * self.dt * (motion.traction * motion.rate + traction * rate)
+        return Motion(slip, rate, traction, seen, states, heat), slipped, memory
+
+    def _counted(self, motion: Motion, mean: Any, guess: Any, constants: Constants) -> tuple[Any, Any]:
+        """Return slip as the law counts it, and the states, after a step at a mean slip rate."""
+        path = jnp.abs(mean) if self.contact.law.counts == "path" else mean
+        seen = motion.seen + self.dt * path
+        if not self.contact.law.states:
+            return seen, motion.states
+        about = 0.5 * (motion.states + guess.states) if isinstance(guess, Motion) else motion.states
+        middle = (0.5 * (motion.seen + seen), jnp.abs(mean))
+        return seen, self.contact.advanced_states(constants.nodes, middle, (motion.states, about), self.dt)
+
+    # ---- the run -----------------------------------------------------------------------------------------------------------------
+
+    def advance(self, count: int) -> int:
+        """Take at most `count` steps, no further than the end of the round trip or of the run; return how many were taken."""
+        with in_double_precision():
+            if self.step == self.steps:
+                self._begin_next_round_trip()
+            left = self.last_step - self.trip * self.steps
+            taken = max(0, min(count, self.steps - self.step, left - self.step))
+            if taken:
+                loading, between = self.loading[self.trip], np.array([self.step, self.step + taken])
+                self.motion, self.waves = self._march(self.motion, self.waves, self.constants, loading, between)
+                self.step += taken
+            return taken
+
+    def _begin_next_round_trip(self) -> None:
+        arriving, self.echo = self._turn(self.waves.sent, self.echo, self.spectra)
+        self.waves = self.waves._replace(arriving=arriving)
+        self.trip, self.step = self.trip + 1, 0
+        self._open_round_trip()
+
+    def _open_round_trip(self) -> None:
+        self.motion, self.waves = self._open(self.motion, self.waves, self.constants, self.loading[self.trip])
+
+    def now(self) -> Motion:
+        """Return the motion at the present moment as numpy arrays."""
+        with in_double_precision():
+            return Motion(*(whole(one) for one in self.motion))
+
+
+@contextmanager
+def in_double_precision() -> Iterator[None]:
+    """Have JAX compute with 64 bits, here only: other code of the user keeps its setting."""
+    with jax.enable_x64(True):
+        yield

@@ -1,0 +1,161 @@
+"""What a user gets from a run of a planar slab: the motion of the contact at frames in time."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Unpack
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.foundation.formatting import brief
+from stickslip.observables.planar import pulses, rupture_speed, rupture_times
+from stickslip.planar.slab import PlanarSlab
+from stickslip.solution.accessors import draw_planar
+from stickslip.solution.place import Place
+from stickslip.trajectory.slip_events import default_event_rate
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+Floats = NDArray[np.float64]
+ENOUGH_NODES = 5.0
+"""Nodes in a process zone from which a front is called resolved (Day et al. 2005 ask for three to five)."""
+PROCESS_ZONE = 9.0 * math.pi / 16.0
+"""Length of the process zone of a slow front, times the largest -S mu'/G: twice that between two half-spaces."""
+
+
+@dataclass(frozen=True, eq=False)
+class PlanarSolution:
+    """The motion of the contact of a planar slab. Arrays have time first, then the axes of the contact.
+
+    Parameters
+    ----------
+    slab
+        What was solved.
+    times
+        Times of the frames (s).
+    slip
+        Slip (m).
+    slip_rate
+        Slip rate (m/s), after a jump where there is one.
+    traction
+        Friction while a node slips, and the load that it bears while it rests (Pa).
+    heat
+        Work of friction since the start (J/m^2).
+    steps_per_round_trip
+        Number of time steps in a two-way travel time.
+    status
+        What ended the run.
+    """
+
+    slab: PlanarSlab
+    times: Floats
+    slip: Floats
+    slip_rate: Floats
+    traction: Floats
+    heat: Floats
+    steps_per_round_trip: int
+    status: str = "finished"
+
+    def __repr__(self) -> str:
+        nodes = " x ".join(str(count) for count in self.slab.shape)
+        return f"PlanarSolution({nodes} nodes, {len(self.times)} frames up to {self.times[-1]:.6g} s, {self.status})"
+
+    def __str__(self) -> str:
+        return "\n".join(self.sentences)
+
+    @property
+    def sentences(self) -> list[str]:
+        """What happened on the contact, and how far it is resolved, in sentences."""
+        if not self.has_slipped.any():
+            return [f"No node slips faster than {brief(self.threshold, 'm/s')} up to {brief(self.times[-1], 's')}."]
+        counts, share = self.pulses, float(self.has_slipped.mean())
+        first, middle = float(np.nanmin(self.rupture_times)), int(self.middle(counts))
+        lines = [
+            f"{share:.0%} of the contact slips, from {brief(first, 's')} on; the largest slip is"
+            f" {brief(np.ptp(self.slip, 0).max(), 'm')}, the largest slip rate {brief(np.abs(self.slip_rate).max(), 'm/s')}.",
+            f"The middle sees {middle} pulse{'' if middle == 1 else 's'}, other nodes up to {counts.max()}.",
+            "All nodes rest at the end." if not self.slip_rate[-1].any() else "Some nodes still slip at the end.",
+        ]
+        if np.isfinite(self.nodes_per_process_zone):
+            enough = "resolved" if self.nodes_per_process_zone >= ENOUGH_NODES else f"NOT resolved, {ENOUGH_NODES:g} are wanted"
+            lines.append(
+                f"The process zone of a slow front has {self.nodes_per_process_zone:.3g} nodes: {enough}; it contracts as fronts"
+                " come close to the wave speed."
+            )
+        return lines
+
+    @property
+    def threshold(self) -> float:
+        """The slip rate (m/s) above which a node slips in a pulse: the event rate of the problem in 1D."""
+        return default_event_rate(self.slab.problem)
+
+    @property
+    def has_slipped(self) -> NDArray[np.bool_]:
+        """True at each node that has slipped faster than `threshold`."""
+        return np.isfinite(self.rupture_times)
+
+    @cached_property
+    def rupture_times(self) -> Floats:
+        """The time (s) at which each node first slips faster than `threshold`; NaN where it never does."""
+        return rupture_times(self.times, self.slip_rate, self.threshold)
+
+    @property
+    def rupture_speed(self) -> Floats:
+        """The speed (m/s) of the front at each node along y: through the middle of a plane."""
+        return rupture_speed(self.slab.spacing[0], self.middle_line(self.rupture_times))
+
+    @cached_property
+    def pulses(self) -> NDArray[np.int64]:
+        """The number of pulses that have passed each node: see `stickslip.observables.planar.pulses`."""
+        return pulses(self.slip_rate, self.threshold)
+
+    @property
+    def moment_rate(self) -> Floats:
+        """G times the slip rate summed over the contact, at each frame: N m/s, or N/s (per metre of z) for a line."""
+        sums = self.slip_rate.reshape(len(self.times), -1).sum(axis=1)
+        return np.asarray(self.slab.body.shear_modulus * self.slab.node_area * sums, float)
+
+    @property
+    def stress_drop(self) -> Floats:
+        """Initial load minus traction at the last frame, at each node (Pa)."""
+        return np.asarray(self.slab.values.load - self.traction[-1], float)
+
+    @property
+    def nodes_per_process_zone(self) -> float:
+        """The nodes within the process zone of a slow front, where friction falls from its peak; NaN if it does not fall with slip.
+
+        It is 9 pi/16 G divided by the largest fall of strength with slip (Pa/m) and by the distance of nodes (Day et al. 2005, for
+        linear slip weakening; twice their length, because G acts on one side here). Fronts that run fast have shorter ones.
+        """
+        fall, _ = self.slab.values.slopes(float(np.ptp(self.slip, axis=0).max()) or 1e-6)
+        return PROCESS_ZONE * self.slab.body.shear_modulus / fall / max(self.slab.spacing) if fall > 0.0 else math.nan
+
+    def middle(self, values: NDArray[np.generic]) -> float:
+        """Return the value of a field at the node in the middle."""
+        return float(values[tuple(count // 2 for count in self.slab.shape)])
+
+    def middle_line(self, values: Floats) -> Floats:
+        """Return a field along y: of a plane that at the middle of z. Axes in front, such as time, stay."""
+        return values[..., self.slab.shape[1] // 2] if self.slab.is_plane else values
+
+    def plot(self, **place: Unpack[Place]) -> Figure:
+        """Draw the slip rate over y and time, and the motion in the middle against time; keywords as those of `Solution.plot`."""
+        return draw_planar(self, **place)
+
+    def dataset(self) -> xr.Dataset:
+        """Return slip, slip rate, traction and heat as an xarray dataset over time, y and, for a plane, z (SI units)."""
+        import xarray
+
+        axes = ("time", "y", "z")[: self.slip.ndim]
+        units = {"slip": "m", "slip_rate": "m s-1", "traction": "Pa", "heat": "J m-2"}
+        fields = {name: (axes, getattr(self, name), {"units": unit}) for name, unit in units.items()}
+        places = {"time": self.times, "y": self.slab.y} | ({"z": self.slab.z} if self.slab.is_plane else {})
+        made = xarray.Dataset(fields, coords=places)
+        for axis in axes:
+            made[axis].attrs["units"] = "s" if axis == "time" else "m"
+        return made

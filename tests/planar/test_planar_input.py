@@ -1,0 +1,90 @@
+"""Clumsy planar slabs: one line that says what is wrong and what is allowed."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+import numpy as np
+import pytest
+from tests.planar.patches import LAW, SLAB, patch
+
+import stickslip as ss
+
+PROBLEM = ss.Problem(SLAB, LAW, initial_load=60e6)
+GRID = {"nodes": 32, "length": 2e4}
+
+
+def problem_with(**changes: Any) -> ss.Problem:
+    return ss.Problem(ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8, **changes), LAW, initial_load=60e6)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"nodes": 33}, "nodes must be an even whole number, at least 8, got 33"),
+        ({"nodes": 32.0}, "nodes must be an even whole number"),
+        ({"length": -1.0}, "length must be"),
+        ({"length": "3 s"}, "length must be"),
+        ({"width": 1e4}, "width and width_nodes belong together"),
+        ({"courant": 0.9}, "courant must be at most 0.796"),
+        ({"along": {"static": np.ones(7)}}, r"static must give \(32,\) values"),
+        ({"along": {"static": lambda y: 0.0 * y + np.nan}}, "static must be finite at every node"),
+        ({"along": {"statc": 0.7}}, "did you mean"),
+        ({"along": {"body.thickness": 0.7}}, "is not a number that can vary"),
+        ({"along": {"static": lambda y: 0.0 * y - 0.1}}, "static"),
+        ({"along": [0.7]}, "along must be a mapping"),
+        ({"barrier": np.ones((3, 3), bool)}, r"barrier must give \(32,\) values"),
+        ({"problem": SLAB}, "problem must be a Problem"),
+        ({"problem": problem_with(contact_mass=10.0)}, "contact_mass must be 0"),
+        ({"problem": ss.scenarios["fig6-slab"].problem}, "no selection rule gives a solution"),
+        ({"problem": ss.Problem(SLAB, ss.friction.Coulomb(0.8, 0.3), initial_excess=1.0)}, "no selection rule gives a solution"),
+        ({"problem": ss.scenarios["fig5-block-printed"].problem}, "body must be an ElasticSlab"),
+    ],
+)
+def test_a_clumsy_slab_is_refused_in_one_line(change: dict[str, Any], message: str) -> None:
+    with pytest.raises(ss.InputError, match=message) as error:
+        ss.PlanarSlab(**({"problem": PROBLEM} | GRID | change))
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({}, "needs a duration"),
+        ({"duration": "3 km"}, "duration must be"),
+        ({"duration": 3.0, "rtol": 1e-8}, "a PlanarSlab has no rtol"),
+        ({"duration": 3.0, "frames": 0}, "frames must be a whole number above 0"),
+        ({"duration": 3.0, "frames": True}, "frames must be a whole number above 0"),
+        ({"duration": 1e6}, "GB"),
+        ({"duration": 3.0, "progress": 3}, "progress must be"),
+    ],
+)
+def test_a_clumsy_run_is_refused_in_one_line(arguments: dict[str, Any], message: str) -> None:
+    with pytest.raises(ss.InputError, match=message):
+        ss.simulate(patch(**GRID), **arguments)
+
+
+def test_frames_are_refused_for_a_slab_in_1d() -> None:
+    with pytest.raises(ss.InputError, match="frames is for a PlanarSlab"):
+        ss.simulate(PROBLEM, 3.0, frames=10)  # type: ignore[call-overload]
+
+
+def test_a_missing_library_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "stickslip.planar.solver", None)
+    with pytest.raises(ss.InputError, match=r"pip install 'stickslip\[planar\]'"):
+        ss.simulate(patch(**GRID), 3.0)
+
+
+@pytest.mark.parametrize("call", [ss.uniqueness, ss.catalogue, ss.explore, ss.resume])
+def test_what_is_for_problems_refuses_a_planar_slab(call: Any) -> None:
+    with pytest.raises(ss.InputError) as error:
+        call(patch(**GRID), *(["catalogue.csv", 3.0] if call is ss.catalogue else []))
+    assert "\n" not in str(error.value)
+
+
+def test_progress_is_told() -> None:
+    told: list[Any] = []
+    ss.simulate(patch(**GRID), 3.0, frames=10, progress=told.append)
+    assert str(told[-1]).startswith("3 of 3 s, slips at up to") or "of 3 s" in str(told[-1])
+    assert [one.time for one in told] == sorted(one.time for one in told)

@@ -1,0 +1,88 @@
+"""What is read from frames of a planar slab: against closed forms, and against the events of the slab in 1D."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from tests.planar.patches import SLAB, patch
+
+import stickslip as ss
+from stickslip.observables.planar import pulses, rupture_speed, rupture_times
+
+TIMES = np.linspace(0.0, 10.0, 4001)
+
+
+def bell(centre: float, width: float = 0.3) -> np.ndarray:
+    return np.exp(-(((TIMES - centre) / width) ** 2))
+
+
+@pytest.mark.parametrize(
+    ("rate", "count"),
+    [
+        (bell(2.0) + bell(5.0) + bell(8.0), 3),
+        (-bell(2.0) - bell(5.0), 2),
+        (bell(5.0, 3.0) * (1.0 + 0.3 * np.sin(3.0 * TIMES)), 1),  # minima above half of the lower maximum separate nothing
+        (bell(2.0) + 0.3 * bell(5.0), 2),
+        (TIMES / 10.0, 1),  # it still rises
+        (1.0 - TIMES / 10.0, 1),
+        (np.ones_like(TIMES), 1),
+        (np.zeros_like(TIMES), 0),
+        (1e-4 * bell(5.0), 0),
+    ],
+)
+def test_pulses_are_maxima_with_deep_minima_between(rate: np.ndarray, count: int) -> None:
+    assert pulses(rate[:, None], 1e-3).tolist() == [count]
+
+
+def test_a_front_is_timed_and_its_speed_found() -> None:
+    y, speed = np.linspace(-5e3, 5e3, 101), 2500.0
+    rate = np.maximum(TIMES[:, None] - np.abs(y) / speed, 0.0)
+    found = rupture_times(TIMES, rate, 1e-3)
+    assert np.abs(found - np.abs(y) / speed - 1e-3).max() < 1e-12 + 2.5e-3  # a frame
+    assert np.abs(rupture_speed(100.0, np.abs(y) / speed)[[10, 30, 70, 90]] / speed - 1.0).max() < 1e-12
+    assert np.isnan(rupture_times(TIMES, 0.0 * rate, 1e-3)).all()
+
+
+def test_a_uniform_contact_has_the_pulses_of_the_slab_in_1d() -> None:
+    problem = ss.scenarios["fig5-slab-reconstructed"].problem
+    contact = ss.PlanarSlab(problem, nodes=8, length=1.4e4)
+    run = ss.simulate(contact, 7.0, frames=1000)
+    exact = ss.simulate(problem, 7.0)
+    assert run.pulses.tolist() == [int(exact.events.pulses.iloc[0])] * 8 == [3] * 8
+    drop = exact.traction(0.0, side="left") - exact.traction(7.0)
+    assert run.stress_drop == pytest.approx(np.full(8, drop), rel=2e-2, abs=0.0)
+
+
+def test_moment_rate_is_the_modulus_times_area_and_rate() -> None:
+    run = ss.simulate(patch(nodes=32, length=2e4), 3.0, frames=10)
+    total = np.trapezoid(run.slip_rate[-1], dx=2e4 / 32) + run.slip_rate[-1, 0] * 2e4 / 64 + run.slip_rate[-1, -1] * 2e4 / 64
+    assert run.moment_rate[-1] == pytest.approx(SLAB.shear_modulus * total, rel=1e-12, abs=0.0)
+
+
+def test_the_process_zone_of_linear_weakening_is_that_of_the_closed_form() -> None:
+    """9 pi/16 G Dc/(tau_s - tau_d), between nodes 625 m apart."""
+    run = ss.simulate(patch(nodes=32, length=2e4), 3.0, frames=10)
+    zone = 9.0 * math.pi / 16.0 * SLAB.shear_modulus * 0.4 / 20e6
+    assert run.nodes_per_process_zone == pytest.approx(zone / 625.0, rel=1e-6, abs=0.0)
+    assert "NOT resolved" in str(run)
+
+
+@pytest.mark.parametrize("plane", [False, True])
+def test_a_run_draws_itself_with_units(plane: bool) -> None:
+    grid = {"width": 2e4, "width_nodes": 16} if plane else {}
+    figure = ss.simulate(patch(nodes=32, length=2e4, **grid), 3.0, frames=10).plot(figure=Figure())
+    labels = " ".join(axis.get_ylabel() + axis.get_xlabel() for axis in figure.axes)
+    assert all(unit in labels for unit in ("(km)", "(m/s)", "(s)"))
+
+
+def test_a_dataset_has_axes_with_units() -> None:
+    found = ss.simulate(patch(nodes=32, length=2e4), 1.0, frames=10).dataset()
+    assert found.slip.dims == ("time", "y")
+    assert {name: found[name].attrs["units"] for name in ("time", "y", "slip_rate")} == {
+        "time": "s",
+        "y": "m",
+        "slip_rate": "m s-1",
+    }
