@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.fft import next_fast_len
 
 from stickslip.bodies import ElasticSlab
 from stickslip.contact.uniqueness import regime_of
@@ -206,6 +205,8 @@ class PlanarSlab(CheckedArguments):
         """
         if self.replicas:
             return self, tuple(slice(None) for _ in self.shape)
+        from scipy.fft import next_fast_len  # takes a tenth of a second to load, which other runs do not need
+
         reach = self.body.wave_speed * duration
         counts = [
             2 * next_fast_len(math.ceil((count + reach / step) / 2)) for count, step in zip(self.shape, self.spacing, strict=True)
