@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 ENOUGH_NODES = 5.0
-"""Nodes in a process zone from which a front is called resolved (Day et al. 2005 ask for three to five)."""
+"""Nodes in a process zone from which a front is called resolved: a rule of thumb, which twice the nodes put to the test."""
 PROCESS_ZONE = 9.0 * math.pi / 16.0
 """Length of the process zone of a slow front, times the largest -S mu'/G: twice that between two half-spaces."""
 
@@ -140,7 +140,7 @@ class PlanarSolution:
         return float(values[tuple(count // 2 for count in self.slab.shape)])
 
     def middle_line(self, values: Floats) -> Floats:
-        """Return a field along y: of a plane that at the middle of z. Axes in front, such as time, stay."""
+        """Return a field along y; for a plane, along the line at z = 0. Axes in front, such as time, stay."""
         return values[..., self.slab.shape[1] // 2] if self.slab.is_plane else values
 
     def plot(self, **place: Unpack[Place]) -> Figure:
