@@ -65,6 +65,14 @@ def test_a_clumsy_run_is_refused_in_one_line(arguments: dict[str, Any], message:
         ss.simulate(patch(**GRID), **arguments)
 
 
+def test_a_law_that_slip_makes_ill_posed_is_refused() -> None:
+    """At the initial slip it has one slip rate at every load; after some slip it has several."""
+    law = ss.friction.FromFunction(lambda u, v: 0.6 - 0.1 * np.tanh(u / 0.5) - 0.2 * np.tanh(u / 0.5) * v / (v + 0.2))
+    contact = ss.PlanarSlab(ss.Problem(SLAB, law, initial_excess=1e6), nodes=16, length=2e4)
+    with pytest.raises(ss.InputError, match="no selection rule gives a solution"):
+        ss.simulate(contact, 5.0, frames=20)
+
+
 def test_frames_are_refused_for_a_slab_in_1d() -> None:
     with pytest.raises(ss.InputError, match="frames is for a PlanarSlab"):
         ss.simulate(PROBLEM, 3.0, frames=10)  # type: ignore[call-overload]

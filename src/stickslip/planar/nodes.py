@@ -63,6 +63,21 @@ class NodeValues:
             fall, rise = max(fall, -float(slopes.min())), max(rise, float(slopes.max()))
         return fall, rise
 
+    def is_unique(self, impedance: float, slip: float, rate: float) -> bool:
+        """Return False if Z v + S mu(u, v) falls with the slip rate at any node, within some slip (m) from the start.
+
+        It is evaluated at 60 slips and 200 slip rates up to 4 times `rate` (m/s), under laws of slip and slip rate only.
+        """
+        rates = np.union1d(np.linspace(0.0, 4.0 * rate, 100), np.geomspace(1e-9 * rate, 4.0 * rate, 100))
+        for problem in self.problems:
+            law = problem.friction
+            if law.states or not (law.depends_on_slip and law.depends_on_rate) or rate == 0.0:
+                continue
+            slips = problem.law_slip + np.linspace(0.0, slip, 60)[:, None]
+            if (np.diff(impedance * rates + problem.normal * law.coefficient(slips, rates), axis=1) < 0.0).any():
+                return False
+        return True
+
     @property
     def law(self) -> FrictionLaw:
         """The law of one of the nodes; all nodes have the same formulas."""

@@ -108,6 +108,12 @@ def simulate_planar(
             times.append(run.time)
             if progress is not None:
                 progress(PlanarReport(run.time, length, float(np.abs(kept[-1].rate).max())))
+    largest_slip = max(float(np.abs(motion.slip - kept[0].slip).max()) for motion in kept)
+    if not slab.values.is_unique(slab.body.impedance, largest_slip, max(float(np.abs(motion.rate).max()) for motion in kept)):
+        raise InputError(
+            f"simulate: within the {largest_slip:.3g} m that this PlanarSlab slips, friction falls with the slip rate by more than"
+            " radiation adds: several slip rates solve the contact equation, and no selection rule gives a solution in 2D or 3D"
+        )
     return PlanarSolution(
         slab,
         np.array(times),
