@@ -5,8 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
 from stickslip.cli.options import Changes, Dpi, Duration, FigureFile, Rtol, ScenarioName, Size, option
 from stickslip.cli.output.files import Look, Target, announce, check_targets, drawing, write_files
 from stickslip.foundation.errors import InputError
