@@ -51,15 +51,21 @@ def whole() -> Any:
     return ss.simulate(patch(**GRID), DURATION, frames=10)
 
 
-@pytest.fixture
-def store(tmp_path: Path) -> Path:
+@pytest.fixture(scope="module")
+def stopped(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of a run that was stopped in its second round trip."""
-    path = tmp_path / "run.zarr"
+    path = tmp_path_factory.mktemp("stopped") / "run.zarr"
     ss.simulate(patch(**GRID), DURATION, frames=10, checkpoint=path, progress=stop_after(14))
     return path
 
 
-@pytest.mark.parametrize("stops", [(3, 9), (10, 1), (1, 25)], ids=str)
+@pytest.fixture
+def store(stopped: Path, tmp_path: Path) -> Path:
+    """A copy of it."""
+    return Path(shutil.copytree(stopped, tmp_path / "run.zarr"))
+
+
+@pytest.mark.parametrize("stops", [(3, 7), (10, 1)], ids=str)
 def test_a_run_that_was_stopped_twice_is_the_run_that_was_not(tmp_path: Path, whole: Any, stops: tuple[int, int]) -> None:
     """After frame 10 a round trip ends."""
     path = tmp_path / "run.zarr"
@@ -71,16 +77,21 @@ def test_a_run_that_was_stopped_twice_is_the_run_that_was_not(tmp_path: Path, wh
     check_same(ss.open_solution(path), whole)
 
 
-def test_a_run_with_states_on_a_plane_alone_continues_bit_for_bit(tmp_path: Path) -> None:
+@pytest.mark.parametrize("plane", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["line", "plane"])
+def test_a_run_with_states_that_is_alone_continues_bit_for_bit(tmp_path: Path, plane: bool) -> None:
     slab = ss.ElasticSlab(2800.0, 3500.0, 1e3, 1e8)
     law = ss.friction.RateAndState(reference=0.6, a=0.01, b=0.015, distance=1e-2)
     problem = ss.Problem(slab, law, pull_rate=1e-3, initial_load=63e6, initial_state=1.2)
-    along = {"initial.slip": lambda y, z: np.where(y > z, 1e-3, 0.0), "normal_stress": lambda y, _: np.where(y > 0.0, 1e8, 1.01e8)}
-    grid: dict[str, Any] = {"nodes": 8, "length": 2e3, "width": 1e3, "width_nodes": 12, "replicas": False}
-    contact = ss.PlanarSlab(problem, along=along, barrier=lambda y, z: np.hypot(y, z) > 900.0, **grid)
-    begun = ss.simulate(contact, 0.8, frames=10)
+    along = {"initial.slip": lambda y, *_: 1e-3 * (y < 0.0), "normal_stress": lambda y, *z: 1e8 + 1e6 * (sum(z, y) > 0.0)}
+    grid: dict[str, Any] = {"width": 1e3, "width_nodes": 12} if plane else {}
+    contact = ss.PlanarSlab(
+        problem, nodes=8, length=2e3, replicas=False, along=along, barrier=lambda y, *_: np.abs(y) > 900.0, **grid
+    )
+    whole = ss.simulate(contact, 0.8, frames=10)
     ss.simulate(contact, 0.8, frames=10, checkpoint=tmp_path / "run.zarr", progress=stop_after(7))
-    check_same(ss.resume(tmp_path / "run.zarr"), begun)
+    check_same(ss.resume(tmp_path / "run.zarr"), whole)
+    with pytest.raises(ss.InputError, match="without replicas"):
+        ss.resume(tmp_path / "run.zarr", 0.9)
 
 
 class Killed(BaseException):
@@ -140,7 +151,7 @@ def test_a_longer_run_is_the_run_that_was_long_from_the_start(tmp_path: Path, wh
     assert np.array_equal(longer.slip[: len(whole.times) - 1], whole.slip[:-1])
     with pytest.raises(ss.InputError, match=r"exponentials are made for 22.857"):
         ss.resume(path, 23.0)
-    with pytest.raises(ss.InputError, match=r"has already reached 20):
+    with pytest.raises(ss.InputError, match=r"has already reached 20"):
         ss.resume(path, 19.0)
 
 
@@ -198,11 +209,12 @@ def refused(act: Callable[[], object], *words: str) -> None:
     assert all(word in str(told.value) for word in words), str(told.value)
 
 
-def test_no_damaged_folder_is_read(store: Path, whole: Any) -> None:
+@pytest.mark.parametrize("flips", [1, pytest.param(20, marks=pytest.mark.slow)])
+def test_no_damaged_folder_is_read(store: Path, whole: Any, flips: int) -> None:
     """Any bit of any file: what is opened or continued is refused, or is what was written."""
     rng, told, copy = np.random.default_rng(2), [], store.with_name("damaged.zarr")
     for file in sorted(path.relative_to(store) for path in store.rglob("*") if path.is_file()):
-        for _ in range(3):
+        for _ in range(flips):
             shutil.copytree(store, copy)
             damaged = bytearray((copy / file).read_bytes())
             damaged[int(rng.integers(len(damaged)))] ^= 1 << int(rng.integers(8))
@@ -213,7 +225,7 @@ def test_no_damaged_folder_is_read(store: Path, whole: Any) -> None:
             ]
             shutil.rmtree(copy)
     lines = [line for line in told if line]
-    assert len(lines) > 40
+    assert len(lines) > 15 * flips
     assert not any("\n" in line or len(line) > 600 for line in lines)
 
 
@@ -245,11 +257,10 @@ def edited(path: Path, **changes: Any) -> None:
     [
         ({"stickslip_planar": 2}, "format 1 expected, found 2"),
         ({"scenario": "x = 1"}, "run.zarr"),
-        ({"scenario": 3}, "not the run of a planar slab"),
-        ({"grid": {"nodes": 16, "length": 2e4}}, "along"),
+        ({"scenario": 3}, "cannot be read"),
+        ({"grid": {"nodes": 16, "length": 2e4}}, "load must give (16,) values"),
         ({"grid": [1]}, "run.zarr"),
         ({"along": ["static"]}, "static"),
-        ({"along": []}, "along"),
         ({"modes": [2, 9]}, "waves/sent"),
         ({"steps_per_round_trip": 0.5}, "steps_per_round_trip is 0.5"),
         ({"duration": math.inf}, "duration is inf"),
@@ -262,7 +273,7 @@ def test_a_folder_made_by_hand_is_refused(store: Path, changes: dict[str, Any], 
     refused(lambda: ss.resume(store), str(store), word)
 
 
-@pytest.mark.parametrize("file", ["state.nc", "slip/c.0.0", "barrier/c.0", "waves/sent/c.0.0.0", "waves/zarr.json"])
+@pytest.mark.parametrize("file", ["state.nc", "slip/c.1.0", "barrier/c.0", "waves/sent/c.0.0.0", "waves/zarr.json"])
 def test_a_folder_without_one_of_its_files_is_refused(store: Path, file: str) -> None:
     (store / file).unlink()
     refused(lambda: ss.resume(store).slip, str(store))

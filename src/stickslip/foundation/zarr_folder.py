@@ -38,7 +38,7 @@ def reading(place: Any, what: str) -> Iterator[None]:
         yield
     except InputError as error:
         text = str(error)
-        raise (error if text.startswith(f"{place}: ") else InputError(f"{place}: not {what}: {text}")) from None
+        raise (error if text.startswith(str(place)) else InputError(f"{place}: not {what}: {text}")) from None
     except Exception as error:  # the libraries raise errors of many kinds for a damaged file
         text = f"{type(error).__name__}: {clean(' '.join(str(error).split()))[:200]}"
         raise InputError(f"{place}: cannot be read: {text}") from None

@@ -10,12 +10,13 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Literal, Self
 
 import numpy as np
 import zarr
@@ -46,7 +47,7 @@ KIND, STATE, SENT = "stickslip_planar", "state.nc", "waves/sent"
 """Attribute with the version, file of the checkpoint, and array of what the contact has sent."""
 CHUNK = 4_000_000
 """Bytes of a chunk of frames or waves, unless a single one is larger."""
-WHAT = "the run of a planar slab"
+WHAT, BUSY = "the run of a planar slab", "another run is writing into it"
 CHANGES = ("duration", "status", "status_message", "status_ok", "digest")
 """Attributes that may change, and the checksum of the others."""
 DECIDE = ("bodies", "friction", "loading", "planar", "problem")
@@ -62,10 +63,18 @@ class PlanarStore(Frames):
     """Time (s) at the end of the run."""
     frames: int = field(kw_only=True)
     """Frames in a two-way travel time."""
+    digest: str = field(kw_only=True)
+    """Checksum of the attributes that do not change."""
     written: int = 0
     """Number of frames in the folder."""
     sent: int = 0
     """Number of rows of `waves/sent`: steps + 1 for each round trip."""
+
+    @cached_property
+    def _arrays(self) -> dict[str, Any]:
+        """The arrays that grow, by name."""
+        group: Any = opened(self.path, "r+", use_consolidated=False)
+        return {name: group[name] for name in ("time", *FIELDS, SENT)}
 
     # ---- begin, or go on ---------------------------------------------------------------------------------------------------------
 
@@ -75,33 +84,38 @@ class PlanarStore(Frames):
         """Create the folder of a run, locked against other processes. Raises InputError if the name exists."""
         if path.exists():
             raise InputError(f"{path}: exists: stickslip.resume continues the run in it; choose another name, or remove it")
-        with zarr_folder.writing(path, ""), held(path, f"{path}: another run is writing into it"):
-            store = cls(slab, run.steps, path=path, duration=duration, frames=frames)
-            about = attributes(store, run)
+        about = attributes(slab, duration, frames, run)
+        with zarr_folder.writing(path, "choose another disk"), held(path, f"{path}: {BUSY}"):
             write_atomically(path, lambda draft: lay_out(draft, slab, about), folder=True)
-        with held(path, f"{path}: another run is writing into it"):
-            yield store
+        with held(path, f"{path}: {BUSY}"):
+            yield cls(slab, run.steps, path=path, duration=duration, frames=frames, digest=about["digest"])
 
     @classmethod
     @contextmanager
     def at(cls, path: Path) -> Iterator[Self]:
         """Open the folder of a run to continue it, locked against other processes. Raises InputError for anything else."""
-        with held(path, f"{path}: another run is writing into it"), reading(path):
-            found, about = _opened(path, use_consolidated=False), netcdf_file.read(path / STATE, "the state of a planar run").attrs
-            if about.get("digest") != found.attrs["digest"] or whole_number(about, KIND, path) != FORMAT:
-                raise InputError(f"its {STATE} belongs to another run")
-            if about["engine"] != _engine():
-                raise InputError(
-                    f"{path}: cannot be resumed: another version of stickslip or of JAX made it ({about['engine']}, this is"
-                    f" {_engine()}), which would go on in other digits; run it again from the start"
-                )
-            slab, duration = _slab(found, path), number(found.attrs, "duration", path)
-            frames, steps = (whole_number(found.attrs, name, path, 1) for name in ("frames", "steps_per_round_trip"))
-            store = cls(slab, steps, path=path, duration=duration, frames=frames)
-            store.written, store.sent = (whole_number(about, name, path, 1) for name in ("written", "sent"))
-            store.largest_slip, store.fastest = (number(about, name, path) for name in ("largest_slip", "fastest"))
-            store.times = _finite(found, "time", slice(store.written)).tolist()
-        yield store
+        with held(path, f"{path}: {BUSY}"):
+            with reading(path):
+                store = cls._opened(path)
+            yield store
+
+    @classmethod
+    def _opened(cls, path: Path) -> Self:
+        group, about = opened(path, use_consolidated=False), netcdf_file.read(path / STATE, "the state of a planar run").attrs
+        if about.get("digest") != group.attrs["digest"] or whole_number(about, KIND, path) != FORMAT:
+            raise InputError(f"its {STATE} belongs to another run")
+        if about["engine"] != _engine():
+            raise InputError(
+                f"{path}: cannot be resumed: another version of stickslip or of JAX made it ({about['engine']}; this is"
+                f" {_engine()}), which would go on in other digits; run it again from the start"
+            )
+        frames, steps = (whole_number(group.attrs, name, path, 1) for name in ("frames", "steps_per_round_trip"))
+        keywords = {"duration": number(group.attrs, "duration", path), "frames": frames, "digest": about["digest"]}
+        store = cls(slab_in(group, path), steps, path=path, **keywords)
+        store.written, store.sent = (whole_number(about, name, path, 1) for name in ("written", "sent"))
+        store.largest_slip, store.fastest = (number(about, name, path) for name in ("largest_slip", "fastest"))
+        store.times = _finite(group, "time", slice(store.written)).tolist()
+        return store
 
     def restore(self, run: PlanarSolver) -> None:
         """Set a solver to the state in the folder. Raises InputError if it is damaged."""
@@ -112,19 +126,14 @@ class PlanarStore(Frames):
             wanted = {name: (one.shape, one.dtype) for name, one in run.state().items()}
             if {name: (one.shape, one.dtype) for name, one in state.items()} != wanted or trip >= run.trips:
                 raise InputError(f"its {STATE} has arrays of other shapes than its grid")
-            run.restore(state, trip, step, lambda n: _finite(self._group, SENT, slice(n * rows, min((n + 1) * rows, self.sent))))
+            run.restore(state, trip, step, lambda n: _finite(self._arrays, SENT, slice(n * rows, min((n + 1) * rows, self.sent))))
 
     # ---- while the run continues -------------------------------------------------------------------------------------------------
-
-    @cached_property
-    def _group(self) -> zarr.Group:
-        return zarr.open_group(self.path, mode="r+", use_consolidated=False)
 
     @override
     def add(self, time: float, motion: Motion) -> None:
         super().add(time, motion)
-        rows: Any = self._group["slip"]
-        if len(self.times) % rows.chunks[0] == 0:
+        if len(self.times) % self._arrays["slip"].chunks[0] == 0:
             self._write_frames()
 
     def drop_last(self) -> None:
@@ -143,9 +152,10 @@ class PlanarStore(Frames):
         """Write rows of an array from a row on, and have them on the disk."""
         if not len(values):
             return
-        array: Any = self._group[name]
+        array = self._arrays[name]
         end, size = first + len(values), array.chunks[0]
-        with zarr_folder.writing(self.path, "stickslip.resume continues from the last checkpoint when there is room"):
+        kept = "stickslip.resume continues from the last checkpoint when there is room"
+        with reading(self.path), zarr_folder.writing(self.path, kept):  # a chunk that is not full is read first
             if end > array.shape[0]:
                 array.resize((end, *array.shape[1:]))
             array[first:end] = values
@@ -169,11 +179,12 @@ class PlanarStore(Frames):
             name: Variable(tuple(f"{name}_{n}" for n in range(one.ndim)), np.asarray(one)) for name, one in run.state().items()
         }
         own = ("written", "sent", "largest_slip", "fastest")
-        about = {name: getattr(self, name) for name in own} | {KIND: FORMAT, "engine": _engine()}
-        netcdf_file.write_variables(state, about | {"digest": self._group.attrs["digest"]}, self.path / STATE)
-        zarr_folder.consolidate(self.path)
-        # the group that knows the arrays keeps what it knows of them: the file changes at once
-        zarr.open_group(self.path, mode="r+").attrs.update(_status(STATUSES[code]) | {"duration": self.duration})
+        about = {name: getattr(self, name) for name in own} | {KIND: FORMAT, "engine": _engine(), "digest": self.digest}
+        netcdf_file.write_variables(state, about, self.path / STATE)
+        with reading(self.path):
+            zarr_folder.consolidate(self.path)
+            # the group that knows the arrays keeps what it knows of them: the file changes at once
+            zarr.open_group(self.path, mode="r+").attrs.update(_status(STATUSES[code]) | {"duration": self.duration})
 
     @override
     def solution(self, code: int) -> PlanarSolution:
@@ -182,40 +193,41 @@ class PlanarStore(Frames):
 
 def lay_out(place: Any, slab: PlanarSlab, about: Mapping[str, Any]) -> None:
     """Create all arrays, without frames, and the attributes."""
-    group, axes = zarr.create_group(place, attributes=dict(about)), ("y", "z")[: len(slab.shape)]
+    group: Any = zarr.create_group(place, attributes=dict(about))
+    axes = dict(zip(("y", "z"), slab.shape, strict=False))
     for axis, places in zip(axes, (slab.y, slab.z), strict=False):
-        _array(group, axis, (axis,), places.shape, {"units": "m"})[...] = places
+        _array(group, axis, {axis: len(places)}, units="m")[...] = places
     for name, given in slab.along.items():
         values = slab.at_nodes(name, given)
-        _array(group, f"along.{name}", axes, slab.shape, {"long_name": f"{name} along the contact"})[...] = values
-    _array(group, "barrier", axes, slab.shape, {"long_name": "1 where the contact is locked"})[...] = slab.locked
-    _array(group, "time", ("time",), (0,), {"units": "s"})
+        _array(group, f"along.{name}", axes, long_name=f"{name} along the contact")[...] = values
+    _array(group, "barrier", axes, long_name="1 where the contact is locked")[...] = slab.locked
+    _array(group, "time", {"time": 0}, about["frames"], units="s")
     for name, unit in FIELDS.items():
-        _array(group, name, ("time", *axes), (0, *slab.shape), {"units": unit})
-    sent = {"units": "Pa", "long_name": "what the contact sends at each step of each round trip, by wavenumber"}
-    _array(group, SENT, ("row", "part", *(f"k_{axis}" for axis in axes)), (0, *about["modes"]), sent)
+        _array(group, name, {"time": 0} | axes, about["frames"], units=unit)
+    modes = dict(zip(("part", *(f"k_{axis}" for axis in axes)), about["modes"], strict=True))
+    sent = "what the contact sends at each step of each round trip, by wavenumber"
+    _array(group, SENT, {"row": 0} | modes, about["steps_per_round_trip"], units="Pa", long_name=sent)
     zarr_folder.consolidate(place)
 
 
-def attributes(store: PlanarStore, run: PlanarSolver) -> dict[str, Any]:
+def attributes(slab: PlanarSlab, duration: float, frames: int, run: PlanarSolver) -> dict[str, Any]:
     """Return the attributes of a new folder. Raises InputError for a problem that files cannot hold."""
-    slab, problem = store.slab, store.slab.problem
     names = ("nodes", "length", "width", "width_nodes", "replicas", "courant")
     about: dict[str, Any] = {
         "Conventions": "CF-1.11",
-        "title": f"stickslip run: PlanarSlab, {type(problem.friction).__name__}",
+        "title": f"stickslip run: PlanarSlab, {type(slab.problem.friction).__name__}",
         "source": f"stickslip {stickslip.__version__}",
         "references": PAPER,
-        "scenario": Scenario(problem, store.duration).to_toml(),
-        "selection_rule": problem.rule,
+        "scenario": Scenario(slab.problem, duration).to_toml(),
+        "selection_rule": slab.problem.rule,
         "grid": {name: getattr(slab, name) for name in names},
         "along": list(slab.along),
         "modes": list(run.sent(0).shape[1:]),
-        "frames": store.frames,
-        "steps_per_round_trip": store.steps_per_round_trip,
+        "frames": frames,
+        "steps_per_round_trip": run.steps,
         KIND: FORMAT,
     }
-    return about | {"digest": _digest(about), "duration": store.duration} | _status(STATUSES[UNDER_WAY])
+    return about | {"digest": _digest(about), "duration": duration} | _status(STATUSES[UNDER_WAY])
 
 
 def _status(status: Status) -> dict[str, Any]:
@@ -227,17 +239,16 @@ def _digest(about: Mapping[str, Any]) -> str:
     return hashlib.sha256(json.dumps(kept, sort_keys=True).encode()).hexdigest()
 
 
-def _array(group: zarr.Group, name: str, dims: tuple[str, ...], shape: tuple[int, ...], about: dict[str, Any]) -> zarr.Array[Any]:
-    """Create an array, whose chunks are whole along all axes but the first of arrays that grow."""
-    chunks = shape
-    if shape[0] == 0:
-        chunks = (max(1, CHUNK // (8 * int(np.prod(shape[1:])))), *shape[1:])
+def _array(group: zarr.Group, name: str, axes: Mapping[str, int], rows: int = 0, **about: str) -> zarr.Array[Any]:
+    """Create an array; one that grows along its first axis has chunks of so many rows, or of fewer if they are large."""
+    shape = tuple(axes.values())
+    most = max(1, CHUNK // (8 * math.prod(shape[1:])))
     return group.create_array(
         name,
         shape=shape,
-        chunks=chunks,
+        chunks=(min(rows, most), *shape[1:]) if rows else shape,
         dtype="float64",
-        dimension_names=dims,
+        dimension_names=tuple(axes),
         attributes=about,
         compressors=zarr_folder.COMPRESSED,
         fill_value=np.nan,  # so that a chunk that is missing is noticed
@@ -282,8 +293,9 @@ class StoredFields(Mapping[str, Floats]):
 def open_planar(path: Path) -> PlanarSolution:
     """Return the run in a folder; its fields are read when they are used. Raises InputError for anything but such a folder."""
     with reading(path):
-        group = _opened(path)
-        slab, times = _slab(group, path), _finite(group, "time")
+        group = opened(path)
+        steps = whole_number(group.attrs, "steps_per_round_trip", path, 1)
+        slab, times = slab_in(group, path), _finite(group, "time")
         shapes = {name: getattr(group[name], "shape", None) for name in FIELDS}
         if any(shape != (len(times), *slab.shape) for shape in shapes.values()) or not len(times):
             raise InputError(f"its frames have the shapes {shapes}, its times {times.shape}, its grid {slab.shape}")
@@ -295,11 +307,11 @@ def open_planar(path: Path) -> PlanarSolution:
         return PlanarSolution(slab, times, StoredFields(path, group, len(times)), steps, status)
 
 
-def _opened(path: Path, use_consolidated: bool | None = None) -> zarr.Group:
+def opened(path: Path, mode: Literal["r", "r+"] = "r", use_consolidated: bool | None = None) -> zarr.Group:
     """Return the group in a folder after checking its attributes. Raises InputError."""
     if not (path / "zarr.json").is_file():
         raise InputError(f"{path}: not {WHAT}: it is no folder of zarr")
-    group = zarr.open_group(path, mode="r", use_consolidated=use_consolidated)
+    group = zarr.open_group(path, mode=mode, use_consolidated=use_consolidated)
     if group.attrs.get(KIND) != FORMAT:
         found = "it is the store of a sweep" if "stickslip_sweep" in group.attrs else f"found {group.attrs.get(KIND, 'none')}"
         raise InputError(f"{path}: not {WHAT} of this version of stickslip (format {FORMAT} expected, {found})")
@@ -308,7 +320,7 @@ def _opened(path: Path, use_consolidated: bool | None = None) -> zarr.Group:
     return group
 
 
-def _slab(group: zarr.Group, path: Path) -> PlanarSlab:
+def slab_in(group: zarr.Group, path: Path) -> PlanarSlab:
     """Return the slab from the attributes and profiles of a folder."""
     given: Any = group
     about: Any = group.attrs
@@ -325,10 +337,9 @@ def _slab(group: zarr.Group, path: Path) -> PlanarSlab:
     return slab
 
 
-def _finite(group: zarr.Group, name: str, rows: slice = slice(None)) -> Floats:
+def _finite(group: Any, name: str, rows: slice = slice(None)) -> Floats:
     """Return rows of an array. Raises InputError if some of its numbers are missing."""
-    array: Any = group[name]
-    found = np.asarray(array[rows])
+    found = np.asarray(group[name][rows])
     if not np.isfinite(found).all():
         raise InputError(f"its array {name!r} has numbers that are missing or not finite")
     return found
