@@ -191,7 +191,7 @@ class PlanarStore(Frames):
         return open_planar(self.path)
 
 
-def lay_out(place: Any, slab: PlanarSlab, about: Mapping[str, Any]) -> None:
+def lay_out(place: Any, slab: PlanarSlab, about: Any) -> None:
     """Create all arrays, without frames, and the attributes."""
     group: Any = zarr.create_group(place, attributes=dict(about))
     axes = dict(zip(("y", "z"), slab.shape, strict=False))
