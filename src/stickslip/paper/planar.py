@@ -116,7 +116,7 @@ class Fault:
     def slab(self) -> ss.PlanarSlab:
         """The contact on a grid."""
         length = self.length
-        count = 2 * math.ceil(max(0.5 * 1.25 * length * self.per_zone / process_zone(self.problem), 12.0))
+        count = 2 * math.ceil(max(0.5 * 1.25 * length * self.per_zone / process_zone(self.problem), 4.0))
 
         def outside(y: NDArray[np.float64], z: NDArray[np.float64] | float = 0.0) -> NDArray[np.bool_]:
             away = np.hypot(y, z) if self.shape == "disc" else np.maximum(np.abs(y), np.abs(z))
