@@ -100,8 +100,20 @@ def main() -> None:
             continue
         found, curve = measured(*item[2:])
         rows.append(key | {name: str(value) for name, value in found.items()} | {"commit": commit})
-        if item[0] == "slip" and item[1] == LARGE and (item[2].shape, item[2].ratio, item[2].per_zone) in SHOWN and not item[2].replicas:
-            np.savetxt(CURVES.with_stem(f"{CURVES.stem}-{item[2].shape}"), curve.T, fmt="%.4f", delimiter=",", header="time [s],slip rate [m/s]", comments="")
+        if (
+            item[0] == "slip"
+            and item[1] == LARGE
+            and (item[2].shape, item[2].ratio, item[2].per_zone) in SHOWN
+            and not item[2].replicas
+        ):
+            np.savetxt(
+                CURVES.with_stem(f"{CURVES.stem}-{item[2].shape}"),
+                curve.T,
+                fmt="%.4f",
+                delimiter=",",
+                header="time [s],slip rate [m/s]",
+                comments="",
+            )
         with STORED.open("w", newline="") as file:
             writer = csv.DictWriter(file, list(rows[-1]), lineterminator="\n")
             writer.writeheader()
