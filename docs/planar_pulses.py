@@ -10,7 +10,6 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,7 +19,7 @@ from stickslip.paper.planar import LARGE, STORED, Fault, middle_rate, peaks, pro
 
 CURVES = STORED.with_name("planar-middle.csv")
 """Slip rates in the middle against time, of the runs in SHOWN."""
-SHOWN = (("line", 2.0, 8.0), ("disc", 2.0, 7.0))
+SHOWN = (("slip", LARGE, "line", 2.0, 8.0, False), ("slip", LARGE, "disc", 2.0, 7.0, False))
 RATIOS = (0.25, 0.5, 1.0, 2.0)
 
 
@@ -100,20 +99,10 @@ def main() -> None:
             continue
         found, curve = measured(*item[2:])
         rows.append(key | {name: str(value) for name, value in found.items()} | {"commit": commit})
-        if (
-            item[0] == "slip"
-            and item[1] == LARGE
-            and (item[2].shape, item[2].ratio, item[2].per_zone) in SHOWN
-            and not item[2].replicas
-        ):
-            np.savetxt(
-                CURVES.with_stem(f"{CURVES.stem}-{item[2].shape}"),
-                curve.T,
-                fmt="%.4f",
-                delimiter=",",
-                header="time [s],slip rate [m/s]",
-                comments="",
-            )
+        law, excess, fault, _ = item
+        if (law, excess, fault.shape, fault.ratio, fault.per_zone, fault.replicas) in SHOWN:
+            path = CURVES.with_stem(f"{CURVES.stem}-{fault.shape}")
+            np.savetxt(path, curve.T, fmt="%.4f", delimiter=",", header="time [s],slip rate [m/s]", comments="")
         with STORED.open("w", newline="") as file:
             writer = csv.DictWriter(file, list(rows[-1]), lineterminator="\n")
             writer.writeheader()

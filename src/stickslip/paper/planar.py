@@ -122,8 +122,8 @@ class Fault:
             away = np.hypot(y, z) if self.shape == "disc" else np.maximum(np.abs(y), np.abs(z))
             return np.asarray(away > 0.5 * length)
 
-        extent = {"width": 1.25 * length, "width_nodes": count} if self.shape != "line" else {}
-        return ss.PlanarSlab(self.problem, nodes=count, length=1.25 * length, barrier=outside, replicas=self.replicas, **extent)
+        extent: dict[str, Any] = {"width": 1.25 * length, "width_nodes": count} if self.shape != "line" else {}
+        return ss.PlanarSlab(self.problem, count, 1.25 * length, barrier=outside, replicas=self.replicas, **extent)
 
 
 def middle_rate(run: PlanarSolution) -> NDArray[np.float64]:

@@ -114,9 +114,8 @@ def _draw_profiles(
     """Draw slip rate and slip along a line in axes whose limits hold every frame."""
     place_name, place_size = unit_of("m", solution.slab.y)
     drawn = []
-    for axis, name, field, color in zip(
-        axes, ("slip rate", "slip"), (solution.slip_rate, solution.slip), (GREEN, INK), strict=True
-    ):
+    fields = (("slip rate", solution.slip_rate, GREEN), ("slip", solution.slip, INK))
+    for axis, (name, field, color) in zip(axes, fields, strict=True):
         unit, scale = unit_of("m/s" if name == "slip rate" else "m", field[shown])
         (line,) = axis.plot(solution.slab.y / place_size, field[shown[0]] / scale, color=color)
         low, high = float(field[shown].min()) / scale, float(field[shown].max()) / scale
@@ -138,16 +137,15 @@ def _draw_maps(
 ) -> tuple[Callable[[int], None], list[Artist]]:
     """Draw slip rate and slip over a plane in colours that hold for every frame."""
     place_name, place_size = unit_of("m", solution.slab.y)
-    y, z = solution.slab.y / place_size, solution.slab.z / place_size
+    edges = [0.5 * sign * size / place_size for size in solution.slab.extent for sign in (-1.0, 1.0)]
+    extent = np.array(edges) - np.repeat(solution.slab.spacing, 2) / (2.0 * place_size)
     fastest = float(np.abs(solution.slip_rate[shown]).max()) or 1.0
     colours = (LogNorm(fastest * 10.0**-DECADES, fastest), Normalize(solution.slip[shown].min(), solution.slip[shown].max()))
     drawn = []
     for axis, field, norm, label in zip(
         axes, (np.abs(solution.slip_rate), solution.slip), colours, ("slip rate (m/s)", "slip (m)"), strict=True
     ):
-        image = axis.imshow(
-            np.zeros(solution.slab.shape).T, origin="lower", extent=(y[0], y[-1], z[0], z[-1]), norm=norm, cmap="magma"
-        )
+        image = axis.imshow(np.zeros(solution.slab.shape).T, origin="lower", extent=tuple(extent), norm=norm, cmap="magma")
         figure.colorbar(image, ax=axis, label=label, location="bottom", extend="min" if axis is axes[0] else "neither")
         axis.set(xlabel=axis_text("along the contact", "y", place_name), facecolor=RESTS)
         drawn.append((image, field))
