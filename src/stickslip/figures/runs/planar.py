@@ -11,7 +11,7 @@ from matplotlib.colors import LogNorm, Normalize
 from numpy.typing import NDArray
 
 from stickslip.figures.panels import letter_panels, zero_line
-from stickslip.figures.runs.animation import FRAMES, Told, film
+from stickslip.figures.runs.animation import FRAMES, Stage, Told, film
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import GREEN, INK, axis_text, styled, unit_of
 from stickslip.foundation.errors import InputError
@@ -91,21 +91,25 @@ def animate(
             f" {begin:g} to {past:g} s, where the run has {len(inside)}"
         )
     shown = inside[np.linspace(0, len(inside) - 1, min(wanted, len(inside))).round().astype(int)]
-    draw_fields = _draw_maps if solution.slab.is_plane else _draw_profiles
-    name, size = unit_of("s", times)
+    return film(stage(solution, shown), len(shown), Path(path), progress=progress)
 
-    def stage(figure: Figure) -> tuple[Callable[[int], None], list[Artist]]:
-        axes: Any = figure.subplots(*((1, 2) if solution.slab.is_plane else (2, 1)), sharex=True, sharey=solution.slab.is_plane)
-        show, moving = draw_fields(figure, axes, solution, shown)
-        clock = axes[0].set_title(" ")
+
+def stage(solution: PlanarSolution, shown: NDArray[np.intp]) -> Stage:
+    """Return the `Stage` of a film of some frames, which are given by their numbers."""
+    plane, (name, size) = solution.slab.is_plane, unit_of("s", solution.times)
+
+    def draw_stage(figure: Figure) -> tuple[Callable[[int], None], list[Artist]]:
+        axes: Any = figure.subplots(*((1, 2) if plane else (2, 1)), sharex=True, sharey=plane)
+        show, moving = (_draw_maps if plane else _draw_profiles)(figure, axes, solution, shown)
+        clock = axes[0].set_title(" ", loc="left")
 
         def move(n: int) -> None:
             show(shown[n])
-            clock.set_text(f"{times[shown[n]] / size:.3f} {name}")
+            clock.set_text(f"{solution.times[shown[n]] / size:.3f} {name}")
 
         return move, [*moving, clock]
 
-    return film(stage, len(shown), Path(path), progress=progress)
+    return draw_stage
 
 
 def _draw_profiles(
