@@ -70,21 +70,8 @@ class RuleInfluence:
 def rule_influence(history: History, load_curve: Callable[[], tuple[Floats, Floats]]) -> RuleInfluence:
     """Return what the selection rule decided in a run.
 
-    Parameters
-    ----------
-    history : History
-        History of the run.
-    load_curve : callable
-        Returns times (s) and loads (Pa) along the run, as `Solution.curve("load")`; it is called only if the rule has a choice at
-        some load.
-
-    Returns
-    -------
-    RuleInfluence
-
-    Notes
-    -----
-    The search for `since` overlooks a visit between the folds that begins and ends between two times of the curve.
+    `load_curve` returns times (s) and loads (Pa) along the run; it is called only if the rule has a choice at some load. The search
+    for `since` overlooks a visit between the folds that begins and ends between two times of the curve.
     """
     problem = history.problem
     contact = uniqueness_of(problem)

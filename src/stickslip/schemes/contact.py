@@ -33,21 +33,10 @@ Missing = Callable[[Floats], Floats]
 
 
 class GridContact:
-    """The friction of a problem, for one run of a scheme.
+    """The friction of a problem, for one run of a scheme; `search`, one of SEARCHES, says how a root is looked for.
 
-    Parameters
-    ----------
-    problem : Problem
-        Problem with a law without a state.
-    search : str
-        How a root is looked for: one of SEARCHES.
-    smoothing : float
-        Slip rate v0 (m/s) of friction that is regularised as mu tanh(v/v0), which never sticks; 0 for friction with stick.
-
-    Raises
-    ------
-    InputError
-        If the search is unknown, or the law has a state or remembers slip since the last arrest only.
+    Friction that is regularised by `smoothing`, a slip rate v0 (m/s), is mu tanh(v/v0) and never sticks; 0 stands for friction with
+    stick. Raises InputError if the search is unknown, or the law has a state or remembers slip since the last arrest only.
     """
 
     def __init__(self, problem: Problem, search: str = "stick-first", smoothing: float = 0.0) -> None:

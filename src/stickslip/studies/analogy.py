@@ -102,22 +102,9 @@ class Analogy(Study):
 
 
 def block_for(problem: Problem) -> Problem:
-    """Return the same problem for the slab's equivalent block.
+    """Return the same problem for the slab's equivalent block, which represents 1 m^2 of contact.
 
-    Parameters
-    ----------
-    problem : Problem
-        Problem whose body is a slab under a rigid driver.
-
-    Returns
-    -------
-    Problem
-        Problem of the block that represents 1 m^2 of contact.
-
-    Raises
-    ------
-    InputError
-        If the body is a block, or if the driver of the slab is not rigid.
+    Raises InputError if the body is a block, or if the driver of the slab is not rigid.
     """
     slab = as_slab(problem.body, "analogy: needs a slab: a block has no other block that stands for it")
     return replace(problem, body=slab.equivalent_block())

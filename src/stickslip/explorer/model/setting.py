@@ -18,16 +18,10 @@ from stickslip.scenarios.scenario import Scenario, scenario_of
 
 @dataclass(frozen=True)
 class Setting:
-    """A scenario as the controls hold it: a TOML document whose entries can be replaced one by one.
+    """A scenario as the controls hold it: a TOML document, never changed in place, whose entries can be replaced one by one.
 
-    Attributes
-    ----------
-    name : str
-        The bundled scenario it began with, or the name of a file or an upload.
-    document : dict
-        The tables of the scenario, as `tomllib` reads them; never changed in place.
-    notes : tuple of str
-        Doubts about the file from which the friction law was read, one line each; they go with that law.
+    `name` is the bundled scenario it began with, or the name of a file or an upload. `notes` are doubts about the file from which
+    the friction law was read, one line each; they go with that law.
     """
 
     name: str

@@ -28,27 +28,10 @@ LONG = 5_000
 
 
 def solve(scenario: Scenario, told: Told = silent, behind: Backdrop | None = None) -> Answer:
-    """Run a scenario and return all that the explorer shows of it.
+    """Run a scenario, with a record drawn behind it if there is one, and return all that the explorer shows of it, in SI units.
 
-    Parameters
-    ----------
-    scenario : Scenario
-        What to run.
-    told : callable
-        Called with a line on the progress of a long run, some ten times a second. If it raises `Stopped` the run ends there, and
-        the answer shows it up to there.
-    behind : Backdrop, optional
-        A record that is drawn behind the run.
-
-    Returns
-    -------
-    Answer
-        The run, its companion, and all that is shown of them, in SI units.
-
-    Raises
-    ------
-    InputError
-        If the run cannot even start, in one line.
+    `told` is called with a line on the progress of a long run. If it raises `Stopped` the run ends there, and the answer shows it
+    up to there. Raises InputError, in one line, if the run cannot even start.
     """
     contact = uniqueness_of(scenario.problem)
     solution = run(scenario, told)

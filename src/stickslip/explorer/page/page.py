@@ -67,15 +67,7 @@ class Panels:
 
 
 def build(explorer: Explorer, **parts: Any) -> Any:
-    """Return the page of an explorer, for a server.
-
-    Parameters
-    ----------
-    explorer : Explorer
-        The centre of the page.
-    **parts
-        Further parts by the name of their place, one of `SLOTS`.
-    """
+    """Return the page of an explorer, for a server; `parts` are further parts by the name of their place, one of `SLOTS`."""
     panels, words, controls = Panels(explorer), Words(explorer), Controls(explorer)
     parts = {"bar": Tools(explorer).view, "above": PinnedRun(explorer).view} | parts
     tour, strip = Tour(explorer), StripView(explorer)

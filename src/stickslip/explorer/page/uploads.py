@@ -34,21 +34,9 @@ def content_of(encoded: str) -> bytes:
 
 
 def opened(name: str, content: bytes, present: Setting) -> Setting:
-    """Return the setting to which an opened file leads.
+    """Return the setting to which an opened file leads: a scenario, or the present setting with a table of friction as its law.
 
-    Parameters
-    ----------
-    name : str
-        Name of the file; folders in it are dropped.
-    content : bytes
-        Its content: a scenario, or a table of friction against slip (m) or slip rate (m/s).
-    present : Setting
-        What is shown; a table becomes its friction law.
-
-    Raises
-    ------
-    InputError
-        In one line, if the file is too large, is no text, or cannot be used.
+    Folders in the name are dropped. Raises InputError, in one line, if the file is too large, is no text, or cannot be used.
     """
     name = plain_name(name)
     if PurePosixPath(name).suffix.lower() in TABLES:

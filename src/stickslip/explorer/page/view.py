@@ -27,24 +27,10 @@ class Key(NamedTuple):
 class View:
     """All that changes on the page from one answer to the next, in the units shown.
 
-    Attributes
-    ----------
-    columns : dict
-        The columns of each source of data, by its name.
-    limits : dict
-        The ends of each axis that is not found from the data, by the name of its range.
-    labels : dict
-        The text of each axis, by its name.
-    titles : dict
-        The title of each panel, by the panel's name; it names quantity and unit where the vertical axis has no text of its own.
-    keys : dict
-        The legend of each panel, by the panel's name.
-    hidden : set of str
-        Names of panels and of renderers and axes that have nothing to show.
-    fastest : float
-        The velocity at both ends of the colour scale; 0 if there is no image.
-    facts : dict
-        What the browser needs to move the cursor: units, marks, and how the body is drawn.
+    `columns` are those of each source of data, `limits` the ends of each axis that is not found from the data, `labels` the texts
+    of the axes, `titles` and `keys` (legends) those of the panels. `hidden` names panels, renderers and axes that have nothing to
+    show. `fastest` is the velocity at both ends of the colour scale; 0 if there is no image. `facts` are what the browser needs to
+    move the cursor: units, marks, and how the body is drawn.
     """
 
     columns: dict[str, Columns] = field(default_factory=dict)

@@ -46,15 +46,8 @@ class ThreadDesk:
     ends a run with what it has calculated so far, after `stop`; and `Dropped` if the page is closed, or if the work has taken
     longer than PATIENCE and a newer request waits.
 
-    Parameters
-    ----------
-    deliver : callable
-        Function that has a function without arguments called on the page's own thread; any thread may call it.
-
-    Attributes
-    ----------
-    report : callable
-        Function that is called on the page with lines on the progress of the work.
+    `deliver`, which any thread may call, has a function called on the page's own thread. There `report` is called with lines on the
+    progress of the work.
     """
 
     def __init__(self, deliver: Callable[[Call], object]) -> None:

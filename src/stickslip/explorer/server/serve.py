@@ -47,18 +47,10 @@ Build = Callable[[Explorer], Any]
 
 @dataclass(frozen=True, kw_only=True)
 class Endpoint:
-    """Where a server listens, and for whom.
+    """Where a server listens, and for whom. The default address can be reached from this computer only.
 
-    Attributes
-    ----------
-    address : str
-        Address of the network interface to listen on; the default can be reached from this computer only.
-    port : int or None
-        Port to listen on; 0 for any free one, None for the first free one from FIRST_PORT on.
-    origins : tuple of str
-        Hosts (`name` or `name:port`) under which the page may be reached, beside the address itself.
-    sessions : int
-        Largest number of pages that may be open at the same time.
+    The port is 0 for any free one, None for the first free one from FIRST_PORT on. `origins` are hosts (`name` or `name:port`)
+    under which the page may be reached, beside the address itself. At most `sessions` pages may be open at the same time.
     """
 
     address: str = LOOPBACK[0]
@@ -75,14 +67,8 @@ class Endpoint:
 class ExplorerServer:
     """A server that is bound to its port, and answers once its event loop runs.
 
-    Parameters
-    ----------
-    endpoint : Endpoint
-        Where it listens.
-    make : callable
-        Function that makes the explorer of a new page, given its desk, and that on which files are written.
-    build : callable
-        Function that builds the page of an explorer.
+    `make` makes the explorer of a new page, given its desk and that on which files are written; `build` builds the page of an
+    explorer.
     """
 
     def __init__(self, endpoint: Endpoint, make: MakeExplorer, build: Build) -> None:

@@ -14,13 +14,7 @@ LOOK_EVERY_MS = 1_000
 
 
 class Sessions:
-    """Counts the open pages of a server, and has those that were closed removed.
-
-    Parameters
-    ----------
-    most : int
-        Largest number of pages that may be open at the same time.
-    """
+    """Counts the open pages of a server, of which there may be `most`, and has those that were closed removed."""
 
     def __init__(self, most: int) -> None:
         self.most = most

@@ -59,26 +59,8 @@ class Written:
 def write_tour(folder: Path, told: Callable[[str], object] = lambda text: None, places: int = STRIP_PLACES) -> Written:
     """Write the tour into a new folder, under a temporary name until it is complete.
 
-    Parameters
-    ----------
-    folder : Path
-        Name of the folder, which must not exist or be empty.
-    told : callable
-        Called with a line on the progress for each step.
-    places : int
-        Number of places of each strip at which an answer is kept.
-
-    Returns
-    -------
-    Written
-        Its size, and the number of answers.
-
-    Raises
-    ------
-    InputError
-        If something else has this name, or the folder above does not exist.
-    OSError
-        If it cannot be written.
+    `told` is called with a line on the progress for each step; at `places` of each strip an answer is kept. Raises InputError if
+    something else has this name, or the folder above does not exist, and OSError if it cannot be written.
     """
     check_folder(folder)
     answers = 0

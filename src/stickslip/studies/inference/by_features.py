@@ -34,13 +34,7 @@ FEWEST = 4.0
 
 @dataclass(frozen=True, eq=False)
 class FeaturePart(Part):
-    """Features of the events of a part; its record holds them at the times of the events.
-
-    Parameters
-    ----------
-    whole
-        The part itself, with all samples.
-    """
+    """Features of the events of a part, at the times of the events; `whole` is the part itself, with all samples."""
 
     whole: Part | None = None
 

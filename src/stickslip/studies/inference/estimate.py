@@ -31,20 +31,10 @@ APART = 5.0
 
 @dataclass(frozen=True)
 class Estimate:
-    """The result of a search.
+    """The result of a search: the model, with the size and the memory of the noise as they were estimated, and the best fit.
 
-    Parameters
-    ----------
-    model
-        The model, with the size and the memory of the noise as they were estimated.
-    searched
-        The searched numbers at the best fit.
-    others
-        Searched numbers of other minima that compete.
-    finished
-        False after Ctrl-C.
-    loss
-        The function of squared residuals that is summed.
+    `others` are searched numbers of other minima that compete; `finished` is False after Ctrl-C; `loss` is the function of squared
+    residuals that is summed.
     """
 
     model: Model

@@ -28,18 +28,9 @@ SMALLEST_NOISE = 1e-9
 class Part:
     """A part of a record with its own run.
 
-    Parameters
-    ----------
-    record
-        The samples.
-    loading
-        The pull rate since the first sample, or None for the problem's own.
-    observed
-        Names of the quantities that are fitted.
-    sensor
-        "contact" if shear is measured at the contact, "spring" for a load cell behind the spring of a block.
-    start
-        "steady", "record" or "problem": how the run begins.
+    `loading` is the pull rate since the first sample, or None for the problem's own; `observed` are the quantities that are fitted.
+    `sensor` is "contact" if shear is measured there, "spring" for a load cell behind the spring of a block. The run begins
+    ("start") in "steady" sliding, as the "record" does, or as the "problem" says.
     """
 
     record: Record

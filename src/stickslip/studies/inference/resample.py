@@ -25,15 +25,7 @@ SMALLEST_NOISE = 1e-9
 
 @dataclass(frozen=True)
 class Bins:
-    """Groups of neighbouring samples.
-
-    Parameters
-    ----------
-    first
-        Index of the first sample of each.
-    count
-        Number of samples of each.
-    """
+    """Groups of neighbouring samples: index of the first sample, and number of samples, of each."""
 
     first: NDArray[np.intp]
     count: NDArray[np.intp]
