@@ -8,15 +8,13 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stickslip.contact.critical import check_no_contact_mass, margin
 from stickslip.contact.roots import sign_changes
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem.parameters import Parameter
 from stickslip.problem.problem import Problem
-
-Floats = NDArray[np.float64]
 
 MOST_POINTS = 1000
 """Largest number of points on an axis; the cost of a map grows with the product of both."""

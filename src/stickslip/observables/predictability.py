@@ -18,11 +18,12 @@ import numpy as np
 from stickslip.engine_input.branch_table import folds_move, is_algebraic
 from stickslip.engine_input.prepare import SAFETY
 from stickslip.foundation.arguments import shown
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.brief_repr import brief_repr
 from stickslip.foundation.constants import YEAR
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
-from stickslip.trajectory.history import Floats, History
+from stickslip.trajectory.history import History
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 
 from stickslip.contact.branches import Branch, branches
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.brief_repr import brief_repr
 from stickslip.foundation.constants import YEAR
-from stickslip.trajectory.history import Floats, History, Side
+from stickslip.trajectory.history import History, Side
 from stickslip.trajectory.tables import shock_columns
 
 Regime = Literal["regular", "irregular", "continuum"]

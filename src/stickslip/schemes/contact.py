@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.problem.problem import Problem
-from stickslip.schemes.contract import Answer, Floats, Meeting
+from stickslip.schemes.contract import Answer, Meeting
 
 SEARCHES = {
     "stick-first": "stick wherever the static strength holds, otherwise the smallest root",

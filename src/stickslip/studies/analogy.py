@@ -21,13 +21,13 @@ import pandas as pd
 from stickslip.bodies import as_slab
 from stickslip.contact.critical import margin
 from stickslip.contact.regime_map import Axis, put_both, two_parameters
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 from stickslip.run.simulate import simulate
 from stickslip.scenarios.source import read_duration_and_problem
 from stickslip.studies.study import Study, TextProgress, telling, uninterrupted
-from stickslip.trajectory.history import Floats
 
 if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario

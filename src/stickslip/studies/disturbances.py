@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from stickslip.foundation.arguments import check_whole
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 from stickslip.problem.start import written_out
-from stickslip.trajectory.history import Floats
 
 LEAST_DISTURBANCE, LARGEST_DISTURBANCE = 1e-15, 1e-2
 """Allowed sizes of a disturbance, as shares of the strength: rounding hides smaller ones, and larger ones make another problem."""

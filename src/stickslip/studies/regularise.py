@@ -19,6 +19,7 @@ import numpy as np
 import pandas as pd
 
 from stickslip.engine_input.prepare import prepare
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import Quantity, Series
@@ -31,7 +32,6 @@ from stickslip.studies.regularisations import check_massless, kind_of, regularis
 from stickslip.studies.run_distance import Difference, difference, passage
 from stickslip.studies.study import MAX_PIECES, RunsCompared, TextProgress, telling, uninterrupted
 from stickslip.studies.verdict import Errors, Order, Verdict, groups, judge, local_orders, order_of
-from stickslip.trajectory.history import Floats
 
 if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario

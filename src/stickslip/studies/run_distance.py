@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from stickslip.contact.roots import sign_change
+from stickslip.foundation.arrays import Floats
 from stickslip.solution.solution import Solution
-from stickslip.trajectory.history import Floats
 
 UNIFORM = 2001
 """Number of evenly spaced times at which runs are compared; times within the pieces of both histories are added."""

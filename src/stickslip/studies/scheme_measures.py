@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from stickslip.foundation.arrays import Floats
 from stickslip.schemes.contract import Energies
 from stickslip.schemes.series import Series
 from stickslip.solution.solution import Solution
 from stickslip.studies.scheme_shocks import Shock, shadow, shocks_of
-from stickslip.trajectory.history import Floats
 from stickslip.trajectory.slip_events import default_event_rate
 
 COLUMNS = {

@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stickslip.foundation.arrays import Floats
 from stickslip.schemes.series import Series
 from stickslip.solution.solution import Solution
 from stickslip.studies.rule_followed import cell_time
-from stickslip.trajectory.history import Floats
 
 CELLS_NEAR_SHOCK = 4.0
 """Travel time, in cells, on either side of a shock over which a grid spreads it."""

@@ -9,10 +9,10 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.observables.predictability import LOST
 from stickslip.observables.statistics import catalogue_statistics
 from stickslip.solution.solution import Solution
-from stickslip.trajectory.history import Floats
 
 WINDOWS, SAMPLES = 40, 64
 """Largest number of intervals of time for which separations are given, and number of times sampled in each.

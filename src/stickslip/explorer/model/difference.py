@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from stickslip.explorer.model.answer import Answer, KeyNumber
-from stickslip.explorer.model.leaves import leaves_of
-from stickslip.explorer.model.setting import Setting
+from stickslip.explorer.model.setting import Setting, leaves_of
 from stickslip.explorer.model.words import short
 from stickslip.foundation.arguments import shown
 

@@ -11,8 +11,8 @@ from typing import Any
 
 from stickslip.bodies import as_slab
 from stickslip.explorer.model.controls import CONSTANT, STARTS_IN_MOTION
-from stickslip.explorer.model.runs import slab_of_figure
 from stickslip.explorer.model.setting import Setting
+from stickslip.explorer.model.solve import slab_of_figure
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, fields_of
 from stickslip.friction import FrictionLaw

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from stickslip.explorer.model.answer import CurveName, Floats, LawPicture, Motion
+from stickslip.explorer.model.answer import CurveName, LawPicture, Motion
+from stickslip.foundation.arrays import Floats
 from stickslip.friction import FrictionLaw, LaggedFriction
 from stickslip.friction.contract import one_argument
 from stickslip.problem.problem import Problem

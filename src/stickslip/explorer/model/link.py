@@ -15,8 +15,7 @@ import zlib
 from collections.abc import Mapping
 from typing import Any
 
-from stickslip.explorer.model.leaves import document_of, leaves_of
-from stickslip.explorer.model.setting import Setting
+from stickslip.explorer.model.setting import Setting, document_of, leaves_of
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.scenarios import library

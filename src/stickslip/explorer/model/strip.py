@@ -14,10 +14,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.stop import Stopped
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity
 from stickslip.scenarios.parameter_paths import EXCLUDE_EACH_OTHER, ParameterPath, find_parameter, parameter_paths
@@ -25,7 +25,6 @@ from stickslip.scenarios.scenario import Scenario
 from stickslip.sweeps.design.quantities import QUANTITIES, quantities_named
 from stickslip.sweeps.execution.chunk import Work, run_chunk
 
-Floats = NDArray[np.float64]
 Told = Callable[[str], None]
 
 MEMBERS = 200

@@ -10,9 +10,8 @@ from panel.custom import JSComponent
 
 from stickslip.explorer.page.components import asset
 from stickslip.explorer.page.explorer import Explorer
-from stickslip.explorer.page.exports import FORMATS, export
+from stickslip.explorer.page.files import FORMATS, content_of, export, opened
 from stickslip.explorer.page.link_in_url import query_of
-from stickslip.explorer.page.uploads import content_of, opened
 from stickslip.foundation.errors import InputError
 
 KINDS = [{"kind": kind, "label": one.label} for kind, one in FORMATS.items()]

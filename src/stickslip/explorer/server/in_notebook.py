@@ -30,7 +30,7 @@ def shown_in_notebook(scenario: Scenario, behind: Backdrop | None = None) -> Any
 
     Raises InputError where there is no notebook.
     """
-    from stickslip.explorer.page.notebook_page import build_for_notebook
+    from stickslip.explorer.page.page import build_for_notebook
 
     try:
         deliver = DeliveryToCell(asyncio.get_running_loop().call_soon_threadsafe)

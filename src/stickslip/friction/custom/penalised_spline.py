@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from stickslip.foundation.arrays import Floats
 
 BINS = 256
 """Number of equal parts of [0, 1] in each of which points are replaced by their mean: a curve does not follow shorter features."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.determined import covariance_of, sizes_and_correlation, undetermined
 from stickslip.foundation.formatting import brief
 from stickslip.studies.inference.directions import IDLE, better_known, null_directions, told, without
@@ -16,8 +17,6 @@ from stickslip.studies.inference.free import Free
 from stickslip.studies.inference.losses import cost_of, weights
 from stickslip.studies.inference.model import FAILED, Model
 from stickslip.studies.inference.search import Tell
-
-Floats = NDArray[np.float64]
 
 EXACT = 1e-10
 """Relative tolerance of the runs from which derivatives at the best fit are taken."""

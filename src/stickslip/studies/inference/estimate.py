@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.studies.inference.losses import cost_of
 from stickslip.studies.inference.model import Model
 from stickslip.studies.inference.noise import GAUSSIAN, Block, memory_of
 from stickslip.studies.inference.search import COMPETES, Best, Tell, is_rough, light, polished, searched_minima, solved
-
-Floats = NDArray[np.float64]
 
 FEW = 1500
 """Number of samples of a part with which starts are compared and followed."""

@@ -8,15 +8,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError, full_name
 from stickslip.foundation.quantities import Quantity
 from stickslip.problem.problem import Problem
-
-Floats = NDArray[np.float64]
 
 FARTHEST, FARTHEST_PURE = 1e3, 30.0
 """Factors by which positive numbers, with a unit and without, may differ from where the search begins, unless bounds say."""

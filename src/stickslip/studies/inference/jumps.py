@@ -7,11 +7,9 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.trajectory.history import Side
-
-Floats = NDArray[np.float64]
 
 RAMP = 2
 """Number of samples over which a jump is spread at least, so that both samples beside it change as it moves."""

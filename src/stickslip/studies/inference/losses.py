@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from stickslip.foundation.arrays import Floats
 
 OUTLYING = 2.0
 """Residual, in standard deviations, from which a loss other than the linear one counts it less."""

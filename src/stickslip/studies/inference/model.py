@@ -8,8 +8,8 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 from stickslip.run.simulate import simulate
@@ -21,8 +21,6 @@ from stickslip.studies.inference.part import Part, changed
 from stickslip.studies.inference.record import UNITS
 from stickslip.studies.study import uninterrupted
 from stickslip.trajectory.history import Side
-
-Floats = NDArray[np.float64]
 
 OF_NO_ZERO = ("slip",)
 """Quantities that a sensor measures from a zero of its own: the mean of their residual is taken away."""

@@ -6,9 +6,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from stickslip.foundation.arrays import Floats
 
 GAUSSIAN = 0.6744897501960817
 """Median magnitude of a normal deviate with standard deviation 1."""

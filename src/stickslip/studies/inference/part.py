@@ -9,7 +9,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stickslip.foundation.errors import InputError
 from stickslip.loading import LoadingHistory
@@ -17,8 +16,6 @@ from stickslip.problem.problem import Problem
 from stickslip.studies.inference.free import LOAD
 from stickslip.studies.inference.noise import first_value, noise_of
 from stickslip.studies.inference.record import Record
-
-Floats = NDArray[np.float64]
 
 SMALLEST_NOISE = 1e-9
 """Smallest noise, as a share of the range of a quantity: a record without noise has rounding."""

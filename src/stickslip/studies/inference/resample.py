@@ -7,11 +7,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.studies.inference.loading import GAP
 from stickslip.studies.inference.noise import noise_of, rounding_of
 from stickslip.studies.inference.record import Record
-
-Floats = NDArray[np.float64]
 
 MOST_FITTED = 100_000
 """Largest number of samples of a part that are fitted as they are."""

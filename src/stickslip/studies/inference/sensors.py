@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.studies.inference.noise import noise_of, rounding_of
-
-Floats = NDArray[np.float64]
 
 RAIL = 8
 """Number of equal samples at the end of the range of a quantity from which its sensor counts as saturated."""

@@ -13,8 +13,9 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from stickslip.foundation.arguments import check_whole, shown
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.sweeps.design.adaptive_grid import Floats, Integers, Lattice, Refined, refine_cells
+from stickslip.sweeps.design.adaptive_grid import Integers, Lattice, Refined, refine_cells
 from stickslip.sweeps.design.axis import Axis
 from stickslip.sweeps.execution.chunk import NOT_RUN
 
