@@ -24,8 +24,7 @@ from stickslip.run.options import RunOptions
 from stickslip.run.simulate import simulate
 from stickslip.scenarios.source import read_duration_and_problem
 from stickslip.solution.solution import Solution
-from stickslip.studies.disturbances import disturbed, drawn, is_lossy
-from stickslip.studies.separation import Separation, separation, shared_events, slope, statistics_spread
+from stickslip.studies.separation import Separation, disturbed, drawn, is_lossy, separation, shared_events, slope, statistics_spread
 from stickslip.studies.study import MAX_PIECES, RunsCompared, TextProgress, telling, uninterrupted
 
 if TYPE_CHECKING:

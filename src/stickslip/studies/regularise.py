@@ -28,8 +28,7 @@ from stickslip.problem.selection_rule import SELECTION_RULES, names, unknown
 from stickslip.run.simulate import simulate
 from stickslip.scenarios.source import read_duration_and_problem
 from stickslip.solution.solution import Solution
-from stickslip.studies.regularisations import check_massless, kind_of, regularised
-from stickslip.studies.run_distance import Difference, difference, passage
+from stickslip.studies.regularisations import Difference, check_massless, difference, kind_of, passage, regularised
 from stickslip.studies.study import MAX_PIECES, RunsCompared, TextProgress, telling, uninterrupted
 from stickslip.studies.verdict import Errors, Order, Verdict, groups, judge, local_orders, order_of
 

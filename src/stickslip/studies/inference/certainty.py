@@ -14,8 +14,8 @@ from stickslip.foundation.formatting import brief
 from stickslip.studies.inference.directions import IDLE, better_known, null_directions, told, without
 from stickslip.studies.inference.estimate import Estimate
 from stickslip.studies.inference.free import Free
-from stickslip.studies.inference.losses import cost_of, weights
 from stickslip.studies.inference.model import FAILED, Model
+from stickslip.studies.inference.noise import cost_of, weights
 from stickslip.studies.inference.search import Tell
 
 EXACT = 1e-10

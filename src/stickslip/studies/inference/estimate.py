@@ -7,9 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
-from stickslip.studies.inference.losses import cost_of
 from stickslip.studies.inference.model import Model
-from stickslip.studies.inference.noise import GAUSSIAN, Block, memory_of
+from stickslip.studies.inference.noise import GAUSSIAN, Block, cost_of, memory_of
 from stickslip.studies.inference.search import COMPETES, Best, Tell, is_rough, light, polished, searched_minima, solved
 
 FEW = 1500

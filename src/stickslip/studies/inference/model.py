@@ -15,10 +15,10 @@ from stickslip.problem.problem import Problem
 from stickslip.run.simulate import simulate
 from stickslip.solution.solution import Solution
 from stickslip.studies.inference.free import DELAY, LOAD, STATE, TREND, Free
-from stickslip.studies.inference.jumps import RAMP, Jumps, jumps_in, spread, unsure
 from stickslip.studies.inference.noise import Block, independent, whitened
 from stickslip.studies.inference.part import Part, changed
 from stickslip.studies.inference.record import UNITS
+from stickslip.studies.inference.resample import RAMP, Jumps, jumps_in, spread, unsure
 from stickslip.studies.study import uninterrupted
 from stickslip.trajectory.history import Side
 

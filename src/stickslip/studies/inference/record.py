@@ -17,8 +17,7 @@ from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.columns import Table, find, missing, read_mapping, read_text
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief
-from stickslip.studies.inference.noise import noise_of
-from stickslip.studies.inference.sensors import saturated, spikes
+from stickslip.studies.inference.noise import noise_of, saturated, spikes
 
 LARGEST_FILE = 500_000_000
 """Size (bytes) of the largest record that is read."""

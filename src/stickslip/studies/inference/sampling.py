@@ -12,8 +12,8 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.studies.inference.certainty import Certainty
 from stickslip.studies.inference.estimate import Estimate
-from stickslip.studies.inference.losses import cost_of
 from stickslip.studies.inference.model import FAILED
+from stickslip.studies.inference.noise import cost_of
 from stickslip.studies.inference.search import Tell
 
 WALKERS = 4

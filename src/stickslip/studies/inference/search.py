@@ -10,8 +10,8 @@ import numpy as np
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.studies.inference.losses import OUTLYING, cost_of
 from stickslip.studies.inference.model import FAILED, Model
+from stickslip.studies.inference.noise import OUTLYING, cost_of
 
 Tell = Callable[[str], Any]
 
