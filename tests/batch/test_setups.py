@@ -15,7 +15,7 @@ from stickslip.batch.vectorised_problem import groups
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Params
 from stickslip.engine.state.workspace import counts_in, state_in
-from stickslip.engine_input.lumping_limits import wait_for_creep
+from stickslip.engine_input.limits import wait_for_creep
 from stickslip.engine_input.prepare import prepare
 from stickslip.friction import LAWS
 from stickslip.run.session import split_time

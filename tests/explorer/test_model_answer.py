@@ -12,8 +12,7 @@ from stickslip.explorer.model.answer import Answer
 from stickslip.explorer.model.pictures import energy_picture
 from stickslip.explorer.model.sampled_waves import SampledWaves, Shown
 from stickslip.explorer.model.setting import Setting
-from stickslip.explorer.model.solve import MOST_PIECES, companion_of, solve
-from stickslip.explorer.model.stop import Stopped
+from stickslip.explorer.model.solve import MOST_PIECES, Stopped, companion_of, solve
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.observables.energy.balance import energies

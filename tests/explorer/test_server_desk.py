@@ -12,8 +12,7 @@ from typing import Any
 import pytest
 
 from stickslip.explorer.model import solve as solving
-from stickslip.explorer.model.solve import solve
-from stickslip.explorer.model.stop import Stopped
+from stickslip.explorer.model.solve import Stopped, solve
 from stickslip.explorer.server import desk as desks
 from stickslip.explorer.server.desk import ThreadDesk
 from stickslip.foundation.errors import InputError

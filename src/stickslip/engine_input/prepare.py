@@ -17,7 +17,7 @@ from stickslip.engine.state.layout import Counts, FirstLoad, Integers, LawPiece,
 from stickslip.engine.state.workspace import counts_in, lend_problem, memory_of, params_in
 from stickslip.engine_input.branch_table import folds_move, is_algebraic, table_of_branches
 from stickslip.engine_input.forcing import inflow_of, steady_inflow, wave_before
-from stickslip.engine_input.lumping_limits import set_length, set_lumping
+from stickslip.engine_input.limits import set_length, set_lumping
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SelectionRule

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import tomli_w
 
-from stickslip.engine_input.creep_limits import check_creep_rtol
-from stickslip.engine_input.lumping_limits import check_shortest_event
+from stickslip.engine_input.limits import check_creep_rtol, check_shortest_event
 from stickslip.foundation.arguments import as_path, shown
 from stickslip.foundation.brief_repr import shown_fields
 from stickslip.foundation.conversion import Number

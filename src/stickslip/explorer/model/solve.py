@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
@@ -10,11 +11,9 @@ from stickslip.bodies import ElasticSlab
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
 from stickslip.explorer.model.answer import Answer, Motion
 from stickslip.explorer.model.findings import Found, key_numbers, marks_of, sentence
-from stickslip.explorer.model.law_picture import law_picture
 from stickslip.explorer.model.measured import Backdrop
-from stickslip.explorer.model.pictures import contact_picture, energy_picture, slab_picture
+from stickslip.explorer.model.pictures import contact_picture, energy_picture, law_picture, slab_picture
 from stickslip.explorer.model.sampled_waves import SampledWaves, Shown
-from stickslip.explorer.model.stop import Stopped, Told, silent
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 from stickslip.run.simulate import simulate
@@ -22,6 +21,18 @@ from stickslip.scenarios.examine import warnings_of
 from stickslip.scenarios.scenario import Scenario, load_scenario
 from stickslip.solution.solution import Solution
 from stickslip.studies.analogy import block_for
+
+Told = Callable[[str], None]
+"""A function that is told in one line how far a run is, some ten times a second. It raises `Stopped` to end the run there."""
+
+
+class Stopped(KeyboardInterrupt):
+    """Raised where a run reports its progress: the run ends with a valid solution up to there, as after Ctrl-C."""
+
+
+def silent(_: str) -> None:
+    """Ignore a report of progress."""
+
 
 MOST_PIECES = 100_000
 """Largest number of pieces of a history: some 45 MB, so that several pages fit into memory."""

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from stickslip.explorer.model.setting import Setting
-from stickslip.explorer.model.stop import Stopped
+from stickslip.explorer.model.solve import Stopped
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity

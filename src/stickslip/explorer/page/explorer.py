@@ -8,7 +8,7 @@ from typing import Any, Literal, Protocol
 
 from stickslip.explorer.model.answer import Answer
 from stickslip.explorer.model.setting import Setting
-from stickslip.explorer.model.stop import Told
+from stickslip.explorer.model.solve import Told
 from stickslip.explorer.model.strip import StripRange
 from stickslip.foundation.errors import InputError, gathered
 from stickslip.scenarios.scenario import Scenario

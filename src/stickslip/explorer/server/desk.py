@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, Literal
 
-from stickslip.explorer.model.stop import Stopped, Told
+from stickslip.explorer.model.solve import Stopped, Told
 from stickslip.explorer.model.strip import StripRange
 from stickslip.foundation.errors import InputError
 
