@@ -22,8 +22,7 @@ from stickslip.explorer.model.solve import solve
 from stickslip.explorer.model.strip import StripRange
 from stickslip.explorer.page.explorer import Explorer
 from stickslip.explorer.page.files import FORMATS, content_of, export, file_name, opened, plain_name
-from stickslip.explorer.page.link_in_url import begin, query_of
-from stickslip.explorer.page.tools import Tools
+from stickslip.explorer.page.tools import Tools, begin, query_of
 from stickslip.explorer.page.words import PinnedRun, words_of
 from stickslip.foundation.errors import InputError
 

@@ -200,7 +200,7 @@ def schemes(
     cells : sequence of int
         Number of cells in the thickness, for each mesh.
     search : str
-        How the contact looks for a root: a name in `stickslip.schemes.contact.SEARCHES`.
+        How the contact looks for a root: a name in `stickslip.schemes.run.SEARCHES`.
     courant : float, optional
         Courant number c dt / dx, by default each scheme's own.
     rtol : float

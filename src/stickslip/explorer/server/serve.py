@@ -19,7 +19,7 @@ import panel as pn
 from tornado.ioloop import IOLoop, PeriodicCallback
 
 from stickslip.explorer.page.explorer import Explorer
-from stickslip.explorer.page.link_in_url import begin
+from stickslip.explorer.page.tools import begin
 from stickslip.explorer.server.access import LOOPBACK, Access
 from stickslip.explorer.server.desk import Call, ThreadDesk, Warming, unforeseen
 from stickslip.foundation.errors import InputError
