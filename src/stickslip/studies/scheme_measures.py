@@ -111,10 +111,7 @@ class Measured:
     @property
     def slip_error(self) -> float:
         """The mean magnitude of the slip difference, m."""
-        return self._mean(np.abs(self.gap))
-
-    def _mean(self, values: Floats) -> float:
-        return float(np.trapezoid(values, self.time) / (self.time[-1] - self.time[0]))
+        return float(np.trapezoid(np.abs(self.gap), self.time) / (self.time[-1] - self.time[0]))
 
     @property
     def shadow(self) -> float:

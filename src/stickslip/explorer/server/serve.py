@@ -6,7 +6,7 @@ import errno
 import signal
 import socket
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import partial
@@ -220,7 +220,7 @@ class ExplorerServer:
         freeze = getattr(document.models, "freeze", nullcontext)
         with freeze():  # otherwise Bokeh looks through all models again for each one that is added: 1 s in place of 0.2
             page.server_doc(document, title=TITLE, location=False)
-        begin(explorer, arguments_of(pn.state.session_args))
+        begin(explorer, {name: values[-1].decode("utf-8", "replace") for name, values in pn.state.session_args.items() if values})
 
 
 def application_of(server: Any) -> Any:
@@ -239,11 +239,6 @@ def check_free(address: str, port: int) -> None:
     """Raise OSError if nothing can listen there. Tornado would find out too, but leave sockets open."""
     family = socket.AF_INET6 if ":" in address else socket.AF_INET
     socket.create_server((address, port), family=family).close()
-
-
-def arguments_of(given: Mapping[str, list[bytes]]) -> dict[str, str]:
-    """Return the parameters of an address as texts, the last one of those with the same name."""
-    return {name: values[-1].decode("utf-8", "replace") for name, values in given.items() if values}
 
 
 class DeliveryToTab:
