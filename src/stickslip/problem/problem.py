@@ -38,6 +38,11 @@ LONGEST_ROUND_TRIP = 1e6
 """Largest number of periods of a block (1) in what is called its round trip."""
 
 
+def _required() -> Any:
+    """Return a field without a default; type checkers read the annotation `Converted` only where a field has a value."""
+    return field()
+
+
 @dataclass(frozen=True)
 class Problem(CheckedArguments):
     """Everything that a run needs except its duration and its tolerance.
@@ -96,7 +101,7 @@ class Problem(CheckedArguments):
     """
 
     body: BodyOnCharacteristics
-    friction: Converted[FrictionLaw, FrictionLaw | Callable[..., Any] | str] = field()
+    friction: Converted[FrictionLaw, FrictionLaw | Callable[..., Any] | str] = _required()  # noqa: RUF009 - makes a field
     pull_rate: Converted[float | LoadingHistory, float | str | WithUnit | LoadingHistory] = quantity(
         "m/s", "rate V at which the driver is pulled", default=0.0
     )
