@@ -10,10 +10,12 @@ import sys
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
 from scipy.special import j1
 from tests.planar.patches import LAW, SLAB, patch
 
 import stickslip as ss
+from stickslip.planar.echo import echo_weights
 from stickslip.planar.memory import exponentials
 from stickslip.planar.solver import PlanarSolver
 
@@ -45,6 +47,24 @@ def test_exponentials_sum_to_the_bessel_kernel(longest: float) -> None:
     found = np.sum(weights[:, None] * np.exp(poles[:, None] * x), axis=0).real
     assert np.abs(found - j1(x) / x).max() < 2e-9
     assert poles.real.max() <= 0.0
+
+
+@pytest.mark.parametrize("phase", [0.05, 0.39, 0.41, 1.89, 1.91, 6.0])
+def test_weights_of_echoes_are_integrals_of_the_kernel(phase: float) -> None:
+    """W linear in time in each step against w R J1(w s)/s, to 2e-11; `phase` is w dt."""
+    steps, trip = 40, 2.0
+    found = echo_weights(np.array([phase * steps / trip]), steps, trip, 80)
+    w, dt = phase * steps / trip, trip / steps
+    for i in (0, 1, 7, 79):
+        ends = [math.sqrt((trip + (i + j) * dt) ** 2 - trip**2) for j in (0, 1)]
+        for weights, begins in ((found.early, 0.0), (found.late, 1.0)):
+
+            def integrand(s: float, i: int = i, begins: float = begins) -> float:
+                passed = (math.hypot(trip, s) - trip) / dt - i
+                return float(w * trip * j1(w * s) / math.hypot(trip, s) * abs(begins - passed))
+
+            exact, _ = quad(integrand, *ends, epsabs=1e-13, epsrel=1e-13, limit=400)
+            assert weights[i, 0] == pytest.approx(exact, abs=2e-11, rel=0.0)
 
 
 def test_a_uniform_contact_is_the_slab_in_1d_at_order_two() -> None:
