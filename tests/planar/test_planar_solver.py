@@ -16,8 +16,9 @@ from tests.planar.patches import LAW, SLAB, patch
 
 import stickslip as ss
 from stickslip.planar.echo import echo_weights
+from stickslip.planar.friction import Contact, Nodes
 from stickslip.planar.memory import exponentials
-from stickslip.planar.solver import PlanarSolver
+from stickslip.planar.solver import PlanarSolver, in_double_precision
 
 DENSITY, SPEED, THICKNESS, STRESS = 2800.0, 3500.0, 1e4, 1e8
 MODULUS = DENSITY * SPEED**2
@@ -65,6 +66,21 @@ def test_weights_of_echoes_are_integrals_of_the_kernel(phase: float) -> None:
 
             exact, _ = quad(integrand, *ends, epsabs=1e-13, epsrel=1e-13, limit=400)
             assert weights[i, 0] == pytest.approx(exact, abs=2e-11, rel=0.0)
+
+
+def test_slip_rates_that_are_found_stay_while_others_are_sought(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Five steps of Newton's method from 1 % beside the root, or from the root itself, meet the load to 1e-12."""
+    monkeypatch.setattr("stickslip.planar.friction.ITERATIONS", 5)
+    law, impedance = ss.friction.RateAndState(reference=0.6, a=0.01, b=0.015, distance=0.1), SLAB.impedance
+    problem = ss.Problem(SLAB, law, initial_load=60e6, initial_state=1.0)
+    slab = ss.PlanarSlab(problem, nodes=64, length=2e4)
+    nodes, contact = Nodes.of(slab.values, slab.locked), Contact(law, impedance)
+    rates, slip, states = np.geomspace(1e-9, 10.0, 64), np.zeros(64), slab.values.states
+    with in_double_precision():
+        load = impedance * rates + 1e8 * contact.coefficient(nodes, slip, rates, states)
+        found = contact.rate(nodes, load, slip, states, rates * np.where(np.arange(64) % 2, 1.01, 1.0))
+        missed = impedance * found + 1e8 * contact.coefficient(nodes, slip, found, states) - load
+    assert np.abs(missed / load).max() < 1e-12
 
 
 def test_a_uniform_contact_is_the_slab_in_1d_at_order_two() -> None:
