@@ -152,6 +152,8 @@ CASES = [
     (["benchmark", "judge"], "benchmark: judge needs a file"),
     (["schemes", "fig4-loop", "--nx", "20;50"], "schemes: --nx must be whole numbers separated by commas"),
     (["schemes", "fig4-loop", "--scheme", "hth"], "schemes: there is no scheme 'hth'; did you mean 'hht'?"),
+    (["schemes", "fig4-loop", "--nx", ""], "schemes: --nx must be whole numbers separated by commas"),
+    (["schemes", "fig4-loop", "--series", "a.csv", "--nx", "20"], "schemes: --nx is for schemes of stickslip: leave it out with"),
     (["regularise", "fig4-lop"], "fig4-lop: no such file, and no bundled scenario of that name; did you mean 'fig4-loop'?"),
     (["regularise", "fig6-block-printed"], "regularise: a block has inertia, which makes its slip rate unique"),
     (["regularise", "cycles-slab"], "regularise: a contact_mass of"),

@@ -68,6 +68,16 @@ def test_arrays_with_a_unit_of_pint_are_converted() -> None:
         Points.read({"v": registry.Quantity(np.array([1.0, 2.0]), "kg"), "mu": [0.5, 0.4]})
 
 
+@pytest.mark.parametrize(
+    "text",
+    ["v,mu\nmm/s,-\n1,.5\n2,.4\n", "v [mm/s],mu\n[mm/s],\n1,.5\n2,.4\n", "note,mu,v\n,(1),(mm/s)\nfirst,.5,1\nsecond,.4,2\n"],
+)
+def test_units_may_stand_in_a_row_below_the_headings(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "points.csv"
+    path.write_text(text, encoding="utf-8")
+    assert Points.read(path).places.tolist() == [1e-3, 2e-3]
+
+
 def test_a_plain_heading_wins_over_another_name_for_the_same() -> None:
     assert Points.read({"slip": [1, 2], "displacement": [3, 4], "mu": [0.5, 0.4]}).places.tolist() == [1.0, 2.0]
 
@@ -95,7 +105,8 @@ TEXTS = [
     ("0,.5\n1,.4\n", "line 1: no column 'friction'; the first line must name the columns, as friction"),
     ("v,frictoin\n0,.5\n", "line 1: no column 'friction'; rename 'frictoin'?"),
     ("w,mu\n0,.5\n", "line 1: no column slip or slip_rate; write it as slip_rate (m/s)"),
-    ("v,mu\nmm/s,-\n1,2\n", "line 2: slip_rate must be a number, got text; a unit belongs in the heading, as in slip_rate (m/s)"),
+    ("v,mu\nkg,-\n1,2\n", "line 2: slip_rate must be a number, got text; a unit belongs in the heading, as in slip_rate (m/s)"),
+    ("v (mm/s),mu\num/s,-\n1,2\n", "line 2: slip_rate must be a number, got text; a unit belongs in the heading, as in"),
     ("v,mu\n1,\n", "line 2: friction must be a number, got nothing"),
     ("v,mu\n1,.5\n2,NaN\n", "line 3: friction must be finite, got 'nan'; leave out such rows"),
     ("v,mu\n-1,.5\n", "line 2: slip_rate must not be negative, got -1"),

@@ -103,7 +103,7 @@ BAD_FILES = [
     ("u,slip distance,friction\n0,0,1\n", "line 1: columns 1 and 2 both are the slip: rename or remove one"),
     ("slip;friction\n0;0,7\n", "line 2: friction has a decimal comma; decimal commas are not read, write points: `tr , . <"),
     ("slip,friction\n0,5,0,7\n", "line 2: 4 cells, but the header has 2; decimal commas? Then separate columns by semicolons"),
-    ("slip,friction\nm,-\n0,1\n", "line 2: slip must be a number, got text; a unit belongs in the heading, as in slip (m)"),
+    ("slip,friction\nsec,-\n0,1\n", "line 2: slip must be a number, got text; a unit belongs in the heading, as in slip (m)"),
     ("slip,slip_rate,friction\n0,0,1\n", "line 1: the header needs a column slip or slip_rate, got both"),
     ("slip,friction\n0,0.7\n", "line 2: at least two rows of numbers are needed, got 1"),
     ("slip,friction\n", "line 1: at least two rows of numbers are needed, got 0"),

@@ -141,7 +141,7 @@ FILES = [
     ("time (s);load point (m);mu\n0,1;0,0;0,6\n", "has a decimal comma; decimal commas are not read"),
     ("time (s),load point (m),mu\n0,1,0,0,0,6\n", "6 cells, but the header has 3; decimal commas?"),
     ("time,load point (m),mu\n2026-05-01 12:00:07,0,0.6\n", "times of day are not read, write seconds from the start"),
-    ("time,load point,mu\n(s),(um),(-)\n0,0,0.6\n", "a unit belongs in the heading, as in time (s)"),
+    ("time,load point,mu\n(s),(g),(-)\n0,0,0.6\n", "a unit belongs in the heading, as in time (s)"),
     ("time load_point mu\n0 0 0.6\n", "columns are separated by commas, semicolons or tabs"),
     ("time (s),mu\n0,0.6\n1,0.6\nend of test\n", "time must be a number, got text"),
 ]

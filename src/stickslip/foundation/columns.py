@@ -11,16 +11,16 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from itertools import chain, zip_longest
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import has_unit
 from stickslip.foundation.errors import InputError, nearest, warn
 from stickslip.foundation.units import si_factor, split_quantity
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -116,14 +116,23 @@ def read_text(text: str, wanted: Sequence[str], place: str, most: int, *, raw: b
     """Return those of the wanted columns that a text has, as numbers in SI.
 
     The first line that is neither blank nor a comment (#) is the header. If it names none of the columns and exactly one of the
-    lines that follow names two of them, that line is the header, and those before it are notes. Columns are separated by tabs,
-    semicolons or commas, whichever of them the header has, in this order. Raises InputError with a message of one line that names
-    `place` and the line; also for more than `most` rows. If `raw`, cells without a number become NaN, and no sign is refused.
+    lines that follow names two of them, that line is the header, and those before it are notes. Units stand in the headings, or in
+    a row of their own below them. Columns are separated by tabs, semicolons or commas, whichever of them the header has, in this
+    order. Raises InputError with a message of one line that names `place` and the line; also for more than `most` rows. If `raw`,
+    cells without a number become NaN, and no sign is refused.
     """
     lines, separator = _rows(text, place, wanted)
     number, header = next(lines, (1, [""]))
     at_header = f"{place}, line {number}"
     chosen = find(header, wanted, at_header)
+    below = next(lines, None)
+    if below is not None and _are_units(below[1], header, chosen):
+        header = [
+            name if _has_unit(name) else f"{name} ({_bare(unit)})" for name, unit in zip_longest(header, below[1], fillvalue="")
+        ]
+        chosen = find(header, wanted, at_header)
+    elif below is not None:
+        lines = chain([below], lines)
     if not chosen:  # the caller says what is missing
         return Table({}, place, np.array([number]), "line", header, at_header)
     found: dict[str, list[float]] = {name: [] for name in chosen}
@@ -284,6 +293,27 @@ def _rows(text: str, place: str, wanted: Sequence[str]) -> tuple[Iterator[tuple[
             raise InputError(f"{place}, line {read.line_num}: {error}") from None
 
     return rows(), separator
+
+
+def _are_units(row: Sequence[str], header: Sequence[str], chosen: Mapping[str, tuple[int, Fraction]]) -> bool:
+    """Return True if a row below the headings holds the units of the chosen columns, and contradicts none of the headings."""
+    cells = {name: _bare(row[i]) if i < len(row) else "" for name, (i, _) in chosen.items()}
+    try:
+        for name, cell in cells.items():
+            _factor(cell, name, "")
+    except InputError:
+        return False
+    agrees = all(not _has_unit(header[i]) or cells[name] in header[i] for name, (i, _) in chosen.items())
+    return agrees and any(cell.casefold() not in PURE for cell in cells.values())
+
+
+def _has_unit(heading: str) -> bool:
+    return "(" in heading or "[" in heading
+
+
+def _bare(unit: str) -> str:
+    """Return a unit without the brackets around it."""
+    return unit.strip(" ()[]")
 
 
 def _header_line(lines: Sequence[str], wanted: Sequence[str]) -> int:

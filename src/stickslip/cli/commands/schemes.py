@@ -5,8 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
 from stickslip.cli.options import Changes, Dpi, Duration, FigureFile, Rtol, ScenarioName, Size, option
 from stickslip.cli.output.files import Look, Target, announce, check_targets, drawing, write_files
 from stickslip.foundation.errors import InputError
@@ -15,16 +13,16 @@ if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario
     from stickslip.studies.schemes import Schemes
 
+SEARCH = "How the contact looks for a slip rate: stick-first, continue, newton or fastest; stick-first if not given."
+
 
 def schemes(
     scenario: ScenarioName,
     *,
     changes: Changes = None,
-    scheme: Annotated[str, typer.Option(help="Schemes, separated by commas, or all.")] = "all",
-    nx: Annotated[str, typer.Option("--nx", help="Cells in the thickness, separated by commas.")] = "25,50,100,200",
-    search: Annotated[
-        str, typer.Option(help="How the contact looks for a slip rate: stick-first, continue, newton or fastest.")
-    ] = "stick-first",
+    scheme: Annotated[str | None, option("Schemes, separated by commas; all of them if not given.")] = None,
+    nx: Annotated[str | None, option("Cells in the thickness, separated by commas; 25,50,100,200 if not given.")] = None,
+    search: Annotated[str | None, option(SEARCH)] = None,
     courant: Annotated[float | None, option("Courant number, in place of each scheme's own.")] = None,
     files: Annotated[list[Path] | None, option("Judge the series in a file instead; may be repeated.", "--series")] = None,
     out: Annotated[Path | None, option("Save the table (.csv, shocks in NAME-shocks.csv; .nc: all).", "--out", "-o")] = None,
@@ -57,7 +55,13 @@ def schemes(
     check_targets(Target("--out", out, (".csv", ".nc")), Target("--figure", figure))  # the file of shocks goes beside it
     look.check(figure)
     chosen = load_with("schemes", scenario, changes, duration=duration, rtol=rtol)
-    study = _judged(chosen, files) if files else _study(chosen, scheme, _cells(nx), search, courant)
+    if files:
+        needless = {"--scheme": scheme, "--nx": nx, "--search": search, "--courant": courant}
+        if given := [name for name, value in needless.items() if value is not None]:
+            raise InputError(f"schemes: {given[0]} is for schemes of stickslip: leave it out with --series, which judges a file")
+        study = _judged(chosen, files)
+    else:
+        study = _study(chosen, scheme or "all", _cells("25,50,100,200" if nx is None else nx), search or "stick-first", courant)
     show_schemes(chosen, study)
     announce(*write_files(*tables_of(study, out), (figure, drawing(study.plot, look))))
     if study.interrupted:
