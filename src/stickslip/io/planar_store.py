@@ -239,7 +239,7 @@ def _digest(about: Mapping[str, Any]) -> str:
     return hashlib.sha256(json.dumps(kept, sort_keys=True).encode()).hexdigest()
 
 
-def _array(group: zarr.Group, name: str, axes: Mapping[str, int], rows: int = 0, **about: str) -> zarr.Array[Any]:
+def _array(group: zarr.Group, name: str, axes: Mapping[str, int], rows: int = 0, **about: Any) -> zarr.Array[Any]:
     """Create an array; one that grows along its first axis has chunks of so many rows, or of fewer if they are large."""
     shape = tuple(axes.values())
     most = max(1, CHUNK // (8 * math.prod(shape[1:])))
