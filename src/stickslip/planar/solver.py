@@ -320,9 +320,10 @@ class PlanarSolver:
 
     def state(self) -> dict[str, Floats]:
         """Return what a run needs to continue, beside W since its start."""
-        waves = {name: whole(getattr(self.waves, name))[..., : self.layout.half] for name in KEPT}
-        waves["memory"] = np.stack([waves["memory"].real, waves["memory"].imag])
-        return self.now()._asdict() | waves
+        with in_double_precision():
+            waves = {f"waves_{name}": whole(getattr(self.waves, name))[..., : self.layout.half] for name in KEPT}
+        waves["waves_memory"] = np.stack([waves["waves_memory"].real, waves["waves_memory"].imag])
+        return waves | {f"motion_{name}": one for name, one in self.now()._asdict().items()}
 
     def restore(self, state: Mapping[str, Floats], trip: int, step: int, sent: Callable[[int], Floats]) -> None:
         """Go to an earlier state of a run: of this number of devices, or of another.
@@ -345,13 +346,13 @@ class PlanarSolver:
             where, arriving = self._spread_waves, self.waves.arriving
             for n in range(trip):  # the echoes follow from what was sent
                 arriving, self.echo = self._turn(self.layout.put(filled(sent(n)), where.sent), self.echo, self.spectra)
-            kept = {name: filled(state[name]) for name in KEPT}
+            kept = {name: filled(state[f"waves_{name}"]) for name in KEPT}
             kept["memory"] = kept["memory"][0] + 1j * kept["memory"][1]
             path = np.zeros((self.steps + 1, *self.waves.now.shape))
             path[: step + 1] = filled(sent(trip))
             put = {name: self.layout.put(value, getattr(where, name)) for name, value in (kept | {"sent": path}).items()}
             self.waves = Waves(arriving=arriving, **put)
-            self.motion = self._put(Motion(**{name: state[name] for name in Motion._fields}), self._spread_motion)
+            self.motion = self._put(Motion(*(state[f"motion_{name}"] for name in Motion._fields)), self._spread_motion)
             self.trip, self.step = trip, step
 
 
