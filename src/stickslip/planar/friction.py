@@ -117,6 +117,11 @@ class Contact:
             found = (size - at_rest) / self.impedance
         return jnp.where(slips, jnp.sign(load) * found, 0.0)
 
+    def traction(self, nodes: Nodes, load: Any, slip: Any, states: Any, rate: Any) -> Any:
+        """Return the traction (Pa) at a slip rate that `rate` has found: friction from the law, and the load of nodes at rest."""
+        friction = nodes.normal * self.coefficient(nodes, slip, jnp.abs(rate), states)
+        return jnp.where(rate == 0.0, load, jnp.sign(rate) * friction)
+
     def _root(self, nodes: Nodes, size: Any, at: tuple[Any, Any, Any], guess: Any) -> Any:
         """Return the root of each node by Newton's method, which bisects where it would leave the bracket."""
         slip, states, at_rest = at
@@ -139,8 +144,9 @@ class Contact:
             low, high = jnp.where(value <= 0.0, rate, low), jnp.where(value > 0.0, rate, high)
             newton = rate - value / slope
             middle = jnp.where(low > 0.0, jnp.sqrt(low) * jnp.sqrt(high), 1e-3 * high)
-            following = jnp.where((low < newton) & (newton < high), newton, middle)
-            # the next step of Newton's method would change the rate by less than the square of this
+            # where a step is this small, the next one would change the rate by less than the square of it
+            small = jnp.abs(newton - rate) <= 1e-9 * rate
+            following = jnp.where(small | ((low < newton) & (newton < high)), newton, middle)
             done = jnp.abs(following - rate) <= 1e-9 * rate
             return low, high, following, done, count + 1
 
