@@ -16,7 +16,7 @@ from stickslip.contact.uniqueness import regime_of
 from stickslip.foundation.arguments import CheckedArguments, shown
 from stickslip.foundation.conversion import Number, OptionalNumber
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import check_fields, quantity
+from stickslip.foundation.quantities import Quantity, check_fields, declare, quantity
 from stickslip.planar.nodes import NodeValues, node_values
 from stickslip.problem.problem import Problem, check_problem
 
@@ -24,6 +24,10 @@ Profile = ArrayLike | Callable[..., Any]
 """Values at the nodes: an array, or a function of y, or of y and z (m), that returns one."""
 FEWEST_NODES = 8
 """Smallest number of nodes along an axis of the contact."""
+COUNTS = ("nodes", "width_nodes")
+"""The fields that count nodes."""
+MOST_NODES = 2**22
+"""Largest number of nodes: more do not fit into the memory that a run may take."""
 WIDEST_STEP = 2.5
 """Largest phase w dt, of the shortest wave in one time step, for which the steps were seen to be stable."""
 STEEPEST = 0.5
@@ -73,10 +77,10 @@ class PlanarSlab(CheckedArguments):
     """
 
     problem: Problem
-    nodes: int
+    nodes: int = declare(Quantity("1", "number of nodes along y, even", at_least=FEWEST_NODES))
     length: Number = quantity("m", "length of the contact along y", above=0)
     width: OptionalNumber = quantity("m", "width of the contact along z, for a plane", above=0, default=None)
-    width_nodes: int | None = None
+    width_nodes: int | None = declare(Quantity("1", "number of nodes along z, even, for a plane", at_least=FEWEST_NODES), None)
     along: Mapping[str, Profile] = field(default_factory=dict)
     barrier: Profile | None = None
     replicas: bool = True
@@ -84,7 +88,7 @@ class PlanarSlab(CheckedArguments):
 
     def __post_init__(self) -> None:
         check_problem("PlanarSlab", self.problem)
-        check_fields(self)
+        check_fields(self, but=COUNTS)
         self._check_problem()
         self._check_grid()
         _ = self.values, self.locked
@@ -109,12 +113,14 @@ class PlanarSlab(CheckedArguments):
     def _check_grid(self) -> None:
         if (self.width is None) != (self.width_nodes is None):
             raise InputError("PlanarSlab: width and width_nodes belong together: give both for a plane, neither for a line")
-        for name in ("nodes", "width_nodes"):
+        for name in COUNTS:
             count = getattr(self, name)
             if count is None:
                 continue
             if isinstance(count, bool) or not isinstance(count, int | np.integer) or count < FEWEST_NODES or count % 2:
                 raise InputError(f"PlanarSlab: {name} must be an even whole number, at least {FEWEST_NODES}, got {shown(count)}")
+        if math.prod(self.shape) > MOST_NODES:
+            raise InputError(f"PlanarSlab: a contact may have {MOST_NODES} nodes, got {' x '.join(map(str, self.shape))}")
         finest = math.sqrt(sum((math.pi / step) ** 2 for step in self.spacing))
         largest = WIDEST_STEP / (finest * min(self.spacing))
         if self.courant > largest:
@@ -229,6 +235,8 @@ class PlanarSlab(CheckedArguments):
         try:
             values = np.asarray(given(*where) if callable(given) else given)
             values = np.array(np.broadcast_to(values, self.shape), kind)
+        except InputError:
+            raise
         except (TypeError, ValueError) as error:
             raise InputError(f"PlanarSlab: {name} must give {self.shape} values, one for each node: {error}") from None
         if not np.isfinite(values).all():

@@ -20,6 +20,7 @@ from stickslip.problem.run_quantities import DURATION, check_rtol
 from stickslip.run.progress import Progress
 from stickslip.run.simulate import simulate
 from stickslip.scenarios import Scenario, load_scenario
+from stickslip.scenarios.source import all_slips_alike
 from stickslip.solution.solution import Solution
 from stickslip.studies.study import Study, TextProgress, telling, uninterrupted
 from stickslip.trajectory.slip_events import SlipEvents, default_event_rate
@@ -70,7 +71,7 @@ def read_source(source: str | Path | Scenario | Solution, duration: float | None
     if Path(str(source)).suffix == ".nc":
         solution = open_solution(str(source))
         return Source(Path(str(source)).stem, lambda _: solution)
-    scenario = source if isinstance(source, Scenario) else load_scenario(source)
+    scenario = all_slips_alike("compare", source if isinstance(source, Scenario) else load_scenario(source))
     changed = replace(scenario, duration=duration or scenario.duration, rtol=rtol or scenario.rtol)
     return Source(scenario.name, lambda progress: uninterrupted(simulate(changed, progress=progress)))
 
