@@ -121,12 +121,12 @@ def _paths_in_contact(contact: Contact, problem: Problem) -> Iterator[ParameterP
         yield ParameterPath(f"contact.{name}", declared)
     units = {name: declared for name, (declared, _) in varying(problem).items()}
     for i, patch in enumerate(contact.patches):
+        place, values = f"contact.patches[{i}]", [name for name, _ in patch.values if name != LOCKED]
         for axis, declared in PLACES.items():
-            yield from (
-                ParameterPath(f"contact.patches[{i}].{axis}[{j}]", declared) for j in range(len(getattr(patch, axis) or ()))
-            )
-        yield ParameterPath(f"contact.patches[{i}].taper", TAPER)
-        yield from (ParameterPath(f"contact.patches[{i}].{name}", units[name]) for name, _ in patch.values if name != LOCKED)
+            yield from (ParameterPath(f"{place}.{axis}[{j}]", declared) for j in range(len(getattr(patch, axis) or ())))
+        yield from (ParameterPath(f"{place}.{name}", units[name]) for name in values)
+        if values:
+            yield ParameterPath(f"{place}.taper", TAPER)
 
 
 def _paths_in(owner: Any, place: str) -> Iterator[ParameterPath]:
