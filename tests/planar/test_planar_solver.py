@@ -60,6 +60,12 @@ def test_a_uniform_contact_is_the_slab_in_1d_at_order_two() -> None:
     assert slip[-1] == slip[times > SLAB.two_way_time + 0.01][0]  # it has arrested with the echo
 
 
+def test_a_run_may_end_with_a_round_trip() -> None:
+    """The loading of the round trip after it does not exist."""
+    run = ss.simulate(patch(nodes=32, length=2e4), 2.0 * SLAB.two_way_time, frames=10)
+    assert run.times[-1] == pytest.approx(2.0 * SLAB.two_way_time, rel=1e-12, abs=0.0)
+
+
 LAWS = {
     "state": ss.Problem(
         ss.ElasticSlab(DENSITY, SPEED, 1e3, STRESS),

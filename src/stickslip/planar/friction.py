@@ -117,6 +117,11 @@ class Contact:
             found = (size - at_rest) / self.impedance
         return jnp.where(slips, jnp.sign(load) * found, 0.0)
 
+    def traction(self, nodes: Nodes, load: Any, slip: Any, states: Any, rate: Any) -> Any:
+        """Return the traction (Pa) at a slip rate that `rate` has found: friction from the law, and the load of nodes at rest."""
+        friction = nodes.normal * self.coefficient(nodes, slip, jnp.abs(rate), states)
+        return jnp.where(rate == 0.0, load, jnp.sign(rate) * friction)
+
     def _root(self, nodes: Nodes, size: Any, at: tuple[Any, Any, Any], guess: Any) -> Any:
         """Return the root of each node by Newton's method, which bisects where it would leave the bracket."""
         slip, states, at_rest = at

@@ -209,7 +209,8 @@ class PlanarSolver:
         def open_round_trip(motion: Motion, waves: Waves, constants: Constants, loading: Any) -> tuple[Motion, Waves]:
             load = constants.initial_load + loading[0] + self.layout.field(waves.now + waves.arriving[0])
             rate = self.contact.rate(constants.nodes, load, motion.seen, motion.states, motion.rate)
-            motion = motion._replace(rate=rate, traction=load - self.body.impedance * rate)
+            traction = self.contact.traction(constants.nodes, load, motion.seen, motion.states, rate)
+            motion = motion._replace(rate=rate, traction=traction)
             return motion, waves._replace(sent=waves.sent.at[0].set(self._leaving(rate, waves.now, waves.arriving[0])))
 
         spread = (self._spread_motion, self._spread_waves)
@@ -250,7 +251,7 @@ class PlanarSolver:
         memory = waves.inherited + constants.now * slipped
         load = loads[0] + self.layout.field(memory + loads[1])
         rate = self.contact.rate(constants.nodes, load, seen, states, late)
-        traction = load - self.body.impedance * rate
+        traction = self.contact.traction(constants.nodes, load, seen, states, rate)
         if self.contact.law.memory == "since-arrest":
             seen = jnp.where(rate == 0.0, 0.0, seen)
         heat = motion.heat + 0.5 * self.dt * (motion.traction * motion.rate + traction * rate)
@@ -271,7 +272,7 @@ class PlanarSolver:
     def advance(self, count: int) -> int:
         """Take at most `count` steps, no further than the end of the round trip or of the run; return how many were taken."""
         with in_double_precision():
-            if self.step == self.steps:
+            if self.step == self.steps and self.trip + 1 < self.trips:
                 self._begin_next_round_trip()
             left = self.last_step - self.trip * self.steps
             taken = max(0, min(count, self.steps - self.step, left - self.step))
