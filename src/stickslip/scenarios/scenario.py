@@ -107,9 +107,11 @@ class Scenario:
         return self.title or (self.name if self.name != UNNAMED else "")
 
     @cached_property
-    def planar_slab(self) -> PlanarSlab | None:
-        """The slab with the contact of this scenario, for `stickslip.simulate`; None without a contact."""
-        return None if self.contact is None else self.contact.slab(self.problem)
+    def planar_slab(self) -> PlanarSlab:
+        """The slab with the contact of this scenario, which `stickslip.simulate` runs. Raises InputError if there is no contact."""
+        if self.contact is None:
+            raise InputError(f"{self.name}: has no [contact] of many nodes: take its .problem")
+        return self.contact.slab(self.problem)
 
     @classmethod
     def of(cls, solution: Solution, name: str = UNNAMED) -> Self:
