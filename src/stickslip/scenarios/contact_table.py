@@ -13,6 +13,7 @@ from stickslip.foundation.quantities import LARGEST_SERIES, Choice, Quantity
 from stickslip.planar.nodes import varying
 from stickslip.problem.problem import Problem
 from stickslip.scenarios.contact import GRID, LOCKED, Contact, Patch, Points, Profile
+from stickslip.scenarios.schema import without_owner
 
 PLACES = {axis: Quantity("m", f"interval of {axis}, 0 in the middle of the contact") for axis in ("y", "z")}
 SHAPE = Choice("shape of a patch on a plane", ("box", "ellipse"))
@@ -28,9 +29,12 @@ def read_contact(table: Mapping[str, Any], problem: Problem, file: str) -> Conta
     reader = _Reader(file, {name: declared for name, (declared, _) in varying(problem).items()} | {LOCKED: None})
     grid = {name: value for name, value in table.items() if name not in ("along", "patches")}
     along, is_plane = reader.names(table["along"], "[contact.along]", {}), table["width"] is not None
-    patches = (reader.patch(one, f"[contact.patches[{i}]]", is_plane) for i, one in enumerate(table["patches"]))
+    patches = [reader.patch(one, f"[contact.patches[{i}]]", is_plane) for i, one in enumerate(table["patches"])]
     profiles = tuple((name, reader.profile(name, value, place)) for name, value, place in along)
-    return Contact(**grid, along=profiles, patches=tuple(patches))
+    try:
+        return Contact(**grid, along=profiles, patches=tuple(patches))
+    except InputError as error:
+        raise InputError(f"{file}: [contact] {without_owner(error)}") from None
 
 
 @dataclass(frozen=True)

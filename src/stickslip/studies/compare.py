@@ -62,8 +62,8 @@ def read_source(
 ) -> Source:
     """Return the run described by a bundled scenario's name, a scenario file, a solution file (.nc), a scenario or a solution.
 
-    `duration` (s) and `rtol` replace those of a scenario; `who` begins messages. Raises InputError if `source` is none of these, and
-    if `duration` or `rtol` is given with a solution, which has been run already.
+    `duration` (s) and `rtol` replace those of a scenario; `who` begins messages. Raises InputError if `source` is none of these,
+    and if `duration` or `rtol` is given with a solution, which has been run already.
     """
     computed = isinstance(source, Solution)
     if (computed or Path(str(source)).suffix == ".nc") and not (duration is None and rtol is None):
