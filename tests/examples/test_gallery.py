@@ -267,6 +267,15 @@ def judge_another_code(names: Names) -> None:
     assert names["study"].verdicts == {"staggered_grid": "none"}
 
 
+@check
+def fault_in_2d(names: Names) -> None:
+    """A front that is fed more than it consumes runs at the wave speed; the ends are the last to rest."""
+    run = names["run"]
+    assert abs(np.median(run.rupture_speed[names["outside"]]) / run.slab.body.wave_speed - 1.0) < 0.02
+    assert not run.slip_rate[-1].any()
+    assert run.slip[:, np.abs(run.slab.y) > 18e3].max() == 0.0
+
+
 def name_of(path: Path) -> str:
     return path.stem.partition("_")[2]
 

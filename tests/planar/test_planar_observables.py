@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from PIL import Image, ImageSequence
 from tests.planar.patches import SLAB, patch
 
 import stickslip as ss
+from stickslip.figures.runs.planar import stage
 from stickslip.observables.planar import pulses, rupture_speed, rupture_times
 
 TIMES = np.linspace(0.0, 10.0, 4001)
@@ -76,6 +80,37 @@ def test_a_run_draws_itself_with_units(plane: bool) -> None:
     figure = ss.simulate(patch(nodes=32, length=2e4, **grid), 3.0, frames=10).plot(figure=Figure())
     labels = " ".join(axis.get_ylabel() + axis.get_xlabel() for axis in figure.axes)
     assert all(unit in labels for unit in ("(km)", "(m/s)", "(s)"))
+
+
+@pytest.mark.parametrize("plane", [False, True])
+def test_a_film_shows_the_contact_frame_by_frame(plane: bool, tmp_path: Path) -> None:
+    """What moves from frame 3 to frame 4: the fields, and the clock."""
+    grid = {"width": 2e4, "width_nodes": 16} if plane else {}
+    run = ss.simulate(patch(nodes=32, length=2e4, **grid), 3.0, frames=10)
+    told: list[tuple[int, int]] = []
+    path = run.plot.animation(tmp_path / "fault.gif", 0.5, 2.6, frames=4, progress=lambda *news: told.append(news))
+    assert told == [(n, 4) for n in range(1, 5)]
+    with Image.open(path) as film:
+        frames = [np.asarray(film.convert("L"), float) for _ in ImageSequence.Iterator(film)]
+    assert len(frames) == 4
+    assert all(np.abs(late - early).mean() > 0.05 for early, late in pairwise(frames))
+    figure = Figure()
+    move, moving = stage(run, np.array([2, 5]))(figure)
+    move(1)
+    shown = moving[0].get_array() if plane else moving[0].get_ydata()
+    assert np.ma.filled(shown, 0.0) == pytest.approx(run.slip_rate[5].T, rel=1e-12, abs=0.0)
+    assert figure.axes[0].get_title(loc="left") == f"{run.times[5]:.3f} s"
+    assert all(unit in " ".join(a.get_xlabel() + a.get_ylabel() for a in figure.axes) for unit in ("(km)", "(m/s)", "(m)"))
+
+
+def test_films_of_too_little_are_refused(tmp_path: Path) -> None:
+    run = ss.simulate(patch(nodes=32, length=2e4), 3.0, frames=10)
+    for between in ((5.0, 6.0), (1.0, 1.01)):
+        with pytest.raises(ss.InputError, match="at least 2 frames, of a run from 0 to 3"):
+            run.plot.animation(tmp_path / "fault.gif", *between)
+    with pytest.raises(ss.InputError, match=r"fault\.avi: the name must end in \.gif"):
+        run.plot.animation(tmp_path / "fault.avi")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_dataset_has_axes_with_units() -> None:

@@ -331,8 +331,50 @@ def check_size(t: ArrayLike, x: ArrayLike | None) -> None:
         raise InputError(f"to_dataset: {wanted:.3g} values are too many: take fewer times or places (at most {MOST_VALUES:.0e})")
 
 
-def draw_planar(run: PlanarSolution, **place: Unpack[Place]) -> Figure:
-    """Draw the slip rate over y and time of a planar slab, and the motion in the middle."""
-    from stickslip.figures.runs import planar
+class PlanarPlots:
+    """Figures of the run of a planar slab: `run.plot()` draws the default one, `run.plot.animation(path)` writes a film."""
 
-    return known_to_pyplot(planar.draw(run, **place), place)
+    def __init__(self, run: PlanarSolution) -> None:
+        self._run = run
+
+    def __call__(self, **place: Unpack[Place]) -> Figure:
+        """Draw the slip rate over y and time, and the motion in the middle against time; keywords as those of `Solution.plot`."""
+        from stickslip.figures.runs import planar
+
+        return known_to_pyplot(planar.draw(self._run, **place), place)
+
+    def animation(
+        self,
+        path: str | Path,
+        start: float | None = None,
+        end: float | None = None,
+        *,
+        frames: int | None = None,
+        progress: Callable[[int, int], object] | None = None,
+    ) -> Path:
+        """Write an animation of slip rate and slip on the contact to a file: profiles along a line, maps of a plane.
+
+        Parameters
+        ----------
+        path : str or Path
+            File to write: .gif; .mp4 and .webm need ffmpeg.
+        start, end : float, optional
+            First and last time to show, s; by default those of the run.
+        frames : int, optional
+            Number of frames, shown at 20 per second: at most those that the run has kept. The default is 150.
+        progress : callable, optional
+            Function that is called with the number of finished frames and the number of all frames.
+
+        Returns
+        -------
+        Path
+            The file that was written.
+
+        Raises
+        ------
+        InputError
+            For fewer than two frames, and if the software that writes such a file is missing.
+        """
+        from stickslip.figures.runs import planar
+
+        return planar.animate(self._run, path, start, end, frames=frames, progress=progress)

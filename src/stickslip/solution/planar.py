@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Unpack
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,13 +13,11 @@ from numpy.typing import NDArray
 from stickslip.foundation.formatting import brief
 from stickslip.observables.planar import pulses, rupture_speed, rupture_times
 from stickslip.planar.slab import PlanarSlab
-from stickslip.solution.accessors import draw_planar
-from stickslip.solution.place import Place
+from stickslip.solution.accessors import PlanarPlots
 from stickslip.trajectory.slip_events import default_event_rate
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.figure import Figure
 
 Floats = NDArray[np.float64]
 ENOUGH_NODES = 5.0
@@ -143,9 +141,10 @@ class PlanarSolution:
         """Return a field along y; for a plane, along the line at z = 0. Axes in front, such as time, stay."""
         return values[..., self.slab.shape[1] // 2] if self.slab.is_plane else values
 
-    def plot(self, **place: Unpack[Place]) -> Figure:
-        """Draw the slip rate over y and time, and the motion in the middle against time; keywords as those of `Solution.plot`."""
-        return draw_planar(self, **place)
+    @property
+    def plot(self) -> PlanarPlots:
+        """The figures: `plot()` draws slip rate over the contact and time, `plot.animation(path)` writes a film."""
+        return PlanarPlots(self)
 
     def dataset(self) -> xr.Dataset:
         """Return slip, slip rate, traction and heat as an xarray dataset over time, y and, for a plane, z (SI units)."""

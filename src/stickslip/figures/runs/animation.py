@@ -32,6 +32,8 @@ CODECS = {".gif": "", ".mp4": "h264", ".webm": "libvpx-vp9"}
 SUFFIXES = tuple(CODECS)
 Told = Callable[[int, int], object]
 """A callback that receives the number of frames drawn so far and the number of all frames."""
+Stage = Callable[[Figure], tuple[Callable[[int], None], list[Artist]]]
+"""A function that draws a figure, and returns one that moves it to the n-th frame, and the artists that this changes."""
 
 
 def check_animation(path: Path, where: str) -> None:
@@ -68,19 +70,23 @@ def data(readings: Readings, start: float | None = None, end: float | None = Non
     return xr.Dataset(contents, attrs=about(readings))
 
 
-@styled
 def write(dataset: xr.Dataset, path: str | Path, *, per_second: int = PER_SECOND, progress: Told | None = None) -> Path:
     """Draw every frame, write the file (.gif, .mp4 or .webm), either whole or not at all, and return its path.
 
     `per_second` is the number of frames per second. Raises InputError for any other suffix, and if the program that writes such
     files is missing.
     """
-    path = Path(path)
+    return film(lambda figure: _draw_stage(figure, dataset), dataset.sizes["time"], Path(path), per_second, progress)
+
+
+@styled
+def film(stage: Stage, frames: int, path: Path, per_second: int = PER_SECOND, progress: Told | None = None) -> Path:
+    """Write a film of any figure: `stage` draws it, and returns what `Stage` says. See `write` for the rest."""
     check_animation(path, "animation:")
     figure = _Film(figsize=SIZE, dpi=DPI, layout="constrained")
-    move, moving = _draw_stage(figure, dataset)
+    move, moving = stage(figure)
     figure.keep_still(moving)
-    frames, codec = dataset.sizes["time"], CODECS[path.suffix.lower()]
+    codec = CODECS[path.suffix.lower()]
     ffmpeg: Any = {"animation.ffmpeg_path": _ffmpeg()} if codec else {}
     options: Any = {"codec": codec, "extra_args": ["-pix_fmt", "yuv420p"]}
     writer: AbstractMovieWriter = FFMpegWriter(fps=per_second, **options) if codec else PillowWriter(fps=per_second)
@@ -126,7 +132,7 @@ def frame(dataset: xr.Dataset, n: int) -> Figure:
 
 
 def _draw_stage(figure: Figure, dataset: xr.Dataset) -> tuple[Callable[[int], None], list[Artist]]:
-    """Draw the film's panels; return a function that moves them to the n-th frame, and the list of artists that it changes."""
+    """Draw the film's panels, as a `Stage`."""
     scales = Scales(dataset)
     axes = figure.subplot_mosaic("ABC;ABD;ABE", width_ratios=(1.0, 1.0, 1.7))
     unit, size = unit_shown(dataset.displacement)

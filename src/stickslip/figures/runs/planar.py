@@ -1,23 +1,31 @@
-"""The figure of a planar slab: slip rate over the contact and time, and the motion in the middle."""
+"""The figure of a planar slab: slip rate over the contact and time, and the motion in the middle; and a film of the contact."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
-from matplotlib.colors import LogNorm
+from matplotlib.colors import LogNorm, Normalize
+from numpy.typing import NDArray
 
-from stickslip.figures.panels import letter_panels
+from stickslip.figures.panels import letter_panels, zero_line
+from stickslip.figures.runs.animation import FRAMES, Stage, Told, film
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import GREEN, INK, axis_text, styled, unit_of
+from stickslip.foundation.errors import InputError
 from stickslip.solution.place import Place
 from stickslip.solution.planar import PlanarSolution
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.figure import Figure
 
 DECADES = 4.0
 """Decades of slip rate that the colours show, below the largest."""
+RESTS = "0.93"
+"""Colour of places at rest in maps of the slip rate."""
 
 
 @styled
@@ -42,7 +50,7 @@ def draw(solution: PlanarSolution, **place: Unpack[Place]) -> Figure:
     _mark_echoes(axes[0], solution, time_size)
     at = " at z = 0" if solution.slab.is_plane else ""
     axes[0].set_ylabel(axis_text(f"along the contact{at}", "y", place_name))
-    axes[0].set_facecolor("0.93")  # the contact rests
+    axes[0].set_facecolor(RESTS)
     for axis, name, field, color in zip(
         axes[1:], ("slip", "slip rate"), (solution.slip, solution.slip_rate), (INK, GREEN), strict=True
     ):
@@ -61,3 +69,94 @@ def _mark_echoes(axis: Any, solution: PlanarSolution, size: float) -> None:
     trip = solution.slab.body.two_way_time
     for n in range(1, int(solution.times[-1] / trip) + 1):
         axis.axvline(n * trip / size, color="0.6", linewidth=0.6, linestyle=":")
+
+
+def animate(
+    solution: PlanarSolution,
+    path: str | Path,
+    start: float | None = None,
+    end: float | None = None,
+    *,
+    frames: int | None = None,
+    progress: Told | None = None,
+) -> Path:
+    """Write a film of slip rate and slip: profiles along a line, maps of a plane. See `PlanarPlots.animation`."""
+    times = solution.times
+    begin, past = times[0] if start is None else start, times[-1] if end is None else end
+    inside = np.flatnonzero((times >= begin) & (times <= past))
+    wanted = FRAMES if frames is None else frames
+    if len(inside) < 2 or wanted < 2:
+        raise InputError(
+            f"animation: needs at least 2 frames, of a run from {times[0]:g} to {times[-1]:g} s; got {wanted} frames from"
+            f" {begin:g} to {past:g} s, where the run has {len(inside)}"
+        )
+    shown = inside[np.linspace(0, len(inside) - 1, min(wanted, len(inside))).round().astype(int)]
+    return film(stage(solution, shown), len(shown), Path(path), progress=progress)
+
+
+def stage(solution: PlanarSolution, shown: NDArray[np.intp]) -> Stage:
+    """Return the `Stage` of a film of some frames, which are given by their numbers."""
+    plane, (name, size) = solution.slab.is_plane, unit_of("s", solution.times)
+
+    def draw_stage(figure: Figure) -> tuple[Callable[[int], None], list[Artist]]:
+        axes: Any = figure.subplots(*((1, 2) if plane else (2, 1)), sharex=True, sharey=plane)
+        show, moving = (_draw_maps if plane else _draw_profiles)(figure, axes, solution, shown)
+        clock = axes[0].set_title(" ", loc="left")
+
+        def move(n: int) -> None:
+            show(shown[n])
+            clock.set_text(f"{solution.times[shown[n]] / size:.3f} {name}")
+
+        return move, [*moving, clock]
+
+    return draw_stage
+
+
+def _draw_profiles(
+    _: Figure, axes: Any, solution: PlanarSolution, shown: NDArray[np.intp]
+) -> tuple[Callable[[int], None], list[Artist]]:
+    """Draw slip rate and slip along a line in axes whose limits hold every frame."""
+    place_name, place_size = unit_of("m", solution.slab.y)
+    drawn = []
+    fields = (("slip rate", solution.slip_rate, GREEN), ("slip", solution.slip, INK))
+    for axis, (name, field, color) in zip(axes, fields, strict=True):
+        unit, scale = unit_of("m/s" if name == "slip rate" else "m", field[shown])
+        (line,) = axis.plot(solution.slab.y / place_size, field[shown[0]] / scale, color=color)
+        low, high = float(field[shown].min()) / scale, float(field[shown].max()) / scale
+        margin = 0.05 * (high - low) or 1.0
+        axis.set(ylim=(low - margin, high + margin), ylabel=f"{name} ({unit})", xlim=solution.slab.y[[0, -1]] / place_size)
+        zero_line(axis)
+        drawn.append((line, field, scale))
+    axes[-1].set_xlabel(axis_text("along the contact", "y", place_name))
+
+    def show(frame: int) -> None:
+        for line, field, scale in drawn:
+            line.set_ydata(field[frame] / scale)
+
+    return show, [line for line, _, _ in drawn]
+
+
+def _draw_maps(
+    figure: Figure, axes: Any, solution: PlanarSolution, shown: NDArray[np.intp]
+) -> tuple[Callable[[int], None], list[Artist]]:
+    """Draw slip rate and slip over a plane in colours that hold for every frame."""
+    place_name, place_size = unit_of("m", solution.slab.y)
+    edges = [0.5 * sign * size / place_size for size in solution.slab.extent for sign in (-1.0, 1.0)]
+    extent = np.array(edges) - np.repeat(solution.slab.spacing, 2) / (2.0 * place_size)
+    fastest = float(np.abs(solution.slip_rate[shown]).max()) or 1.0
+    colours = (LogNorm(fastest * 10.0**-DECADES, fastest), Normalize(solution.slip[shown].min(), solution.slip[shown].max()))
+    drawn = []
+    for axis, field, norm, label in zip(
+        axes, (np.abs(solution.slip_rate), solution.slip), colours, ("slip rate (m/s)", "slip (m)"), strict=True
+    ):
+        image = axis.imshow(np.zeros(solution.slab.shape).T, origin="lower", extent=tuple(extent), norm=norm, cmap="magma")
+        figure.colorbar(image, ax=axis, label=label, location="bottom", extend="min" if axis is axes[0] else "neither")
+        axis.set(xlabel=axis_text("along the contact", "y", place_name), facecolor=RESTS)
+        drawn.append((image, field))
+    axes[0].set_ylabel(axis_text("along the contact", "z", place_name))
+
+    def show(frame: int) -> None:
+        for image, field in drawn:
+            image.set_data(np.ma.masked_less_equal(field[frame].T, 0.0) if image is drawn[0][0] else field[frame].T)
+
+    return show, [image for image, _ in drawn]
