@@ -167,8 +167,8 @@ def test_a_name_or_a_file_is_run_with_its_duration_and_frames(tmp_path: Path, mo
         "stickslip.run.simulate.simulate_planar", lambda slab, duration, frames, **_: (slab.shape, duration, frames)
     )
     assert ss.simulate(file) == ((32,), 2.0, 20)
-    assert ss.simulate(str(file), "1 s", frames=5) == ((32,), 1.0, 5)
-    assert ss.simulate("planar-plane") == ((72, 54), 7.0, None)
+    assert ss.simulate(str(file), "1 s", frames=5) == ((32,), "1 s", 5)
+    assert ss.simulate("planar-plane") == ((48, 40), 4.5, None)
     with pytest.raises(ss.InputError, match="a PlanarSlab has no rtol"):
         ss.simulate("planar-patch", rtol=1e-8)
 

@@ -31,6 +31,8 @@ class NodeValues:
     """Normal stress, Pa."""
     load: Floats
     """Load at t = 0, Pa."""
+    excess: Floats
+    """Load minus static strength at t = 0, Pa."""
     slip: Floats
     """Slip at t = 0, m."""
     law_slip: Floats
@@ -122,6 +124,7 @@ def node_values(problem: Problem, along: Mapping[str, Floats], shape: tuple[int,
         problems=tuple(problems),
         normal=spread([one.normal for one in problems]),
         load=spread([one.strength + one.excess for one in problems]),
+        excess=spread([one.excess for one in problems]),
         slip=spread([one.initial_slip for one in problems]),
         law_slip=spread([one.law_slip for one in problems]),
         states=spread(np.reshape([one.states for one in problems], (len(problems), -1)).T),

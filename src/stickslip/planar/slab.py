@@ -30,6 +30,10 @@ MOST_NODES = 2**22
 """Largest number of nodes: more do not fit into the memory that a run may take."""
 WIDEST_STEP = 2.5
 """Largest phase w dt, of the shortest wave in one time step, for which the steps were seen to be stable."""
+ENOUGH_NODES = 5.0
+"""Nodes in a process zone from which a front is called resolved: a rule of thumb, which twice the nodes put to the test."""
+PROCESS_ZONE = 9.0 * math.pi / 16.0
+"""Length of the process zone of a slow front, times the largest -S mu'/G: twice that between two half-spaces."""
 STEEPEST = 0.5
 """Largest change of strength with slip in one time step, S |mu'| dt, as a share of the impedance."""
 
@@ -183,15 +187,33 @@ class PlanarSlab(CheckedArguments):
         """The positions of the nodes along z (m), 0 in the middle; an empty array for a line."""
         return _positions(self.shape[1], self.spacing[1]) if self.is_plane else np.empty(0)
 
+    @property
+    def reach(self) -> float:
+        """Slip (m) that is hardly exceeded: twice the slip that would take all load off a slab at rest."""
+        return 2.0 * float(np.abs(self.values.load).max()) * self.body.thickness / self.body.shear_modulus
+
+    def nodes_per_process_zone(self, reach: float) -> float:
+        """Return the nodes within the process zone of a slow front, where friction falls from its peak; NaN if it does not fall.
+
+        It is 9 pi/16 G divided by the largest fall of strength with slip (Pa/m) and by the distance of nodes (Day et al. 2005, for
+        linear slip weakening; twice their length, because G acts on one side here). Fronts that run fast have shorter ones.
+
+        Parameters
+        ----------
+        reach
+            Slip (m) from the start up to which strength is looked at.
+        """
+        fall = self.values.slopes(reach)[0]
+        return PROCESS_ZONE * self.body.shear_modulus / fall / max(self.spacing) if fall > 0.0 else math.nan
+
     @cached_property
     def steps_per_round_trip(self) -> int:
         """The number of time steps in a two-way travel time R.
 
         It is the smallest that keeps to `courant`, and in which radiation outweighs the change of strength with slip: S |mu'| dt
-        is at most Z/2. How far friction reaches is taken from the slip that would take all load off a slab at rest, twice.
+        is at most Z/2, up to a slip of `reach`.
         """
-        reach = 2.0 * float(np.abs(self.values.load).max()) * self.body.thickness / self.body.shear_modulus
-        steep = max(self.values.slopes(reach)) if reach > 0.0 else 0.0
+        steep = max(self.values.slopes(self.reach)) if self.reach > 0.0 else 0.0
         waves = 2.0 * self.body.thickness / (self.courant * min(self.spacing))
         return math.ceil(max(waves, self.body.two_way_time * steep / (STEEPEST * self.body.impedance)) - 1e-9)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -12,7 +11,7 @@ from numpy.typing import NDArray
 
 from stickslip.foundation.formatting import brief
 from stickslip.observables.planar import pulses, rupture_speed, rupture_times
-from stickslip.planar.slab import PlanarSlab
+from stickslip.planar.slab import ENOUGH_NODES, PlanarSlab
 from stickslip.solution.accessors import PlanarPlots
 from stickslip.trajectory.slip_events import default_event_rate
 
@@ -20,10 +19,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
-ENOUGH_NODES = 5.0
-"""Nodes in a process zone from which a front is called resolved: a rule of thumb, which twice the nodes put to the test."""
-PROCESS_ZONE = 9.0 * math.pi / 16.0
-"""Length of the process zone of a slow front, times the largest -S mu'/G: twice that between two half-spaces."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,13 +120,8 @@ class PlanarSolution:
 
     @property
     def nodes_per_process_zone(self) -> float:
-        """The nodes within the process zone of a slow front, where friction falls from its peak; NaN if it does not fall with slip.
-
-        It is 9 pi/16 G divided by the largest fall of strength with slip (Pa/m) and by the distance of nodes (Day et al. 2005, for
-        linear slip weakening; twice their length, because G acts on one side here). Fronts that run fast have shorter ones.
-        """
-        fall, _ = self.slab.values.slopes(float(np.ptp(self.slip, axis=0).max()) or 1e-6)
-        return PROCESS_ZONE * self.slab.body.shear_modulus / fall / max(self.slab.spacing) if fall > 0.0 else math.nan
+        """The nodes within the process zone of a slow front: `PlanarSlab.nodes_per_process_zone` for the slip of the run."""
+        return self.slab.nodes_per_process_zone(float(np.ptp(self.slip, axis=0).max()) or 1e-6)
 
     def middle(self, values: NDArray[np.generic]) -> float:
         """Return the value of a field at the node in the middle."""
