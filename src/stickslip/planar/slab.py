@@ -239,6 +239,9 @@ class PlanarSlab(CheckedArguments):
         counts = [
             2 * next_fast_len(math.ceil((count + reach / step) / 2)) for count, step in zip(self.shape, self.spacing, strict=True)
         ]
+        if math.prod(counts) > MOST_NODES:
+            needed = " x ".join(map(str, counts))
+            raise InputError(f"PlanarSlab: {duration:g} s without replicas need {needed} nodes, allowed are {MOST_NODES}")
         more = [large - count for large, count in zip(counts, self.shape, strict=True)]
         room = [(extra // 2, extra - extra // 2) for extra in more]
         along = {name: np.pad(self.at_nodes(name, given), room, mode="edge") for name, given in self.along.items()}

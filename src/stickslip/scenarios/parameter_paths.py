@@ -26,6 +26,7 @@ from stickslip.scenarios.schema import entries_in
 
 EVENTS = Quantity("1", "stop after this number of slip events", at_least=1)
 SELECTION = "selection rule"
+YES_OR_NO = Choice("true or false", ("true", "false"))
 WHOLE = ("run.events", "contact.nodes", "contact.width_nodes", "contact.frames")
 """Parameters that count."""
 EXCLUDE_EACH_OTHER = {"initial.load": "excess", "initial.excess": "load"}
@@ -53,8 +54,7 @@ class ParameterPath:
         Raises InputError, whose message begins with `where`.
         """
         value = value.strip() if isinstance(value, str) else value
-        if isinstance(self.declared, Choice):
-            return self.declared.check(where, self.name, value)
+        value = str(value).lower() if isinstance(value, bool) and self.declared is YES_OR_NO else value
         return self.declared.check(where, self.name, value)
 
     def put(self, document: dict[str, Any], value: float | str) -> None:
@@ -62,6 +62,8 @@ class ParameterPath:
         owner, key = _place_of(self.name, document)
         if self.written:
             owner[key] = f"{value!r} {self.written}"
+        elif self.declared is YES_OR_NO:
+            owner[key] = value == "true"
         else:
             whole = self.name in WHOLE and isinstance(value, float) and value.is_integer()
             owner[key] = int(value) if whole else value
@@ -87,12 +89,14 @@ def find_parameter(scenario: Scenario, name: str, where: str) -> ParameterPath:
 
 def with_values(scenario: Scenario, values: Mapping[str, Any], where: str) -> Scenario:
     """Return a scenario in which some parameters have other values, as `Scenario.with_values` does; `where` begins messages."""
-    document = tomllib.loads(scenario.to_toml())
+    document, texts = tomllib.loads(scenario.to_toml()), []
     for name, value in values.items():
         parameter = find_parameter(scenario, name, where)
         document["initial"].pop(EXCLUDE_EACH_OTHER.get(parameter.name), None)
         parameter.put(document, parameter.read(value, where))
-    changed = ", ".join(f"{name} = {value}" for name, value in values.items())
+        counts = parameter.name in WHOLE and isinstance(value, float) and value.is_integer()
+        texts.append(f"{name} = {int(value) if counts else value}")
+    changed = ", ".join(texts)
     title = f"{scenario.heading}: {changed}" if scenario.heading else changed
     return replace(scenario_of(document, Source(where)), name=scenario.name, title=title, description="")
 
@@ -119,6 +123,7 @@ def _paths_in_contact(contact: Contact, problem: Problem) -> Iterator[ParameterP
     """Yield the sizes of a contact, and the numbers of its patches."""
     for name, declared in quantities_of(Contact).items():
         yield ParameterPath(f"contact.{name}", declared)
+    yield ParameterPath("contact.replicas", YES_OR_NO)
     units = {name: declared for name, (declared, _) in varying(problem).items()}
     for i, patch in enumerate(contact.patches):
         place, values = f"contact.patches[{i}]", [name for name, _ in patch.values if name != LOCKED]
