@@ -10,12 +10,15 @@ import sys
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
 from scipy.special import j1
 from tests.planar.patches import LAW, SLAB, patch
 
 import stickslip as ss
+from stickslip.planar.echo import echo_weights
+from stickslip.planar.friction import Contact, Nodes
 from stickslip.planar.memory import exponentials
-from stickslip.planar.solver import PlanarSolver
+from stickslip.planar.solver import PlanarSolver, in_double_precision
 
 DENSITY, SPEED, THICKNESS, STRESS = 2800.0, 3500.0, 1e4, 1e8
 MODULUS = DENSITY * SPEED**2
@@ -45,6 +48,39 @@ def test_exponentials_sum_to_the_bessel_kernel(longest: float) -> None:
     found = np.sum(weights[:, None] * np.exp(poles[:, None] * x), axis=0).real
     assert np.abs(found - j1(x) / x).max() < 2e-9
     assert poles.real.max() <= 0.0
+
+
+@pytest.mark.parametrize("phase", [0.05, 0.39, 0.41, 1.89, 1.91, 6.0])
+def test_weights_of_echoes_are_integrals_of_the_kernel(phase: float) -> None:
+    """W linear in time in each step against w R J1(w s)/s, to 2e-11; `phase` is w dt."""
+    steps, trip = 40, 2.0
+    found = echo_weights(np.array([phase * steps / trip]), steps, trip, 80)
+    w, dt = phase * steps / trip, trip / steps
+    for i in (0, 1, 7, 79):
+        ends = [math.sqrt((trip + (i + j) * dt) ** 2 - trip**2) for j in (0, 1)]
+        for weights, begins in ((found.early, 0.0), (found.late, 1.0)):
+
+            def integrand(s: float, i: int = i, begins: float = begins) -> float:
+                passed = (math.hypot(trip, s) - trip) / dt - i
+                return float(w * trip * j1(w * s) / math.hypot(trip, s) * abs(begins - passed))
+
+            exact, _ = quad(integrand, *ends, epsabs=1e-13, epsrel=1e-13, limit=400)
+            assert weights[i, 0] == pytest.approx(exact, abs=2e-11, rel=0.0)
+
+
+def test_slip_rates_that_are_found_stay_while_others_are_sought(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Five steps of Newton's method from 1 % beside the root, or from the root itself, meet the load to 1e-12."""
+    monkeypatch.setattr("stickslip.planar.friction.ITERATIONS", 5)
+    law, impedance = ss.friction.RateAndState(reference=0.6, a=0.01, b=0.015, distance=0.1), SLAB.impedance
+    problem = ss.Problem(SLAB, law, initial_load=60e6, initial_state=1.0)
+    slab = ss.PlanarSlab(problem, nodes=64, length=2e4)
+    nodes, contact = Nodes.of(slab.values, slab.locked), Contact(law, impedance)
+    rates, slip, states = np.geomspace(1e-9, 10.0, 64), np.zeros(64), slab.values.states
+    with in_double_precision():
+        load = impedance * rates + 1e8 * contact.coefficient(nodes, slip, rates, states)
+        found = contact.rate(nodes, load, slip, states, rates * np.where(np.arange(64) % 2, 1.01, 1.0))
+        missed = impedance * found + 1e8 * contact.coefficient(nodes, slip, found, states) - load
+    assert np.abs(missed / load).max() < 1e-12
 
 
 def test_a_uniform_contact_is_the_slab_in_1d_at_order_two() -> None:

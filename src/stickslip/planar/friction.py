@@ -144,8 +144,9 @@ class Contact:
             low, high = jnp.where(value <= 0.0, rate, low), jnp.where(value > 0.0, rate, high)
             newton = rate - value / slope
             middle = jnp.where(low > 0.0, jnp.sqrt(low) * jnp.sqrt(high), 1e-3 * high)
-            following = jnp.where((low < newton) & (newton < high), newton, middle)
-            # the next step of Newton's method would change the rate by less than the square of this
+            # where a step is this small, the next one would change the rate by less than the square of it
+            small = jnp.abs(newton - rate) <= 1e-9 * rate
+            following = jnp.where(small | ((low < newton) & (newton < high)), newton, middle)
             done = jnp.abs(following - rate) <= 1e-9 * rate
             return low, high, following, done, count + 1
 
