@@ -13,8 +13,7 @@ from scipy.optimize import brentq
 import stickslip as ss
 from stickslip.batch import run_members
 from stickslip.creep.stepper import CreepLeaps
-from stickslip.engine_input.creep_limits import PATIENCE, creep_tolerance
-from stickslip.engine_input.lumping_limits import AUTOMATIC_SHARE, MOST_PIECES
+from stickslip.engine_input.limits import AUTOMATIC_SHARE, MOST_PIECES, PATIENCE, creep_tolerance
 from stickslip.trajectory.status import STATUSES
 from tests.engine.creep_truth import GROWN, ROUND, printed
 from tests.long_runs.problems import differences

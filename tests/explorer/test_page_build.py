@@ -8,10 +8,9 @@ import pytest
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.solve import solve
 from stickslip.explorer.page.explorer import Explorer
-from stickslip.explorer.page.notebook_page import build_for_notebook
-from stickslip.explorer.page.page import Panels, build
+from stickslip.explorer.page.page import Panels, build, build_for_notebook
 from stickslip.explorer.page.panels import view_of
-from stickslip.explorer.page.view_bytes import view_bytes
+from stickslip.explorer.page.view import view_bytes
 from stickslip.explorer.page.words import Words
 from tests.explorer.desk_at_once import DeskAtOnce
 

@@ -14,8 +14,7 @@ from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.solve import solve
 from stickslip.explorer.page.panels import view_of
 from stickslip.explorer.page.panels.motion import DRAWN
-from stickslip.explorer.page.view import Key, View, heading, limits, round_step
-from stickslip.explorer.page.view_bytes import view_bytes
+from stickslip.explorer.page.view import Key, View, heading, limits, round_step, view_bytes
 
 NAMES = ("fig5-slab-reconstructed", "fig6-slab", "fig6-block-reconstructed", "rate-and-state-slab")
 

@@ -21,12 +21,9 @@ from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.solve import solve
 from stickslip.explorer.model.strip import StripRange
 from stickslip.explorer.page.explorer import Explorer
-from stickslip.explorer.page.exports import FORMATS, export, file_name
-from stickslip.explorer.page.link_in_url import begin, query_of
-from stickslip.explorer.page.pin import PinnedRun
-from stickslip.explorer.page.tools import Tools
-from stickslip.explorer.page.uploads import content_of, opened, plain_name
-from stickslip.explorer.page.words import words_of
+from stickslip.explorer.page.files import FORMATS, content_of, export, file_name, opened, plain_name
+from stickslip.explorer.page.tools import Tools, begin, query_of
+from stickslip.explorer.page.words import PinnedRun, words_of
 from stickslip.foundation.errors import InputError
 
 SETTING = Setting.bundled("fig6-slab").with_value("friction.alpha", 0.7)

@@ -62,7 +62,7 @@ def test_scripts_and_style_sheets_come_from_the_packages(monkeypatch: pytest.Mon
 def test_of_many_explorers_the_oldest_ends_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     """A cell that is run again and again must not leave a thread each time."""
     monkeypatch.setattr(in_notebook, "MOST_EXPLORERS", 1)
-    monkeypatch.setattr("stickslip.explorer.page.notebook_page.build_for_notebook", lambda explorer: SimpleNamespace())
+    monkeypatch.setattr("stickslip.explorer.page.page.build_for_notebook", lambda explorer: SimpleNamespace())
 
     monkeypatch.setattr(in_notebook, "_AT_WORK", deque())
 

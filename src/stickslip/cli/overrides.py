@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from stickslip.engine_input.creep_limits import check_creep_rtol
-from stickslip.engine_input.lumping_limits import check_shortest_event
+from stickslip.engine_input.limits import check_creep_rtol, check_shortest_event
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem

@@ -8,15 +8,13 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stickslip.contact.critical import check_no_contact_mass, margin
 from stickslip.contact.roots import sign_changes
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem.parameters import Parameter
 from stickslip.problem.problem import Problem
-
-Floats = NDArray[np.float64]
 
 MOST_POINTS = 1000
 """Largest number of points on an axis; the cost of a map grows with the product of both."""
@@ -26,23 +24,9 @@ _AT_A_TIME = 100
 
 @dataclass(frozen=True)
 class Axis:
-    """A parameter of a problem and the values that it takes along one axis of a map.
+    """A parameter of a problem (a key of `problem.parameters`), and the 2 to 1000 values (SI) that it takes along an axis of a map.
 
-    Parameters
-    ----------
-    parameter : str
-        Name of the parameter (a key of `problem.parameters`).
-    low, high : float
-        First and last value, in SI units.
-    points : int
-        Number of values, 2 to 1000.
-    log : bool
-        If True, the values are evenly spaced in their logarithm.
-
-    Raises
-    ------
-    InputError
-        If low is not below high, if low is not above 0 on a logarithmic axis, or if there are not 2 to 1000 points.
+    With `log` the values are evenly spaced in their logarithm. Raises InputError for ends or numbers that make no axis.
     """
 
     parameter: str
@@ -68,19 +52,11 @@ class Axis:
 
 @dataclass(frozen=True)
 class RegimeMap:
-    """The result of `regime_map`.
+    """The result of `regime_map` over two axes.
 
-    Attributes
-    ----------
-    x, y : Axis
-        Axes of the map.
-    margin : ndarray, shape (y.points, x.points)
-        Smallest g'/Z over all slip rates at each point: negative is irregular, NaN where the problem is refused.
-    boundary : ndarray, shape (segments, 2, 2)
-        Straight segments of the critical curve; the axes are segment, end of the segment, and coordinate (x, y). The ends are
-        critical values to rounding.
-    present : tuple of float
-        The point (x, y) of the problem itself.
+    `margin`, of shape (y.points, x.points), is the smallest g'/Z over all slip rates: negative is irregular, NaN where the problem
+    is refused. `boundary` holds straight segments of the critical curve, whose ends are critical values to rounding, by segment,
+    end of the segment, and coordinate (x, y). `present` is the point (x, y) of the problem itself.
     """
 
     x: Axis
@@ -112,25 +88,8 @@ def put_both(names: tuple[Parameter, Parameter], values: tuple[float, float]) ->
 def regime_map(problem: Problem, x: Axis, y: Axis, progress: Callable[[int, int], None] | None = None) -> RegimeMap:
     """Compute the regime of a problem over two of its parameters, with everything else fixed.
 
-    Parameters
-    ----------
-    problem : Problem
-        Problem whose body is a slab without contact mass.
-    x, y : Axis
-        The two parameters and their values.
-    progress : callable, optional
-        Called with the number of finished points and the number of all points.
-
-    Returns
-    -------
-    RegimeMap
-        Smallest g'/Z at each point, and the critical curve.
-
-    Raises
-    ------
-    InputError
-        If a name is no parameter, if both axes have the same parameter, or if the body is a block or has a contact mass, so that
-        the motion is unique.
+    `progress` is called with the number of finished points and the number of all points. Raises InputError if a name is no
+    parameter, if both axes have the same one, or if the body is a block or has a contact mass, so that the motion is unique.
     """
     names = two_parameters(problem, x, y, "regime map")
     check_no_contact_mass(problem, "regime map")

@@ -68,18 +68,10 @@ class FoundEvents:
 
 @dataclass(frozen=True)
 class Column:
-    """A column of the table of slip events.
+    """A column of the table of slip events: its SI unit as files spell it, what it holds, and what computes it for each event.
 
-    Parameters
-    ----------
-    unit : str
-        Its SI unit as files spell it; "load" stands for Pa (slab) or N (block), "energy" for J m-2 or J.
-    meaning : str
-        What it holds.
-    of : callable
-        Computes its values, one for each event.
-    place : int
-        Its place in summaries on a terminal, counted from 1; 0 if they do not show it.
+    The unit "load" stands for Pa (slab) or N (block), "energy" for J m-2 or J. `place` is its place in summaries on a terminal,
+    counted from 1; 0 if they do not show it.
     """
 
     unit: str

@@ -18,9 +18,8 @@ from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import EchoNode, Floats, Integers, Setup, Stop, Store
 from stickslip.engine.state.workspace import counts_in, lend, lend_history, scratch_in, state_in
 from stickslip.engine.waves.echo_queue import rebuild_queue
-from stickslip.engine_input.automatic import lumping_note
 from stickslip.engine_input.branch_table import RuleFollower, renewed
-from stickslip.engine_input.creep_limits import creep_tolerance
+from stickslip.engine_input.limits import creep_tolerance, lumping_note
 from stickslip.engine_input.prepare import prepare
 from stickslip.foundation.errors import InputError
 from stickslip.observables.event_stream import EventStream

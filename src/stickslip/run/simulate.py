@@ -124,7 +124,7 @@ def simulate(
     sets another error and allows leaps from the start.
 
     A slab under rate weakening may end in ever shorter events. As soon as a round trip has more than 4096 pieces, the run lumps
-    events that are shorter than 1/1024 of the two-way travel time (see `stickslip.engine_input.lumping_limits`). The run up to
+    events that are shorter than 1/1024 of the two-way travel time (see `stickslip.engine_input.limits`). The run up to
     there does not change; after it only the statistics of longer events are meaningful, and `solution.lumping_note` says so. A
     positive shortest_event sets another length and lumps from the start.
 

@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 import tomli_w
 
-from stickslip.engine_input.creep_limits import check_creep_rtol
-from stickslip.engine_input.lumping_limits import check_shortest_event
+from stickslip.engine_input.limits import check_creep_rtol, check_shortest_event
 from stickslip.foundation.arguments import as_path, shown
 from stickslip.foundation.brief_repr import shown_fields
 from stickslip.foundation.conversion import Number
@@ -212,28 +211,9 @@ def load_scenario(path_or_name: str | Path) -> Scenario:
 
 
 def read_scenario(text: str, file: str, name: str | None = None, folder: Path | None = None) -> Scenario:
-    """Read a scenario from TOML text.
+    """Read a scenario from TOML text; `file` is the name of the text in messages. Raises InputError as `load_scenario`.
 
-    Parameters
-    ----------
-    text : str
-        The TOML text.
-    file : str
-        Name of the text in messages.
-    name : str, optional
-        Name of the scenario; `file` by default.
-    folder : Path, optional
-        Folder of its data files. Without one the scenario cannot name data files.
-
-    Returns
-    -------
-    Scenario
-        The scenario.
-
-    Raises
-    ------
-    InputError
-        As from `load_scenario`.
+    `name` is that of the scenario, `file` by default. Without a `folder` of its data files it cannot name any.
     """
     if len(text) > LARGEST_TEXT:
         raise InputError(f"{file}: longer than {LARGEST_TEXT} characters: not a scenario")

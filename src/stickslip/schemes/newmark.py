@@ -11,7 +11,8 @@ import math
 import numpy as np
 from scipy.sparse.linalg import spsolve
 
-from stickslip.schemes.contract import Floats, Grid, strain_energy
+from stickslip.foundation.arrays import Floats
+from stickslip.schemes.contract import Grid, strain_energy
 from stickslip.schemes.finite_elements import Elements
 
 

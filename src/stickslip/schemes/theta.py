@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from stickslip.schemes.contract import Floats, Grid, strain_energy
+from stickslip.foundation.arrays import Floats
+from stickslip.schemes.contract import Grid, strain_energy
 from stickslip.schemes.finite_elements import Elements
 
 

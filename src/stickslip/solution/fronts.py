@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from stickslip.foundation.arrays import Floats
 from stickslip.observables.field import slab_of
-from stickslip.solution.evaluation import Floats, Readings
+from stickslip.solution.evaluation import Readings
 from stickslip.solution.solution import Solution
 from stickslip.solution.window import Window
 from stickslip.trajectory.tables import shocks_table

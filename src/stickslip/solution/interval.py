@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.solution.evaluation import Floats, Readings
+from stickslip.solution.evaluation import Readings
 from stickslip.solution.solution import Solution
 
 LONG = 50

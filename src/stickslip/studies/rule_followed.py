@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stickslip.bodies import as_slab
+from stickslip.foundation.arrays import Floats
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SELECTION_RULES
 from stickslip.run.simulate import simulate
@@ -21,7 +22,6 @@ from stickslip.schemes.series import Series
 from stickslip.solution.solution import Solution
 from stickslip.studies.study import TextProgress, uninterrupted
 from stickslip.studies.verdict import groups
-from stickslip.trajectory.history import Floats
 
 STRICT = 0.125
 """A series follows a rule if its distance to that rule's path is below this share of the distance to the next rule's path."""

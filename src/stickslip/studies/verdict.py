@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stickslip.trajectory.history import Floats
+from stickslip.foundation.arrays import Floats
 
 CLEARLY = 0.25
 """A run is clearly nearer to a rule than to any other if its error is below this share of the distance to the nearest other."""

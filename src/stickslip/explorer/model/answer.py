@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.scenarios.scenario import Scenario
 from stickslip.solution.solution import Solution
 
 if TYPE_CHECKING:
     from stickslip.explorer.model.measured import Measured
 
-Floats = NDArray[np.float64]
 CurveName = Literal["law", "steady state", "law at the state of the start"]
 """What the curve of a friction law is, for its legend."""
 MarkKind = Literal["start", "pulse", "arrest", "jump", "fold", "echo"]

@@ -10,8 +10,7 @@ from typing import Any
 
 import tomli_w
 
-from stickslip.explorer.model.leaves import leaves_of
-from stickslip.explorer.model.setting import Setting
+from stickslip.explorer.model.setting import Setting, leaves_of
 from stickslip.foundation.formatting import brief, clean
 from stickslip.foundation.quantities import Named, Quantity, fields_of, quantities_of
 from stickslip.friction import FrictionLaw

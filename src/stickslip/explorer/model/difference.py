@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from stickslip.explorer.model.answer import Answer, KeyNumber
-from stickslip.explorer.model.leaves import leaves_of
-from stickslip.explorer.model.setting import Setting
+from stickslip.explorer.model.setting import Setting, leaves_of
 from stickslip.explorer.model.words import short
 from stickslip.foundation.arguments import shown
 
@@ -82,13 +81,9 @@ def difference(before: tuple[Setting, Answer], after: tuple[Setting, Answer]) ->
 
 def _changes(old: Setting, new: Setting) -> tuple[Change, ...]:
     """Return the changes; "1 s/m" and 1.0 are the same."""
-    was, now = (_in_si(one) for one in (old, new))
+    was, now = (leaves_of(tomllib.loads(one.scenario().to_toml())) for one in (old, new))
     paths = [path for path in dict.fromkeys((*was, *now)) if path not in TEXTS and was.get(path) != now.get(path)]
     return tuple(Change(path, _shown(old, path, was), _shown(new, path, now)) for path in paths)
-
-
-def _in_si(setting: Setting) -> dict[str, Any]:
-    return leaves_of(tomllib.loads(setting.scenario().to_toml()))
 
 
 def _shown(setting: Setting, path: str, in_si: dict[str, Any]) -> str:

@@ -15,8 +15,7 @@ import zlib
 from collections.abc import Mapping
 from typing import Any
 
-from stickslip.explorer.model.leaves import document_of, leaves_of
-from stickslip.explorer.model.setting import Setting
+from stickslip.explorer.model.setting import Setting, document_of, leaves_of
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.scenarios import library
@@ -84,22 +83,10 @@ def _read(text: str) -> Any:
 
 
 def setting_of(parameters: Mapping[str, str]) -> Setting:
-    """Return the setting to which the parameters of a link lead.
+    """Return the setting, which makes a scenario, to which the decoded parameters of a link lead.
 
-    Parameters
-    ----------
-    parameters : mapping of str to str
-        Decoded parameters. Those that are no entries of a scenario, such as the place of a cursor, are left to others.
-
-    Returns
-    -------
-    Setting
-        The setting; it makes a scenario.
-
-    Raises
-    ------
-    InputError
-        If the link is too long, of another version, broken, or does not lead to a scenario. The message is one line.
+    Parameters that are no entries of a scenario, such as the place of a cursor, are left to others. Raises InputError, in one line,
+    if the link is too long, of another version, broken, or does not lead to a scenario.
     """
     ours = {key: value for key, value in parameters.items() if key in ("scenario", "document", "v") or key.split(".")[0] in TABLES}
     if _length(ours) > LONGEST:

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stickslip.explorer.model.answer import KeyNumber
 from stickslip.explorer.model.words import short
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.problem.problem import Problem
 from stickslip.solution.solution import Solution
@@ -17,8 +17,6 @@ from stickslip.studies.inference.model import OF_NO_ZERO, measured
 from stickslip.studies.inference.record import SHEAR, UNITS, Record
 from stickslip.studies.inference.resample import resampled
 from stickslip.studies.inference.setup import SENSORS
-
-Floats = NDArray[np.float64]
 
 MOST_SAMPLES = 20_000
 """Number of samples above which means of them are drawn and compared."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from copy import deepcopy
 from dataclasses import dataclass, field, replace
@@ -16,19 +16,45 @@ from stickslip.scenarios.entries import Source
 from stickslip.scenarios.scenario import Scenario, scenario_of
 from stickslip.scenarios.source import all_slips_alike
 
+DEEPEST = 5
+"""Largest number of parts in a path."""
+
+
+def leaves_of(document: Mapping[str, Any]) -> dict[str, Any]:
+    """Return all entries that are no tables by their paths; an empty table is one of them."""
+    return dict(_leaves(document, ""))
+
+
+def _leaves(table: Mapping[str, Any], before: str) -> Iterator[tuple[str, Any]]:
+    for key, value in table.items():
+        if isinstance(value, Mapping) and value:
+            yield from _leaves(value, f"{before}{key}.")
+        else:
+            yield f"{before}{key}", value
+
+
+def document_of(leaves: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the document with these entries. Raises InputError if a path is too deep, or leads through an entry."""
+    document: dict[str, Any] = {}
+    for path, value in leaves.items():
+        *tables, key = path.split(".")
+        place = document
+        for table in tables:
+            place = place.setdefault(table, {})
+            if not isinstance(place, dict):
+                break
+        if len(tables) >= DEEPEST or not isinstance(place, dict) or isinstance(place.get(key), dict):
+            raise InputError(f"{ascii(path)[:60]} is not the place of an entry: it is too deep, or leads through another one")
+        place[key] = value
+    return document
+
 
 @dataclass(frozen=True)
 class Setting:
-    """A scenario as the controls hold it: a TOML document whose entries can be replaced one by one.
+    """A scenario as the controls hold it: a TOML document, never changed in place, whose entries can be replaced one by one.
 
-    Attributes
-    ----------
-    name : str
-        The bundled scenario it began with, or the name of a file or an upload.
-    document : dict
-        The tables of the scenario, as `tomllib` reads them; never changed in place.
-    notes : tuple of str
-        Doubts about the file from which the friction law was read, one line each; they go with that law.
+    `name` is the bundled scenario it began with, or the name of a file or an upload. `notes` are doubts about the file from which
+    the friction law was read, one line each; they go with that law.
     """
 
     name: str

@@ -30,7 +30,7 @@ def shown_in_notebook(scenario: Scenario, behind: Backdrop | None = None) -> Any
 
     Raises InputError where there is no notebook.
     """
-    from stickslip.explorer.page.notebook_page import build_for_notebook
+    from stickslip.explorer.page.page import build_for_notebook
 
     try:
         deliver = DeliveryToCell(asyncio.get_running_loop().call_soon_threadsafe)
@@ -51,12 +51,8 @@ def shown_in_notebook(scenario: Scenario, behind: Backdrop | None = None) -> Any
 class DeliveryToCell:
     """What a desk delivers is called within the cell that asks for the first answer, and after that between two cells.
 
-    What is told to a browser while it still loads its scripts is lost. Therefore a page is shown with its first answer in it.
-
-    Parameters
-    ----------
-    between_cells : callable
-        Function that has a function without arguments called by the kernel when no cell runs; any thread may call it.
+    What is told to a browser while it still loads its scripts is lost. Therefore a page is shown with its first answer in it. Any
+    thread may call `between_cells`, which has a function called by the kernel when no cell runs.
     """
 
     def __init__(self, between_cells: Callable[[Callable[[], None]], object]) -> None:

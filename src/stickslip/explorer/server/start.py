@@ -38,25 +38,9 @@ LEADS_ON = """<!DOCTYPE html>
 def start(
     setting: Setting, endpoint: Endpoint, *, browser: bool, say: Callable[[str], object], behind: Backdrop | None = None
 ) -> None:
-    """Serve the explorer until Ctrl-C.
+    """Serve the explorer until Ctrl-C, with a setting that is shown first; `say` shows a line to the user.
 
-    Parameters
-    ----------
-    setting : Setting
-        What a new page shows first.
-    endpoint : Endpoint
-        Where the server listens.
-    browser : bool
-        True to open the page in the user's browser.
-    say : callable
-        Function that shows a line to the user.
-    behind : Backdrop, optional
-        A record that is drawn behind all runs.
-
-    Raises
-    ------
-    InputError
-        If the port is taken.
+    Raises InputError if the port is taken.
     """
     from stickslip.explorer.page.page import build
 

@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.observables.quadrature import between
-from stickslip.trajectory.history import Floats, History, Positions
+from stickslip.trajectory.history import History, Positions
 from stickslip.trajectory.slip_events import SlipEvents, walk
 
 if TYPE_CHECKING:

@@ -13,8 +13,9 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from stickslip.foundation.arguments import check_whole, shown
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.sweeps.design.adaptive_grid import Floats, Integers, Lattice, Refined, refine_cells
+from stickslip.sweeps.design.adaptive_grid import Integers, Lattice, Refined, refine_cells
 from stickslip.sweeps.design.axis import Axis
 from stickslip.sweeps.execution.chunk import NOT_RUN
 
@@ -94,17 +95,9 @@ class RefinementSpec:
 
 @dataclass(frozen=True, eq=False)
 class RefinedMap:
-    """The cells of a refined map.
+    """The cells of a refined map: their lower and upper ends by parameter (SI), and the answer around each.
 
-    Attributes
-    ----------
-    low, high : dict of str to array, shape (cells,)
-        Lower and upper ends of the cells, by parameter (SI).
-    answer : array, shape (cells,)
-        The answer around each cell: NaN where it changes, and where there is none. With a factor, the mean of the smallest and
-        the largest answer.
-    changes : array of bool, shape (cells,)
-        True where the answer changes around the cell.
+    The answer is NaN where it `changes`, and where there is none; with a factor, it is the mean of the smallest and the largest.
     """
 
     low: dict[str, Floats]
@@ -121,22 +114,10 @@ class RefinedMap:
 
 
 def cells_of(dataset: xr.Dataset) -> RefinedMap:
-    """Reconstruct the cells of a refined map.
+    """Return the cells of a refined map that were not halved, from the dataset that `stickslip.refine` returned or stored.
 
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        What `stickslip.refine` returned or stored. If the search was stopped, only its complete rounds are used.
-
-    Returns
-    -------
-    RefinedMap
-        The cells that were not halved.
-
-    Raises
-    ------
-    InputError
-        For any other dataset, and for a search that was stopped before its coarse grid was complete.
+    If the search was stopped, only its complete rounds are used. Raises InputError for any other dataset, and for a search that was
+    stopped before its coarse grid was complete.
     """
     spec = RefinementSpec.read(dataset)
     missing = np.flatnonzero(dataset["status"].values == NOT_RUN)
