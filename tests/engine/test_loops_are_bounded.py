@@ -25,6 +25,8 @@ OTHER_LOOPS = {
     ("taylor_step.py", "expand_series"): "guess is at most 1, and falls by 1e-3 each time until it is below 1e-300",
     ("runs.py", "run_group"): "looks at the flag that stops the batch after each step; every member's run ends",
     ("runs.py", "advance_member"): "looks at the flag that stops the batch after each call of the engine, which is bounded",
+    ("lanes.py", "step_under"): "each pass clears a bit of a whole number",
+    ("lanes.py", "choose_length"): "each pass clears a bit of a whole number",
     ("certificate.py", "least_share"): "each pass goes to the next disc of a list, in one direction",
     ("turning_points.py", "piece_next_to_rest"): "each pass goes to the next piece of a history, in one direction",
 }

@@ -24,12 +24,13 @@ from stickslip.batch.kernels.lane_block import (
 )
 from stickslip.engine.codegen.compiler import ahead, call_jet, call_radii, call_values, inlined, integers, kernel
 from stickslip.engine.codegen.lane_records import floats_of, rows_of
-from stickslip.engine.codegen.simd import WIDTH, chosen, store_across
+from stickslip.engine.codegen.simd import WIDTH, chosen, first_of, store_across
 from stickslip.engine.contact.pieces import note_slip
 from stickslip.engine.contact.stiffness import CHECKED, judge_stiffness
 from stickslip.engine.contact_step.certificate import (
     ALLOWED,
     ALLOWED_SLOPE,
+    NEAR,
     NEGLIGIBLE,
     ROUGH,
     ROUGH_SLOPE,
@@ -43,6 +44,7 @@ from stickslip.engine.contact_step.certificate import (
     missed_by_rate,
     proven_length,
     put_discs,
+    shortened,
     size_at_end,
     size_of_rate,
     slope_on_disc,
@@ -135,20 +137,21 @@ def step_under(formula: Integers, table: Integers, waits: Integers, jets: Intege
     sound = check_end(rows, formula[2], moves, degree)
     move(rows, reached, is_block)
     store(rows, targets)
-    kept = 0
-    for lane in range(WIDTH):
-        if taking >> lane & 1 and is_simple(run_in(table, lane), lane_0[lane], sound >> lane & 1 == 1):
+    kept, rest = 0, sound & taking
+    while rest != 0:
+        lane, rest = first_of(rest), rest & (rest - 1)
+        if is_simple(run_in(table, lane), lane_0[lane]):
             kept |= 1 << lane
     keep(rows, kept)
-    for lane in range(WIDTH):
-        if taking >> lane & 1:
-            run, own = run_in(table, lane), lane_0[lane]
-            if kept >> lane & 1:
-                waits[lane] = append(run, own, fresh >> lane & 1 == 1)
-            else:
-                run.counts.disc, run.counts.breach, waits[lane] = int(own.disc), 0, Waits.ALONE
-            if waits[lane] != Waits.SLIPPING:
-                take_out(run, own)
+    while taking != 0:
+        lane, taking = first_of(taking), taking & (taking - 1)
+        run, own = run_in(table, lane), lane_0[lane]
+        if kept >> lane & 1:
+            waits[lane] = append(run, own, fresh >> lane & 1 == 1)
+        else:
+            run.counts.disc, run.counts.breach, waits[lane] = int(own.disc), 0, Waits.ALONE
+        if waits[lane] != Waits.SLIPPING:
+            take_out(run, own)
 
 
 @inlined
@@ -160,17 +163,25 @@ def choose_length(formula: Integers, step: Step) -> None:
     call_jet(formula[0], floats_of(rows.constants), floats_of(rows.k), floats_of(rows.load_along_slip), floats_of(rows.jet))
     rows.usable = length_at(rows.jet, rows.tolerance, 0.5)
     odd = taking & ~((rows.usable >= FAR_FROM_GUESS) & ~(rows.jet[TERMS - 1] == 0.0))
-    for lane in range(WIDTH):
-        if odd >> lane & 1:
-            lend_step(run_in(table, lane), lane_0[lane])
-            lane_0[lane].usable = usable_length(run_in(table, lane).jet, lane_0[lane].tolerance)
+    while odd != 0:
+        lane, odd = first_of(odd), odd & (odd - 1)
+        lend_step(run_in(table, lane), lane_0[lane])
+        lane_0[lane].usable = usable_length(run_in(table, lane).jet, lane_0[lane].tolerance)
     rows.limit = (rows.state.target - rows.state.xi) / rows.guess
     rows.length = min(rows.usable, rows.limit)
     prove(rows, formula[1], moves, degree)
-    odd = taking & ~((rows.share <= (ALLOWED_SLOPE if moves else ALLOWED)) & (rows.k.free == 1.0))
-    for lane in range(WIDTH):
-        if odd >> lane & 1:
-            prove_alone(run_in(table, lane), lane_0[lane])
+    largest = ALLOWED_SLOPE if moves else ALLOWED
+    odd = taking & ~(rows.share <= largest)
+    near = odd & (rows.share <= largest * NEAR)
+    if near != 0:  # as the search for a single run begins
+        rows.length = chosen(near, shortened(rows.length, rows.share, largest), rows.length)
+        prove(rows, formula[1], moves, degree)
+        odd = taking & ~(rows.share <= largest)
+        rows.usable = chosen(near & ~odd, rows.length, rows.usable)
+    odd |= taking & ~(rows.k.free == 1.0)
+    while odd != 0:
+        lane, odd = first_of(odd), odd & (odd - 1)
+        prove_alone(run_in(table, lane), lane_0[lane])
 
 
 @inlined
@@ -220,8 +231,9 @@ def prove(rows: Block, radii: int, moves: bool, degree: int) -> None:
 def prove_alone(run: Run, own: Block) -> None:
     """Find a length that can be proven for the step in a run's lane, and the force that it ignores at its start."""
     lend_step(run, own)
-    proven = proven_length(run, own.length)
-    if proven < own.length:
+    length = min(own.usable, own.limit)
+    proven = proven_length(run, length)
+    if proven < length:
         own.usable = proven
     begin_step(run)
     own.state.residual, own.state.unbalanced = run.state.residual, run.state.unbalanced
@@ -307,9 +319,9 @@ def store(rows: Block, targets: Integers) -> None:
 
 
 @inlined
-def is_simple(run: Run, own: Block, sound: bool) -> bool:
-    """Return True if a step in a run's lane may be kept: it is sound, takes time, is proven and meets no knot of the law."""
-    if not sound or run.counts.breach != 0 or not own.row.phase_to > own.row.phase_from:
+def is_simple(run: Run, own: Block) -> bool:
+    """Return True if a sound step in a run's lane may be kept: it takes time, is proven and meets no knot of the law."""
+    if run.counts.breach != 0 or not own.row.phase_to > own.row.phase_from:
         return False
     if run.params.can_be_negative != 0.0 and goes_below_zero(run, lend_rate(run, own), own.length):
         return False

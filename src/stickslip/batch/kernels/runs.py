@@ -145,13 +145,13 @@ def run_group(group: Group, base: Integers, stride: Integers, work: Workspace) -
     PAUSED) that it should be run alone. Called again, it continues from there.
     """
     first, members = first_lane(work, base, stride), members_of(group, work)
-    jets, block = integers(group.setups.jets.ctypes.data), work.block[0]
-    for n in range(WIDTH):
+    jets, block, lanes = integers(group.setups.jets.ctypes.data), work.block[0], len(work.stage)  # no constant: no copy for each
+    for n in range(lanes):
         if nth(first, n).stage[0] != Stage.FREE:
             point_at(nth(first, n), members, first.member[n])
     while True:
         waiting = 0
-        for n in range(WIDTH):
+        for n in range(lanes):
             lane = nth(first, n)
             if lane.stage[0] == Stage.UNDER_WAY and (lane.waits[0] == Waits.NONE or lane.waits[0] == Waits.ALONE):
                 advance_member(members, lane)
