@@ -16,7 +16,7 @@ from stickslip.foundation.formatting import brief
 from stickslip.observables.energy.balance import LONG_NAMES
 from stickslip.observables.energy.planar import NAMES, cost, energies
 from stickslip.observables.planar import pulses, rupture_speed, rupture_times
-from stickslip.planar.slab import PlanarSlab
+from stickslip.planar.slab import ENOUGH_NODES, PlanarSlab
 from stickslip.solution.accessors import PlanarPlots
 from stickslip.trajectory.slip_events import default_event_rate
 from stickslip.trajectory.status import STATUSES, UNDER_WAY, Status
@@ -31,12 +31,8 @@ FIELDS = {"slip": "m", "slip_rate": "m s-1", "traction": "Pa", "heat": "J m-2"}
 """Unit of each field of a frame."""
 MOTION = {"slip": "slip", "slip_rate": "rate", "traction": "traction", "heat": "heat"}
 """Name in the solver's `Motion` of each field of a frame."""
-ENOUGH_NODES = 5.0
-"""Nodes in a process zone from which a front is called resolved: a rule of thumb, which twice the nodes put to the test."""
 FEWEST_STEPS, QUICK = 100.0, 2e8
 """Steps in a round trip in which energies are followed, at least; and `cost` up to which a summary has them: about two seconds."""
-PROCESS_ZONE = 9.0 * math.pi / 16.0
-"""Length of the process zone of a slow front, times the largest -S mu'/G: twice that between two half-spaces."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,13 +193,8 @@ class PlanarSolution:
 
     @property
     def nodes_per_process_zone(self) -> float:
-        """The nodes within the process zone of a slow front, where friction falls from its peak; NaN if it does not fall with slip.
-
-        It is 9 pi/16 G divided by the largest fall of strength with slip (Pa/m) and by the distance of nodes (Day et al. 2005, for
-        linear slip weakening; twice their length, because G acts on one side here). Fronts that run fast have shorter ones.
-        """
-        fall, _ = self.slab.values.slopes(float(np.ptp(self.slip, axis=0).max()) or 1e-6)
-        return PROCESS_ZONE * self.slab.body.shear_modulus / fall / max(self.slab.spacing) if fall > 0.0 else math.nan
+        """The nodes within the process zone of a slow front: `PlanarSlab.nodes_per_process_zone` for the slip of the run."""
+        return self.slab.nodes_per_process_zone(float(np.ptp(self.slip, axis=0).max()) or 1e-6)
 
     def middle(self, values: NDArray[np.generic]) -> float:
         """Return the value of a field at the node in the middle."""

@@ -58,6 +58,7 @@ from stickslip.engine.series.polynomial import NONE, bound_below, moment, multip
 from stickslip.engine.series.step_size import FAR_FROM_GUESS, length_at, usable_length
 from stickslip.engine.state.layout import TERMS, HistoryPiece, Integers, State
 from stickslip.engine.state.workspace import RUN_SIZE, Run, borrow
+from stickslip.trajectory.turning_points import SAME
 
 PARTS = 3
 """Number of functions of a formula that work on lanes."""
@@ -83,6 +84,16 @@ class Waits(IntEnum):
     """A step that the engine must take."""
 
 
+class Side(NamedTuple):
+    """The runs in the lanes, as pointers."""
+
+    table: Integers  # their memory
+    waits: Integers  # what each lane waits for
+    jets: Integers  # addresses of the formulas' series, radii and values, in turn for each piece of the law
+    block: int  # address of the numbers in lanes
+    ways: int  # address of what is known of the slip rate in each piece (`turning_points.Search`), or 0 if nobody wants it
+
+
 class Step(NamedTuple):
     """A step that some lanes take together."""
 
@@ -94,18 +105,15 @@ class Step(NamedTuple):
 
 
 @kernel
-def step_side_by_side(table: Integers, waits: Integers, jets: Integers, block: int) -> None:
-    """Take one step in each lane that waits for one; lanes under the same formula of the law step together.
-
-    table points to the memory of the runs in the lanes, waits to what each lane waits for, and jets to the addresses of the
-    formulas' series, radii and values, in turn for each piece of the law; block is the address of the numbers in lanes.
-    """
+def step_side_by_side(side: Side) -> None:
+    """Take one step in each lane that waits for one; lanes under the same formula of the law step together."""
+    waits = side.waits
     for lane in range(WIDTH):
         if waits[lane] == Waits.FRESH or waits[lane] == Waits.SLIPPING:
             waits[lane] = -waits[lane]
     for lane in range(WIDTH):
         if waits[lane] < 0:
-            step_under(ahead(jets, PARTS * run_in(table, lane).counts.piece), table, waits, jets, block)
+            step_under(ahead(side.jets, PARTS * run_in(side.table, lane).counts.piece), side)
 
 
 @inlined
@@ -115,11 +123,12 @@ def run_in(table: Integers, lane: int) -> Run:
 
 
 @kernel
-def step_under(formula: Integers, table: Integers, waits: Integers, jets: Integers, block: int) -> None:
+def step_under(formula: Integers, side: Side) -> None:
     """Take one step in the lanes under a formula that have not taken theirs, which a negative `waits` marks.
 
     `formula` points to the addresses of its series, of its radii and of its values.
     """
+    table, waits, jets, block, ways = side
     rows, lane_0, taking, fresh, degree = block_in_all_lanes(block), block_in_one_lane(block), 0, 0, 1
     targets, moves, is_block = integers(block + 8 * WIDTH * TARGETS), False, False
     for lane in range(WIDTH):
@@ -143,10 +152,14 @@ def step_under(formula: Integers, table: Integers, waits: Integers, jets: Intege
         if is_simple(run_in(table, lane), lane_0[lane]):
             kept |= 1 << lane
     keep(rows, kept)
+    rising, falling = ways_of(rows) if ways != 0 else (0, 0)
     while taking != 0:
         lane, taking = first_of(taking), taking & (taking - 1)
         run, own = run_in(table, lane), lane_0[lane]
         if kept >> lane & 1:
+            if ways != 0:  # where a piece of load begins the slip rate may jump
+                way = 0 if fresh >> lane & 1 else (rising >> lane & 1) - (falling >> lane & 1)
+                integers(ways)[lane * run.capacity + run.counts.length] = way
             waits[lane] = append(run, own, fresh >> lane & 1 == 1)
         else:
             run.counts.disc, run.counts.breach, waits[lane] = int(own.disc), 0, Waits.ALONE
@@ -340,6 +353,18 @@ def keep(rows: Block, kept: int) -> None:
     state.largest_residual = chosen(kept, max(state.largest_residual, state.residual), state.largest_residual)
     rows.load[0] = chosen(kept, rows.load[0] - rows.stiffness * signed, rows.load[0])
     rows.k.free, rows.k.force = chosen(kept, 1.0, rows.k.free), chosen(kept, 0.0, rows.k.force)
+
+
+@inlined
+def ways_of(rows: Block) -> tuple[int, int]:
+    """Return the lanes in which the slip rate is proven to rise throughout the step, and those in which it is proven to fall."""
+    rate, slope, rises = rows.rate, rows.slope, rows.rate[1] > 0.0
+    way = chosen(rises, 1.0, -1.0)
+    for n in range(TERMS - 1):
+        slope[n] = (n + 1) * rate[n + 1] * way
+    slope[TERMS - 1] = 0.0
+    proven = (slope[0] > 0.0) & (bound_below(slope) > SAME * slope[0])
+    return proven & rises, proven & ~rises
 
 
 @inlined
