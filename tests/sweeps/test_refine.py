@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 import time
+from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 import xarray as xr
+
+import stickslip as ss
+from stickslip.contact.critical import margin
 from stickslip.sweeps.estimate import estimate
 from stickslip.sweeps.execution.plan import make_plan
 from stickslip.sweeps.results.changes import Change, cases, changes
-from stickslip.sweeps.sweep import carry_out, on_threads
-from itertools import pairwise
-from typing import Any
-import stickslip as ss
-from stickslip.contact.critical import margin
 from stickslip.sweeps.results.refinement_spec import cells_of
-from stickslip.sweeps.sweep import SweepProgress
+from stickslip.sweeps.sweep import SweepProgress, carry_out, on_threads
+
 
 @pytest.mark.parametrize("series", [[], ["slip", "slip_rate"]])
 def test_cost_is_about_what_it_turns_out_to_be(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, series: list[str]) -> None:
