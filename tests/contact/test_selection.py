@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 import stickslip as ss
 from stickslip.contact.branches import branches_of, rate_on
 from stickslip.contact.equation import resistance
-from stickslip.contact.rules.maxwell import area
-from stickslip.contact.rules.selection import RULES, selection_table
+from stickslip.contact.rules.selection import RULES, area, selection_table
 from stickslip.problem.selection_rule import SELECTION_RULES
 
 from .laws import ALPHA_C, SLAB, S, Wavy, Z, hyperbolic, q_of, slab_problem, wavy_laws

@@ -16,8 +16,7 @@ import stickslip as ss
 from stickslip.contact.critical import margin
 from stickslip.sweeps.estimate import estimate
 from stickslip.sweeps.execution.plan import make_plan
-from stickslip.sweeps.results.changes import Change, cases, changes
-from stickslip.sweeps.results.refinement_spec import cells_of
+from stickslip.sweeps.results.refinement_spec import Change, cases, cells_of, changes
 from stickslip.sweeps.sweep import SweepProgress, carry_out, on_threads
 
 
