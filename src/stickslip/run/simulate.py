@@ -16,6 +16,7 @@ from stickslip.run.planar_run import PlanarProgress, simulate_planar
 from stickslip.run.progress import Progress, told
 from stickslip.run.session import Session
 from stickslip.run.solver import Events, NewEvents, Solver
+from stickslip.scenarios.source import read_source
 from stickslip.solution.planar import PlanarSolution
 from stickslip.solution.solution import Solution
 from stickslip.trajectory.status import UNDER_WAY
@@ -72,7 +73,8 @@ def simulate(
     ----------
     problem : Problem, Scenario, PlanarSlab, str or Path
         The problem itself, a scenario, the name of a bundled scenario (`stickslip.scenarios` lists them), or a scenario file.
-        Options that you leave out come from the scenario. A `PlanarSlab` takes `duration`, `frames` and `progress` only.
+        Options that you leave out come from the scenario. A `PlanarSlab` and a scenario with a contact of many nodes take
+        `duration`, `frames` and `progress` only.
     duration : float or str
         Latest end of the run: a number in s, or a text with a unit such as "480 years". A scenario has one; a problem has none.
         Other times may be given as texts, too, and as quantities of the library pint.
@@ -129,7 +131,12 @@ def simulate(
     it was. With max_pieces the file is written whatever ended the run.
     """
     with told(progress, "simulate") as report:
-        if isinstance(problem, PlanarSlab):
+        found = problem if isinstance(problem, PlanarSlab) else read_source("simulate", problem, contact=True)
+        if not isinstance(found, Problem | PlanarSlab) and found.contact is not None:
+            duration = found.duration if duration is None else duration
+            frames = found.contact.frames if frames is None else frames
+            found = found.planar_slab
+        if isinstance(found, PlanarSlab):
             others: dict[str, Any] = {
                 "rtol": rtol,
                 "creep_rtol": creep_rtol,
@@ -139,12 +146,12 @@ def simulate(
             others |= {"checkpoint": checkpoint, "max_pieces": max_pieces}
             if needless := [name for name, value in others.items() if value is not None]:
                 raise InputError(f"simulate: a PlanarSlab has no {needless[0]}: its nodes and its courant set the accuracy")
-            return simulate_planar(problem, duration, frames=frames, progress=report)
+            return simulate_planar(found, duration, frames=frames, progress=report)
         if frames is not None:
             raise InputError("simulate: frames is for a PlanarSlab: a slab in 1D is known at all times")
         given, options = problem_and_options(
             "simulate",
-            problem,
+            found,
             duration=duration,
             rtol=rtol,
             creep_rtol=creep_rtol,

@@ -8,11 +8,14 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief
+from stickslip.observables.energy.balance import LONG_NAMES
+from stickslip.observables.energy.planar import NAMES, cost, energies
 from stickslip.observables.planar import pulses, rupture_speed, rupture_times
-from stickslip.planar.slab import PlanarSlab
+from stickslip.planar.slab import ENOUGH_NODES, PlanarSlab
 from stickslip.solution.accessors import PlanarPlots
 from stickslip.trajectory.slip_events import default_event_rate
 
@@ -20,10 +23,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Floats = NDArray[np.float64]
-ENOUGH_NODES = 5.0
-"""Nodes in a process zone from which a front is called resolved: a rule of thumb, which twice the nodes put to the test."""
-PROCESS_ZONE = 9.0 * math.pi / 16.0
-"""Length of the process zone of a slow front, times the largest -S mu'/G: twice that between two half-spaces."""
+FEWEST_STEPS, QUICK = 100.0, 2e8
+"""Steps in a round trip in which energies are followed, at least; and `cost` up to which a summary has them: about two seconds."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,6 +80,7 @@ class PlanarSolution:
             f"The middle sees {middle} pulse{'' if middle == 1 else 's'}, other nodes up to {counts.max()}.",
             "All nodes rest at the end." if not self.slip_rate[-1].any() else "Some nodes still slip at the end.",
         ]
+        lines += [self._energy_sentence] if self._energy_sentence else []
         if np.isfinite(self.nodes_per_process_zone):
             enough = "resolved" if self.nodes_per_process_zone >= ENOUGH_NODES else f"NOT resolved, {ENOUGH_NODES:g} are wanted"
             lines.append(
@@ -124,14 +126,56 @@ class PlanarSolution:
         return np.asarray(self.slab.values.load - self.traction[-1], float)
 
     @property
-    def nodes_per_process_zone(self) -> float:
-        """The nodes within the process zone of a slow front, where friction falls from its peak; NaN if it does not fall with slip.
+    def _steps_of_energies(self) -> int:
+        frames = self.slab.body.two_way_time / float(np.diff(self.times).max())
+        return 2 * math.ceil(0.5 * max(frames, FEWEST_STEPS))
 
-        It is 9 pi/16 G divided by the largest fall of strength with slip (Pa/m) and by the distance of nodes (Day et al. 2005, for
-        linear slip weakening; twice their length, because G acts on one side here). Fronts that run fast have shorter ones.
+    @cached_property
+    def _energies(self) -> dict[str, Floats]:
+        fields = {"slip": self.slip, "slip_rate": self.slip_rate, "heat": self.heat}
+        return energies(self.slab, self.times, **fields, steps=self._steps_of_energies)
+
+    def energy(self, t: ArrayLike | None = None) -> xr.Dataset:
+        """Return the energies of the run as differences from its start: in J, or in J per metre of z for a line.
+
+        Waves inside the slab are followed from the slip of the frames, independently of the solver, so that the balance tests the
+        run. It closes the better, the more nodes and frames there are.
+
+        Parameters
+        ----------
+        t
+            Times (s); by default those of the frames.
+
+        Returns
+        -------
+        xarray.Dataset
+            work of the driver, stored (elastic + kinetic), elastic, kinetic, heat of friction, radiated, and
+            balance = work - stored - heat, as in `Solution.energy`.
         """
-        fall, _ = self.slab.values.slopes(float(np.ptp(self.slip, axis=0).max()) or 1e-6)
-        return PROCESS_ZONE * self.slab.body.shear_modulus / fall / max(self.slab.spacing) if fall > 0.0 else math.nan
+        import xarray
+
+        times = self.times if t is None else np.atleast_1d(np.asarray(t, float))
+        if times.min() < self.times[0] or times.max() > self.times[-1]:
+            raise InputError(f"energy: times must be from {self.times[0]:g} to {self.times[-1]:g} s")
+        unit, found = "J" if self.slab.is_plane else "J m-1", self._energies
+        about = {name: {"units": unit, "long_name": LONG_NAMES[name].replace(" - damped", "")} for name in NAMES}
+        fields = {name: ("time", np.interp(times, found["time"], found[name]), about[name]) for name in NAMES}
+        return xarray.Dataset(fields, coords={"time": ("time", times, {"units": "s"})})
+
+    @property
+    def _energy_sentence(self) -> str:
+        """How well energy is balanced, or nothing if it would take long to know."""
+        if len(self.times) < 3 or cost(self.slab, self.times[-1], self._steps_of_energies) > QUICK:
+            return ""
+        found = self._energies
+        heat, missed = float(found["heat"][-1]), float(np.abs(found["balance"]).max())
+        unit = "J" if self.slab.is_plane else "J per metre of z"
+        return f"Friction takes {brief(heat, unit)}; the energy balance misses up to {missed / heat:.1%} of that."
+
+    @property
+    def nodes_per_process_zone(self) -> float:
+        """The nodes within the process zone of a slow front: `PlanarSlab.nodes_per_process_zone` for the slip of the run."""
+        return self.slab.nodes_per_process_zone(float(np.ptp(self.slip, axis=0).max()) or 1e-6)
 
     def middle(self, values: NDArray[np.generic]) -> float:
         """Return the value of a field at the node in the middle."""
