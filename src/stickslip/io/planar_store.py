@@ -25,6 +25,7 @@ from typing_extensions import override
 from zarr.storage import MemoryStore
 
 import stickslip
+from stickslip.engine.state.layout import Stop
 from stickslip.foundation import netcdf_file, zarr_folder
 from stickslip.foundation.atomic_write import held, sync, write_atomically
 from stickslip.foundation.errors import InputError, printable
@@ -34,7 +35,7 @@ from stickslip.io.soundness import number, whole_number
 from stickslip.planar.slab import PlanarSlab
 from stickslip.scenarios.scenario import Scenario, read_scenario
 from stickslip.solution.planar import FIELDS, Frames, PlanarSolution
-from stickslip.trajectory.status import STATUSES, UNDER_WAY, Status, engine
+from stickslip.trajectory.status import INTERRUPTED, STATUSES, UNDER_WAY, Status, engine
 
 if TYPE_CHECKING:
     from stickslip.planar.solver import Motion, PlanarSolver
@@ -171,7 +172,20 @@ class PlanarStore(Frames):
         self.sent += len(rows)
 
     @override
-    def save(self, run: PlanarSolver, code: int = UNDER_WAY) -> None:
+    def save(self, run: PlanarSolver) -> None:
+        self._save(run)
+        self._show(UNDER_WAY)
+
+    @override
+    def end(self, run: PlanarSolver, code: int) -> None:
+        if code in (Stop.FINISHED, INTERRUPTED):
+            self._save(run)
+        else:  # the solver is in no state to continue from: that of the last checkpoint stays
+            self._write_frames()
+        self._show(code)
+
+    def _save(self, run: PlanarSolver) -> None:
+        """Write a checkpoint."""
         self._write_frames()
         self.end_round_trip(run)
         state = {
@@ -180,6 +194,9 @@ class PlanarStore(Frames):
         own = ("written", "sent", "largest_slip", "fastest")
         about = {name: getattr(self, name) for name in own} | {KIND: FORMAT, "engine": _engine(), "digest": self.digest}
         netcdf_file.write_variables(state, about, self.path / STATE)
+
+    def _show(self, code: int) -> None:
+        """Let readers see what has been written, with the status that belongs to a code."""
         with reading(self.path):
             zarr_folder.consolidate(self.path)
             # the group that knows the arrays keeps what it knows of them: the file changes at once

@@ -20,14 +20,18 @@ from stickslip.run.options import CHECKPOINT_EVERY
 from stickslip.run.progress import Pace, how_far, how_fast
 from stickslip.run.run_loop import Interrupts, NowAndThen
 from stickslip.solution.planar import Frames, PlanarSolution
-from stickslip.trajectory.status import INTERRUPTED
+from stickslip.trajectory.status import INTERRUPTED, UNSTABLE
 
 if TYPE_CHECKING:
     from stickslip.io.planar_store import PlanarStore
-    from stickslip.planar.solver import PlanarSolver
+    from stickslip.planar.solver import Motion, PlanarSolver
 
 FRAMES = 100
 """Frames in a two-way travel time, by default."""
+RESIDUAL = 1e-6
+"""Largest miss of the contact equation, as a share of the load, in a run that counts as a solution; rounding gives 1e-15."""
+UNHEARD_OF = 1e3
+"""Slip rate of an unstable run over the one that the largest load would drive against radiation alone; fronts come to some ten."""
 MOST_MEMORY = 16e9
 """Largest memory of a run, bytes: echoes need most of it, and they are kept for all round trips to come."""
 
@@ -197,6 +201,17 @@ class Follow:
             raise InputError("simulate: a PlanarSlab needs the library JAX: pip install 'stickslip[planar]'") from None
         return PlanarSolver(solved, self.duration), here
 
+    def fault(self, run: PlanarSolver, motion: Motion) -> int | None:
+        """Return the code that ends the run at a motion that is no solution, or None."""
+        if not all(np.isfinite(one).all() for one in motion):
+            return Stop.FAILED
+        if motion.residual.max() > RESIDUAL:
+            return Stop.OFF_THE_LAW
+        largest = np.abs(run.slab.values.load).max() + np.abs(run.loading).max()
+        if np.abs(motion.rate).max() > UNHEARD_OF * largest / run.body.impedance:
+            return UNSTABLE
+        return Stop.NEGATIVE_FRICTION if (np.sign(motion.traction) * np.sign(motion.rate) < 0.0).any() else None
+
     def to_end(self, kept: Frames, run: PlanarSolver, here: tuple[slice, ...]) -> PlanarSolution:
         """Run to the end, or to a Ctrl-C, and return the frames."""
         if not kept.times:
@@ -204,13 +219,13 @@ class Follow:
             kept.save(run)
         with Interrupts() as interrupts:
             code = self.follow(kept, run, here, interrupts)
-        kept.save(run, code)
         slab, slip = kept.slab, kept.largest_slip
         if not slab.values.is_unique(slab.body.impedance, slip, kept.fastest):
             raise InputError(
                 f"simulate: within the {slip:.3g} m that this PlanarSlab slips, friction falls with the slip rate by more than"
                 " radiation adds: several slip rates solve the contact equation, and no selection rule gives a solution in 2D or 3D"
             )
+        kept.end(run, code)
         return kept.solution(code)
 
     def steps_of(self, run: PlanarSolver) -> int:
@@ -224,7 +239,10 @@ class Follow:
             if run.step == run.steps:
                 kept.end_round_trip(run)
             run.advance(every - run.step % every if run.step < run.steps else every)
-            now = run.now().at(here)
+            motion = run.now()
+            if (code := self.fault(run, motion)) is not None:
+                return code
+            now = motion.at(here)
             kept.add(run.time, now)
             if saving.is_due:
                 with saving.done():

@@ -19,7 +19,7 @@ from stickslip.observables.planar import pulses, rupture_speed, rupture_times
 from stickslip.planar.slab import ENOUGH_NODES, PlanarSlab
 from stickslip.solution.accessors import PlanarPlots
 from stickslip.trajectory.slip_events import default_event_rate
-from stickslip.trajectory.status import STATUSES, UNDER_WAY, Status
+from stickslip.trajectory.status import STATUSES, Status
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -247,8 +247,11 @@ class Frames:
     def end_round_trip(self, run: PlanarSolver) -> None:
         """Take what the solver is about to forget."""
 
-    def save(self, run: PlanarSolver, code: int = UNDER_WAY) -> None:
-        """Make what is there so far outlast the process, with the status that belongs to a code."""
+    def save(self, run: PlanarSolver) -> None:
+        """Make what is there so far outlast the process."""
+
+    def end(self, run: PlanarSolver, code: int) -> None:
+        """Make the end of a run outlast the process, with the status that belongs to its code."""
 
     def solution(self, code: int) -> PlanarSolution:
         """Return the run, with the status that belongs to a code."""
