@@ -28,7 +28,8 @@ ENOUGH_NODES = 5.0
 FEWEST_STEPS, QUICK = 100.0, 2e8
 """Steps in a round trip in which energies are followed, at least; and `cost` up to which a summary has them: about two seconds."""
 PROCESS_ZONE = 9.0 * math.pi / 16.0
-"""Length of the process zone of a slow front, times the largest -S mu'/G: twice that between two half-spaces."""
+"""Length of the process zone of a slow front, times the largest -S mu'/G: K^2/(4 G) is the fracture energy (strength drop) Dc/2,
+with K = 4/3 sqrt(2 length/pi) (strength drop)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -180,8 +181,10 @@ class PlanarSolution:
     def nodes_per_process_zone(self) -> float:
         """The nodes within the process zone of a slow front, where friction falls from its peak; NaN if it does not fall with slip.
 
-        It is 9 pi/16 G divided by the largest fall of strength with slip (Pa/m) and by the distance of nodes (Day et al. 2005, for
-        linear slip weakening; twice their length, because G acts on one side here). Fronts that run fast have shorter ones.
+        It is 9 pi/16 G divided by the largest fall of strength with slip (Pa/m) and by the distance of nodes: the length over which
+        strength that falls linearly with distance takes the fracture energy of linear slip weakening. (Between two half-spaces,
+        where it is 9 pi/32, codes cite Day et al. 2005 for it.) Zones of slow fronts were measured to have 5/6 of it, in
+        `tests/reference/test_long_faults.py`; those of fronts of speed V are shorter by sqrt(1 - V^2/c^2).
         """
         fall, _ = self.slab.values.slopes(float(np.ptp(self.slip, axis=0).max()) or 1e-6)
         return PROCESS_ZONE * self.slab.body.shear_modulus / fall / max(self.slab.spacing) if fall > 0.0 else math.nan
