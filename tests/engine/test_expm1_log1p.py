@@ -60,15 +60,18 @@ ARGUMENTS = [(-60.0, 1.0), (-3.0, 1.0), (-0.4, 1.0), (0.0, 1e-18), (0.0, 1.0), (
 """Values of the argument at the reference point, and how far the path leads from there."""
 
 
-def series(formula: Expression, x_ref: float, slip: list[float], rate: list[float]) -> tuple[list[float], float]:
+def series(formula: Expression, x_ref: float, slip: list[float], rate: list[float] | None = None) -> tuple[list[float], float]:
     """Return the Taylor coefficients of a formula along given series of slip (difference from x_ref) and slip rate.
 
-    The second result is the difference of the formula from its value at x_ref and rate 0. Both come from the generated text.
+    Without a slip rate it is the derivative of the slip. The second result is the difference of the formula from its value at x_ref
+    and rate 0. Both come from the generated text.
     """
     writer = Recurrences(formula, ())
     names: dict[str, Any] = MATHS | HELPERS | {"sine": sine, "versine": versine, "x_ref": x_ref, "c": [0.0] * writer.size}
-    names |= {"dx": slip[0], "p": []} | {f"s_{k}": rate[k] for k in range(ORDER + 1)}
+    rate = rate or [k * x for k, x in enumerate([*slip, 0.0])][1:]
+    names |= {"dx": slip[0], "p": [], "fused": lambda a, b, c: a * b + c} | {f"s_{k}": rate[k] for k in range(ORDER + 1)}
     lines = [f"c[{writer.index[node]}] = {writer.reference_value(node)}" for node in writer.nodes] + writer.order_zero()
+    lines += writer.before_orders("1.0", "0.0")
     for k in range(1, ORDER + 1):
         names[f"x_{k}"] = slip[k]
         lines += [*writer.order(k), *writer.weights(k)]
@@ -91,7 +94,7 @@ def test_value_difference_and_taylor_coefficients_to_order_18_agree_with_mpmath(
         start = -0.99
     function, reference = {"expm1": expm1, "log1p": log1p}[name], 0.5 * start
     slip = path(start - reference, size, 3)
-    found, step = series(function(SLIP), reference, slip, [0.0] * (ORDER + 1))
+    found, step = series(function(SLIP), reference, slip)
     with mpmath.workdps(60):
         whole = [mpmath.mpf(reference) + mpmath.mpf(slip[0]), *map(mpmath.mpf, slip[1:])]
         exact = composed(name, whole)

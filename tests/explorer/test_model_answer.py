@@ -22,7 +22,7 @@ from stickslip.scenarios import library
 from stickslip.trajectory.history import History
 from tests.problems import scaled_rate
 
-NAMES = [name for name in library.names() if name != "rate-and-state-block"]
+NAMES = [name for name in library.in_1d() if name != "rate-and-state-block"]
 """All bundled scenarios but one, which takes a second to answer; it is the one that is stopped."""
 SLABS = [name for name in NAMES if "slab" in name or name.startswith(("fig4", "second"))]
 POINTS = 8_000

@@ -25,7 +25,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.scenarios import library
 from stickslip.scenarios.scenario import read_scenario
 
-NAMES = library.names()
+NAMES = library.in_1d()
 
 
 def everywhere(test):

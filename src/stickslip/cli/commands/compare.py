@@ -68,7 +68,7 @@ def _compared(names: list[str], duration: str | None, rtol: float | None, event:
         raise InputError(f"compare: needs two runs or more, got {len(names)}; `stickslip new --list` lists the bundled ones")
     length = read(read_duration, duration, "compare", "duration")
     tolerance = read(check_rtol, rtol, "compare", "rtol")
-    sources = [read_source(load(name) if name == STDIN else name, length, tolerance) for name in names]
+    sources = [read_source(load(name, "compare") if name == STDIN else name, length, tolerance) for name in names]
     runs = {}
     for name, source in zip(distinct([source.name for source in sources]), sources, strict=True):
         with progress_line(f"{name}:") as report:

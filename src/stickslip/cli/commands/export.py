@@ -78,7 +78,7 @@ def _source(run: str, duration: str | None) -> Source:
     from stickslip.studies.compare import read_source
 
     length = read(read_duration, duration, "export", "duration")
-    return read_source(load(run) if run == STDIN else run, length)
+    return read_source(load(run, "export") if run == STDIN else run, length, who="export")
 
 
 def _place(text: str | None) -> Any:

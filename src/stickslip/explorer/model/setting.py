@@ -14,6 +14,7 @@ from stickslip.foundation.errors import InputError, gathered
 from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source
 from stickslip.scenarios.scenario import Scenario, scenario_of
+from stickslip.scenarios.source import all_slips_alike
 
 DEEPEST = 5
 """Largest number of parts in a path."""
@@ -117,7 +118,7 @@ class Setting:
         """Return the scenario, and doubts about its entries, one line each. Raises InputError as `scenario` does."""
         with gathered() as doubts:
             scenario = replace(scenario_of(self.document, Source(self.name, None)), name=self.name, title=self.title)
-        return scenario, tuple(dict.fromkeys((*self.notes, *doubts)))
+        return all_slips_alike("explore", scenario), tuple(dict.fromkeys((*self.notes, *doubts)))
 
 
 @cache

@@ -64,8 +64,8 @@ class Offered(NamedTuple):
 
 
 def offered() -> tuple[Offered, ...]:
-    """Return all bundled scenarios in the order in which they are offered, section by section."""
-    known = library.entries()
+    """Return all bundled scenarios in 1D in the order in which they are offered, section by section."""
+    known = {name: library.entries()[name] for name in library.in_1d()}
     sections = {section: [name for name in names if name in known] for section, names in _SECTIONS.items()}
     named = {name for names in sections.values() for name in names}
     sections[OTHERS] = [name for name in known if name not in named]
