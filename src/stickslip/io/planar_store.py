@@ -34,8 +34,7 @@ from stickslip.io.soundness import number, whole_number
 from stickslip.planar.slab import PlanarSlab
 from stickslip.scenarios.scenario import Scenario, read_scenario
 from stickslip.solution.planar import FIELDS, Frames, PlanarSolution
-from stickslip.trajectory.checkpoint import engine
-from stickslip.trajectory.status import STATUSES, UNDER_WAY, Status
+from stickslip.trajectory.status import STATUSES, UNDER_WAY, Status, engine
 
 if TYPE_CHECKING:
     from stickslip.planar.solver import Motion, PlanarSolver
