@@ -48,7 +48,7 @@ KIND, STATE, SENT = "stickslip_planar", "state.nc", "waves/sent"
 CHUNK = 4_000_000
 """Bytes of a chunk of frames or waves, unless a single one is larger."""
 WHAT, BUSY = "the run of a planar slab", "another run is writing into it"
-CHANGES = ("duration", "status", "status_message", "status_ok", "digest")
+CHANGES = ("duration", "residual", "status", "status_message", "status_ok", "digest")
 """Attributes that may change, and the checksum of the others."""
 DECIDE = ("bodies", "friction", "loading", "planar", "problem")
 """Folders of the package whose code decides the result of a planar run."""
@@ -200,7 +200,9 @@ class PlanarStore(Frames):
         with reading(self.path):
             zarr_folder.consolidate(self.path)
             # the group that knows the arrays keeps what it knows of them: the file changes at once
-            zarr.open_group(self.path, mode="r+").attrs.update(_status(STATUSES[code]) | {"duration": self.duration})
+            zarr.open_group(self.path, mode="r+").attrs.update(
+                _status(STATUSES[code]) | {"duration": self.duration, "residual": self.residual}
+            )
 
     @override
     def solution(self, code: int) -> PlanarSolution:
@@ -243,7 +245,7 @@ def attributes(slab: PlanarSlab, duration: float, frames: int, run: PlanarSolver
         "steps_per_round_trip": run.steps,
         KIND: FORMAT,
     }
-    return about | {"digest": _digest(about), "duration": duration} | _status(STATUSES[UNDER_WAY])
+    return about | {"digest": _digest(about), "duration": duration, "residual": 0.0} | _status(STATUSES[UNDER_WAY])
 
 
 def _status(status: Status) -> dict[str, Any]:
@@ -320,7 +322,8 @@ def open_planar(path: Path) -> PlanarSolution:
             Status(name, why, bool(group.attrs["status_ok"])),
             whole_number(group.attrs, "steps_per_round_trip", path, 1),
         )
-        return PlanarSolution(slab, times, StoredFields(path, group, len(times)), steps, status)
+        residual = number(group.attrs, "residual", path)
+        return PlanarSolution(slab, times, StoredFields(path, group, len(times)), steps, status, residual)
 
 
 def opened(path: Path, mode: Literal["r", "r+"] = "r", use_consolidated: bool | None = None) -> zarr.Group:
