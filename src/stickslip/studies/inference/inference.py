@@ -131,18 +131,7 @@ class Inference(Study):
         return pd.DataFrame(self.certainty.correlation, labels, labels)
 
     def best_of(self, part: int = 0) -> Problem:
-        """Return the problem with the best numbers, under the loading of a part.
-
-        Parameters
-        ----------
-        part : int
-            Number of the part, 0 for the first.
-
-        Returns
-        -------
-        Problem
-            The best problem.
-        """
+        """Return the problem with the best numbers, under the loading of a part; 0 is the first."""
         return self._whole.at(self.estimate.searched, part)
 
     @property
