@@ -109,7 +109,7 @@ class Plots(Generic[Run]):
         return known_to_pyplot(inside.draw_space_time(inside.space_time_data(self._run, start, end), **place), place)
 
     def snapshots(self, t: ArrayLike | None = None, **place: Unpack[Place]) -> Figure:
-        """Draw displacement, velocity and stress across the slab at several times (s), by default six over one round trip of the waves.
+        """Draw displacement, velocity and stress across the slab at times (s), by default six over one round trip of the waves.
 
         Raises InputError for a block.
         """
@@ -135,11 +135,12 @@ class Plots(Generic[Run]):
         frames: int | None = None,
         progress: Callable[[int, int], object] | None = None,
     ) -> Path:
-        """Write an animation of the slab, beside the curves of the contact, to a .gif, or with ffmpeg a .mp4 or .webm; return the path.
+        """Write an animation of the slab, beside the curves of the contact, to a .gif, .mp4 or .webm, and return the path.
 
-        It shows the times from `start` to `end` (s; by default those of `field`) in 150 `frames`, unless another number is given,
-        20 per second. `progress` is called with the number of finished frames and the number of all frames. Raises InputError for a
-        block, for fewer than two frames, and if the software that writes such a file is missing.
+        The last two need ffmpeg. The animation shows the times from `start` to `end` (s; by default those of `field`) in 150
+        `frames`, unless another number is given, 20 per second. `progress` is called with the number of finished frames and the
+        number of all frames. Raises InputError for a block, for fewer than two frames, and if the software that writes such a file
+        is missing.
         """
         from stickslip.figures.runs import animation
 
