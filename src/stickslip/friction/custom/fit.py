@@ -63,7 +63,7 @@ class Fit:
     _how: dict[str, str]
 
     def band(self, u: ArrayLike = 0.0, v: ArrayLike = 0.0) -> tuple[Floats, Floats]:
-        """Return the friction coefficient (no unit) of the law at slips (m) and slip rates (m/s), which broadcast, and its standard error.
+        """Return friction of the law (no unit) at slips (m) and slip rates (m/s), which broadcast, and its standard error.
 
         The error follows from the uncertainty of the parameters. Those that the points do not determine are taken as known.
         """
