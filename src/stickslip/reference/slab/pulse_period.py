@@ -64,11 +64,6 @@ class PulseTrain:
         """The largest slip rate (m/s)."""
         return (self.surplus + self.wave) / self.impedance
 
-    @property
-    def least_rate(self) -> float:
-        """The smallest slip rate (m/s)."""
-        return (self.surplus - self.wave) / self.impedance
-
     def slip(self, t: ArrayLike) -> NDArray[np.float64]:
         """Return the slip u(t) (m) at times t (s), of the shape of t.
 
