@@ -277,9 +277,9 @@ def _tables(solution: Solution) -> dict[str, Variable]:
 def open_solution(path: str | Path) -> Solution | PlanarSolution:
     """Read a solution from a netCDF file that `Solution.to_netcdf` or a run wrote, or from the folder of a `PlanarSlab`'s run.
 
-    It is bit for bit as it was; the fields of a `PlanarSolution` are read when they are first used. Raises InputError if the file is
-    missing, damaged, no solution of this version of stickslip, or holds numbers that no run can have; also if its selection rule is
-    not registered.
+    It is bit for bit as it was; the fields of a `PlanarSolution` are read when they are first used. Raises InputError if the file
+    is missing, damaged, no solution of this version of stickslip, or holds numbers that no run can have; also if its selection rule
+    is not registered.
     """
     file = as_path("open_solution: path", path)
     if file.is_dir():
