@@ -23,7 +23,7 @@ SOURCE = Path(__file__).parent / "c_kernel" / "exponentials.c"
 
 @numba.njit(fastmath=True)
 def exponentials(decay: Floats, gain: Floats, memory: Floats, slip: Floats, sums: Floats) -> None:
-    """Advance the memory of a half-space: (wavenumbers, amplitude's part, part, poles), the other arrays without their second axis."""
+    """Advance the memory of a half-space: (wavenumbers, part of the slip, part, poles); real and imaginary parts are apart."""
     for k in range(memory.shape[0]):
         for a in range(2):
             u, total = slip[k, a], 0.0

@@ -181,7 +181,8 @@ class PlanarSolver:
     @property
     def _spread_echo(self) -> Echo:
         rank = 1 + len(self.slab.shape)
-        return Echo(self.layout.along_k(rank + 2), self.layout.along_k(rank))
+        ends = self.layout.along_k(rank + 1)
+        return Echo(self.layout.along_k(rank + 2), ends, ends, PartitionSpec(), self.layout.along_k(rank))
 
     @property
     def _spread_constants(self) -> Constants:
