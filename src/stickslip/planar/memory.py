@@ -91,7 +91,7 @@ def advanced(memory: Any, decay: Any, gain: Any, slip: Any) -> tuple[Any, Any]:
     """Return the memory after a step (see `Recurrence`), and the sum of its real parts, for arrays of numpy or JAX.
 
     As complex numbers the product is compiled into one loop in place; apart, real and imaginary parts need two loops and a copy.
-    The sum is written as one of slices, because a reduction over the first axis is five times as slow in JAX on a processor.
+    The sum is written as one of slices, because JAX's reduction over the first axis is ten times as slow on a processor.
     """
     memory = decay * memory + gain * slip
     return memory, sum(term.real for term in memory)
