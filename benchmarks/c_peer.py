@@ -27,7 +27,13 @@ FLAGS = ("-O3", "-march=native", "-shared", "-fPIC", "-fno-math-errno", "-fopenm
 SINES = ("#define sine(e) (2.0 * sin(0.5 * (e)) * cos(0.5 * (e)))", "#define versine(e) (2.0 * sin(0.5 * (e)) * sin(0.5 * (e)))")
 """What `engine.series.sine` does, by the C library: the compiler makes one call of all."""
 
-NAMES = ("#define abs(x) fabs(x)", "#define max(x, y) fmax(x, y)", "#define min(x, y) fmin(x, y)", '#include "balls.h"')
+NAMES = (
+    "#define fused(a, b, c) fma(a, b, c)",
+    "#define abs(x) fabs(x)",
+    "#define max(x, y) fmax(x, y)",
+    "#define min(x, y) fmin(x, y)",
+    '#include "balls.h"',
+)
 """What the statements call otherwise than C, and the radii of elementary functions (c_kernel/balls.h)."""
 
 

@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 
 from stickslip.foundation import netcdf_file
-from stickslip.sweeps.results.checksums import FOLDER, vouch_for
+from stickslip.sweeps.results.store import FOLDER, vouch_for
 
 BLOCK = 512
 """Number of bytes that are overwritten or exchanged."""

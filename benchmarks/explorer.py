@@ -20,8 +20,7 @@ from stickslip.explorer.model.solve import solve
 from stickslip.explorer.model.strip import StripRange, strip_of
 from stickslip.explorer.page.page import TITLES
 from stickslip.explorer.page.panels import view_of
-from stickslip.explorer.page.view import headings_of
-from stickslip.explorer.page.view_bytes import view_bytes
+from stickslip.explorer.page.view import headings_of, view_bytes
 
 CASES = (
     ("fig5-slab-printed", "friction.wavenumber", 5.0),

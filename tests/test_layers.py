@@ -61,9 +61,8 @@ ROOMS = {
     "schemes": (
         ("contract",),
         ("series",),
-        ("contact", "finite_elements"),
-        ("central_differences", "characteristics", "newmark", "sbp", "theta"),
-        ("regularised",),
+        ("finite_elements",),
+        ("central_differences", "characteristics", "newmark", "sbp"),
         ("registry", "run"),
     ),
     "reference": (("rate_and_state",), ("block", "planar", "slab"), ("method_of_steps",)),

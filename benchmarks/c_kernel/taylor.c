@@ -419,7 +419,8 @@ static double proven_length(Run *r, double length) {
         double enough = attempt == 0 ? allowed * pow(0.9, 1 - TERMS) : allowed;
         if (!(share <= enough)) share = least_share(r, length, share, enough);
         if (!(share <= allowed)) {
-            length *= fmin(fmax(0.98 * pow(allowed / share, 1.0 / (TERMS - 1)), 0.2), 0.9);
+            double root = quick_exp2((quick_log2(allowed) - quick_log2(share)) * (1.0 / (TERMS - 1)));
+            length *= fmin(fmax(0.98 * root, 0.2), 0.9);
             share = share_on_disc(r, length, r->count->disc);
         }
     }

@@ -1,4 +1,4 @@
-"""exp(x) - 1 and log(1 + x) as operations of their own, which keep the digits of small x that a difference or a sum loses."""
+"""Exponentials, logarithms and sines of small numbers keep the digits that a difference or a sum loses."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
+from numba import njit
 from scipy.integrate import solve_ivp
 
 import stickslip as ss
@@ -19,6 +20,39 @@ from stickslip.friction.formula.expression import COMPOSED, RATE, SLIP, Expressi
 from stickslip.friction.formula.parse import parse
 from tests.engine.enclosing import enclose
 
+ROUNDINGS = 5
+"""Of numbers up to 2: what the libraries' functions and a product or two make."""
+
+
+@pytest.mark.parametrize("size", [1e-9, 1e-3, 1.0, 3.2, 100.0, 1e6, 1e11])
+def test_sine_and_versine_agree_with_60_digits(size: float) -> None:
+    for e in np.random.default_rng(2).uniform(-size, size, 300).tolist():
+        with mpmath.workdps(60):
+            angle = mpmath.mpf(e)
+            exact, exact_versine = mpmath.sin(angle), 2 * mpmath.sin(angle / 2) ** 2
+            assert abs(mpmath.mpf(_sine(e)) - exact) <= ROUNDINGS * 2.0**-53 * 2
+            assert abs(mpmath.mpf(_versine(e)) - exact_versine) <= ROUNDINGS * 2.0**-53 * 2
+
+
+@pytest.mark.parametrize("size", [1e-150, 1e-9, 1e-3, 0.5])
+def test_small_angles_keep_their_digits(size: float) -> None:
+    for e in np.random.default_rng(2).uniform(0.5 * size, size, 100).tolist():
+        with mpmath.workdps(60):
+            angle = mpmath.mpf(e)
+            assert _sine(e) == pytest.approx(float(mpmath.sin(angle)), rel=1e-15, abs=0.0)
+            assert _versine(e) == pytest.approx(float(2 * mpmath.sin(angle / 2) ** 2), rel=1e-15, abs=0.0)
+
+
+@njit(fastmath={"contract"})
+def _sine(e: float) -> float:
+    return sine(e)
+
+
+@njit(fastmath={"contract"})
+def _versine(e: float) -> float:
+    return versine(e)
+
+
 HELPERS = {name: getattr(differences, name) for name in dir(differences) if name.endswith(("_difference", "_value", "_pull"))}
 MATHS = {name: getattr(math, name) for name in ("exp", "expm1", "log", "log1p", "sqrt", "sin", "cos", "tanh", "asinh")}
 EXACT = {"expm1": mpmath.expm1, "log1p": mpmath.log1p}
@@ -26,15 +60,18 @@ ARGUMENTS = [(-60.0, 1.0), (-3.0, 1.0), (-0.4, 1.0), (0.0, 1e-18), (0.0, 1.0), (
 """Values of the argument at the reference point, and how far the path leads from there."""
 
 
-def series(formula: Expression, x_ref: float, slip: list[float], rate: list[float]) -> tuple[list[float], float]:
+def series(formula: Expression, x_ref: float, slip: list[float], rate: list[float] | None = None) -> tuple[list[float], float]:
     """Return the Taylor coefficients of a formula along given series of slip (difference from x_ref) and slip rate.
 
-    The second result is the difference of the formula from its value at x_ref and rate 0. Both come from the generated text.
+    Without a slip rate it is the derivative of the slip. The second result is the difference of the formula from its value at x_ref
+    and rate 0. Both come from the generated text.
     """
     writer = Recurrences(formula, ())
     names: dict[str, Any] = MATHS | HELPERS | {"sine": sine, "versine": versine, "x_ref": x_ref, "c": [0.0] * writer.size}
-    names |= {"dx": slip[0], "p": []} | {f"s_{k}": rate[k] for k in range(ORDER + 1)}
+    rate = rate or [k * x for k, x in enumerate([*slip, 0.0])][1:]
+    names |= {"dx": slip[0], "p": [], "fused": lambda a, b, c: a * b + c} | {f"s_{k}": rate[k] for k in range(ORDER + 1)}
     lines = [f"c[{writer.index[node]}] = {writer.reference_value(node)}" for node in writer.nodes] + writer.order_zero()
+    lines += writer.before_orders("1.0", "0.0")
     for k in range(1, ORDER + 1):
         names[f"x_{k}"] = slip[k]
         lines += [*writer.order(k), *writer.weights(k)]
@@ -57,7 +94,7 @@ def test_value_difference_and_taylor_coefficients_to_order_18_agree_with_mpmath(
         start = -0.99
     function, reference = {"expm1": expm1, "log1p": log1p}[name], 0.5 * start
     slip = path(start - reference, size, 3)
-    found, step = series(function(SLIP), reference, slip, [0.0] * (ORDER + 1))
+    found, step = series(function(SLIP), reference, slip)
     with mpmath.workdps(60):
         whole = [mpmath.mpf(reference) + mpmath.mpf(slip[0]), *map(mpmath.mpf, slip[1:])]
         exact = composed(name, whole)

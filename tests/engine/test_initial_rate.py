@@ -16,7 +16,7 @@ from stickslip.batch import why_not
 from stickslip.foundation.quantities import quantity
 from stickslip.friction import FrictionLaw
 from stickslip.scenarios import Scenario
-from stickslip.studies.disturbances import disturbed
+from stickslip.studies.separation import disturbed
 
 NORMAL, SPEED = 1e8, 1e-4
 LAW = ss.friction.RateAndState(0.6, 0.01, 0.015, 1e-5, 1e-6)

@@ -12,11 +12,10 @@ import pytest
 
 import stickslip as ss
 from stickslip.batch import run_members
-from stickslip.engine.state.layout import TERMS
 from stickslip.run import catalogue as module
 from stickslip.scenarios.scenario import Scenario
 from stickslip.trajectory.slip_events import default_event_rate
-from stickslip.trajectory.turning_points import TURNS, descend
+from stickslip.trajectory.turning_points import TURNS, Spare, descend
 from tests.batch.cases import CASES as MEMBERS
 from tests.long_runs.problems import RUNS
 from tests.problems import IMPEDANCE, NORMAL, ROUND, SLAB
@@ -199,11 +198,11 @@ def test_where_nothing_rests_the_threshold_cuts(name: str) -> None:
 
 def test_a_rate_that_turns_is_noticed_and_rounding_is_not() -> None:
     """v = 1 + 3 x - 2 x^2 rises to x = 3/4 and falls to 2 at x = 1."""
-    rate = np.zeros(TERMS)
-    rate[:3] = 1.0, 3.0, -2.0
-    assert descend(rate, 0.7, -1, 3.0, 1e-6) == 1.0
-    assert descend(rate, 1.0, -1, 2.0, 1e-6) == TURNS
-    assert descend(rate, 1.0, -1, 2.2, 0.0) == 1.0  # not above what the rate was before
-    assert descend(rate, 0.8, 1, 2.2, 1e-6) == pytest.approx(2.0, rel=1e-15)
-    assert descend(rate, 0.8, 1, 1.9, 0.2) == 1.9
-    assert descend(rate, 0.8, 1, 1.9, 0.05) == TURNS
+    memory = Spare.table(1)
+    Spare.of(memory).rate[0, :3] = 1.0, 3.0, -2.0
+    assert descend(memory, (0.7, -1), 3.0, 1e-6) == 1.0
+    assert descend(memory, (1.0, -1), 2.0, 1e-6) == TURNS
+    assert descend(memory, (1.0, -1), 2.2, 0.0) == 1.0  # not above what the rate was before
+    assert descend(memory, (0.8, 1), 2.2, 1e-6) == pytest.approx(2.0, rel=1e-15)
+    assert descend(memory, (0.8, 1), 1.9, 0.2) == 1.9
+    assert descend(memory, (0.8, 1), 1.9, 0.05) == TURNS

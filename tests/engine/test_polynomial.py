@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
 from numpy.polynomial import polynomial as poly
 
-from stickslip.engine.series.polynomial import NONE, crossings, evaluate, first_descent, maximum, restrict
+from stickslip.engine.series.polynomial import MOST_CROSSINGS, NONE, crossings, evaluate, first_descent, maximum, restrict
 from stickslip.engine.state.layout import TERMS
 
 inside = st.floats(0.05, 0.95)
@@ -84,8 +84,8 @@ def test_crossings_are_all_roots(roots: list[float]) -> None:
     roots = sorted(roots)
     if len(roots) > 1 and min(np.diff(roots)) < 1e-3:
         return
-    places, c = np.empty(32), poly.polyfromroots(roots)
-    found = crossings(padded(c), places)
+    places, c = np.empty(MOST_CROSSINGS), poly.polyfromroots(roots)
+    found = crossings(padded(c), places, np.empty(TERMS))
     assert found == len(roots)
     # a rounding of the coefficients moves a root by sum |c| / |slope| ulp: much where roots crowd
     ulps = np.abs(c).sum() / np.abs(poly.polyval(np.array(roots), poly.polyder(c)))
@@ -93,4 +93,4 @@ def test_crossings_are_all_roots(roots: list[float]) -> None:
 
 
 def test_zero_polynomial_has_no_crossing() -> None:
-    assert crossings(np.zeros(TERMS), np.empty(4)) == 0
+    assert crossings(np.zeros(TERMS), np.empty(MOST_CROSSINGS), np.empty(TERMS)) == 0

@@ -15,12 +15,12 @@ import pytest
 from numpy.polynomial import Polynomial
 
 import stickslip as ss
-from stickslip.engine.series.polynomial import crossings
+from stickslip.engine.series.polynomial import MOST_CROSSINGS, crossings
 from stickslip.engine.state.layout import TERMS
 from stickslip.trajectory.history import Epoch, History, Positions
 from stickslip.trajectory.phase_index import Phases, standing_behind
-from stickslip.trajectory.slip_events import SlipEvents, default_event_rate, highest
-from stickslip.trajectory.turning_points import keeps_its_sign
+from stickslip.trajectory.slip_events import EventTurns, SlipEvents, default_event_rate, group_turns
+from stickslip.trajectory.turning_points import Turn, keeps_its_sign
 from tests.long_runs.problems import RUNS
 from tests.problems import SLAB, scaled_rate
 
@@ -253,21 +253,27 @@ def test_slip_is_summed_from_the_start_of_each_event(run: ss.Solution) -> None:
         assert together[n] == run.history.slipped_since(one.begin, one.end)[0]
 
 
-def test_highest_finds_the_largest_value_of_each_event() -> None:
-    values, found = np.array([3.0, 1.0, 2.0, 2.0, 5.0, 4.0]), np.empty(3, np.int64)
-    highest(values, np.array([0, 1, 4]), np.array([1, 4, 6]), found)
-    assert found.tolist() == [0, 2, 4]
+def test_each_event_has_its_fastest_point_and_its_pulses() -> None:
+    table, found = Turn.table(10), EventTurns.table(10)
+    turns, events = Turn.of(table), EventTurns.of(found)
+    turns.kind[:] = [1, -1, 1, 0, 0, -1, 1, 0, 0, 0]
+    turns.rate[:] = [3.0, 1.0, 1.0, 2.0, 2.0, 1.0, 4.0, 1.9, 5.0, 4.0]
+    assert group_turns(table, 10, found) == 3
+    assert events.begin[:3].tolist() == [0, 2, 6]
+    assert events.past[:3].tolist() == [2, 6, 10]
+    assert events.top[:3].tolist() == [0, 3, 8]
+    assert events.pulses[:3].tolist() == [1, 1, 2]
 
 
 def test_bounds_never_hide_a_change_of_sign() -> None:
     rng = np.random.default_rng(3)
-    places, kept = np.empty(32), 0
+    places, spare, kept = np.empty(MOST_CROSSINGS), np.empty(TERMS), 0
     for _ in range(3000):
         c = rng.normal(size=TERMS) * 0.5 ** np.arange(TERMS) * rng.uniform(0.1, 3.0)
         c[: rng.integers(0, 3)] = 0.0
         if keeps_its_sign(c):
             kept += 1
-            assert crossings(c, places) == 0
+            assert crossings(c, places, spare) == 0
     assert 500 < kept < 2500
 
 

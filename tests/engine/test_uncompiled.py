@@ -1,16 +1,98 @@
-"""The engine as plain Python: the same results, every access to memory checked, no compiler at work."""
+"""How the engine is compiled: the lean compiler, the key of machine code, and the engine as plain Python."""
 
 from __future__ import annotations
 
+import gc
 import json
 import os
+import re
 import subprocess
 import sys
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from numba import njit, types
+from numba.core.errors import TypingError
 
+from stickslip.engine.codegen.lean_compiler import LeanCompiler
+from stickslip.engine.codegen.sources import compiled_sources, key_of, remembered_key
 from tests.engine.uncompiled_runs import RUNS, results
+
+TEXT = b'''"""Say what this is."""
+
+WIDTH = 2.0
+"""Width, m."""
+
+
+def twice(x):
+    """Return twice x."""
+    return WIDTH * x
+'''
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [(b"Return twice x.", b"Double x."), (b"Width, m.", b"Width."), (b"is.", b"was."), (b"* x", b"* x  # why"), (b"\n\n\n", b"\n")],
+)
+def test_texts_and_layout_leave_the_key(before: bytes, after: bytes) -> None:
+    changed = TEXT.replace(before, after)
+    assert changed != TEXT
+    assert key_of([changed]) == key_of([TEXT])
+
+
+@pytest.mark.parametrize(("before", "after"), [(b"2.0", b"2.5"), (b"WIDTH * x", b"x * WIDTH"), (b"twice(x)", b"thrice(x)")])
+def test_every_change_of_code_changes_the_key(before: bytes, after: bytes) -> None:
+    changed = TEXT.replace(before, after)
+    assert changed != TEXT
+    assert key_of([changed]) != key_of([TEXT])
+
+
+def test_code_that_moves_to_another_file_changes_the_key() -> None:
+    assert key_of([TEXT, b""]) != key_of([b"", TEXT])
+
+
+def test_a_key_is_remembered_and_a_damaged_one_is_made_anew(tmp_path: Path) -> None:
+    key = key_of(path.read_bytes() for path in compiled_sources())
+    assert remembered_key(tmp_path) == key
+    (kept,) = tmp_path.iterdir()
+    kept.write_text("0" * len(key))
+    assert remembered_key(tmp_path) == "0" * len(key)  # what is read is used
+    kept.write_bytes(b"\xff damaged")
+    assert remembered_key(tmp_path) == key
+    assert kept.read_text() == key
+    assert remembered_key(tmp_path / "missing") == key_of(path.read_bytes() for path in compiled_sources())
+
+
+def steps(x: float, n: int) -> float:
+    """Every kind of operation that formulas and kernels have: sums, products, powers, comparisons, whole numbers."""
+    total = 1.5 * x - 2.0 / (3.0 + x)
+    for k in range(n):
+        total += x**k if k % 2 == 0 and total > 0.5 else -total * k
+    return total
+
+
+def assembly(**options: Any) -> str:
+    compiled = njit((types.float64, types.int64), **options)(steps)
+    (text,) = compiled.inspect_asm().values()
+    return re.sub(r"v\d+|B\d+|-w\d+|@[\w.]+|_ZN\w+", "", text)  # names that count what was compiled before
+
+
+def test_machine_code_is_that_of_numba() -> None:
+    lean, numbas = assembly(pipeline_class=LeanCompiler), assembly()
+    assert len(numbas) > 1000
+    assert lean == numbas
+
+
+def test_search_for_operators_and_collection_of_garbage_are_as_before_also_after_an_error() -> None:
+    def wrong(x: float) -> Any:
+        return x + "a"
+
+    with pytest.raises(TypingError):
+        njit((types.float64,), pipeline_class=LeanCompiler)(wrong)
+    assert gc.isenabled()
+    assert types.Function.get_call_type.__module__.startswith("numba.")
 
 
 @pytest.fixture(scope="module")

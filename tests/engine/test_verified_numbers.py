@@ -76,10 +76,11 @@ def test_peak_times_of_the_reconstructed_slab() -> None:
 def peak_times(run: ss.Solution) -> list[float]:
     """Times of the maxima of the slip rate above half the largest, from the event's own table of pulses."""
     from stickslip.trajectory.slip_events import walk
+    from stickslip.trajectory.turning_points import Turn
 
-    piece, xi, rate, _ = walk(run.history, 0.5 * run.events.peak_rate.max())
+    turns = Turn.of(walk(run.history, 0.5 * run.events.peak_rate.max()))
     tops: list[tuple[float, float]] = []
-    for n, place, height in zip(piece, xi, rate, strict=True):
+    for n, place, height in zip(turns.piece, turns.xi, turns.rate, strict=True):
         store = run.history.store
         time = float(run.history.start[n] + place * (store.speed[n] + place * store.bend[n]))
         if tops and time - tops[-1][0] < 0.5:

@@ -8,13 +8,12 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.explorer.model.answer import Answer, Floats
-from stickslip.explorer.model.energy_picture import energy_picture
-from stickslip.explorer.model.runs import MOST_PIECES, companion_of
+from stickslip.explorer.model.answer import Answer
+from stickslip.explorer.model.pictures import energy_picture
 from stickslip.explorer.model.sampled_waves import SampledWaves, Shown
 from stickslip.explorer.model.setting import Setting
-from stickslip.explorer.model.solve import solve
-from stickslip.explorer.model.stop import Stopped
+from stickslip.explorer.model.solve import MOST_PIECES, Stopped, companion_of, solve
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.observables.energy.balance import energies
 from stickslip.observables.field import Field
@@ -23,7 +22,7 @@ from stickslip.scenarios import library
 from stickslip.trajectory.history import History
 from tests.problems import scaled_rate
 
-NAMES = [name for name in library.names() if name != "rate-and-state-block"]
+NAMES = [name for name in library.in_1d() if name != "rate-and-state-block"]
 """All bundled scenarios but one, which takes a second to answer; it is the one that is stopped."""
 SLABS = [name for name in NAMES if "slab" in name or name.startswith(("fig4", "second"))]
 POINTS = 8_000
@@ -266,7 +265,7 @@ def test_long_run_that_is_stopped_is_shown_up_to_there() -> None:
 def test_energy_of_a_long_run_is_that_of_a_short_one(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     exact = answer(name).energy
     shown = Shown.of(answer(name).solution)
-    monkeypatch.setattr("stickslip.explorer.model.energy_picture.LONG_HISTORY", 0)
+    monkeypatch.setattr("stickslip.explorer.model.pictures.LONG_HISTORY", 0)
     rough = energy_picture(shown, SampledWaves(shown) if "slab" in name else None)
     assert set(rough.parts) == set(exact.parts)
     for part, values in exact.parts.items():
@@ -295,14 +294,14 @@ def test_run_that_is_stopped_before_it_begins_is_refused_in_one_line(monkeypatch
     def stopped(*_: object, **__: object) -> None:
         raise Stopped
 
-    monkeypatch.setattr("stickslip.explorer.model.runs.simulate", stopped)
+    monkeypatch.setattr("stickslip.explorer.model.solve.simulate", stopped)
     with pytest.raises(InputError, match="fig6-slab: stopped before the run had begun"):
         solve(Setting.bundled("fig6-slab").scenario())
 
 
 def test_memory_of_a_run_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     assert MOST_PIECES * 450 < 100e6  # bytes: 0.44 GB for a million pieces
-    monkeypatch.setattr("stickslip.explorer.model.runs.MOST_PIECES", 500)
+    monkeypatch.setattr("stickslip.explorer.model.solve.MOST_PIECES", 500)
     found = solve(Setting.bundled("rate-and-state-slab").scenario())
     assert found.solution.status.name == "too many pieces"
     assert "too many pieces" in found.notes[0]

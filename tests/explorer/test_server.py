@@ -30,11 +30,9 @@ from tornado.websocket import WebSocketClientConnection, websocket_connect
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.page.explorer import Explorer
 from stickslip.explorer.server import serve as serving
-from stickslip.explorer.server import sessions
-from stickslip.explorer.server.desk import ThreadDesk
+from stickslip.explorer.server.desk import ThreadDesk, Warming
 from stickslip.explorer.server.serve import Endpoint, ExplorerServer
 from stickslip.explorer.server.start import open_browser, start
-from stickslip.explorer.server.warm import Warming
 from stickslip.foundation.errors import InputError
 
 TOKEN = re.compile(r'"token":"([^"]+)"')
@@ -256,7 +254,7 @@ def test_a_body_that_is_too_large_is_refused() -> None:
 
 def test_one_page_too_many_is_refused_in_a_sentence_until_another_is_closed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(serving, "LOOK_EVERY_MS", 20)
-    monkeypatch.setattr(sessions, "LINGER_MS", 40.0)
+    monkeypatch.setattr(serving, "LINGER_MS", 40.0)
 
     async def test(served: Served) -> None:
         await served.enter()
@@ -316,7 +314,7 @@ def test_what_comes_before_the_browser_has_the_page_waits_for_it_in_order() -> N
 
 def test_nothing_of_a_closed_page_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(serving, "LOOK_EVERY_MS", 20)
-    monkeypatch.setattr(sessions, "LINGER_MS", 40.0)
+    monkeypatch.setattr(serving, "LINGER_MS", 40.0)
 
     async def test(served: Served) -> None:
         await served.enter()
@@ -396,7 +394,7 @@ def test_the_browser_is_opened_without_the_token_on_its_command_line(monkeypatch
 
 
 def test_pages_are_told_that_the_compiler_is_being_warmed_and_when_it_is_warm(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("stickslip.explorer.server.warm.FIRST_RUNS", ())
+    monkeypatch.setattr("stickslip.explorer.server.desk.FIRST_RUNS", ())
     warming, lines, others = Warming(), [], []
     warming.tell(lines.append)
     warming.tell(others.append)()

@@ -11,9 +11,8 @@ from typing import Any
 
 import pytest
 
-from stickslip.explorer.model import runs
-from stickslip.explorer.model.solve import solve
-from stickslip.explorer.model.stop import Stopped
+from stickslip.explorer.model import solve as solving
+from stickslip.explorer.model.solve import Stopped, solve
 from stickslip.explorer.server import desk as desks
 from stickslip.explorer.server.desk import ThreadDesk
 from stickslip.foundation.errors import InputError
@@ -233,7 +232,7 @@ rtol = 1e-12
 @pytest.fixture
 def endless(monkeypatch: pytest.MonkeyPatch) -> Callable[[Callable[[str], None]], Any]:
     """Return the work of the explorer on a run that nothing but an end from outside ends soon."""
-    monkeypatch.setattr(runs, "MOST_PIECES", 10**9)
+    monkeypatch.setattr(solving, "MOST_PIECES", 10**9)
     monkeypatch.setattr(desks, "PATIENCE", 0.0)
     return partial(solve, read_scenario(ENDLESS, "endless"))
 

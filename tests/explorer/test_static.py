@@ -17,8 +17,7 @@ from stickslip.explorer.model.solve import solve
 from stickslip.explorer.model.tour import TOUR
 from stickslip.explorer.page.panels import view_of
 from stickslip.explorer.static import export
-from stickslip.explorer.static.export import check_folder, content_of, write_tour
-from stickslip.explorer.static.packing import COARSE, LEVELS, SHORT, packed, script
+from stickslip.explorer.static.export import COARSE, LEVELS, SHORT, check_folder, content_of, packed, script, write_tour
 from stickslip.foundation.errors import InputError
 
 

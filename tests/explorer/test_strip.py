@@ -9,7 +9,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.explorer.model.setting import Setting
-from stickslip.explorer.model.stop import Stopped
+from stickslip.explorer.model.solve import Stopped
 from stickslip.explorer.model.strip import KEPT, MEMBERS, Strip, StripRange, present, strip_of, strip_text, usual_range
 from stickslip.foundation.errors import InputError
 from stickslip.scenarios.parameter_paths import find_parameter

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from stickslip.foundation.arrays import Floats
 from stickslip.observables.field import Field
-from stickslip.trajectory.history import Floats
 from tests.observables.runs import slab_of
 from tests.problems import (
     IMPEDANCE,

@@ -15,7 +15,9 @@ YEAR = 31_557_600.0
 
 VARYING = ("slide-hold-slide-block", "stress-pulse-slab", "tides-block", "velocity-steps-block")
 LABORATORY = ("bowed-string-slab", "direct-shear-block", "granite-slab", "kolsky-slab", "reversing-axis")
-OURS = (*LABORATORY, "block-or-slab", "cycles-block", "cycles-slab", "rate-and-state-block", "rate-and-state-slab", *VARYING)
+PLANAR = ("planar-patch", "planar-plane")
+CYCLES = ("cycles-block", "cycles-slab", "rate-and-state-block", "rate-and-state-slab")
+OURS = ("block-or-slab", *LABORATORY, *CYCLES, *VARYING, *PLANAR)
 PAPERS = [name for name in library.names() if name not in OURS]
 
 

@@ -11,11 +11,10 @@ import pytest
 import stickslip as ss
 from stickslip.foundation.errors import InputError
 from stickslip.io.series import read_series
-from stickslip.schemes.contact import SEARCHES, GridContact
 from stickslip.schemes.contract import Meeting
 from stickslip.schemes.finite_elements import Elements
 from stickslip.schemes.registry import SCHEMES, scheme_of
-from stickslip.schemes.run import grid_of, run_scheme
+from stickslip.schemes.run import SEARCHES, GridContact, grid_of, run_scheme
 from stickslip.schemes.sbp import NORMS, difference
 from stickslip.schemes.series import Series
 from stickslip.studies.scheme_measures import arrest_in, pulses_in

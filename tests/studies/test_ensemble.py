@@ -13,9 +13,8 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
-from stickslip.studies.disturbances import disturbed
 from stickslip.studies.ensemble import Ensemble, ensemble
-from stickslip.studies.separation import shared_events, slope, statistics_spread
+from stickslip.studies.separation import disturbed, shared_events, slope, statistics_spread
 
 SLAB = ss.ElasticSlab(2800, 3500, 1e4, 1e8)
 TRIP = SLAB.two_way_time

@@ -11,7 +11,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.studies.inference.inference import Inference
-from stickslip.studies.inference.jumps import Jumps, spread, unsure
+from stickslip.studies.inference.resample import Jumps, spread, unsure
 from tests.studies.laboratory import CoulombSlab, WeakeningSlab, correlated
 
 STRESS, NOISE, SLIP_NOISE, EVERY = 2.9e6, 2e3, 5e-8, 2e-6

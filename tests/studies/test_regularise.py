@@ -16,9 +16,8 @@ from stickslip.contact.regime_map import Axis
 from stickslip.foundation.errors import InputError
 from stickslip.reference.slab.folds import HyperbolicFolds, fold_delay
 from stickslip.scenarios.scenario import Scenario
-from stickslip.studies.regularisations import KINDS, regularised
+from stickslip.studies.regularisations import KINDS, passage, regularised
 from stickslip.studies.regularise import Regularisation, regularise
-from stickslip.studies.run_distance import passage
 
 LOOP = ss.load_scenario("fig4-loop")
 SECOND = ss.load_scenario("second-event-perfect-delay")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.studies.run_distance import difference, passage
+from stickslip.studies.regularisations import difference, passage
 from stickslip.studies.verdict import Errors, Verdict, groups, judge, local_orders, order_of
 
 SIZES = 0.1 / 4.0 ** np.arange(8)

@@ -14,8 +14,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.cli.main import main
-from stickslip.sweeps.results.checksums import FOLDER, vouch_for
-from stickslip.sweeps.results.store import open_store
+from stickslip.sweeps.results.store import FOLDER, open_store, vouch_for
 from stickslip.sweeps.sweep import SweepProgress
 from tests.sweeps.stores import VARY, files, sweep
 

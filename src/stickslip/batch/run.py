@@ -196,7 +196,7 @@ class _Batch:
             if lane == WIDTH or self.stop[0] != 0:
                 break
             if work.stage[lane] == Stage.AT_END:
-                work = work.with_more_points()
+                work = work.with_turns(2 * len(work.turns))
             elif work.code[lane] == Stop.NEED_PART:
                 lend_part(work.table[lane])  # and to the other lanes by `table_of`
             elif work.code[lane] != Stop.PAUSED and work.capacity < LARGEST_CAPACITY:

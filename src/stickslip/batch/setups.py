@@ -13,8 +13,8 @@ from stickslip.batch.vectorised_problem import Values, member, shared, vectorise
 from stickslip.engine.codegen.compiler import compile_formula
 from stickslip.engine.enclosure.formula import formulas_of
 from stickslip.engine.state.layout import Branch, Counts, Floats, Integers, LawPiece, Params, State
-from stickslip.engine_input.automatic import set_lumping, wait_for_creep
 from stickslip.engine_input.branch_table import is_algebraic, table_of_branches
+from stickslip.engine_input.limits import set_lumping, wait_for_creep
 from stickslip.engine_input.prepare import (
     first_load,
     functions_of,

@@ -20,7 +20,7 @@ from stickslip.bodies import ElasticSlab
 from stickslip.engine.codegen.uncompiled import UNCOMPILED
 from stickslip.engine.state.layout import Floats
 from stickslip.engine_input.branch_table import folds_move, is_algebraic
-from stickslip.engine_input.lumping_limits import LARGEST_SHARE, check_shortest_event
+from stickslip.engine_input.limits import LARGEST_SHARE, check_shortest_event
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import nearest
 from stickslip.foundation.quantities import Quantity, quantities_of

@@ -9,7 +9,6 @@ import numpy as np
 
 from stickslip.batch.kernels.lane_block import Block
 from stickslip.batch.kernels.lanes import Waits
-from stickslip.batch.kernels.points import POINTS_PER_PIECE, Points, new_points
 from stickslip.batch.kernels.runs import Stage
 from stickslip.batch.setups import Setups
 from stickslip.engine.codegen.simd import WIDTH
@@ -18,19 +17,26 @@ from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, EchoNode, Floats, Integers, Params, Setup, Store
 from stickslip.engine.state.workspace import ADDRESSES, RUN_SIZE, Run, lend
 from stickslip.engine_input.prepare import NOT_VARYING
+from stickslip.trajectory.slip_events import EventTurns
+from stickslip.trajectory.turning_points import Spare, Turn
 
 FIRST_CAPACITY, LARGEST_CAPACITY = 512, 32_768
 """Numbers of pieces of history for which a lane has room at first, and at most; a member that needs more is run by itself."""
+TURNS_PER_PIECE = 8
+"""Number of points of the slip rate (`trajectory.turning_points`) for which there is room at first, for each piece of history."""
 LINE = 16
 """Numbers (of 8 bytes) in two cache lines, which processors fetch together. Addresses of lanes must be multiples of one line."""
 
 
 class Workspace(NamedTuple):
-    """The memory of one thread, which serves all its members. The tables of `store` and `echoes` have a first axis of lanes."""
+    """The memory of one thread, which serves all its members. The tables of a history have a first axis of lanes."""
 
     store: Store
     echoes: Integers
-    points: Points
+    ways: Integers  # (WIDTH, capacity): see `trajectory.turning_points.Search`
+    turns: Integers  # table of `trajectory.turning_points.Turn`
+    events: Integers  # table of `trajectory.slip_events.EventTurns`
+    spare: Floats  # a `trajectory.turning_points.Spare`
     numbers: Floats  # room for the block of `kernels.lanes`
     block: Integers  # the address of this block
     stage: Integers  # (WIDTH,): codes of `kernels.runs.Stage`
@@ -55,13 +61,14 @@ class Workspace(NamedTuple):
         """Return a workspace with room for four times as many pieces, up to LARGEST_CAPACITY, which keeps the histories so far."""
         capacity = min(4 * self.capacity, LARGEST_CAPACITY)
         store, echoes = in_lanes(at.new_store(WIDTH * capacity)), EchoNode.table(WIDTH, capacity)
-        for old, new in zip((*self.store, self.echoes), (*store, echoes), strict=True):
+        ways = np.zeros((WIDTH, capacity), np.int64)
+        for old, new in zip((*self.store, self.echoes, self.ways), (*store, echoes, ways), strict=True):
             new[:, : old.shape[1]] = old
-        return self._replace(store=store, echoes=echoes, points=new_points(POINTS_PER_PIECE * capacity))
+        return self._replace(store=store, echoes=echoes, ways=ways).with_turns(TURNS_PER_PIECE * capacity)
 
-    def with_more_points(self) -> Workspace:
-        """Return a workspace with twice the room for turning points."""
-        return self._replace(points=new_points(2 * len(self.points.turns.xi)))
+    def with_turns(self, room: int) -> Workspace:
+        """Return a workspace with room for a number of points of the slip rate."""
+        return self._replace(turns=Turn.table(room), events=EventTurns.table(room))
 
 
 def in_lanes(store: Store) -> Store:
@@ -93,7 +100,10 @@ def new_workspace() -> Workspace:
     return Workspace(
         in_lanes(at.new_store(WIDTH * FIRST_CAPACITY)),
         EchoNode.table(WIDTH, FIRST_CAPACITY),
-        new_points(POINTS_PER_PIECE * FIRST_CAPACITY),
+        np.zeros((WIDTH, FIRST_CAPACITY), np.int64),
+        Turn.table(TURNS_PER_PIECE * FIRST_CAPACITY),
+        EventTurns.table(TURNS_PER_PIECE * FIRST_CAPACITY),
+        Spare.table(1),
         *new_block(0),
         stage,
         waits,

@@ -87,25 +87,7 @@ class BodyOnCharacteristics(Body, Protocol):
 
 
 def as_slab(body: BodyOnCharacteristics, refusal: str = "needs an elastic slab") -> ElasticSlab:
-    """Return a body that must be a slab.
-
-    Parameters
-    ----------
-    body
-        Any body.
-    refusal
-        Message of the error for any other body.
-
-    Returns
-    -------
-    ElasticSlab
-        The same body.
-
-    Raises
-    ------
-    InputError
-        If the body is not a slab.
-    """
+    """Return a body that must be a slab. Raises InputError with the text `refusal` for any other body."""
     if not isinstance(body, ElasticSlab):
         raise InputError(refusal)
     return body

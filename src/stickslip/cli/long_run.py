@@ -5,17 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import typer
 
+from stickslip.cli.output.contact import announce_run
 from stickslip.cli.output.files import CATALOGUES, Target, check_targets, file_size
 from stickslip.cli.overrides import load_with, read
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import number
-from stickslip.run.progress import LONG_RUN
-from stickslip.run.progress_line import progress_line
+from stickslip.run.progress import LONG_RUN, progress_line
 from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.schema import check_events, read_duration
 
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from stickslip.problem.problem import Problem
     from stickslip.run.catalogue import Catalogue
     from stickslip.run.progress import Progress, Report
+    from stickslip.solution.planar import PlanarSolution
     from stickslip.solution.solution import Solution
 
 CURE = "--catalogue FILE instead keeps slip events only, in bounded memory"
@@ -94,16 +96,17 @@ class Request:
 
     def check(self) -> None:
         """Refuse files that could not be written, and options that exclude each other. Raises InputError."""
-        check_targets(
-            Target("--out", self.out, (".nc",)), Target("--catalogue", self.catalogue, CATALOGUES), *self.pictures.targets()
-        )
-        self.pictures.check()
         if self.scenario is None and self.resume is None:
             raise InputError("run: nothing to run: give a SCENARIO, or --resume FILE")
+        results = Target("--out", self.out, (".zarr",) if self.has_contact else (".nc",))
+        check_targets(results, Target("--catalogue", self.catalogue, CATALOGUES), *self.pictures.targets())
+        self.pictures.check()
         as_begun = [self.overrides[name] for name in ("rtol", "creep_rtol", "shortest_event", "selection")]
         if self.resume is not None and any(option is not None for option in (self.changes, self.catalogue, *as_begun)):
             options = "--set, --rtol, --creep-rtol, --shortest-event, --selection and --catalogue"
             raise InputError(f"run: --resume goes on as the run began: leave out {options}")
+        if self.has_contact:
+            self._check_contact()
         if self.keeps_events_only:
             if self.out is not None:
                 raise InputError("run: a catalogue keeps slip events only, no history: leave out --out")
@@ -114,6 +117,22 @@ class Request:
             from stickslip.io.catalogue_rows import check_catalogue
 
             check_catalogue(self.catalogue, "--catalogue")
+
+    def _check_contact(self) -> None:
+        """Refuse what a contact of many nodes does not have. Raises InputError."""
+        self.pictures.check_contact("run")
+        typed = {f"--{name.replace('_', '-')}": value for name, value in self.overrides.items() if name != "duration"}
+        typed |= {"--max-pieces": self.max_pieces, "--catalogue": self.catalogue}
+        needless = [option for option, value in typed.items() if value is not None]
+        if needless:
+            raise InputError(
+                f"run: {needless[0]} has no effect with a [contact], whose nodes and courant set the accuracy: leave it out"
+            )
+
+    @cached_property
+    def has_contact(self) -> bool:
+        """True if the contact has many nodes, in 2D or 3D."""
+        return self.chosen.contact is not None if self.resume is None else self.resume.suffix == ".zarr"
 
     @property
     def keeps_events_only(self) -> bool:
@@ -136,10 +155,11 @@ class Request:
         typed: int | None = read(check_events, self.overrides["events"], "run", "events")
         return typed
 
-    def load(self) -> Scenario:
-        """Return the scenario with the changes that the options ask for. Raises InputError."""
+    @cached_property
+    def chosen(self) -> Scenario:
+        """The scenario with the changes that the options ask for. Raises InputError."""
         assert self.scenario is not None
-        return load_with("run", self.scenario, self.changes, **self.overrides)
+        return load_with("run", self.scenario, self.changes, contact=True, **self.overrides)
 
     def file_of(self, solution: Solution) -> Path | None:
         """Return the file into which the run wrote its solution: a full history is written only if --max-pieces was given."""
@@ -147,21 +167,32 @@ class Request:
         return (self.out or self.resume) if writes else None
 
 
+def solve_contact(request: Request) -> PlanarSolution:
+    """Run with a contact of many nodes, and say before the start how large the run is. Raises InputError."""
+    chosen = request.chosen
+    announce_run(chosen)
+    with progress_line(f"{chosen.name}:") as report:
+        from stickslip.run.simulate import simulate
+
+        assert chosen.contact is not None
+        return simulate(chosen.planar_slab, chosen.duration, frames=chosen.contact.frames, progress=report)
+
+
 def solve(request: Request) -> tuple[Scenario, Solution]:
     """Run with the whole history, from the start or from a checkpoint. Raises InputError."""
     keep: dict[str, Any] = {"checkpoint": request.out, "max_pieces": request.max_pieces}
     if request.resume is None:
-        chosen = request.load()
+        chosen = request.chosen
         request.pictures.check_problem(chosen.problem)
         with _watched(request, chosen.problem, chosen.name) as report:
             from stickslip.run.simulate import simulate  # imports the compiler, which takes a second
 
             return chosen, simulate(chosen, progress=report, **keep)
-    from stickslip.io.netcdf import open_solution
+    from stickslip.io.netcdf import read_solution
     from stickslip.run.options import RunOptions
     from stickslip.run.resume import resume_run
 
-    stopped = open_solution(request.resume)
+    stopped = read_solution(request.resume)
     check_same(request, stopped.problem)
     with _watched(request, stopped.problem, request.resume.stem) as report:
         others = {"progress": report, "checkpoint": request.out or request.resume, "max_pieces": request.max_pieces}
@@ -193,7 +224,7 @@ def list_events(request: Request) -> tuple[Scenario, Catalogue]:
     from stickslip.run.resume import PausedCatalogue
 
     if request.resume is None:
-        chosen = request.load()
+        chosen = request.chosen
         check_energy(chosen.creep_rtol, request.energy, "run", "--energy and --creep-rtol")
         with progress_line(f"{chosen.name}:") as report:
             options = RunOptions.of(chosen, progress=report, max_pieces=request.max_pieces)
@@ -211,7 +242,7 @@ def check_same(request: Request, problem: Problem) -> None:
     """Refuse to resume a run of another problem than the scenario named beside it. Raises InputError."""
     if request.scenario is None:
         return
-    asked = request.load().problem
+    asked = request.chosen.problem
     if asked != problem:
         differs = next(f.name for f in fields(problem) if getattr(asked, f.name) != getattr(problem, f.name))
         found = f"its {differs} is {getattr(problem, differs)!r}"

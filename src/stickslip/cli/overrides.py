@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from stickslip.engine_input.creep_limits import check_creep_rtol
-from stickslip.engine_input.lumping_limits import check_shortest_event
+from stickslip.engine_input.limits import check_creep_rtol, check_shortest_event
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
@@ -22,6 +21,7 @@ from stickslip.scenarios.entries import read_typed, typed_number
 from stickslip.scenarios.parameter_paths import with_values
 from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
 from stickslip.scenarios.schema import check_events, check_rule, read_duration
+from stickslip.scenarios.source import all_slips_alike
 from stickslip.scenarios.text_of_files import LARGEST_SCENARIO_FILE, text_of
 
 if TYPE_CHECKING:
@@ -35,9 +35,12 @@ STDIN = "-"
 """The name that stands for standard input in place of a scenario's."""
 
 
-def load(scenario: str, command: str = "", changes: Sequence[str] | None = None) -> Scenario:
-    """Load a scenario from a file, by its bundled name, or from standard input, with the values of --set. Raises InputError."""
-    loaded = _load(scenario)
+def load(scenario: str, command: str, changes: Sequence[str] | None = None, *, contact: bool = False) -> Scenario:
+    """Load a scenario from a file, by its bundled name, or from standard input, with the values of --set.
+
+    Raises InputError, also for a scenario with a contact of many nodes unless `contact` is True.
+    """
+    loaded = _load(scenario) if contact else all_slips_alike(command, _load(scenario))
     if not changes:
         return loaded
     where = f"{command}: --set"
@@ -54,12 +57,14 @@ def _load(scenario: str) -> Scenario:
     )
 
 
-def load_with(command: str, scenario: str, changes: Sequence[str] | None = None, **typed: Any) -> Scenario:
+def load_with(
+    command: str, scenario: str, changes: Sequence[str] | None = None, *, contact: bool = False, **typed: Any
+) -> Scenario:
     """Load a scenario and replace what was typed, by option, such as duration="480 years"; None is not typed.
 
-    `changes` are the values of --set, which come first. Raises InputError.
+    `changes` are the values of --set, which come first. Raises InputError as `load` does.
     """
-    loaded = load(scenario, command, changes)
+    loaded = load(scenario, command, changes, contact=contact)
     readers = _readers(loaded.problem)
     replaced = {}
     for option, value in typed.items():

@@ -39,24 +39,10 @@ class Branch:
 
 
 def branches(problem: Problem, law_slip: float | None = None) -> tuple[Branch, ...]:
-    """Return the stable branches of a slab's contact equation, slowest first.
+    """Return the stable branches of a slab's contact equation, slowest first: intervals of slip rates on which g rises.
 
-    Parameters
-    ----------
-    problem : Problem
-        Problem whose body is a slab.
-    law_slip : float, optional
-        Slip (m) as the law counts it; the initial one by default.
-
-    Returns
-    -------
-    tuple of Branch
-        Intervals of slip rates on which g rises.
-
-    Raises
-    ------
-    InputError
-        If the body is a block, or if friction falls at least as fast as Z s rises even at the fastest rate of the search.
+    The law slip (m) is the initial one by default. Raises InputError for a block, and if friction falls at least as fast as Z s
+    rises even at the fastest rate of the search.
     """
     return branches_of(resistance(problem, law_slip))
 

@@ -11,17 +11,16 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from stickslip.contact.equation import Resistance
 from stickslip.contact.uniqueness import regime_at
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.friction.contract import one_argument
 from stickslip.friction.formula.differences import value_and_slopes
 from stickslip.friction.formula.expression import Expression
 from stickslip.friction.law import FrictionLaw
-
-Array = NDArray[np.float64]
 
 ITERATIONS = 200
 """Largest number of steps of Newton's method or bisection: bisection alone takes some 60 for all digits."""
@@ -34,10 +33,10 @@ class Friction(NamedTuple):
     states `by_state` has one more axis in front, for the states.
     """
 
-    value: Array
-    by_slip: Array
-    by_rate: Array
-    by_state: Array
+    value: Floats
+    by_slip: Floats
+    by_rate: Floats
+    by_state: Floats
 
 
 @dataclass(frozen=True)
@@ -48,8 +47,8 @@ class ContactOnArrays:
     """
 
     law: FrictionLaw
-    impedance: float | Array
-    normal: float | Array
+    impedance: float | Floats
+    normal: float | Floats
 
     def __post_init__(self) -> None:
         for name in ("impedance", "normal"):
@@ -91,7 +90,7 @@ class ContactOnArrays:
         value, by_slip, by_rate, *by_state = found
         return Friction(value, by_slip, by_rate, by_state[0] if len(by_state) == 1 else np.stack(by_state))
 
-    def rate(self, load: ArrayLike, slip: ArrayLike, state: ArrayLike = 0.0) -> Array:
+    def rate(self, load: ArrayLike, slip: ArrayLike, state: ArrayLike = 0.0) -> Floats:
         """Solve the contact equation Z v + S mu(u, v) = load at each point (paper eqs 12-13).
 
         Parameters
@@ -127,11 +126,11 @@ class ContactOnArrays:
             found[slips] = self._root(load[slips], slip[slips], there, impedance[slips], normal[slips])
         return found
 
-    def _root(self, load: Array, slip: Array, state: Any, *contact: Array) -> Array:
+    def _root(self, load: Floats, slip: Floats, state: Any, *contact: Floats) -> Floats:
         """Return the root of each point by Newton's method, which bisects where it would leave the bracket."""
         impedance, normal = contact
 
-        def missing(rate: Array) -> tuple[Array, Array]:
+        def missing(rate: Floats) -> tuple[Floats, Floats]:
             mu = self.friction(slip, rate, state)
             return impedance * rate + normal * mu.value - load, impedance + normal * mu.by_rate
 
@@ -157,7 +156,7 @@ class ContactOnArrays:
         self._check_unique(missing, rate)
         return rate
 
-    def _check_unique(self, missing: Callable[[Array], tuple[Array, Any]], rate: Array) -> None:
+    def _check_unique(self, missing: Callable[[Floats], tuple[Floats, Any]], rate: Floats) -> None:
         """Refuse solutions that are not the only ones, as far as slopes between rest and the solution, and beyond it, show."""
         for share in (*np.linspace(0.0, 1.0, 17), 1.5, 2.0, 4.0, 16.0):
             if (missing(share * rate)[1] <= 0.0).any():

@@ -14,8 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.contact.branches import Branch, branches_of, rates_at
-from stickslip.contact.critical import critical_normal_stress
-from stickslip.contact.declared_critical import check_critical
+from stickslip.contact.critical import check_critical, critical_normal_stress
 from stickslip.contact.equation import Plateau, Resistance, resistance
 from stickslip.contact.folds import Certificate, Fold, Verdict, certificate, critical_stress_between, sentence
 from stickslip.contact.rules.loop import Jump, Loop, jumps_of, loop_of

@@ -29,15 +29,44 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 
 from stickslip.creep.pattern import Pattern
-from stickslip.creep.sight import Sight
+from stickslip.engine.codegen.compiler import CompiledFormula, compile_formula
 from stickslip.engine.contact_step.certificate import NEGLIGIBLE
-from stickslip.engine.state.layout import Floats
+from stickslip.engine.state.layout import Ball, Floats
 from stickslip.engine_input.branch_table import strength_change
+from stickslip.friction.formula.expression import Expression
 from stickslip.problem.problem import Problem
+
+
+@dataclass(frozen=True)
+class Sight:
+    """A compiled formula, with its constants at a reference slip."""
+
+    formula: CompiledFormula
+    constants: Floats
+
+    @classmethod
+    def of(cls, tree: Expression, parameters: tuple[str, ...], values: tuple[float, ...], reference: float) -> Self:
+        """Return a formula with these values of its parameters; slips count from the reference (m)."""
+        formula = compile_formula(tree, parameters, ())
+        numbers, constants = np.array(values), np.zeros(formula.size)
+        formula.fill(numbers, reference, constants)
+        return cls(formula, constants)
+
+    def change(self, slip: float, radius: float) -> float:
+        """Return a bound (1) of the change of friction at rest from a slip to slips up to `radius` away (both m).
+
+        The bound is infinite or NaN where nothing is known. Slips count from the reference.
+        """
+        ball = Ball(np.zeros(Ball.total))
+        ball.slip, ball.at_slip = radius, slip
+        self.formula.fill_radii(self.constants, ball.numbers)
+        return float(ball.friction)
+
 
 SLIPS_LOOKED_AT = 65
 """Number of slips at which the lowest friction of a stride is looked for, and again around the lowest of them."""

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.series.polynomial import crossings, restrict
+from stickslip.engine.series.polynomial import MOST_CROSSINGS, crossings, restrict
 from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.trajectory.history import horner
 
@@ -49,20 +49,20 @@ class Parts:
 
     def crossing(self, part: int, level: float) -> float:
         """Return the place in [0, 1] at which a part that straddles a level (Pa) crosses it."""
-        shifted, places = self.load[part].copy(), np.empty(TERMS)
+        shifted, places = self.load[part].copy(), np.empty(MOST_CROSSINGS)
         shifted[0] -= level
-        if crossings(shifted, places):
+        if crossings(shifted, places, np.empty(TERMS)):
             return float(places[0])
         return float(abs(shifted.sum()) < abs(shifted[0]))  # at an end, within rounding
 
 
 def monotone_parts(load: Floats, phase_from: Floats, speed: Floats, bend: Floats) -> Parts:
     """Cut the pieces of a load at their extrema."""
-    slope, places = np.zeros(TERMS), np.empty(TERMS)
+    slope, places, spare = np.zeros(TERMS), np.empty(MOST_CROSSINGS), np.empty(TERMS)
     rows: list[tuple[Floats, float, float, float]] = []
     for p, start, a, b in zip(load, phase_from, speed, bend, strict=True):
         slope[:-1] = p[1:] * np.arange(1, TERMS)
-        cuts = [0.0, *places[: crossings(slope, places)].tolist(), 1.0]
+        cuts = [0.0, *places[: crossings(slope, places, spare)].tolist(), 1.0]
         for left, right in pairwise(cuts):
             part, width = np.empty(TERMS), right - left
             restrict(p, left, width, part)

@@ -16,11 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.engine.waves.varying_forcing import dirichlet
+from stickslip.foundation.arrays import Floats
 from stickslip.loading import LoadingHistory, Segment, Tone
 from stickslip.loading.contract import SILENT
 from stickslip.problem.problem import Problem
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

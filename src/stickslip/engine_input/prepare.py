@@ -15,9 +15,9 @@ from stickslip.engine.codegen.compiler import CompiledFormula, compile_formula
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, FirstLoad, Integers, LawPiece, LoadingSegment, Params, Setup, State
 from stickslip.engine.state.workspace import counts_in, lend_problem, memory_of, params_in
-from stickslip.engine_input.automatic import set_length, set_lumping
 from stickslip.engine_input.branch_table import folds_move, is_algebraic, table_of_branches
 from stickslip.engine_input.forcing import inflow_of, steady_inflow, wave_before
+from stickslip.engine_input.limits import set_length, set_lumping
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SelectionRule

@@ -23,19 +23,9 @@ _INSTRUCTIONS = ("run.duration", "run.events", "run.creep_rtol", "run.shortest_e
 
 
 def parameter_name(name: str, meaning: str) -> str:
-    """Return the name of a parameter for an axis or a legend, with its symbol as mathtext.
+    """Return the name of a parameter for an axis or a legend, with its symbol as mathtext: "normal stress $S$ on the contact".
 
-    Parameters
-    ----------
-    name : str
-        Its place in a scenario, such as "friction.alpha" or "friction.values[2]".
-    meaning : str
-        Its declared meaning; what follows a comma, a colon, a semicolon or a bracket is left out.
-
-    Returns
-    -------
-    str
-        The name, such as "normal stress $S$ on the contact".
+    `name` is its place in a scenario. Of its declared meaning, what follows a comma, a colon, a semicolon or a bracket is left out.
     """
     return _typeset(_words(name, meaning), lambda letter, index: f"${_tex(letter)}{f'_{{{index}}}' if index else ''}$")
 

@@ -31,8 +31,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple, ParamSpec, TypeVar
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import YEAR
 
 if TYPE_CHECKING:
@@ -42,7 +42,6 @@ if TYPE_CHECKING:
 
 P = ParamSpec("P")
 T = TypeVar("T")
-Floats = NDArray[np.float64]
 
 # The palette of Okabe & Ito: readers with any colour vision can tell these colours apart, and in grey they differ in lightness.
 BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"
@@ -162,22 +161,10 @@ def curve_quantity(dims: str | Sequence[str], values: Any, curve: str, force_uni
 
 
 def unit_of(units: str, *values: Any, log: bool = False) -> tuple[str, float]:
-    """Return the readable unit (name, size in SI units) of values that share an axis.
+    """Return the readable unit (name, size in SI units) of values (SI) that share an axis: the largest of `UNITS` that fits.
 
-    Parameters
-    ----------
-    units : str
-        Their SI unit.
-    *values : array_like
-        All of them, in SI; only the largest magnitude counts. NaN and infinite values are left out.
-    log : bool
-        True for a logarithmic axis: values that span more than `DECADES` are shown in SI.
-
-    Returns
-    -------
-    tuple
-        The largest unit of `UNITS` of which the largest value is at least one (s, m and m/s: a half). If all are 0, or the unit
-        has no others, it is the SI unit.
+    The largest magnitude is at least one in it (s, m and m/s: a half). If all are 0 or the unit has no others, and on a logarithmic
+    axis for values that span more than `DECADES`, it is the SI unit.
     """
     units = SPELLED.get(units, units)
     known = np.concatenate([np.abs(np.ravel(np.asarray(one, float))) for one in values]) if values else np.zeros(0)

@@ -17,11 +17,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import has_unit
 from stickslip.foundation.errors import InputError, nearest, warn
 from stickslip.foundation.units import si_factor, split_quantity
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

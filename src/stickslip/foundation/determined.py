@@ -6,9 +6,8 @@ import math
 from collections.abc import Iterator, Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from stickslip.foundation.arrays import Floats
 
 UNSEEN = 1e-9
 """Change of friction by a combination of parameters, as a share of the largest, below which the points do not see it."""

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, Series, fields_of
 from stickslip.friction.contract import STATE_NAMES, one_argument
@@ -21,7 +21,6 @@ from stickslip.friction.contract import STATE_NAMES, one_argument
 if TYPE_CHECKING:
     from stickslip.friction.law import FrictionLaw
 
-Floats = NDArray[np.float64]
 
 RATES = np.append(0.0, np.geomspace(1e-9, 1e3, 73))
 """Slip rates (m/s) at which every law is sampled, beside multiples of its own scales."""

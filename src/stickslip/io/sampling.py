@@ -8,13 +8,11 @@ from dataclasses import dataclass
 from typing import TypedDict
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.solution.evaluation import Readings
 from stickslip.solution.window import Window
-
-Floats = NDArray[np.float64]
 
 MOST_VALUES = 20_000_000
 """Largest number of values computed for a series: one for each sample or, with the filter, some FINER len(NODES) = 64."""

@@ -14,9 +14,10 @@ from typing import Unpack
 import numpy as np
 
 import stickslip
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
-from stickslip.io.sampling import Floats, SampledRun, Sampling, sample
+from stickslip.io.sampling import SampledRun, Sampling, sample
 from stickslip.problem.problem import Problem
 from stickslip.scenarios.entries import to_table
 from stickslip.solution.evaluation import Readings

@@ -23,10 +23,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.bodies import ElasticSlab, as_slab
 from stickslip.engine.state.layout import TERMS
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.observables.waves import Waves
 from stickslip.problem.problem import Problem
-from stickslip.trajectory.history import Floats, History, Positions, Side
+from stickslip.trajectory.history import History, Positions, Side
 
 ROUNDS = 8
 """Round trips that are evaluated together."""

@@ -18,11 +18,12 @@ import numpy as np
 from stickslip.engine_input.branch_table import folds_move, is_algebraic
 from stickslip.engine_input.prepare import SAFETY
 from stickslip.foundation.arguments import shown
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.brief_repr import brief_repr
 from stickslip.foundation.constants import YEAR
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
-from stickslip.trajectory.history import Floats, History
+from stickslip.trajectory.history import History
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -33,16 +34,10 @@ LOST = 0.1
 
 @dataclass(frozen=True)
 class Predictability:
-    """The result of `predictability`.
+    """The result of `predictability`, at the times (s) at which pieces of the history, or slip events, start.
 
-    Attributes
-    ----------
-    time : ndarray
-        Times (s) at which pieces of the history, or slip events, start.
-    amplification : ndarray
-        Size at these times of a disturbance of the load that is 1 at the start of the run; NaN if it is not known.
-    error : float
-        First disturbance that tolerance and rounding make, as a share of the waves 2 Z v that slip sends out.
+    `amplification` is the size there of a disturbance of the load that is 1 at the start of the run; NaN if it is not known.
+    `error` is the first disturbance that tolerance and rounding make, as a share of the waves 2 Z v that slip sends out.
     """
 
     time: Floats

@@ -15,9 +15,10 @@ from numpy.typing import NDArray
 
 from stickslip.contact.branches import Branch, branches
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.brief_repr import brief_repr
 from stickslip.foundation.constants import YEAR
-from stickslip.trajectory.history import Floats, History, Side
+from stickslip.trajectory.history import History, Side
 from stickslip.trajectory.tables import shock_columns
 
 Regime = Literal["regular", "irregular", "continuum"]
@@ -70,21 +71,8 @@ class RuleInfluence:
 def rule_influence(history: History, load_curve: Callable[[], tuple[Floats, Floats]]) -> RuleInfluence:
     """Return what the selection rule decided in a run.
 
-    Parameters
-    ----------
-    history : History
-        History of the run.
-    load_curve : callable
-        Returns times (s) and loads (Pa) along the run, as `Solution.curve("load")`; it is called only if the rule has a choice at
-        some load.
-
-    Returns
-    -------
-    RuleInfluence
-
-    Notes
-    -----
-    The search for `since` overlooks a visit between the folds that begins and ends between two times of the curve.
+    `load_curve` returns times (s) and loads (Pa) along the run; it is called only if the rule has a choice at some load. The search
+    for `since` overlooks a visit between the folds that begins and ends between two times of the curve.
     """
     problem = history.problem
     contact = uniqueness_of(problem)

@@ -18,9 +18,10 @@ from numpy.typing import NDArray
 
 from stickslip.bodies import ElasticSlab
 from stickslip.engine_input.forcing import inflow_of, wave_before
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.observables.quadrature import NODES, WEIGHTS, over, places_in
-from stickslip.trajectory.history import START, Epoch, Floats, History, Positions
+from stickslip.trajectory.history import START, Epoch, History, Positions
 
 OfWave = Callable[[Floats, Floats], Floats]
 """A density as a function of a wave (Pa, plus or minus the reference) and of a time (s)."""

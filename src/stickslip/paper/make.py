@@ -15,32 +15,11 @@ if TYPE_CHECKING:
 
 
 def make(out: Path | str, progress: Callable[[str], object] | None = None, *, rtol: float = 1e-10) -> Path:
-    """Write figures, tables and the report on the paper to one folder.
+    """Write figures, tables and the report on the paper to one folder, and return the path of the report, `report.html`.
 
-    Parameters
-    ----------
-    out : Path or str
-        The folder; it is made if it does not exist.
-    progress : callable, optional
-        Called with one line of text before each step.
-    rtol : float
-        Relative tolerance of all runs.
-
-    Returns
-    -------
-    Path
-        The path of the report, `report.html`.
-
-    Raises
-    ------
-    OSError
-        If the folder cannot be written.
-    RuntimeError
-        If the engine gives up on a run.
-
-    Notes
-    -----
-    The same version writes the same files, byte for byte. A file is either whole or not there.
+    The same version writes the same files, byte for byte; a file is either whole or not there. `progress` is called with one line
+    of text before each step, and `rtol` is the relative tolerance of all runs. Raises OSError if the folder cannot be written, and
+    RuntimeError if the engine gives up on a run.
     """
     from stickslip.paper.plates import PLATES
     from stickslip.paper.report import report

@@ -19,8 +19,9 @@ import stickslip as ss
 from stickslip.bodies import as_slab
 from stickslip.observables.planar import pulses
 from stickslip.paper.cases import problem, typed
+from stickslip.planar.slab import PROCESS_ZONE
 from stickslip.problem.problem import Problem
-from stickslip.solution.planar import PROCESS_ZONE, PlanarSolution
+from stickslip.solution.planar import PlanarSolution
 
 PAPERS_EXCESS = 3430.0 / 0.5e8
 """The excess of the paper's slab (reconstructed) as a share of the amplitude of its friction: u0 = u_c + 1 mm."""

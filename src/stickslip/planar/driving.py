@@ -41,7 +41,7 @@ def locked_load(problem: Problem, steps: int, round_trips: int) -> Floats:
     slope, reflection = impedance * problem.first_pull_rate / (0.5 * trip), body.reflection
     found = np.empty((round_trips, steps + 1))
     found[0] = slope * within
-    late = within >= 0.5 * trip
+    late = 2 * np.arange(steps + 1) >= steps  # from h/c on
     if not body.is_driven_rigidly or isinstance(problem.pull_rate, LoadingHistory):
         # what the driver reflects then left the contact before the start: it follows from the initial stress and velocity
         before = slope * (trip - within[late]) - problem.load

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.foundation.errors import InputError, full_name
+from stickslip.foundation.quantities import Quantity, in_units, quantities_of
 from stickslip.friction import FrictionLaw
-from stickslip.problem.problem import Problem
+from stickslip.problem.problem import LOAD, Problem
 
 Floats = NDArray[np.float64]
 START = {"initial.load": "initial_load", "initial.excess": "initial_excess", "initial.state": "initial_state"}
@@ -30,6 +31,8 @@ class NodeValues:
     """Normal stress, Pa."""
     load: Floats
     """Load at t = 0, Pa."""
+    excess: Floats
+    """Load minus static strength at t = 0, Pa."""
     slip: Floats
     """Slip at t = 0, m."""
     law_slip: Floats
@@ -101,7 +104,7 @@ def node_values(problem: Problem, along: Mapping[str, Floats], shape: tuple[int,
     InputError
         If a name is unknown, or a node would have a number that its problem does not allow.
     """
-    names = {name: _full_name(problem, name) for name in along}
+    names = full_names(problem, along, "PlanarSlab: along")
     if not along:
         problems, which = [problem], np.zeros(int(np.prod(shape)), int)
     else:
@@ -121,6 +124,7 @@ def node_values(problem: Problem, along: Mapping[str, Floats], shape: tuple[int,
         problems=tuple(problems),
         normal=spread([one.normal for one in problems]),
         load=spread([one.strength + one.excess for one in problems]),
+        excess=spread([one.excess for one in problems]),
         slip=spread([one.initial_slip for one in problems]),
         law_slip=spread([one.law_slip for one in problems]),
         states=spread(np.reshape([one.states for one in problems], (len(problems), -1)).T),
@@ -130,9 +134,27 @@ def node_values(problem: Problem, along: Mapping[str, Floats], shape: tuple[int,
     )
 
 
-def _full_name(problem: Problem, name: str) -> str:
-    allowed = [one for one in (*problem.parameters, *START) if one.startswith(MAY_VARY)]
-    return full_name(name, allowed, "PlanarSlab: along: ", "is not a number that can vary along the contact")
+def varying(problem: Problem) -> dict[str, tuple[Quantity, float]]:
+    """Return the numbers of a problem that may vary along a contact, by name: what is declared of each, and its value (SI)."""
+    found = {one.name: (one.declared, one.value) for one in problem.parameters.values() if one.name.startswith(MAY_VARY)}
+    for name, value in (("initial.load", problem.load), ("initial.excess", problem.excess)):
+        found[name] = in_units(quantities_of(Problem)[START[name]], {LOAD: problem.load_unit}), value
+    for state, value in zip(problem.friction.states[:1], problem.given_states, strict=False):
+        found["initial.state"] = Quantity(state.unit, state.meaning), value
+    return found
+
+
+def full_names(problem: Problem, names: Iterable[str], who: str) -> dict[str, str]:
+    """Return the full names of numbers that may vary, by the given names. Raises InputError, which begins with `who`."""
+    allowed = varying(problem)
+    found = {name: full_name(name, allowed, f"{who}: ", "is not a number that can vary along the contact") for name in names}
+    given: dict[str, str] = {}
+    for name, full in found.items():
+        if given.setdefault(full, name) != name:
+            raise InputError(f"{who}: {given[full]} and {name} are the same number")
+    if {"initial.load", "initial.excess"} <= set(given):
+        raise InputError(f"{who}: initial.load and initial.excess exclude each other")
+    return found
 
 
 def _with(problem: Problem, values: Mapping[str, float]) -> Problem:

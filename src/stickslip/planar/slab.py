@@ -16,7 +16,7 @@ from stickslip.contact.uniqueness import regime_of
 from stickslip.foundation.arguments import CheckedArguments, shown
 from stickslip.foundation.conversion import Number, OptionalNumber
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import check_fields, quantity
+from stickslip.foundation.quantities import Quantity, check_fields, declare, quantity
 from stickslip.planar.nodes import NodeValues, node_values
 from stickslip.problem.problem import Problem, check_problem
 
@@ -24,8 +24,17 @@ Profile = ArrayLike | Callable[..., Any]
 """Values at the nodes: an array, or a function of y, or of y and z (m), that returns one."""
 FEWEST_NODES = 8
 """Smallest number of nodes along an axis of the contact."""
+COUNTS = ("nodes", "width_nodes")
+"""The fields that count nodes."""
+MOST_NODES = 2**22
+"""Largest number of nodes: more do not fit into the memory that a run may take."""
 WIDEST_STEP = 2.5
 """Largest phase w dt, of the shortest wave in one time step, for which the steps were seen to be stable."""
+ENOUGH_NODES = 5.0
+"""Nodes in a process zone from which a front is called resolved: a rule of thumb, which twice the nodes put to the test."""
+PROCESS_ZONE = 9.0 * math.pi / 16.0
+"""Length of the process zone of a slow front, times the largest -S mu'/G: K^2/(4 G) is the fracture energy (strength drop) Dc/2,
+with K = 4/3 sqrt(2 length/pi) (strength drop)."""
 STEEPEST = 0.5
 """Largest change of strength with slip in one time step, S |mu'| dt, as a share of the impedance."""
 
@@ -73,10 +82,10 @@ class PlanarSlab(CheckedArguments):
     """
 
     problem: Problem
-    nodes: int
+    nodes: int = declare(Quantity("1", "number of nodes along y, even", at_least=FEWEST_NODES))
     length: Number = quantity("m", "length of the contact along y", above=0)
     width: OptionalNumber = quantity("m", "width of the contact along z, for a plane", above=0, default=None)
-    width_nodes: int | None = None
+    width_nodes: int | None = declare(Quantity("1", "number of nodes along z, even, for a plane", at_least=FEWEST_NODES), None)
     along: Mapping[str, Profile] = field(default_factory=dict)
     barrier: Profile | None = None
     replicas: bool = True
@@ -84,7 +93,7 @@ class PlanarSlab(CheckedArguments):
 
     def __post_init__(self) -> None:
         check_problem("PlanarSlab", self.problem)
-        check_fields(self)
+        check_fields(self, but=COUNTS)
         self._check_problem()
         self._check_grid()
         _ = self.values, self.locked
@@ -109,12 +118,14 @@ class PlanarSlab(CheckedArguments):
     def _check_grid(self) -> None:
         if (self.width is None) != (self.width_nodes is None):
             raise InputError("PlanarSlab: width and width_nodes belong together: give both for a plane, neither for a line")
-        for name in ("nodes", "width_nodes"):
+        for name in COUNTS:
             count = getattr(self, name)
             if count is None:
                 continue
             if isinstance(count, bool) or not isinstance(count, int | np.integer) or count < FEWEST_NODES or count % 2:
                 raise InputError(f"PlanarSlab: {name} must be an even whole number, at least {FEWEST_NODES}, got {shown(count)}")
+        if math.prod(self.shape) > MOST_NODES:
+            raise InputError(f"PlanarSlab: a contact may have {MOST_NODES} nodes, got {' x '.join(map(str, self.shape))}")
         finest = math.sqrt(sum((math.pi / step) ** 2 for step in self.spacing))
         largest = WIDEST_STEP / (finest * min(self.spacing))
         if self.courant > largest:
@@ -177,17 +188,41 @@ class PlanarSlab(CheckedArguments):
         """The positions of the nodes along z (m), 0 in the middle; an empty array for a line."""
         return _positions(self.shape[1], self.spacing[1]) if self.is_plane else np.empty(0)
 
+    @property
+    def reach(self) -> float:
+        """Slip (m) that is hardly exceeded: twice the slip that would take all load off a slab at rest."""
+        return 2.0 * float(np.abs(self.values.load).max()) * self.body.thickness / self.body.shear_modulus
+
+    def nodes_per_process_zone(self, reach: float) -> float:
+        """Return the nodes within the process zone of a slow front, where friction falls from its peak; NaN if it does not fall.
+
+        It is 9 pi/16 G divided by the largest fall of strength with slip (Pa/m) and by the distance of nodes: the length over which
+        strength that falls linearly with distance takes the fracture energy of linear slip weakening. (Between two half-spaces it
+        is 9 pi/32, for which codes cite Day et al. 2005.) Zones of slow fronts were measured to have 5/6 of it, in
+        `tests/reference/test_long_faults.py`; those of fronts of speed V are shorter by sqrt(1 - V^2/c^2).
+
+        Parameters
+        ----------
+        reach
+            Slip (m) from the start up to which strength is looked at.
+        """
+        fall = self.values.slopes(reach)[0]
+        return PROCESS_ZONE * self.body.shear_modulus / fall / max(self.spacing) if fall > 0.0 else math.nan
+
     @cached_property
     def steps_per_round_trip(self) -> int:
         """The number of time steps in a two-way travel time R.
 
         It is the smallest that keeps to `courant`, and in which radiation outweighs the change of strength with slip: S |mu'| dt
-        is at most Z/2. How far friction reaches is taken from the slip that would take all load off a slab at rest, twice.
+        is at most Z/2, up to a slip of `reach`.
         """
-        reach = 2.0 * float(np.abs(self.values.load).max()) * self.body.thickness / self.body.shear_modulus
-        steep = max(self.values.slopes(reach)) if reach > 0.0 else 0.0
+        steep = max(self.values.slopes(self.reach)) if self.reach > 0.0 else 0.0
         waves = 2.0 * self.body.thickness / (self.courant * min(self.spacing))
         return math.ceil(max(waves, self.body.two_way_time * steep / (STEEPEST * self.body.impedance)) - 1e-9)
+
+    def round_trips(self, duration: float) -> int:
+        """Return the number of round trips that a run of this duration (s) begins."""
+        return max(1, math.ceil(duration / self.body.two_way_time - 1e-9))
 
     def alone_for(self, duration: float) -> tuple[PlanarSlab, tuple[slice, ...]]:
         """Return a periodic slab that holds this contact so far from its replicas that no wave of them arrives in time.
@@ -211,6 +246,9 @@ class PlanarSlab(CheckedArguments):
         counts = [
             2 * next_fast_len(math.ceil((count + reach / step) / 2)) for count, step in zip(self.shape, self.spacing, strict=True)
         ]
+        if math.prod(counts) > MOST_NODES:
+            needed = " x ".join(map(str, counts))
+            raise InputError(f"PlanarSlab: {duration:g} s without replicas need {needed} nodes, allowed are {MOST_NODES}")
         more = [large - count for large, count in zip(counts, self.shape, strict=True)]
         room = [(extra // 2, extra - extra // 2) for extra in more]
         along = {name: np.pad(self.at_nodes(name, given), room, mode="edge") for name, given in self.along.items()}
@@ -229,6 +267,8 @@ class PlanarSlab(CheckedArguments):
         try:
             values = np.asarray(given(*where) if callable(given) else given)
             values = np.array(np.broadcast_to(values, self.shape), kind)
+        except InputError:
+            raise
         except (TypeError, ValueError) as error:
             raise InputError(f"PlanarSlab: {name} must give {self.shape} values, one for each node: {error}") from None
         if not np.isfinite(values).all():

@@ -12,8 +12,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief
 from stickslip.friction.contract import STATE_NAMES, one_argument
@@ -29,7 +29,6 @@ INITIAL_STATES = tuple(f"initial_{name}" for name in STATE_NAMES)
 """Names of the initial states in a `Problem`."""
 AT_ONCE, ROUNDS = 304, 8
 """Number of slip rates that are tried together, first one in each decade, and how often they close in on the balance."""
-Floats = NDArray[np.float64]
 
 
 class Start(NamedTuple):

@@ -15,13 +15,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from stickslip.bodies import SpringBlock
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -18,20 +18,18 @@ from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import EchoNode, Floats, Integers, Setup, Stop, Store
 from stickslip.engine.state.workspace import counts_in, lend, lend_history, scratch_in, state_in
 from stickslip.engine.waves.echo_queue import rebuild_queue
-from stickslip.engine_input.automatic import lumping_note
 from stickslip.engine_input.branch_table import RuleFollower, renewed
-from stickslip.engine_input.creep_limits import creep_tolerance
+from stickslip.engine_input.limits import creep_tolerance, lumping_note
 from stickslip.engine_input.prepare import prepare
 from stickslip.foundation.errors import InputError
 from stickslip.observables.event_stream import EventStream
 from stickslip.problem.problem import Problem
 from stickslip.run.options import RunOptions
 from stickslip.solution.solution import Solution
-from stickslip.trajectory.checkpoint import Checkpoint, engine
 from stickslip.trajectory.history import NO_LEAPS, History
 from stickslip.trajectory.phase_index import standing_behind
 from stickslip.trajectory.slip_events import default_event_rate
-from stickslip.trajectory.status import ENOUGH_EVENTS, STATUSES, rounding_note
+from stickslip.trajectory.status import ENOUGH_EVENTS, STATUSES, Checkpoint, engine, rounding_note
 
 FIRST_CAPACITY = 256
 """Pieces of history for which a run has room at first, 0.1 MB; the room grows fourfold when it is full."""

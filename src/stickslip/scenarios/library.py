@@ -8,7 +8,7 @@ from functools import cache
 from html import escape
 from importlib import resources
 from importlib.resources.abc import Traversable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError, nearest
@@ -41,10 +41,18 @@ def text(name: str) -> str:
 
 
 @cache
+def _documents() -> dict[str, dict[str, Any]]:
+    return {name: tomllib.loads(text(name)) for name in names()}
+
+
 def entries() -> dict[str, Entry]:
     """Return what each bundled scenario says about itself, by name."""
-    documents = {name: tomllib.loads(text(name)) for name in names()}
-    return {name: Entry(document["title"], document["description"]) for name, document in documents.items()}
+    return {name: Entry(document["title"], document["description"]) for name, document in _documents().items()}
+
+
+def in_1d() -> list[str]:
+    """Return the names of the bundled scenarios without a contact of many nodes."""
+    return [name for name, document in _documents().items() if "contact" not in document]
 
 
 class BundledScenarios(Mapping[str, "Scenario"]):

@@ -13,17 +13,25 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from stickslip.foundation.errors import full_name
-from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, fields_of
+from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, fields_of, quantities_of
+from stickslip.planar.nodes import varying
+from stickslip.problem.problem import Problem
+from stickslip.problem.run_quantities import DURATION
 from stickslip.problem.selection_rule import names as rules
+from stickslip.scenarios.contact import LOCKED, Contact
+from stickslip.scenarios.contact_table import PLACES, TAPER
 from stickslip.scenarios.entries import Source, key_of
 from stickslip.scenarios.scenario import Scenario, scenario_of
 from stickslip.scenarios.schema import entries_in
 
 EVENTS = Quantity("1", "stop after this number of slip events", at_least=1)
 SELECTION = "selection rule"
+YES_OR_NO = Choice("true or false", ("true", "false"))
+WHOLE = ("run.events", "contact.nodes", "contact.width_nodes", "contact.frames")
+"""Parameters that count."""
 EXCLUDE_EACH_OTHER = {"initial.load": "excess", "initial.excess": "load"}
 """A scenario has either an initial load or an initial excess. The one that is given another value replaces the other."""
-_LAST_STEP = re.compile(r"(?P<name>[^\[]+)(?:\[(?P<index>\d+)\])?")
+_STEP = re.compile(r"(?P<name>[^\[]+)(?:\[(?P<index>\d+)\])?")
 
 
 @dataclass(frozen=True)
@@ -46,24 +54,31 @@ class ParameterPath:
         Raises InputError, whose message begins with `where`.
         """
         value = value.strip() if isinstance(value, str) else value
-        if isinstance(self.declared, Choice):
-            return self.declared.check(where, self.name, value)
+        value = str(value).lower() if isinstance(value, bool) and self.declared is YES_OR_NO else value
         return self.declared.check(where, self.name, value)
 
     def put(self, document: dict[str, Any], value: float | str) -> None:
         """Write a value (SI) into the document of a scenario, in place of the one that is there."""
-        *tables, last = self.name.split(".")
-        for table in tables:
-            document = document[table]
-        found = _LAST_STEP.fullmatch(last)
-        assert found
-        if found["index"]:
-            document[found["name"]][int(found["index"])] = value
-        elif self.written:
-            document[last] = f"{value!r} {self.written}"
+        owner, key = _place_of(self.name, document)
+        if self.written:
+            owner[key] = f"{value!r} {self.written}"
+        elif self.declared is YES_OR_NO:
+            owner[key] = value == "true"
         else:
-            whole = self.name == "run.events" and isinstance(value, float) and value.is_integer()
-            document[last] = int(value) if whole else value
+            whole = self.name in WHOLE and isinstance(value, float) and value.is_integer()
+            owner[key] = int(value) if whole else value
+
+
+def _place_of(name: str, document: Any) -> tuple[Any, Any]:
+    """Return the table or list in a document that has a value with this name, and its key or index there."""
+    step, dot, rest = name.partition(".")
+    found = _STEP.fullmatch(step)
+    if found is None or name in document:
+        return document, name
+    if not dot:
+        return (document[found["name"]], int(found["index"])) if found["index"] else (document, step)
+    inner = document[found["name"]]
+    return _place_of(rest, inner[int(found["index"])] if found["index"] else inner)
 
 
 def find_parameter(scenario: Scenario, name: str, where: str) -> ParameterPath:
@@ -74,12 +89,14 @@ def find_parameter(scenario: Scenario, name: str, where: str) -> ParameterPath:
 
 def with_values(scenario: Scenario, values: Mapping[str, Any], where: str) -> Scenario:
     """Return a scenario in which some parameters have other values, as `Scenario.with_values` does; `where` begins messages."""
-    document = tomllib.loads(scenario.to_toml())
+    document, texts = tomllib.loads(scenario.to_toml()), []
     for name, value in values.items():
         parameter = find_parameter(scenario, name, where)
         document["initial"].pop(EXCLUDE_EACH_OTHER.get(parameter.name), None)
         parameter.put(document, parameter.read(value, where))
-    changed = ", ".join(f"{name} = {value}" for name, value in values.items())
+        counts = parameter.name in WHOLE and isinstance(value, float) and value.is_integer()
+        texts.append(f"{name} = {int(value) if counts else value}")
+    changed = ", ".join(texts)
     title = f"{scenario.heading}: {changed}" if scenario.heading else changed
     return replace(scenario_of(document, Source(where)), name=scenario.name, title=title, description="")
 
@@ -89,12 +106,32 @@ def parameter_paths(scenario: Scenario) -> Iterator[ParameterPath]:
     problem = scenario.problem
     yield from _paths_in(problem.body, "body")
     yield from _paths_in(problem.friction, "friction")
-    for table in ("loading", "initial", "run"):
+    tables = ("loading", "initial") if scenario.contact is not None else ("loading", "initial", "run")
+    for table in tables:
         for name, (declared, _) in entries_in(table, type(problem.body), problem.friction.states).items():
             if isinstance(declared, Quantity) and (f"{table}.{name}" != "initial.rate" or problem.has_initial_rate):
                 yield ParameterPath(f"{table}.{name}", declared)
+    if scenario.contact is not None:
+        yield ParameterPath("run.duration", DURATION)
+        yield from _paths_in_contact(scenario.contact, problem)
+        return
     yield ParameterPath("run.events", EVENTS)
     yield ParameterPath("run.selection", Choice(SELECTION, tuple(rules())))
+
+
+def _paths_in_contact(contact: Contact, problem: Problem) -> Iterator[ParameterPath]:
+    """Yield the sizes of a contact, and the numbers of its patches."""
+    for name, declared in quantities_of(Contact).items():
+        yield ParameterPath(f"contact.{name}", declared)
+    yield ParameterPath("contact.replicas", YES_OR_NO)
+    units = {name: declared for name, (declared, _) in varying(problem).items()}
+    for i, patch in enumerate(contact.patches):
+        place, values = f"contact.patches[{i}]", [name for name, _ in patch.values if name != LOCKED]
+        for axis, declared in PLACES.items():
+            yield from (ParameterPath(f"{place}.{axis}[{j}]", declared) for j in range(len(getattr(patch, axis) or ())))
+        yield from (ParameterPath(f"{place}.{name}", units[name]) for name in values)
+        if values:
+            yield ParameterPath(f"{place}.taper", TAPER)
 
 
 def _paths_in(owner: Any, place: str) -> Iterator[ParameterPath]:

@@ -6,13 +6,13 @@ import re
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 import tomli_w
 
-from stickslip.engine_input.creep_limits import check_creep_rtol
-from stickslip.engine_input.lumping_limits import check_shortest_event
+from stickslip.engine_input.limits import check_creep_rtol, check_shortest_event
 from stickslip.foundation.arguments import as_path, shown
 from stickslip.foundation.brief_repr import shown_fields
 from stickslip.foundation.conversion import Number
@@ -20,11 +20,14 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import html_table
 from stickslip.foundation.quantities import check_fields, declare
 from stickslip.loading import LoadingHistory
+from stickslip.planar.slab import PlanarSlab
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import DURATION, check_rtol
 from stickslip.scenarios import library
+from stickslip.scenarios.contact import Contact
+from stickslip.scenarios.contact_table import contact_table, read_contact
 from stickslip.scenarios.entries import Source, to_table
-from stickslip.scenarios.schema import KINDS, read_document, read_part, read_table, without_owner
+from stickslip.scenarios.schema import CONTACT, KINDS, read_document, read_part, read_table, without_owner
 from stickslip.scenarios.text_of_files import about_suffix, read_text, why_not_toml
 
 if TYPE_CHECKING:
@@ -64,6 +67,8 @@ class Scenario:
         Number of slip events after which the run stops.
     creep_rtol, shortest_event : float or None
         Options of `stickslip.simulate` (shortest_event in s); None stands for automatic.
+    contact : Contact or None
+        The grid along the contact, and what varies along it; None for a contact all of which slips alike. `planar_slab` is the two.
     name : str
         Name for messages and figures.
     source : str
@@ -78,6 +83,7 @@ class Scenario:
     max_events: int | None = None
     creep_rtol: float | None = None
     shortest_event: float | None = None
+    contact: Contact | None = None
     name: str = field(default=UNNAMED, compare=False)
     source: str = field(default="", compare=False, repr=False)
 
@@ -98,6 +104,13 @@ class Scenario:
     def heading(self) -> str:
         """The title of figures: the scenario's title or name; "" if it has neither."""
         return self.title or (self.name if self.name != UNNAMED else "")
+
+    @cached_property
+    def planar_slab(self) -> PlanarSlab:
+        """The slab with the contact of this scenario, which `stickslip.simulate` runs. Raises InputError if there is no contact."""
+        if self.contact is None:
+            raise InputError(f"{self.name}: has no [contact] of many nodes: take its .problem")
+        return self.contact.slab(self.problem)
 
     @classmethod
     def of(cls, solution: Solution, name: str = UNNAMED) -> Self:
@@ -148,6 +161,9 @@ class Scenario:
             if value is not None and f.name not in ("body", "friction", "selection"):
                 table = "initial" if f.name.startswith("initial_") else "loading"
                 tables[table][f.name.removeprefix("initial_")] = to_table(value) if isinstance(value, LoadingHistory) else value
+        if self.contact is not None:
+            tables |= {CONTACT: contact_table(self.contact), "run": {"duration": self.duration}}
+            return tomli_w.dumps(tables, multiline_strings=True)
         run = {"duration": self.duration, "events": self.max_events, "rtol": self.rtol, "creep_rtol": self.creep_rtol}
         run["shortest_event"] = self.shortest_event
         tables["run"] = _without_none(run | {"selection": problem.rule})
@@ -195,28 +211,9 @@ def load_scenario(path_or_name: str | Path) -> Scenario:
 
 
 def read_scenario(text: str, file: str, name: str | None = None, folder: Path | None = None) -> Scenario:
-    """Read a scenario from TOML text.
+    """Read a scenario from TOML text; `file` is the name of the text in messages. Raises InputError as `load_scenario`.
 
-    Parameters
-    ----------
-    text : str
-        The TOML text.
-    file : str
-        Name of the text in messages.
-    name : str, optional
-        Name of the scenario; `file` by default.
-    folder : Path, optional
-        Folder of its data files. Without one the scenario cannot name data files.
-
-    Returns
-    -------
-    Scenario
-        The scenario.
-
-    Raises
-    ------
-    InputError
-        As from `load_scenario`.
+    `name` is that of the scenario, `file` by default. Without a `folder` of its data files it cannot name any.
     """
     if len(text) > LARGEST_TEXT:
         raise InputError(f"{file}: longer than {LARGEST_TEXT} characters: not a scenario")
@@ -244,11 +241,28 @@ def scenario_of(raw: Mapping[str, Any], source: Source) -> Scenario:
         problem = Problem(body, law, **loading, **start, selection=run.pop("selection"))
     except InputError as error:
         raise InputError(f"{file}: {_in_tables(without_owner(error))}") from None
+    if document[CONTACT] is not None:
+        return _with_contact(Scenario(problem, run["duration"], name=file), document, source)
     check_rtol(run["rtol"], file, "[run] rtol")
     check_creep_rtol(problem, run["creep_rtol"], file, "[run] creep_rtol")
     check_shortest_event(problem, run["shortest_event"], file, "[run] shortest_event")
     limits = {"max_events": run.pop("events")}
     return Scenario(problem, **run, **limits, title=document["title"], description=document["description"], name=file)
+
+
+def _with_contact(plain: Scenario, document: Mapping[str, Any], source: Source) -> Scenario:
+    """Return a scenario with the contact and the texts of a document. Raises InputError."""
+    needless = next((name for name in document["run"] if name != "duration"), None)
+    if needless is not None:
+        why = "has no effect with a [contact], whose nodes and courant set the accuracy: leave it out"
+        raise InputError(f"{source.file}: [run] {needless} {why}")
+    contact = read_contact(read_table(CONTACT, Contact, document[CONTACT], source), plain.problem, source.file)
+    found = replace(plain, contact=contact, title=document["title"], description=document["description"])
+    try:
+        _ = found.planar_slab
+    except InputError as error:
+        raise InputError(f"{source.file}: [contact] {without_owner(error)}") from None
+    return found
 
 
 def _in_tables(message: str) -> str:

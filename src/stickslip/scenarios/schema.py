@@ -12,7 +12,7 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from stickslip.bodies import BODIES
-from stickslip.foundation.arguments import check_whole, shown
+from stickslip.foundation.arguments import check_type, check_whole, shown
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import Field as Declared
 from stickslip.foundation.quantities import Part, Quantity, fields_of, in_units
@@ -24,6 +24,7 @@ from stickslip.problem.problem import LOAD, MAY_VARY, Problem
 from stickslip.problem.run_quantities import CREEP_RTOL, DURATION, RTOL, SHORTEST_EVENT
 from stickslip.problem.selection_rule import SELECTION_RULES, names, unknown
 from stickslip.problem.start import STEADY
+from stickslip.scenarios.contact import Contact
 from stickslip.scenarios.entries import DocumentPlace, Source, describe, key_of, read_entry, read_points, read_typed
 
 KINDS: dict[str, Mapping[str, type]] = {"body": BODIES, "friction": LAWS}
@@ -32,6 +33,8 @@ REGISTERED = KINDS | {"loading": HISTORIES}
 """Classes that `kind` may name in a table or in one of its parts, such as [loading.pull_rate]."""
 TABLES = ("body", "friction", "loading", "initial", "run")
 """The tables of a scenario."""
+CONTACT = "contact"
+"""The table that a scenario has if its contact is a line or a plane of nodes."""
 MOST_EVENTS = 10**12
 """Number of slip events that no run reaches."""
 NO_STATE = {"state": Quantity("1", "state variable of the friction law, if it has one")}
@@ -58,8 +61,13 @@ def _read_inner(value: Any, place: DocumentPlace) -> dict[str, Any]:
     return value
 
 
+def _read_as(kind: type, wanted: str, value: Any, place: DocumentPlace) -> Any:
+    check_type(f"{place.source.file}: {place}", value, kind, wanted)
+    return value
+
+
 _DOCUMENT = {name: Key(_read_text, "") for name in ("title", "description")} | {name: Key(_read_inner) for name in TABLES}
-_DOCUMENT["loading"] = Key(_read_inner, MappingProxyType({}))
+_DOCUMENT |= {"loading": Key(_read_inner, MappingProxyType({})), CONTACT: Key(_read_inner, None)}
 """The keys of a scenario outside its tables, and the tables."""
 
 
@@ -69,8 +77,8 @@ def quantities_in(table: str, kind: type, states: tuple[StateVariable, ...] = ()
     `kind` is the class of the law for [friction] and of the body for every other table, because loads are stresses for a slab and
     forces for a block. `states` are the friction law's states, which [initial] needs.
     """
-    if table in KINDS:
-        return _declared(kind)
+    if table in KINDS or table == CONTACT:
+        return _declared(Contact if table == CONTACT else kind)
     if table == "run":
         automatic = {"creep_rtol": (CREEP_RTOL, None), "shortest_event": (SHORTEST_EVENT, None)}
         return {"duration": (DURATION, MISSING), "rtol": (RTOL, 1e-10), **automatic}
@@ -108,6 +116,10 @@ def keys_of(table: str, kind: type, states: tuple[StateVariable, ...] = ()) -> M
     if table == "run":
         keys["events"] = Key(lambda value, place: check_events(value, place.source.file, str(place)), None)
         keys["selection"] = Key(lambda value, place: check_rule(value, place.source.file, str(place)), SELECTION_RULES[0])
+    if table == CONTACT:
+        keys["replicas"] = Key(partial(_read_as, bool, "true or false"), True)
+        keys["along"] = Key(partial(_read_as, dict, "a table of what varies along the contact"), MappingProxyType({}))
+        keys["patches"] = Key(partial(_read_as, list, "tables, each after a line [[contact.patches]]"), ())
     return keys
 
 
@@ -242,7 +254,7 @@ def _named(name: str) -> str:
 
 def _belongs(name: str, table: str) -> str:
     """Return a hint if a key is known but belongs in another table; "" otherwise."""
-    others = () if table.startswith("friction.") else (other for other in TABLES if other not in ("friction", table))
+    others = () if table.startswith("friction.") else (other for other in (*TABLES, CONTACT) if other not in ("friction", table))
     for other in others:
         if any(name in keys_of(other, body) for body in KINDS["body"].values()):
             return f"it belongs in [{other}]"

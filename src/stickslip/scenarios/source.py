@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
 from stickslip.foundation.conversion import WithUnit
+from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem, check_problem
 from stickslip.problem.run_quantities import DURATION
 
@@ -14,20 +15,30 @@ if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario
 
 
-def read_source(who: str, source: Problem | Scenario | str | Path) -> Problem | Scenario:
+def all_slips_alike(who: str, scenario: Scenario) -> Scenario:
+    """Return a scenario if its contact is a single place, as it is for all but runs. Raises InputError, which begins with `who`."""
+    if scenario.contact is not None:
+        raise InputError(
+            f"{who}: {scenario.name} has a [contact] of many nodes (2D or 3D), which only `stickslip run`, `check` and `show` and"
+            " ss.simulate take: leave out [contact] for the problem in 1D that each node has"
+        )
+    return scenario
+
+
+def read_source(who: str, source: Problem | Scenario | str | Path, *, contact: bool = False) -> Problem | Scenario:
     """Return a problem or a scenario as it is, or the scenario of a bundled name or a file.
 
-    Raises InputError, for another type with a message that begins with `who`.
+    Raises InputError, for another type with a message that begins with `who`, and for a scenario with a contact of many nodes
+    unless `contact` is True.
     """
     if isinstance(source, Problem):
         return source
     from stickslip.scenarios.scenario import Scenario, load_scenario  # which a problem can do without
 
-    if isinstance(source, str | Path):
-        return load_scenario(source)
-    if not isinstance(source, Scenario):
-        check_problem(who, source, "a Problem, a scenario, or the name of one")
-    return source
+    found = load_scenario(source) if isinstance(source, str | Path) else source
+    if not isinstance(found, Scenario):
+        check_problem(who, found, "a Problem, a scenario, or the name of one")
+    return found if contact else all_slips_alike(who, found)
 
 
 def read_duration_and_problem(

@@ -45,27 +45,10 @@ def template_names() -> list[str]:
 
 
 def template(name: str, friction: str | None = None, pull: str | None = None) -> str:
-    """Return a commented scenario as TOML text.
+    """Return a commented scenario as TOML text: a starter ("slab", "lab-slab" or "block") or a bundled scenario.
 
-    Parameters
-    ----------
-    name : str
-        "slab", "lab-slab" or "block" for a starter, or the name of a bundled scenario.
-    friction : str, optional
-        Kind of another friction law for a starter, which then has plausible values.
-    pull : str, optional
-        Kind of a loading history for the pull rate of a starter.
-
-    Returns
-    -------
-    str
-        The TOML text.
-
-    Raises
-    ------
-    InputError
-        For a name that is not among `template_names()`, for an unknown law or loading history, and if a bundled scenario is to have
-        another law or pull rate.
+    `friction` and `pull` are kinds of another law, which then has plausible values, and of a loading history for the pull rate of a
+    starter. Raises InputError for unknown names, and if a bundled scenario is to have another law or pull rate.
     """
     if name in STARTERS:
         return _starter(tomllib.loads(library.text(STARTERS[name])), friction, pull)
@@ -78,26 +61,9 @@ def template(name: str, friction: str | None = None, pull: str | None = None) ->
 
 
 def with_law(name: str, law: FrictionLaw, about: Sequence[str]) -> str:
-    """Return a starter or a bundled scenario with another friction law, as commented TOML text.
+    """Return a starter or a bundled scenario with another friction law without a state, as commented TOML text to the last digit.
 
-    Parameters
-    ----------
-    name : str
-        One of `template_names()`.
-    law : FrictionLaw
-        The law, which has no state.
-    about : sequence of str
-        Lines of comments for the head of the text; the first one becomes the title.
-
-    Returns
-    -------
-    str
-        The TOML text, with every number of the law to the last digit.
-
-    Raises
-    ------
-    InputError
-        For an unknown name.
+    `about` are lines of comments for the head of the text; the first one becomes the title. Raises InputError for an unknown name.
     """
     if name not in template_names():
         raise InputError(f"no scenario '{name}'; {nearest(name, template_names())}")

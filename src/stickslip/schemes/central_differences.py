@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from stickslip.schemes.contract import Contact, Energies, Floats, Grid, Meeting, Sample, strain_energy
+from stickslip.foundation.arrays import Floats
+from stickslip.schemes.contract import Contact, Energies, Grid, Meeting, Sample, strain_energy
 
 
 class CentralDifferences:

@@ -8,7 +8,8 @@ import numpy as np
 from scipy.sparse import csc_matrix, diags_array
 from scipy.sparse.linalg import splu
 
-from stickslip.schemes.contract import Contact, Energies, Floats, Grid, Meeting, Sample, strain_energy
+from stickslip.foundation.arrays import Floats
+from stickslip.schemes.contract import Contact, Energies, Grid, Meeting, Sample, strain_energy
 
 
 class Elements(ABC):

@@ -6,10 +6,22 @@ from stickslip.foundation.errors import InputError, nearest
 from stickslip.schemes.central_differences import CentralDifferences, MassRedistribution
 from stickslip.schemes.characteristics import Characteristics
 from stickslip.schemes.contract import Scheme
-from stickslip.schemes.newmark import Newmark
-from stickslip.schemes.regularised import Regularised
+from stickslip.schemes.newmark import Newmark, Theta
 from stickslip.schemes.sbp import SummationByParts
-from stickslip.schemes.theta import Theta
+
+
+class Regularised(CentralDifferences):
+    """Friction mu tanh(v/v0) with v0 = `smoothing` S (range of mu)/Z: the contact never sticks, but creeps.
+
+    It tends to friction with stick as v0 tends to 0, not with the grid.
+    """
+
+    order = 0.0
+    smoothing = 1e-3
+
+    def __init__(self) -> None:
+        super().__init__("regularised", "central differences, friction mu tanh(v/v0)", 0.8)
+
 
 _ALL: tuple[Scheme, ...] = (
     Characteristics(),

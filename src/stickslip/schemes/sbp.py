@@ -13,7 +13,8 @@ from functools import cache
 import numpy as np
 from scipy.sparse import csr_array, lil_array
 
-from stickslip.schemes.contract import Contact, Energies, Floats, Grid, Meeting, Sample
+from stickslip.foundation.arrays import Floats
+from stickslip.schemes.contract import Contact, Energies, Grid, Meeting, Sample
 
 NORMS = {
     2: (1 / 2,),

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.schemes.contract import Energies, Floats
+from stickslip.schemes.contract import Energies
 
 
 @dataclass(frozen=True, eq=False)

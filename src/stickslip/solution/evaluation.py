@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.foundation.arguments import shown
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import Quantity
 from stickslip.friction.contract import STATE_NAMES
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
 
     from stickslip.observables.field import Field
 
-Floats = NDArray[np.float64]
 Curve = Literal["slip", "slip_rate", "traction", "load", "state", "second_state", "event_slip"]
 LONG_HISTORY = 100_000
 """Number of pieces from which on fewer values of each are looked at for a curve."""

@@ -3,27 +3,36 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief
+from stickslip.observables.energy.balance import LONG_NAMES
+from stickslip.observables.energy.planar import NAMES, cost, energies
 from stickslip.observables.planar import pulses, rupture_speed, rupture_times
-from stickslip.planar.slab import PlanarSlab
+from stickslip.planar.slab import ENOUGH_NODES, PlanarSlab
 from stickslip.solution.accessors import PlanarPlots
 from stickslip.trajectory.slip_events import default_event_rate
+from stickslip.trajectory.status import STATUSES, UNDER_WAY, Status
 
 if TYPE_CHECKING:
     import xarray as xr
 
+    from stickslip.planar.solver import Motion, PlanarSolver
+
 Floats = NDArray[np.float64]
-ENOUGH_NODES = 5.0
-"""Nodes in a process zone from which a front is called resolved: a rule of thumb, which twice the nodes put to the test."""
-PROCESS_ZONE = 9.0 * math.pi / 16.0
-"""Length of the process zone of a slow front, times the largest -S mu'/G: twice that between two half-spaces."""
+FIELDS = {"slip": "m", "slip_rate": "m s-1", "traction": "Pa", "heat": "J m-2"}
+"""Unit of each field of a frame."""
+MOTION = {"slip": "slip", "slip_rate": "rate", "traction": "traction", "heat": "heat"}
+"""Name in the solver's `Motion` of each field of a frame."""
+FEWEST_STEPS, QUICK = 100.0, 2e8
+"""Steps in a round trip in which energies are followed, at least; and `cost` up to which a summary has them: about two seconds."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,14 +45,8 @@ class PlanarSolution:
         What was solved.
     times
         Times of the frames (s).
-    slip
-        Slip (m).
-    slip_rate
-        Slip rate (m/s), after a jump where there is one.
-    traction
-        Friction while a node slips, and the load that it bears while it rests (Pa).
-    heat
-        Work of friction since the start (J/m^2).
+    fields
+        The arrays by the names in `FIELDS`, each read when it is first used.
     steps_per_round_trip
         Number of time steps in a two-way travel time.
     status
@@ -52,19 +55,36 @@ class PlanarSolution:
 
     slab: PlanarSlab
     times: Floats
-    slip: Floats
-    slip_rate: Floats
-    traction: Floats
-    heat: Floats
+    fields: Mapping[str, Floats]
     steps_per_round_trip: int
-    status: str = "finished"
+    status: Status
 
     def __repr__(self) -> str:
         nodes = " x ".join(str(count) for count in self.slab.shape)
-        return f"PlanarSolution({nodes} nodes, {len(self.times)} frames up to {self.times[-1]:.6g} s, {self.status})"
+        return f"PlanarSolution({nodes} nodes, {len(self.times)} frames up to {self.times[-1]:.6g} s, {self.status.name})"
 
     def __str__(self) -> str:
         return "\n".join(self.sentences)
+
+    @cached_property
+    def slip(self) -> Floats:
+        """Slip (m)."""
+        return self.fields["slip"]
+
+    @cached_property
+    def slip_rate(self) -> Floats:
+        """Slip rate (m/s), after a jump where there is one."""
+        return self.fields["slip_rate"]
+
+    @cached_property
+    def traction(self) -> Floats:
+        """Friction while a node slips, and the load that it bears while it rests (Pa)."""
+        return self.fields["traction"]
+
+    @cached_property
+    def heat(self) -> Floats:
+        """Work of friction since the start (J/m^2)."""
+        return self.fields["heat"]
 
     @property
     def sentences(self) -> list[str]:
@@ -79,6 +99,7 @@ class PlanarSolution:
             f"The middle sees {middle} pulse{'' if middle == 1 else 's'}, other nodes up to {counts.max()}.",
             "All nodes rest at the end." if not self.slip_rate[-1].any() else "Some nodes still slip at the end.",
         ]
+        lines += [self._energy_sentence] if self._energy_sentence else []
         if np.isfinite(self.nodes_per_process_zone):
             enough = "resolved" if self.nodes_per_process_zone >= ENOUGH_NODES else f"NOT resolved, {ENOUGH_NODES:g} are wanted"
             lines.append(
@@ -124,14 +145,56 @@ class PlanarSolution:
         return np.asarray(self.slab.values.load - self.traction[-1], float)
 
     @property
-    def nodes_per_process_zone(self) -> float:
-        """The nodes within the process zone of a slow front, where friction falls from its peak; NaN if it does not fall with slip.
+    def _steps_of_energies(self) -> int:
+        frames = self.slab.body.two_way_time / float(np.diff(self.times).max())
+        return 2 * math.ceil(0.5 * max(frames, FEWEST_STEPS))
 
-        It is 9 pi/16 G divided by the largest fall of strength with slip (Pa/m) and by the distance of nodes (Day et al. 2005, for
-        linear slip weakening; twice their length, because G acts on one side here). Fronts that run fast have shorter ones.
+    @cached_property
+    def _energies(self) -> dict[str, Floats]:
+        fields = {"slip": self.slip, "slip_rate": self.slip_rate, "heat": self.heat}
+        return energies(self.slab, self.times, **fields, steps=self._steps_of_energies)
+
+    def energy(self, t: ArrayLike | None = None) -> xr.Dataset:
+        """Return the energies of the run as differences from its start: in J, or in J per metre of z for a line.
+
+        Waves inside the slab are followed from the slip of the frames, independently of the solver, so that the balance tests the
+        run. It closes the better, the more nodes and frames there are.
+
+        Parameters
+        ----------
+        t
+            Times (s); by default those of the frames.
+
+        Returns
+        -------
+        xarray.Dataset
+            work of the driver, stored (elastic + kinetic), elastic, kinetic, heat of friction, radiated, and
+            balance = work - stored - heat, as in `Solution.energy`.
         """
-        fall, _ = self.slab.values.slopes(float(np.ptp(self.slip, axis=0).max()) or 1e-6)
-        return PROCESS_ZONE * self.slab.body.shear_modulus / fall / max(self.slab.spacing) if fall > 0.0 else math.nan
+        import xarray
+
+        times = self.times if t is None else np.atleast_1d(np.asarray(t, float))
+        if times.min() < self.times[0] or times.max() > self.times[-1]:
+            raise InputError(f"energy: times must be from {self.times[0]:g} to {self.times[-1]:g} s")
+        unit, found = "J" if self.slab.is_plane else "J m-1", self._energies
+        about = {name: {"units": unit, "long_name": LONG_NAMES[name].replace(" - damped", "")} for name in NAMES}
+        fields = {name: ("time", np.interp(times, found["time"], found[name]), about[name]) for name in NAMES}
+        return xarray.Dataset(fields, coords={"time": ("time", times, {"units": "s"})})
+
+    @property
+    def _energy_sentence(self) -> str:
+        """How well energy is balanced, or nothing if it would take long to know."""
+        if len(self.times) < 3 or cost(self.slab, self.times[-1], self._steps_of_energies) > QUICK:
+            return ""
+        found = self._energies
+        heat, missed = float(found["heat"][-1]), float(np.abs(found["balance"]).max())
+        unit = "J" if self.slab.is_plane else "J per metre of z"
+        return f"Friction takes {brief(heat, unit)}; the energy balance misses up to {missed / heat:.1%} of that."
+
+    @property
+    def nodes_per_process_zone(self) -> float:
+        """The nodes within the process zone of a slow front: `PlanarSlab.nodes_per_process_zone` for the slip of the run."""
+        return self.slab.nodes_per_process_zone(float(np.ptp(self.slip, axis=0).max()) or 1e-6)
 
     def middle(self, values: NDArray[np.generic]) -> float:
         """Return the value of a field at the node in the middle."""
@@ -151,10 +214,43 @@ class PlanarSolution:
         import xarray
 
         axes = ("time", "y", "z")[: self.slip.ndim]
-        units = {"slip": "m", "slip_rate": "m s-1", "traction": "Pa", "heat": "J m-2"}
-        fields = {name: (axes, getattr(self, name), {"units": unit}) for name, unit in units.items()}
+        fields = {name: (axes, getattr(self, name), {"units": unit}) for name, unit in FIELDS.items()}
         places = {"time": self.times, "y": self.slab.y} | ({"z": self.slab.z} if self.slab.is_plane else {})
         made = xarray.Dataset(fields, coords=places)
         for axis in axes:
             made[axis].attrs["units"] = "s" if axis == "time" else "m"
         return made
+
+
+@dataclass(eq=False)
+class Frames:
+    """The frames of a run, in memory."""
+
+    slab: PlanarSlab
+    steps_per_round_trip: int
+    times: list[float] = field(default_factory=list)
+    waiting: dict[str, list[Floats]] = field(default_factory=lambda: {name: [] for name in FIELDS})
+    """Frames that are in memory, by field."""
+    largest_slip: float = 0.0
+    """Largest slip since the start, at any node and frame, m."""
+    fastest: float = 0.0
+    """Largest slip rate at any node and frame, m/s."""
+
+    def add(self, time: float, motion: Motion) -> None:
+        """Keep the motion at a time (s)."""
+        self.times.append(time)
+        for name, own in MOTION.items():
+            self.waiting[name].append(np.array(getattr(motion, own)))
+        self.largest_slip = max(self.largest_slip, float(np.abs(motion.slip - self.slab.values.slip).max()))
+        self.fastest = max(self.fastest, float(np.abs(motion.rate).max()))
+
+    def end_round_trip(self, run: PlanarSolver) -> None:
+        """Take what the solver is about to forget."""
+
+    def save(self, run: PlanarSolver, code: int = UNDER_WAY) -> None:
+        """Make what is there so far outlast the process, with the status that belongs to a code."""
+
+    def solution(self, code: int) -> PlanarSolution:
+        """Return the run, with the status that belongs to a code."""
+        fields = {name: np.stack(frames) for name, frames in self.waiting.items()}
+        return PlanarSolution(self.slab, np.array(self.times), fields, self.steps_per_round_trip, STATUSES[code])

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING
 
 from numpy.typing import ArrayLike
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.quantities import Quantity
 from stickslip.problem.problem import Problem
 from stickslip.solution.accessors import Exports
-from stickslip.solution.evaluation import Curve, Floats
+from stickslip.solution.evaluation import Curve
 from stickslip.trajectory.history import Epoch, History
 from stickslip.trajectory.tables import shocks_table
 

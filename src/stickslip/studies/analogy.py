@@ -21,13 +21,13 @@ import pandas as pd
 from stickslip.bodies import as_slab
 from stickslip.contact.critical import margin
 from stickslip.contact.regime_map import Axis, put_both, two_parameters
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 from stickslip.run.simulate import simulate
 from stickslip.scenarios.source import read_duration_and_problem
 from stickslip.studies.study import Study, TextProgress, telling, uninterrupted
-from stickslip.trajectory.history import Floats
 
 if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario
@@ -102,22 +102,9 @@ class Analogy(Study):
 
 
 def block_for(problem: Problem) -> Problem:
-    """Return the same problem for the slab's equivalent block.
+    """Return the same problem for the slab's equivalent block, which represents 1 m^2 of contact.
 
-    Parameters
-    ----------
-    problem : Problem
-        Problem whose body is a slab under a rigid driver.
-
-    Returns
-    -------
-    Problem
-        Problem of the block that represents 1 m^2 of contact.
-
-    Raises
-    ------
-    InputError
-        If the body is a block, or if the driver of the slab is not rigid.
+    Raises InputError if the body is a block, or if the driver of the slab is not rigid.
     """
     slab = as_slab(problem.body, "analogy: needs a slab: a block has no other block that stands for it")
     return replace(problem, body=slab.equivalent_block())

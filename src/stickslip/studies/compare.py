@@ -13,13 +13,14 @@ import pandas as pd
 import stickslip
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
-from stickslip.io.netcdf import PAPER, open_solution
+from stickslip.io.netcdf import PAPER, read_solution
 from stickslip.observables.energy.energetics import extreme_tractions
 from stickslip.observables.energy.pulses import Pulses
 from stickslip.problem.run_quantities import DURATION, check_rtol
 from stickslip.run.progress import Progress
 from stickslip.run.simulate import simulate
 from stickslip.scenarios import Scenario, load_scenario
+from stickslip.scenarios.source import all_slips_alike
 from stickslip.solution.solution import Solution
 from stickslip.studies.study import Study, TextProgress, telling, uninterrupted
 from stickslip.trajectory.slip_events import SlipEvents, default_event_rate
@@ -56,11 +57,13 @@ class Source(NamedTuple):
     solution: Callable[[Progress | None], Solution]
 
 
-def read_source(source: str | Path | Scenario | Solution, duration: float | None = None, rtol: float | None = None) -> Source:
+def read_source(
+    source: str | Path | Scenario | Solution, duration: float | None = None, rtol: float | None = None, who: str = "compare"
+) -> Source:
     """Return the run described by a bundled scenario's name, a scenario file, a solution file (.nc), a scenario or a solution.
 
-    `duration` (s) and `rtol` replace those of a scenario. Raises InputError if `source` is none of these, and if `duration` or
-    `rtol` is given with a solution, which has been run already.
+    `duration` (s) and `rtol` replace those of a scenario; `who` begins messages. Raises InputError if `source` is none of these,
+    and if `duration` or `rtol` is given with a solution, which has been run already.
     """
     computed = isinstance(source, Solution)
     if (computed or Path(str(source)).suffix == ".nc") and not (duration is None and rtol is None):
@@ -68,9 +71,9 @@ def read_source(source: str | Path | Scenario | Solution, duration: float | None
     if isinstance(source, Solution):
         return Source("run", lambda _: source)
     if Path(str(source)).suffix == ".nc":
-        solution = open_solution(str(source))
+        solution = read_solution(Path(str(source)))
         return Source(Path(str(source)).stem, lambda _: solution)
-    scenario = source if isinstance(source, Scenario) else load_scenario(source)
+    scenario = all_slips_alike(who, source if isinstance(source, Scenario) else load_scenario(source))
     changed = replace(scenario, duration=duration or scenario.duration, rtol=rtol or scenario.rtol)
     return Source(scenario.name, lambda progress: uninterrupted(simulate(changed, progress=progress)))
 

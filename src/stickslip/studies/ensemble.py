@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import YEAR
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.netcdf_file import write
@@ -23,10 +24,8 @@ from stickslip.run.options import RunOptions
 from stickslip.run.simulate import simulate
 from stickslip.scenarios.source import read_duration_and_problem
 from stickslip.solution.solution import Solution
-from stickslip.studies.disturbances import disturbed, drawn, is_lossy
-from stickslip.studies.separation import Separation, separation, shared_events, slope, statistics_spread
+from stickslip.studies.separation import Separation, disturbed, drawn, is_lossy, separation, shared_events, slope, statistics_spread
 from stickslip.studies.study import MAX_PIECES, RunsCompared, TextProgress, telling, uninterrupted
-from stickslip.trajectory.history import Floats
 
 if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario

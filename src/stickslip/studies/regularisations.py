@@ -1,21 +1,66 @@
-"""Regularisations: three ways to give a massless contact the physics that its selection rule replaces, each with a small time.
-
-This time, the *size* of a regularisation (s), is the time in which the slip rate settles. A contact mass of Z size and a lag of
-`size` obey the same equation, Z size dy/dt = load - g(y), with y the slip rate v for the mass, and the delayed rate w on which
-friction depends for the lag. Their sizes can therefore be compared.
-Sources: Campillo et al. 1996, section 3; for the lag Hess & Soom 1990, J. Tribol. 112, 147.
-"""
+"""Regularisations of the jumps of a run, and the distance of a regularised run from the exact one."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from stickslip.bodies import ElasticSlab, as_slab
 from stickslip.contact.equation import resistance
+from stickslip.contact.roots import sign_change
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.friction import LaggedFriction
 from stickslip.problem.problem import Problem, check_problem
+from stickslip.solution.solution import Solution
+
+UNIFORM = 2001
+"""Number of evenly spaced times at which runs are compared; times within the pieces of both histories are added."""
+INSIDE = np.linspace(0.0, 1.0, 5)[:-1]
+"""Positions of the times within each piece of a history, as shares of its length."""
+
+
+@dataclass(frozen=True)
+class Difference:
+    """A difference in slip between two runs (m): mean and largest magnitude over time, and signed value at the end."""
+
+    mean: float
+    largest: float
+    end: float
+
+
+def difference(one: Solution, other: Solution, until: float) -> Difference:
+    """Return the slip of `one` minus the slip of `other`, from t = 0 to `until` (s)."""
+    time = np.unique(np.concatenate([np.linspace(0.0, until, UNIFORM), _inside(one, 0.0, until), _inside(other, 0.0, until)]))
+    gap = one.slip(time) - other.slip(time)
+    mean = float(np.trapezoid(np.abs(gap), time)) / until
+    return Difference(mean, float(np.abs(gap).max()), float(gap[-1]))
+
+
+def _inside(solution: Solution, start: float, end: float) -> Floats:
+    """Return times from start to end (s), four in every piece of the history, and the end."""
+    breaks = solution.breaks
+    times = (breaks[:-1, None] + np.diff(breaks)[:, None] * INSIDE).ravel()
+    return np.append(times[(times >= start) & (times <= end)], min(end, float(breaks[-1])))
+
+
+def passage(solution: Solution, level: float, rising: bool, near: float, span: tuple[float, float]) -> float:
+    """Return the time (s) in a span (start, end) at which the slip rate passes a level (m/s), upwards if `rising`.
+
+    If there are several such times, the result is the one nearest to `near`; it is NaN if there is none.
+    """
+    time = _inside(solution, *span)
+    beyond = (solution.slip_rate(time) > level) == rising
+    steps = np.flatnonzero(beyond[1:] & ~beyond[:-1])
+    if not steps.size:
+        return math.nan
+    step = int(steps[np.argmin(np.abs(time[steps] - near))])
+    way = 1.0 if rising else -1.0
+    return sign_change(lambda t: way * (float(solution.slip_rate(t)) - level), float(time[step]), float(time[step + 1]))
+
 
 FADES = 1e-6
 """Slip rate below which the direct effect fades, as a share of the smallest characteristic slip rate of the contact."""

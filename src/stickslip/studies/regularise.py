@@ -19,6 +19,7 @@ import numpy as np
 import pandas as pd
 
 from stickslip.engine_input.prepare import prepare
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import Quantity, Series
@@ -27,11 +28,9 @@ from stickslip.problem.selection_rule import SELECTION_RULES, names, unknown
 from stickslip.run.simulate import simulate
 from stickslip.scenarios.source import read_duration_and_problem
 from stickslip.solution.solution import Solution
-from stickslip.studies.regularisations import check_massless, kind_of, regularised
-from stickslip.studies.run_distance import Difference, difference, passage
+from stickslip.studies.regularisations import Difference, check_massless, difference, kind_of, passage, regularised
 from stickslip.studies.study import MAX_PIECES, RunsCompared, TextProgress, telling, uninterrupted
-from stickslip.studies.verdict import Errors, Order, Verdict, groups, judge, local_orders, order_of
-from stickslip.trajectory.history import Floats
+from stickslip.studies.verdict import Errors, Verdict, groups, judge, local_orders, order_of
 
 if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario
@@ -145,7 +144,7 @@ class Regularisation(RunsCompared):
         """
         shocks = self.shocks
         table = shocks[["time", "cause", "rate_before", "rate_after"]].copy()
-        table["order"] = [self.delay_order(j).power for j in range(len(shocks))]
+        table["order"] = [order_of(self.sizes, self.delays[:, j]).power for j in range(len(shocks))]
         ramped = (shocks.cause == "fold") | ((shocks.cause == "start") & (self.problem.excess == 0.0))
         table["expected"] = np.select([ramped & (shocks.rate_before == 0.0), ramped], ["1 (log)", "2/3"], "1")
         return table
@@ -197,10 +196,6 @@ class Regularisation(RunsCompared):
         columns["seconds"] = list(self.seconds)
         columns["status"] = [run.status.name for run in self.runs]
         return pd.DataFrame(columns)
-
-    def delay_order(self, jump: int) -> Order:
-        """Return the order with which the delay of a jump (a row of `jumps`) decreases with the size."""
-        return order_of(self.sizes, self.delays[:, jump])
 
     def local_orders(self, rule: str) -> Floats:
         """Return the order of the errors relative to a rule between each size and the one before, shape (n,); NaN first."""

@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from stickslip.foundation.arrays import Floats
 from stickslip.schemes.contract import Energies
 from stickslip.schemes.series import Series
 from stickslip.solution.solution import Solution
 from stickslip.studies.scheme_shocks import Shock, shadow, shocks_of
-from stickslip.trajectory.history import Floats
 from stickslip.trajectory.slip_events import default_event_rate
 
 COLUMNS = {
@@ -111,10 +111,7 @@ class Measured:
     @property
     def slip_error(self) -> float:
         """The mean magnitude of the slip difference, m."""
-        return self._mean(np.abs(self.gap))
-
-    def _mean(self, values: Floats) -> float:
-        return float(np.trapezoid(values, self.time) / (self.time[-1] - self.time[0]))
+        return float(np.trapezoid(np.abs(self.gap), self.time) / (self.time[-1] - self.time[0]))
 
     @property
     def shadow(self) -> float:

@@ -28,11 +28,10 @@ from stickslip.schemes.registry import scheme_of
 from stickslip.schemes.run import check_runs, check_suitable, run_scheme
 from stickslip.schemes.series import Series
 from stickslip.solution.solution import Solution
-from stickslip.studies.rule_followed import NONE, UNTOLD, RulePaths, exact_runs
 from stickslip.studies.scheme_measures import COLUMNS, Measured
-from stickslip.studies.scheme_shocks import SHOCK_COLUMNS
-from stickslip.studies.series_check import check_length, check_units
+from stickslip.studies.scheme_shocks import SHOCK_COLUMNS, check_length, check_units
 from stickslip.studies.study import Study, TextProgress, telling
+from stickslip.studies.verdict import NONE, UNTOLD, RulePaths, exact_runs
 
 if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario
@@ -201,7 +200,7 @@ def schemes(
     cells : sequence of int
         Number of cells in the thickness, for each mesh.
     search : str
-        How the contact looks for a root: a name in `stickslip.schemes.contact.SEARCHES`.
+        How the contact looks for a root: a name in `stickslip.schemes.run.SEARCHES`.
     courant : float, optional
         Courant number c dt / dx, by default each scheme's own.
     rtol : float

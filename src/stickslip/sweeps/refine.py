@@ -16,13 +16,14 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
-from stickslip.run.progress_line import told
+from stickslip.run.progress import told
 from stickslip.scenarios.parameter_paths import ParameterPath
 from stickslip.scenarios.scenario import Scenario
-from stickslip.sweeps.design.adaptive_grid import MOST_MEMBERS, Floats, Integers, refine_cells
+from stickslip.sweeps.design.adaptive_grid import MOST_MEMBERS, Integers, refine_cells
 from stickslip.sweeps.design.design import LIST, MEMBER, REFINED, Design, axes_of
 from stickslip.sweeps.design.quantities import DEFAULT, Wanted, quantities_named
 from stickslip.sweeps.execution.chunk import FIRST_FAILURE, NOT_RUN

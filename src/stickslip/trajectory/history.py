@@ -12,12 +12,12 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip.engine.codegen.compiler import kernel
 from stickslip.engine.state.layout import Integers, Store
 from stickslip.engine_input.forcing import inflow_of
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.friction.contract import one_argument
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.phase_index import Phases
 
-Floats = NDArray[np.float64]
 Side = Literal["left", "right"]
 
 

@@ -2,52 +2,61 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.engine.codegen.compiler import kernel
-from stickslip.engine.series.polynomial import evaluate
+from stickslip.engine.codegen.records import Record, record_at
+from stickslip.engine.series.polynomial import MOST_CROSSINGS, evaluate
 from stickslip.engine.state.layout import Floats, Integers
 from stickslip.engine.state.workspace import pieces_in
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.history import History, Positions
-from stickslip.trajectory.turning_points import MAXIMA_PER_PIECE, Turns, extend_to_rest, new_turns, turning_points
+from stickslip.trajectory.turning_points import FULL, Spare, Turn, search_history, turns_in
 
 NOT_YET = -1
 """Marks an event whose aftermath is not known within the history."""
 
 
+class EventTurns(Record):
+    """Hold which of the points of |slip rate| belong to an event."""
+
+    begin: int  # its first point
+    past: int  # the point after its last one
+    top: int  # its fastest point, the first of several
+    pulses: int  # number of its pulses
+
+
+events_in: Any = record_at(EventTurns)
+"""Function for compiled code that returns the first of these records in memory."""
+
+
 @kernel
-def highest(values: Floats, begin: Integers, past: Integers, found: Integers) -> None:
-    """Find the index of the largest of values[begin:past] (the first, if several are equal) for each of several ranges.
-
-    Not with `np.argmax`: machine code with such reductions makes numba load scipy and its linear algebra at every start.
-    """
-    for n in range(len(begin)):
-        found[n] = begin[n]
-        for k in range(begin[n] + 1, past[n]):
-            if values[k] > values[found[n]]:
-                found[n] = k
-
-
-@kernel
-def count_pulses(rate: Floats, begin: Integers, past: Integers, pulses: Integers) -> None:
-    """Count the pulses in each of several ranges of turning points; the result is 0 for a range at rest.
-
-    Pulses are maxima of |v| separated by minima below half the lower of the two.
-    """
-    for n in range(len(begin)):
-        pulses[n], peak, low = 0, 0.0, 0.0
-        for k in range(begin[n], past[n]):
-            if rate[k] <= 0.0:
-                continue
-            if pulses[n] == 0 or low < 0.5 * min(peak, rate[k]):
-                pulses[n], peak, low = pulses[n] + 1, rate[k], rate[k]
-            elif rate[k] > peak:
-                peak = low = rate[k]
-            low = min(low, rate[k])
+def group_turns(turns: Turn | Integers, found: int, events: EventTurns | Integers) -> int:
+    """Group the first `found` points of |slip rate|, in order of time, to events, and return their number."""
+    points, out, count = turns_in(turns), events_in(events), 0
+    for n in range(found):
+        if points[n].kind == 1:
+            out[count].begin = out[count].top = n
+            out[count].pulses = 0
+            peak = low = 0.0
+            count += 1
+        if count == 0:
+            continue
+        event, rate = out[count - 1], points[n].rate
+        event.past = n + 1
+        if rate > points[event.top].rate:
+            event.top = n
+        # Pulses are maxima of |v| separated by minima below half the lower of the two.
+        if rate > 0.0:
+            if event.pulses == 0 or low < 0.5 * min(peak, rate):
+                event.pulses, peak, low = event.pulses + 1, rate, rate
+            elif rate > peak:
+                peak = low = rate
+            low = min(low, rate)
+    return count
 
 
 @kernel
@@ -72,19 +81,14 @@ def find_aftermath(table: Integers, piece: Integers, xi: Floats, by: Integers) -
                 break
 
 
-def walk(history: History, threshold: float, begin: int = 0) -> Turns:
-    """Return the points of `turning_points` in order of time; events begin and end at rest where `extend_to_rest` allows it."""
-    room = 8 * (len(history) - begin) + 4 * MAXIMA_PER_PIECE
+def walk(history: History, threshold: float, begin: int = 0) -> Integers:
+    """Return a table of `Turn`: the points of |slip rate| (m/s) from piece `begin` on; events begin and end at rest if they can."""
+    ways, spare, room = np.zeros(len(history), np.int64), Spare.table(1), 8 * (len(history) - begin) + 4 * MOST_CROSSINGS
     while True:
-        turns = new_turns(room)
-        found = turning_points(history.store.pieces, begin, len(history), threshold, turns)
-        if found >= 0:
-            piece, xi, rate, kind = turns.piece[:found], turns.xi[:found], turns.rate[:found], turns.kind[:found]
-            order = np.lexsort((-kind * (xi < 1.0), xi, piece))
-            turns = Turns(piece[order], xi[order], rate[order], kind[order])
-            if history.problem.friction.sticks:
-                extend_to_rest(history.store.pieces, (begin, len(history)), threshold, turns, found)
-            return turns
+        turns = Turn.table(room)
+        found = search_history(history.store.pieces, (turns, ways, spare), begin, threshold, history.problem.friction.sticks)
+        if found != FULL:
+            return turns[:found]
         room *= 2
 
 
@@ -121,14 +125,12 @@ class SlipEvents(NamedTuple):
 
     @classmethod
     def _all_of(cls, history: History, threshold: float, first: int = 0) -> Self:
-        piece, xi, rate, kind = walk(history, threshold, first)
-        begin = np.flatnonzero(kind == 1)
-        past = np.append(begin, len(kind))[1:]
-        top, pulses = np.empty_like(begin), np.empty_like(begin)
-        highest(rate, begin, past, top)
-        count_pulses(rate, begin, past, pulses)
-        places = np.stack([begin, top, past - 1])
-        return cls(piece[places], xi[places], rate[top], pulses, kind[past - 1] == -1)
+        table = walk(history, threshold, first)
+        grouped = EventTurns.table(len(table))
+        found = EventTurns.of(grouped[: group_turns(table, len(table), grouped)])
+        turns, last = Turn.of(table), found.past - 1
+        places = np.stack([found.begin, found.top, last])
+        return cls(turns.piece[places], turns.xi[places], turns.rate[found.top], found.pulses, turns.kind[last] == -1)
 
     def some(self, which: slice) -> Self:
         """Return a part of the events."""

@@ -5,81 +5,165 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-
-from stickslip.engine.codegen.compiler import kernel
-from stickslip.engine.series.polynomial import clearly_positive, crossings, evaluate, magnitude, total
+from stickslip.engine.codegen.compiler import inlined, kernel, pointer_to
+from stickslip.engine.codegen.records import Record, floats_inside, record_at
+from stickslip.engine.series.polynomial import MOST_CROSSINGS, bound_below, crossings, evaluate, total
 from stickslip.engine.state.layout import TERMS, Floats, HistoryPiece, Integers
 from stickslip.engine.state.workspace import pieces_in
 
-MAXIMA_PER_PIECE = 32
-"""Largest number of extrema of the slip rate, or of crossings of the threshold, in one piece."""
 SAME = 1e-12
-"""Relative distance of a slip rate from the threshold below which rounding may decide on which side it is."""
+"""Relative distance of a slip rate from the threshold, or of a bound from zero, below which rounding may decide its sign."""
 SLACK = 1e-6
 """Share of the threshold by which the slip rate may rise on its way to rest, or fall on its way from it: rounding, and no turn."""
 NO_REST = -1
 """Marks a crossing of the threshold from which the slip rate does not lead straight to rest."""
 TURNS = math.inf
 """Marks a slip rate that turns."""
+FULL = -1
+"""Number of points if there is no room for all of them."""
 
 
-class Turns(NamedTuple):
-    """Hold points along |slip rate|: where it begins, ends, turns, or crosses a threshold. Arrays may be longer than needed."""
+class Turn(Record):
+    """Hold a point along |slip rate|: where it begins, ends, turns, or crosses a threshold."""
 
-    piece: Integers  # piece of the history
-    xi: Floats  # place in the piece, from 0 to 1
-    rate: Floats  # m/s
-    kind: Integers  # +1 if the rate rises above the threshold there, -1 if it falls to it, 0 above it
+    piece: int  # piece of the history
+    xi: float  # place in the piece, from 0 to 1
+    rate: float  # m/s
+    kind: int  # +1 if the rate rises above the threshold there, -1 if it falls to it, 0 above it
 
 
-def new_turns(capacity: int) -> Turns:
-    """Return uninitialised arrays for `capacity` points."""
-    return Turns(np.empty(capacity, np.int64), np.empty(capacity), np.empty(capacity), np.empty(capacity, np.int64))
+class Spare(Record):
+    """Hold room for the polynomials of one piece."""
+
+    rate: Floats = floats_inside(TERMS)  # m/s: |slip rate|
+    slope: Floats = floats_inside(TERMS)
+    spare: Floats = floats_inside(TERMS)
+    found: Floats = floats_inside(MOST_CROSSINGS)  # places in the piece
+
+
+turns_in = record_at(Turn)
+"""Function for compiled code that returns the first of the points in memory."""
+spare_in = record_at(Spare)
+"""Function for compiled code that returns the room at a pointer or in an array."""
+
+
+class Search(NamedTuple):
+    """Say where points are looked for, and where they go, as pointers."""
+
+    pieces: HistoryPiece  # the history (`Store.pieces`)
+    ways: Integers  # for each piece +1 or -1 if |slip rate| is proven to rise or fall in it, from the piece before on; else 0
+    turns: Turn  # the points
+    room: int  # number of points for which there is room
+    spare: Spare
 
 
 @kernel
-def turning_points(table: Integers, begin: int, length: int, threshold: float, turns: Turns) -> int:
-    """Walk along |slip rate| from piece `begin` on and record its starts, ends, extrema and crossings of the threshold.
+def search_history(table: Integers, memory: tuple[Integers, Integers, Floats], begin: int, threshold: float, sticks: bool) -> int:
+    """Do what `find_turns` does for the table of a history; `memory` holds the arrays of a `Search`: points, ways and room."""
+    turns, ways, spare = memory
+    search = Search(pieces_in(table), pointer_to(ways), turns_in(turns), len(turns), spare_in(spare))
+    return find_turns(search, (begin, len(table)), threshold, sticks)
 
-    `table` is that of a history (`Store.pieces`) with `length` pieces. Returns the number of points, or -1 if there is no room for
-    all of them.
+
+@kernel
+def find_turns(search: Search, span: tuple[int, int], threshold: float, sticks: bool) -> int:
+    """Find the points of |slip rate| in order of time, and return their number, or FULL if there is no room for all of them.
+
+    `span` holds the first piece that is searched and the number of pieces of the history. If the contact `sticks`, crossings of the
+    threshold (m/s) are moved to the onset and the arrest of slip.
     """
-    found, pieces = 0, pieces_in(table)
-    p, slope, places = np.empty(TERMS), np.zeros(TERMS), np.empty(MAXIMA_PER_PIECE)
-    above = False
-    for n in range(begin, length):
-        if found + 3 * MAXIMA_PER_PIECE > len(turns.piece):
-            return -1
-        mode, its_rate = pieces[n].mode, pieces[n].rate
-        sign = 1.0 if mode >= 0 else -1.0
-        for k in range(TERMS):
-            p[k] = sign * its_rate[k]
-        contiguous = n > begin and not starts_from_rest(pieces, n)
-        begins = mode != 0 and (p[0] > threshold or (p[0] == threshold and _rises(p)))
-        if above and not (begins and contiguous):
-            found = _note(turns, found, (n - 1, 1.0), 0.0, -1)
-            above = False
-        if mode == 0:
-            continue
-        if begins:
-            found = _note(turns, found, (n, 0.0), p[0], 0 if above else 1)
-            above = True
-        monotone, last = is_monotone(p, slope), total(p)
-        p[0] -= threshold
-        stays = monotone and p[0] * (last - threshold) > 0.0 and abs(last - threshold) > SAME * last
-        crossed = 0 if stays or keeps_its_sign(p) else crossings(p, places)
-        for i in range(crossed):
-            above = not above
-            found = _note(turns, found, (n, places[i]), threshold, 1 if above else -1)
-        p[0] += threshold
-        for i in range(0 if monotone else crossings(slope, places)):
-            height = evaluate(p, places[i])
-            if height > threshold:
-                found = _note(turns, found, (n, places[i]), height, 0)
-        if above:
-            found = _note(turns, found, (n, 1.0), last, 0)
+    found = turning_points(search, span, threshold)
+    put_in_order(search.turns, found)
+    if sticks:
+        extend_to_rest(search, span, threshold, found)
     return found
+
+
+@kernel
+def turning_points(search: Search, span: tuple[int, int], threshold: float) -> int:
+    """Walk along |slip rate| and record its starts, ends, extrema and crossings of the threshold; return their number or FULL.
+
+    Where it is known only to rise, or only to fall, through several pieces, no point between them is recorded.
+    """
+    pieces, turns = search.pieces, search.turns
+    found, above, heading, last = 0, False, 0, span[1] - 1
+    for n in range(span[0], span[1]):
+        if found + 3 * MOST_CROSSINGS > search.room:
+            return FULL
+        way = search.ways[n]
+        if way < 0 and (n == last or search.ways[n + 1] == 0 or abs(pieces[n + 1].rate[0]) <= 2.0 * threshold):
+            way = 0  # it may fall to the threshold
+        if above and way != 0:
+            if heading == -way:
+                found = note_end(pieces, turns, found, n - 1)
+            heading = way
+            continue
+        if heading != 0:
+            found, heading = note_end(pieces, turns, found, n - 1), 0
+        found, above = points_in_piece(search, n, n == span[0], threshold, (found, above))
+    return note_end(pieces, turns, found, last) if heading != 0 else found
+
+
+@kernel
+def points_in_piece(search: Search, n: int, first: bool, threshold: float, so_far: tuple[int, bool]) -> tuple[int, bool]:
+    """Record the points in piece n, which is the first that is searched or not, after those `so_far`.
+
+    Before and after it, say how many points there are, and whether the rate is above the threshold.
+    """
+    (found, above), pieces, turns, mode = so_far, search.pieces, search.turns, search.pieces[n].mode
+    p, slope, places = search.spare.rate, search.spare.slope, search.spare.found
+    for k in range(TERMS):
+        p[k] = pieces[n].rate[k] if mode >= 0 else -pieces[n].rate[k]
+    begins = mode != 0 and (p[0] > threshold or (p[0] == threshold and _rises(p)))
+    if above and not (begins and not first and not starts_from_rest(pieces, n)):
+        found = _note(turns, found, (n - 1, 1.0), 0.0, -1)
+        above = False
+    if mode == 0:
+        return found, above
+    if begins:
+        found = _note(turns, found, (n, 0.0), p[0], 0 if above else 1)
+        above = True
+    monotone, last = is_monotone(p, slope), total(p)
+    p[0] -= threshold
+    stays = monotone and p[0] * (last - threshold) > 0.0 and abs(last - threshold) > SAME * last
+    crossed = 0 if stays or keeps_its_sign(p) else crossings(p, places, search.spare.spare)
+    for i in range(crossed):
+        above = not above
+        found = _note(turns, found, (n, places[i]), threshold, 1 if above else -1)
+    p[0] += threshold
+    for i in range(0 if monotone else crossings(slope, places, search.spare.spare)):
+        height = evaluate(p, places[i])
+        if height > threshold:
+            found = _note(turns, found, (n, places[i]), height, 0)
+    return _note(turns, found, (n, 1.0), last, 0) if above else found, above
+
+
+@inlined
+def note_end(pieces: HistoryPiece, turns: Turn, n: int, piece: int) -> int:
+    """Write the end of a piece as point n, and return the number of points."""
+    return _note(turns, n, (piece, 1.0), abs(total(pieces[piece].rate)), 0)
+
+
+@kernel
+def put_in_order(turns: Turn, found: int) -> None:
+    """Sort the first `found` points by piece and place, and at one place those at which the rate rises first.
+
+    The pieces are in order already.
+    """
+    for n in range(1, found):
+        piece, xi, rate, kind = turns[n].piece, turns[n].xi, turns[n].rate, turns[n].kind
+        k = n
+        while k > 0 and turns[k - 1].piece == piece and comes_later(turns[k - 1].xi, turns[k - 1].kind, xi, kind):
+            before, here = turns[k - 1], turns[k]
+            here.piece, here.xi, here.rate, here.kind = before.piece, before.xi, before.rate, before.kind
+            k -= 1
+        _note(turns, k, (piece, xi), rate, kind)
+
+
+@inlined
+def comes_later(xi: float, kind: int, other_xi: float, other_kind: int) -> bool:
+    """Return True if a point belongs after another one of the same piece."""
+    return xi > other_xi or (xi == other_xi and xi < 1.0 and kind < other_kind)
 
 
 @kernel
@@ -91,16 +175,19 @@ def is_monotone(p: Floats, slope: Floats) -> bool:
     way = 1.0 if p[1] >= 0.0 else -1.0
     for k in range(TERMS - 1):
         slope[k] = way * (k + 1) * p[k + 1]
-    # The quickest bound that suffices is asked first.
-    return (slope[0] > 0.0 and (slope[0] > magnitude(slope) or clearly_positive(slope))) or keeps_its_sign(slope)
+    slope[TERMS - 1] = 0.0
+    return keeps_its_sign(slope)
 
 
 @kernel
 def keeps_its_sign(c: Floats) -> bool:
     """Return True if bounds show at once that the polynomial does not change sign on (0, 1].
 
-    The bounds come from Horner's rule in interval arithmetic, after leading zeros are divided out.
+    They come from Bernstein coefficients, or from Horner's rule in interval arithmetic, after leading zeros are divided out. A root
+    at 1 may lie inside by rounding, and counts.
     """
+    if c[0] > 0.0 and bound_below(c) > SAME * c[0]:
+        return True
     low = high = 0.0
     lead = 0
     while lead < TERMS - 1 and c[lead] == 0.0:
@@ -112,17 +199,18 @@ def keeps_its_sign(c: Floats) -> bool:
 
 @kernel
 def _rises(p: Floats) -> bool:
-    for k in range(1, len(p)):
+    for k in range(1, TERMS):
         if p[k] != 0.0:
             return p[k] > 0.0
     return False
 
 
-@kernel
-def _note(turns: Turns, n: int, place: tuple[int, float], rate: float, kind: int) -> int:
+@inlined
+def _note(turns: Turn, n: int, place: tuple[int, float], rate: float, kind: int) -> int:
     """Write point n, at a place (piece, xi), and return the number of points."""
-    turns.piece[n], turns.xi[n] = place
-    turns.rate[n], turns.kind[n] = rate, kind
+    turn = turns[n]
+    turn.piece, turn.xi = place
+    turn.rate, turn.kind = rate, kind
     return n + 1
 
 
@@ -130,36 +218,36 @@ def _note(turns: Turns, n: int, place: tuple[int, float], rate: float, kind: int
 
 
 @kernel
-def extend_to_rest(table: Integers, span: tuple[int, int], threshold: float, turns: Turns, found: int) -> None:
+def extend_to_rest(search: Search, span: tuple[int, int], threshold: float, found: int) -> None:
     """Move each crossing of the threshold to the onset of slip before it, or the arrest after it, unless the rate turns between.
 
-    The first `found` points are in order of time. `span` holds the first piece of the history that was searched, and the number of
-    pieces of the history.
+    The first `found` points are in order of time.
     """
     for n in range(found):
-        way = -turns.kind[n]
+        turn = search.turns[n]
+        way = -turn.kind
         if way == 0:
             continue
-        piece = piece_next_to_rest(table, span, (turns.piece[n], turns.xi[n]), way, threshold)
+        piece = piece_next_to_rest(search, span, (turn.piece, turn.xi), way, threshold)
         if piece != NO_REST:
-            turns.piece[n], turns.xi[n] = piece, 0.0 if way < 0 else 1.0
-            turns.rate[n] = min(turns.rate[n], abs(evaluate(pieces_in(table)[piece].rate, turns.xi[n])))
+            turn.piece, turn.xi = piece, 0.0 if way < 0 else 1.0
+            turn.rate = min(turn.rate, abs(evaluate(search.pieces[piece].rate, turn.xi)))
 
 
 @kernel
-def piece_next_to_rest(table: Integers, span: tuple[int, int], place: tuple[int, float], way: int, threshold: float) -> int:
+def piece_next_to_rest(search: Search, span: tuple[int, int], place: tuple[int, float], way: int, threshold: float) -> int:
     """Return the piece in which slip begins from rest before a place (way is -1), or comes to rest after it (1).
 
     The slip rate passes the threshold (m/s) at that place (piece, xi). Returns NO_REST if the rate turns between the place and the
     rest, or if the history does not reach to the rest.
     """
-    pieces, rate = pieces_in(table), np.empty(TERMS)
+    pieces, rate = search.pieces, search.spare.rate
     (n, xi), slack = place, SLACK * threshold
     low = threshold - slack
     while True:
         for k in range(TERMS):
             rate[k] = pieces[n].mode * pieces[n].rate[k]
-        low = descend(rate, xi, way, low, slack)
+        low = descend(search.spare, (xi, way), low, slack)
         if low == TURNS:
             return NO_REST
         behind = n if way < 0 else n + 1
@@ -188,15 +276,16 @@ def starts_from_rest(pieces: HistoryPiece, n: int) -> bool:
 
 
 @kernel
-def descend(rate: Floats, xi: float, way: int, low: float, slack: float) -> float:
+def descend(memory: Spare, start: tuple[float, int], low: float, slack: float) -> float:
     """Follow |slip rate| (m/s), a polynomial, from the place xi to the start of its piece (way is -1) or to its end (1).
 
-    Returns the lowest value so far, of which `low` is that before, or TURNS if the rate rises by more than `slack` above it.
+    `start` is xi and way. Returns the lowest value so far, of which `low` is that before, or TURNS if the rate rises by more than
+    `slack` above it.
     """
-    slope, places = np.zeros(TERMS), np.empty(MAXIMA_PER_PIECE)
-    extrema = 0 if is_monotone(rate, slope) else crossings(slope, places)
+    (xi, way), spare = start, spare_in(memory)
+    rate, places, last = spare.rate, spare.found, 0.0 if way < 0 else 1.0
+    extrema = 0 if xi == last or is_monotone(rate, spare.slope) else crossings(spare.slope, places, spare.spare)
     for k in range(extrema + 1):
-        last = 0.0 if way < 0 else 1.0
         place = last if k == extrema else places[k if way > 0 else extrema - 1 - k]
         if way * (place - xi) <= 0.0:
             continue

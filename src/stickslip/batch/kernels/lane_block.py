@@ -43,6 +43,7 @@ class Block(Record):
     disc: float  # 1: number of the disc that served the step before
     share: float  # 1: bound of what the step misses, as a share (`contact_step.certificate`)
     rate: Floats = floats_inside(TERMS)  # m/s: magnitude of the slip rate over the step, as a polynomial on [0, 1]
+    slope: Floats = floats_inside(TERMS)  # m/s: slope of that polynomial, with the sign that makes it start above zero
     guess: float  # 1: unit of the series, in xi
     usable: float  # length that the error allows the step, in guesses
     length: float  # length of the step, in guesses

@@ -24,12 +24,13 @@ from stickslip.batch.kernels.lane_block import (
 )
 from stickslip.engine.codegen.compiler import ahead, call_jet, call_radii, call_values, inlined, integers, kernel
 from stickslip.engine.codegen.lane_records import floats_of, rows_of
-from stickslip.engine.codegen.simd import WIDTH, chosen, store_across
+from stickslip.engine.codegen.simd import WIDTH, chosen, first_of, store_across
 from stickslip.engine.contact.pieces import note_slip
 from stickslip.engine.contact.stiffness import CHECKED, judge_stiffness
 from stickslip.engine.contact_step.certificate import (
     ALLOWED,
     ALLOWED_SLOPE,
+    NEAR,
     NEGLIGIBLE,
     ROUGH,
     ROUGH_SLOPE,
@@ -43,6 +44,7 @@ from stickslip.engine.contact_step.certificate import (
     missed_by_rate,
     proven_length,
     put_discs,
+    shortened,
     size_at_end,
     size_of_rate,
     slope_on_disc,
@@ -56,6 +58,7 @@ from stickslip.engine.series.polynomial import NONE, bound_below, moment, multip
 from stickslip.engine.series.step_size import FAR_FROM_GUESS, length_at, usable_length
 from stickslip.engine.state.layout import TERMS, HistoryPiece, Integers, State
 from stickslip.engine.state.workspace import RUN_SIZE, Run, borrow
+from stickslip.trajectory.turning_points import SAME
 
 PARTS = 3
 """Number of functions of a formula that work on lanes."""
@@ -81,6 +84,16 @@ class Waits(IntEnum):
     """A step that the engine must take."""
 
 
+class Side(NamedTuple):
+    """The runs in the lanes, as pointers."""
+
+    table: Integers  # their memory
+    waits: Integers  # what each lane waits for
+    jets: Integers  # addresses of the formulas' series, radii and values, in turn for each piece of the law
+    block: int  # address of the numbers in lanes
+    ways: int  # address of what is known of the slip rate in each piece (`turning_points.Search`), or 0 if nobody wants it
+
+
 class Step(NamedTuple):
     """A step that some lanes take together."""
 
@@ -92,18 +105,15 @@ class Step(NamedTuple):
 
 
 @kernel
-def step_side_by_side(table: Integers, waits: Integers, jets: Integers, block: int) -> None:
-    """Take one step in each lane that waits for one; lanes under the same formula of the law step together.
-
-    table points to the memory of the runs in the lanes, waits to what each lane waits for, and jets to the addresses of the
-    formulas' series, radii and values, in turn for each piece of the law; block is the address of the numbers in lanes.
-    """
+def step_side_by_side(side: Side) -> None:
+    """Take one step in each lane that waits for one; lanes under the same formula of the law step together."""
+    waits = side.waits
     for lane in range(WIDTH):
         if waits[lane] == Waits.FRESH or waits[lane] == Waits.SLIPPING:
             waits[lane] = -waits[lane]
     for lane in range(WIDTH):
         if waits[lane] < 0:
-            step_under(ahead(jets, PARTS * run_in(table, lane).counts.piece), table, waits, jets, block)
+            step_under(ahead(side.jets, PARTS * run_in(side.table, lane).counts.piece), side)
 
 
 @inlined
@@ -113,11 +123,12 @@ def run_in(table: Integers, lane: int) -> Run:
 
 
 @kernel
-def step_under(formula: Integers, table: Integers, waits: Integers, jets: Integers, block: int) -> None:
+def step_under(formula: Integers, side: Side) -> None:
     """Take one step in the lanes under a formula that have not taken theirs, which a negative `waits` marks.
 
     `formula` points to the addresses of its series, of its radii and of its values.
     """
+    table, waits, jets, block, ways = side
     rows, lane_0, taking, fresh, degree = block_in_all_lanes(block), block_in_one_lane(block), 0, 0, 1
     targets, moves, is_block = integers(block + 8 * WIDTH * TARGETS), False, False
     for lane in range(WIDTH):
@@ -135,20 +146,25 @@ def step_under(formula: Integers, table: Integers, waits: Integers, jets: Intege
     sound = check_end(rows, formula[2], moves, degree)
     move(rows, reached, is_block)
     store(rows, targets)
-    kept = 0
-    for lane in range(WIDTH):
-        if taking >> lane & 1 and is_simple(run_in(table, lane), lane_0[lane], sound >> lane & 1 == 1):
+    kept, rest = 0, sound & taking
+    while rest != 0:
+        lane, rest = first_of(rest), rest & (rest - 1)
+        if is_simple(run_in(table, lane), lane_0[lane]):
             kept |= 1 << lane
     keep(rows, kept)
-    for lane in range(WIDTH):
-        if taking >> lane & 1:
-            run, own = run_in(table, lane), lane_0[lane]
-            if kept >> lane & 1:
-                waits[lane] = append(run, own, fresh >> lane & 1 == 1)
-            else:
-                run.counts.disc, run.counts.breach, waits[lane] = int(own.disc), 0, Waits.ALONE
-            if waits[lane] != Waits.SLIPPING:
-                take_out(run, own)
+    rising, falling = ways_of(rows) if ways != 0 else (0, 0)
+    while taking != 0:
+        lane, taking = first_of(taking), taking & (taking - 1)
+        run, own = run_in(table, lane), lane_0[lane]
+        if kept >> lane & 1:
+            if ways != 0:  # where a piece of load begins the slip rate may jump
+                way = 0 if fresh >> lane & 1 else (rising >> lane & 1) - (falling >> lane & 1)
+                integers(ways)[lane * run.capacity + run.counts.length] = way
+            waits[lane] = append(run, own, fresh >> lane & 1 == 1)
+        else:
+            run.counts.disc, run.counts.breach, waits[lane] = int(own.disc), 0, Waits.ALONE
+        if waits[lane] != Waits.SLIPPING:
+            take_out(run, own)
 
 
 @inlined
@@ -160,17 +176,25 @@ def choose_length(formula: Integers, step: Step) -> None:
     call_jet(formula[0], floats_of(rows.constants), floats_of(rows.k), floats_of(rows.load_along_slip), floats_of(rows.jet))
     rows.usable = length_at(rows.jet, rows.tolerance, 0.5)
     odd = taking & ~((rows.usable >= FAR_FROM_GUESS) & ~(rows.jet[TERMS - 1] == 0.0))
-    for lane in range(WIDTH):
-        if odd >> lane & 1:
-            lend_step(run_in(table, lane), lane_0[lane])
-            lane_0[lane].usable = usable_length(run_in(table, lane).jet, lane_0[lane].tolerance)
+    while odd != 0:
+        lane, odd = first_of(odd), odd & (odd - 1)
+        lend_step(run_in(table, lane), lane_0[lane])
+        lane_0[lane].usable = usable_length(run_in(table, lane).jet, lane_0[lane].tolerance)
     rows.limit = (rows.state.target - rows.state.xi) / rows.guess
     rows.length = min(rows.usable, rows.limit)
     prove(rows, formula[1], moves, degree)
-    odd = taking & ~((rows.share <= (ALLOWED_SLOPE if moves else ALLOWED)) & (rows.k.free == 1.0))
-    for lane in range(WIDTH):
-        if odd >> lane & 1:
-            prove_alone(run_in(table, lane), lane_0[lane])
+    largest = ALLOWED_SLOPE if moves else ALLOWED
+    odd = taking & ~(rows.share <= largest)
+    near = odd & (rows.share <= largest * NEAR)
+    if near != 0:  # as the search for a single run begins
+        rows.length = chosen(near, shortened(rows.length, rows.share, largest), rows.length)
+        prove(rows, formula[1], moves, degree)
+        odd = taking & ~(rows.share <= largest)
+        rows.usable = chosen(near & ~odd, rows.length, rows.usable)
+    odd |= taking & ~(rows.k.free == 1.0)
+    while odd != 0:
+        lane, odd = first_of(odd), odd & (odd - 1)
+        prove_alone(run_in(table, lane), lane_0[lane])
 
 
 @inlined
@@ -220,8 +244,9 @@ def prove(rows: Block, radii: int, moves: bool, degree: int) -> None:
 def prove_alone(run: Run, own: Block) -> None:
     """Find a length that can be proven for the step in a run's lane, and the force that it ignores at its start."""
     lend_step(run, own)
-    proven = proven_length(run, own.length)
-    if proven < own.length:
+    length = min(own.usable, own.limit)
+    proven = proven_length(run, length)
+    if proven < length:
         own.usable = proven
     begin_step(run)
     own.state.residual, own.state.unbalanced = run.state.residual, run.state.unbalanced
@@ -307,9 +332,9 @@ def store(rows: Block, targets: Integers) -> None:
 
 
 @inlined
-def is_simple(run: Run, own: Block, sound: bool) -> bool:
-    """Return True if a step in a run's lane may be kept: it is sound, takes time, is proven and meets no knot of the law."""
-    if not sound or run.counts.breach != 0 or not own.row.phase_to > own.row.phase_from:
+def is_simple(run: Run, own: Block) -> bool:
+    """Return True if a sound step in a run's lane may be kept: it takes time, is proven and meets no knot of the law."""
+    if run.counts.breach != 0 or not own.row.phase_to > own.row.phase_from:
         return False
     if run.params.can_be_negative != 0.0 and goes_below_zero(run, lend_rate(run, own), own.length):
         return False
@@ -328,6 +353,18 @@ def keep(rows: Block, kept: int) -> None:
     state.largest_residual = chosen(kept, max(state.largest_residual, state.residual), state.largest_residual)
     rows.load[0] = chosen(kept, rows.load[0] - rows.stiffness * signed, rows.load[0])
     rows.k.free, rows.k.force = chosen(kept, 1.0, rows.k.free), chosen(kept, 0.0, rows.k.force)
+
+
+@inlined
+def ways_of(rows: Block) -> tuple[int, int]:
+    """Return the lanes in which the slip rate is proven to rise throughout the step, and those in which it is proven to fall."""
+    rate, slope, rises = rows.rate, rows.slope, rows.rate[1] > 0.0
+    way = chosen(rises, 1.0, -1.0)
+    for n in range(TERMS - 1):
+        slope[n] = (n + 1) * rate[n + 1] * way
+    slope[TERMS - 1] = 0.0
+    proven = (slope[0] > 0.0) & (bound_below(slope) > SAME * slope[0])
+    return proven & rises, proven & ~rises
 
 
 @inlined

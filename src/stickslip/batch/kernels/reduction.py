@@ -8,9 +8,8 @@ is a pair of a piece and xi from 0 to 1; `round_trip_time` is the length of a ro
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
-from stickslip.batch.kernels.points import Points
 from stickslip.engine.codegen.compiler import kernel
 from stickslip.engine.codegen.records import Record, numbers_of, record_at
 from stickslip.engine.contact.contact_equation import friction_of
@@ -18,8 +17,8 @@ from stickslip.engine.series.polynomial import evaluate, integral
 from stickslip.engine.state.layout import Floats, HistoryPiece, Integers, Stop
 from stickslip.engine.state.workspace import Run, pieces_in
 from stickslip.trajectory.history import OFFSET_ROUNDING
-from stickslip.trajectory.slip_events import rises_over
-from stickslip.trajectory.turning_points import starts_from_rest
+from stickslip.trajectory.slip_events import EventTurns, rises_over
+from stickslip.trajectory.turning_points import Turn, starts_from_rest
 
 
 class Reduced(Record):
@@ -53,6 +52,15 @@ FIRST_OF_EVENTS, LAST_OF_EVENTS = COLUMNS.index("peak_rate"), COLUMNS.index("rec
 """The columns from the first to the second of these describe slip events, and so do the numbers of events and pulses."""
 OF_EVENTS = frozenset({"events", "pulses", *COLUMNS[FIRST_OF_EVENTS : LAST_OF_EVENTS + 1]})
 """Columns for which slip events must be found."""
+
+
+class Found(NamedTuple):
+    """Hold the slip events of a run, as pointers: the points of its slip rate, which of them each event has, and their number."""
+
+    turns: Turn
+    events: EventTurns
+    number: int
+
 
 # ---- places in a history ----------------------------------------------------------------------------------------------------
 
@@ -225,54 +233,55 @@ def friction_after(run: Run, piece: int, xi: float) -> float:
 
 
 @kernel
-def fold_events(run: Run, points: Points, events: int, out: Reduced) -> None:
+def fold_events(run: Run, found: Found, out: Reduced) -> None:
     """Write the numbers that describe all slip events, and their recurrence, into `out`; columns without a value become NaN."""
-    out.events, out.pulses = events, 0.0
+    (turns, events, count), history, round_trip_time = found, run.history, run.params.round_trip_time
+    out.events, out.pulses = count, 0.0
     for column in range(FIRST_OF_EVENTS, LAST_OF_EVENTS + 1):
         numbers_of(out)[column] = math.nan
-    if events == 0:
+    if count == 0:
         return
-    history, round_trip_time, fastest = run.history, run.params.round_trip_time, points.top[0]
-    for n in range(events):
-        out.pulses += points.pulses[n]
-        if points.turns.rate[points.top[n]] > points.turns.rate[fastest]:
-            fastest = points.top[n]
-    out.peak_rate = points.turns.rate[fastest]
-    out.peak_time = time_at(history, round_trip_time, points.turns.piece[fastest], points.turns.xi[fastest])
-    if events > 1:
-        fold_recurrence(history, round_trip_time, points, events, out)
+    fastest = events[0].top
+    for n in range(count):
+        out.pulses += events[n].pulses
+        if turns[events[n].top].rate > turns[fastest].rate:
+            fastest = events[n].top
+    out.peak_rate = turns[fastest].rate
+    out.peak_time = time_at(history, round_trip_time, turns[fastest].piece, turns[fastest].xi)
+    if count > 1:
+        fold_recurrence(history, round_trip_time, found, out)
 
 
 @kernel
-def fold_recurrence(history: HistoryPiece, round_trip_time: float, points: Points, events: int, out: Reduced) -> None:
+def fold_recurrence(history: HistoryPiece, round_trip_time: float, found: Found, out: Reduced) -> None:
     """Write the mean (s) and the coefficient of variation of the times between starts of events into `out`.
 
     The latter is the sample standard deviation over the mean; it stays NaN for two events, which have one recurrence time.
     """
+    turns, events, count = found
     mean = spread = 0.0
-    for n in range(1, events):
-        a, b, turns = points.begin[n - 1], points.begin[n], points.turns
-        since = time_between(history, round_trip_time, (turns.piece[a], turns.xi[a]), (turns.piece[b], turns.xi[b]))
+    for n in range(1, count):
+        a, b = turns[events[n - 1].begin], turns[events[n].begin]
+        since = time_between(history, round_trip_time, (a.piece, a.xi), (b.piece, b.xi))
         change = since - mean
         mean += change / n
         spread += change * (since - mean)
     out.recurrence = mean
-    if events > 2:
-        out.recurrence_cv = math.sqrt(spread / (events - 2)) / mean
+    if count > 2:
+        out.recurrence_cv = math.sqrt(spread / (count - 2)) / mean
 
 
 @kernel
-def fold_first(run: Run, points: Points, excess: float, out: Reduced) -> None:
+def fold_first(run: Run, found: Found, excess: float, out: Reduced) -> None:
     """Write the numbers that describe the first event into `out`, as in `tables.event_columns`, except its static drop.
 
     excess is the initial load minus the static strength (Pa or N).
     """
-    history = run.history
-    a, b = points.begin[0], points.past[0] - 1
-    piece, xi, last, last_xi = points.turns.piece[a], points.turns.xi[a], points.turns.piece[b], points.turns.xi[b]
+    history, begin, end = run.history, found.turns[found.events[0].begin], found.turns[found.events[0].past - 1]
+    piece, xi, last, last_xi = begin.piece, begin.xi, end.piece, end.xi
     round_trip_time = run.params.round_trip_time
     out.first_start = time_at(history, round_trip_time, piece, xi)
-    if points.turns.kind[b] == -1:
+    if end.kind == -1:
         out.first_end = time_at(history, round_trip_time, last, last_xi)
         out.first_duration = time_between(history, round_trip_time, (piece, xi), (last, last_xi))
     out.first_slip = abs(slipped_between(history, piece, xi, last, last_xi))

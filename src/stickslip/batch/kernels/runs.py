@@ -15,17 +15,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from numba import carray, types
 from numba.extending import intrinsic
 
-from stickslip.batch.kernels.lanes import Waits, step_side_by_side
-from stickslip.batch.kernels.points import find_events
-from stickslip.batch.kernels.reduction import COLUMNS, Reduced, fold_events, fold_first, fold_whole, reached, reduced_at
+from stickslip.batch.kernels.lanes import Side, Waits, step_side_by_side
+from stickslip.batch.kernels.reduction import COLUMNS, Found, Reduced, fold_events, fold_first, fold_whole, reached, reduced_at
 from stickslip.engine.codegen.compiler import address_of, ahead, call_prepare, floats, inlined, integers, kernel
 from stickslip.engine.codegen.records import numbers_of, whole_numbers_of
 from stickslip.engine.codegen.simd import WIDTH
 from stickslip.engine.loop import run_until
 from stickslip.engine.state.layout import Counts, Floats, Integers, Params, State, Stop
 from stickslip.engine.state.workspace import ADDRESSES, RUN_SIZE, Run, borrow
-from stickslip.trajectory.slip_events import NOT_YET
+from stickslip.trajectory.slip_events import EventTurns, events_in, group_turns
 from stickslip.trajectory.status import BAD_PARAMETERS
+from stickslip.trajectory.turning_points import FULL, Search, Spare, Turn, find_turns, spare_in, turns_in
 
 if TYPE_CHECKING:
     from stickslip.batch.setups import Setups
@@ -61,6 +61,7 @@ class Lane(NamedTuple):
     waits: Integers  # what the lane waits for, see `kernels.lanes`
     member: Integers  # index of the member in the lane
     code: Integers  # what the engine returned last
+    ways: Integers  # what is known of the slip rate in each piece, see `turning_points.Search`
 
 
 class Group(NamedTuple):
@@ -134,6 +135,14 @@ class Members(NamedTuple):
     last_phase: Floats
     duration: Floats
     upcoming: Integers  # index of the next member to start
+    wants_events: bool
+    threshold: Floats
+    excess: Floats
+    stiffness: Floats
+    turns: Turn  # points of the slip rate of a run that has ended
+    events: EventTurns
+    room: int  # number of points for which there is room
+    spare: Spare
 
 
 @kernel
@@ -145,24 +154,21 @@ def run_group(group: Group, base: Integers, stride: Integers, work: Workspace) -
     PAUSED) that it should be run alone. Called again, it continues from there.
     """
     first, members = first_lane(work, base, stride), members_of(group, work)
-    jets, block = integers(group.setups.jets.ctypes.data), work.block[0]
-    for n in range(WIDTH):
+    ways, lanes = work.ways.ctypes.data if group.wants_events else 0, len(work.stage)  # no constant: no copy for each
+    side = Side(first.table, first.waits, integers(group.setups.jets.ctypes.data), work.block[0], ways)
+    for n in range(lanes):
         if nth(first, n).stage[0] != Stage.FREE:
             point_at(nth(first, n), members, first.member[n])
     while True:
         waiting = 0
-        for n in range(WIDTH):
+        for n in range(lanes):
             lane = nth(first, n)
             if lane.stage[0] == Stage.UNDER_WAY and (lane.waits[0] == Waits.NONE or lane.waits[0] == Waits.ALONE):
                 advance_member(members, lane)
             while lane.waits[0] == Waits.NONE:
                 if lane.stage[0] == Stage.UNDER_WAY:
                     return n
-                if (
-                    lane.stage[0] == Stage.AT_END
-                    and group.wants_events
-                    and not fold_events_of(lane, group.setups, work, n, members)
-                ):
+                if lane.stage[0] == Stage.AT_END and members.wants_events and not fold_events_of(lane, members):
                     return n
                 if lane.stage[0] == Stage.AT_END:
                     fold_run(lane, members)
@@ -171,7 +177,7 @@ def run_group(group: Group, base: Integers, stride: Integers, work: Workspace) -
             waiting += lane.waits[0] != Waits.NONE
         if waiting == 0 or group.stop[0] != 0:
             return WIDTH
-        step_side_by_side(first.table, first.waits, jets, block)
+        step_side_by_side(side)
 
 
 @kernel
@@ -194,6 +200,14 @@ def members_of(group: Group, work: Workspace) -> Members:
         floats(setups.last_phase.ctypes.data),
         floats(setups.duration.ctypes.data),
         integers(work.upcoming.ctypes.data),
+        group.wants_events,
+        floats(setups.threshold.ctypes.data),
+        floats(setups.excess.ctypes.data),
+        floats(setups.stiffness.ctypes.data),
+        turns_in(work.turns),
+        events_in(work.events),
+        len(work.turns),
+        spare_in(work.spare),
     )
 
 
@@ -203,7 +217,7 @@ def first_lane(work: Workspace, base: Integers, stride: Integers) -> Lane:
     flags = integers(work.stage.ctypes.data), integers(work.waits.ctypes.data)
     member, code = integers(work.member.ctypes.data), integers(work.code.ctypes.data)
     table, origin = integers(work.table.ctypes.data), integers(base.ctypes.data)
-    return Lane(table, origin, integers(stride.ctypes.data), flags[0], flags[1], member, code)
+    return Lane(table, origin, integers(stride.ctypes.data), flags[0], flags[1], member, code, integers(work.ways.ctypes.data))
 
 
 @kernel
@@ -211,7 +225,8 @@ def nth(lane: Lane, n: int) -> Lane:
     """Return the lane n places after the given one."""
     table, base = ahead(lane.table, n * RUN_SIZE), ahead(lane.base, n * ADDRESSES)
     stage, waits, member, code = ahead(lane.stage, n), ahead(lane.waits, n), ahead(lane.member, n), ahead(lane.code, n)
-    return Lane(table, base, lane.stride, stage, waits, member, code)
+    ways = ahead(lane.ways, n * borrow(lane.table).capacity)
+    return Lane(table, base, lane.stride, stage, waits, member, code, ways)
 
 
 @kernel
@@ -243,6 +258,7 @@ def start_member(run: Run, members: Members, n: int) -> None:
 def advance_member(members: Members, lane: Lane) -> None:
     """Run the lane's member until its next step is to be taken side by side, it ends or pauses, lacks room, or `stop` is set."""
     n, table, code = lane.member[0], carray(lane.table, (RUN_SIZE,)), -1  # Stop.NONE
+    first = borrow(lane.table).counts.length
     last_trip, last_phase = members.last_trip[n], members.last_phase[n]
     if lane.waits[0] == Waits.ALONE:
         counts = borrow(lane.table).counts
@@ -251,6 +267,8 @@ def advance_member(members: Members, lane: Lane) -> None:
         counts.waits = 1
     while code == Stop.NONE and members.stop[0] == 0:
         code = run_until_at(members.engine, table, last_trip, last_phase, BUDGET)
+    for k in range(first, borrow(lane.table).counts.length):
+        lane.ways[k] = 0  # nothing is known
     lane.code[0] = code
     lane.waits[0] = Waits.FRESH if code == Stop.SLIPS else Waits.NONE
     asks = code == Stop.SLIPS or code == Stop.FULL or code == Stop.PAUSED or code == Stop.NEED_PART
@@ -289,19 +307,20 @@ def fold_run(lane: Lane, members: Members) -> None:
 
 
 @kernel
-def fold_events_of(lane: Lane, setups: Setups, work: Workspace, place: int, members: Members) -> bool:
-    """Write the numbers of the slip events of a run that has ended in lane number `place`; return False if points lack room."""
+def fold_events_of(lane: Lane, members: Members) -> bool:
+    """Write the numbers of the slip events of a run that has ended in a lane; return False if its points lack room."""
     run, n = borrow(lane.table), lane.member[0]
     if run.counts.length == 0:
         return True
-    table, out = work.store.pieces[place], reduced_of(lane, members)
-    events = find_events(table, run.counts.length, setups.threshold[n], run.counts.sticks == 1, work.points)
-    if events == NOT_YET:
+    search, out = Search(run.history, lane.ways, members.turns, members.room, members.spare), reduced_of(lane, members)
+    turns = find_turns(search, (0, run.counts.length), members.threshold[n], run.counts.sticks == 1)
+    if turns == FULL:
         return False
-    fold_events(run, work.points, events, out)
-    if events > 0:
-        fold_first(run, work.points, setups.excess[n], out)
-        out.first_static_drop = setups.stiffness[n] * out.first_slip
+    found = Found(members.turns, members.events, group_turns(members.turns, turns, members.events))
+    fold_events(run, found, out)
+    if found.number > 0:
+        fold_first(run, found, members.excess[n], out)
+        out.first_static_drop = members.stiffness[n] * out.first_slip
     return True
 
 

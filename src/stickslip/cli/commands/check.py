@@ -60,7 +60,10 @@ def check(
     look.check(figure)
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", ".*the points look noisy", InputWarning)  # the examination says so
-        loaded = load(scenario, "check", changes)
+        loaded = load(scenario, "check", changes, contact=True)
+    if loaded.contact is not None:
+        _show_contact(loaded, figure or map_axes)
+        return
     axes = map_axes or []
     if axes and (len(axes) != 2 or figure is None):
         raise InputError(f"check: a map needs two --map and a --figure, got {len(axes)} and {'one' if figure else 'none'}")
@@ -68,6 +71,19 @@ def check(
     show_examination(loaded, examine(loaded))
     if drawn is not None:
         announce(*write_files((figure, drawing(drawn, look))))
+
+
+def _show_contact(loaded: Scenario, drawing_wanted: object) -> None:
+    """Print what was found about a scenario with a contact of many nodes. Raises InputError if a drawing is wanted."""
+    from stickslip.cli.output.contact import size_of
+    from stickslip.scenarios.examine import Fact
+    from stickslip.scenarios.examine_contact import examine_contact
+
+    if drawing_wanted:
+        raise InputError("check: --figure and --map draw the contact equation of a single place: leave them out with a [contact]")
+    found = examine_contact(loaded)
+    found.derived.append(Fact("memory", size_of(loaded), "", "of a run"))
+    show_examination(loaded, found)
 
 
 def _set(loaded: Scenario) -> Callable[..., object]:
@@ -82,7 +98,7 @@ def _map(loaded: Scenario, axes: list[str]) -> Callable[..., object]:
     from stickslip.cli.overrides import read_axis
     from stickslip.contact.regime_map import regime_map
     from stickslip.figures.contact import regimes
-    from stickslip.run.progress_line import progress_line
+    from stickslip.run.progress import progress_line
 
     x, y = (read_axis(loaded.problem, text, "check: --map") for text in axes)
     with progress_line("map:") as report:

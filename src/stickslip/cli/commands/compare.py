@@ -60,7 +60,7 @@ def _compared(names: list[str], duration: str | None, rtol: float | None, event:
     """Read all sources before any of them is run, then run them. Raises InputError."""
     from stickslip.cli.overrides import STDIN, load, read
     from stickslip.problem.run_quantities import check_rtol
-    from stickslip.run.progress_line import progress_line
+    from stickslip.run.progress import progress_line
     from stickslip.scenarios.schema import read_duration
     from stickslip.studies.compare import Comparison, distinct, read_source
 
@@ -68,7 +68,7 @@ def _compared(names: list[str], duration: str | None, rtol: float | None, event:
         raise InputError(f"compare: needs two runs or more, got {len(names)}; `stickslip new --list` lists the bundled ones")
     length = read(read_duration, duration, "compare", "duration")
     tolerance = read(check_rtol, rtol, "compare", "rtol")
-    sources = [read_source(load(name) if name == STDIN else name, length, tolerance) for name in names]
+    sources = [read_source(load(name, "compare") if name == STDIN else name, length, tolerance) for name in names]
     runs = {}
     for name, source in zip(distinct([source.name for source in sources]), sources, strict=True):
         with progress_line(f"{name}:") as report:

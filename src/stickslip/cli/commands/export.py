@@ -50,7 +50,7 @@ def export(
     """
     from stickslip.io.scec import write_scec
     from stickslip.io.seismogram import import_obspy, write_seismogram
-    from stickslip.run.progress_line import progress_line
+    from stickslip.run.progress import progress_line
 
     check_target(file, "FILE", (*TEXT, *SEISMOGRAMS))
     if file.suffix.lower() in TEXT:
@@ -78,7 +78,7 @@ def _source(run: str, duration: str | None) -> Source:
     from stickslip.studies.compare import read_source
 
     length = read(read_duration, duration, "export", "duration")
-    return read_source(load(run) if run == STDIN else run, length)
+    return read_source(load(run, "export") if run == STDIN else run, length, who="export")
 
 
 def _place(text: str | None) -> Any:

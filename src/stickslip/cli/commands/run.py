@@ -97,7 +97,8 @@ def run(
 
     Exit code: 0 done, 1 the run failed, 2 unusable input, 130 interrupted.
     """
-    from stickslip.cli.long_run import Request, list_events, solve
+    from stickslip.cli.long_run import Request, list_events, solve, solve_contact
+    from stickslip.cli.output.contact import show_run
     from stickslip.cli.output.pictures import Pictures
     from stickslip.cli.output.summary import show_catalogue, show_solution
 
@@ -116,6 +117,11 @@ def run(
         pictures=drawn,
     )
     request.check()
+    if request.has_contact:
+        run = solve_contact(request)
+        show_run(run)
+        announce(out or resume, *drawn.draw_contact(run))
+        _leave(run.status)
     if request.keeps_events_only:
         chosen, found = list_events(request)
         show_catalogue(chosen, found)

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from stickslip.problem.problem import Problem
+    from stickslip.solution.planar import PlanarSolution
     from stickslip.solution.solution import Solution
 
 FILMS = (".gif", ".mp4", ".webm")
@@ -70,6 +71,18 @@ class Pictures:
         if others:
             raise InputError(f"{where}: a catalogue keeps slip events only, no history: leave out {', '.join(others)}")
 
+    def check_contact(self, where: str) -> None:
+        """Refuse, before the run, figures that a contact of many nodes does not have. Raises InputError."""
+        others = [option for option in self.wanted if option not in ("--figure", "--animation")]
+        if others:
+            raise InputError(f"{where}: a [contact] of many nodes has --figure and --animation: leave out {', '.join(others)}")
+
+    def draw_contact(self, solution: PlanarSolution) -> list[Path]:
+        """Draw what is wanted of a contact of many nodes, and return the files."""
+        return write_files(
+            (self.figure, drawing(solution.plot, self.look)), (self.animation, lambda target: _animate(solution, target))
+        )
+
     def draw_events(self, table: pd.DataFrame, title: str) -> list[Path]:
         """Draw the figure of a catalogue if it is wanted and there is an event, and return its file."""
         from stickslip.figures.runs import catalogue
@@ -100,8 +113,8 @@ class Pictures:
         return self.catalogue_figure
 
 
-def _animate(solution: Solution, target: Path) -> Path:
-    from stickslip.run.progress_line import progress_line
+def _animate(solution: Solution | PlanarSolution, target: Path) -> Path:
+    from stickslip.run.progress import progress_line
 
     with progress_line(f"{target}:") as report:
         return solution.plot.animation(target, progress=lambda done, frames: report(f"frame {done} of {frames}"))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from stickslip.cli.output.files import announce
 from stickslip.cli.output.show import console, fits, print_numbers, say, titled
-from stickslip.engine_input.creep_limits import creep_tolerance
+from stickslip.engine_input.limits import creep_tolerance
 from stickslip.foundation.formatting import clean, number, with_unit
 from stickslip.scenarios.scenario import doubts, read_scenario
 

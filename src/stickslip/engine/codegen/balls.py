@@ -5,7 +5,7 @@ that the node takes on these discs lies within this distance of its value at the
 continuation over the disc of its argument, as log around 0, or where numbers overflow, the radius is infinite or not a number, and
 nothing is known. `engine.contact_step.certificate` proves steps with these radii.
 
-In the text, the value of node number i at the centre is n{i}_0 (see `recurrences`), its radius r{i}, a lower bound of its magnitude
+In the text, the value of node number i at the centre is n{i}_0 (see `order_zero`), its radius r{i}, a lower bound of its magnitude
 on the disc b{i}, and an upper bound of |log(value / centre)| there l{i}. The last two are written only where a denominator, a root,
 a power or a logarithm contains an exponential or a power: such a node may vary by orders of magnitude and still stay away from
 zero, which a radius alone cannot express.
@@ -15,7 +15,7 @@ Sources: Rump 2010, Verification methods, Acta Numerica 19 (balls); Rudin 1987, 
 
 from __future__ import annotations
 
-from stickslip.engine.codegen.recurrences import Recurrences, exp_of
+from stickslip.engine.codegen.order_zero import OrderZero, exp_of
 from stickslip.friction.formula.expression import RATE, SLIP, STATES, VARIABLES, Expression, nodes_of
 
 VARIED = ("exp", "expm1", "pow")
@@ -28,7 +28,7 @@ no division by zero."""
 class Balls:
     """Writes the radii of a formula's nodes; `centres` are the nodes whose values at the centre the text needs."""
 
-    def __init__(self, formula: Recurrences, roots: list[Expression]) -> None:
+    def __init__(self, formula: OrderZero, roots: list[Expression]) -> None:
         self._formula = formula
         wanted = {node for root in roots for node in nodes_of(root)}
         self._done: set[str] = set()

@@ -183,13 +183,13 @@ def integers(typingctx: Any, address: Any) -> Any:
 
 
 @intrinsic
-def floats_in(typingctx: Any, array: Any) -> Any:
-    """Return a pointer to the first number of an array of floats; the caller keeps the array alive."""
+def pointer_to(typingctx: Any, array: Any) -> Any:
+    """Return a pointer to the first number of an array; the caller keeps the array alive."""
 
     def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         return context.make_array(signature.args[0])(context, builder, args[0]).data
 
-    return FLOATS(array), codegen
+    return types.CPointer(array.dtype)(array), codegen
 
 
 def _cast(context: Any, builder: Any, signature: Any, args: Any) -> Any:
@@ -246,7 +246,7 @@ if UNCOMPILED:
         """Return the float with the given 64 bits."""
         return np.int64(bits).view(np.float64)
 
-    def floats_in(array: Floats) -> Pointer:
+    def pointer_to(array: Any) -> Pointer:
         """Return the pointer to the first number of an array."""
         return Pointer(array)
 

@@ -151,6 +151,21 @@ for _function in (math.sin, math.cos, math.exp, math.expm1, math.log, math.log1p
 
 
 @intrinsic
+def fused(typingctx: Any, a: Any, b: Any, c: Any) -> Any:
+    """Return a b + c, of floats or lanes, in one operation where the processor has it: which product is fused shortens chains."""
+    kind = LANES if LANES in (a, b, c) else types.float64
+
+    def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        numbers = [_in_every_lane(builder, x) if kind == LANES and of != LANES else x for x, of in zip(args, sig.args, strict=True)]
+        made = numbers[0].type
+        name = f"llvm.fmuladd.v{WIDTH}f64" if kind == LANES else "llvm.fmuladd.f64"
+        function = builder.module.declare_intrinsic(name, (), ir.FunctionType(made, [made] * 3))
+        return builder.call(function, numbers)
+
+    return kind(*(LANES if x == LANES else types.float64 for x in (a, b, c))), codegen
+
+
+@intrinsic
 def chosen(typingctx: Any, which: Any, yes: Any, no: Any) -> Any:
     """Return `yes` where a comparison of lanes holds and `no` elsewhere; a single float holds in every lane."""
 
@@ -160,6 +175,16 @@ def chosen(typingctx: Any, which: Any, yes: Any, no: Any) -> Any:
         return builder.select(mask, *lanes)
 
     return LANES(types.int64, yes, no), codegen
+
+
+@intrinsic
+def first_of(typingctx: Any, bits: Any) -> Any:
+    """Return the place of the lowest bit that is set in a whole number other than 0."""
+
+    def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        return builder.cttz(args[0], ir.Constant(ir.IntType(1), 1))
+
+    return types.int64(types.int64), codegen
 
 
 @intrinsic
@@ -261,6 +286,10 @@ def lanes_at(typingctx: Any, address: Any) -> Any:
 
 
 if UNCOMPILED:
+
+    def fused(a: Any, b: Any, c: Any) -> Any:
+        """Return a b + c."""
+        return a * b + c
 
     def bits_as_number(x: Any) -> Any:
         """Return the 64 bits of a float, read as an integer and converted to a float."""

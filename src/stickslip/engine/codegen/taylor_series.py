@@ -56,6 +56,7 @@ from numba import types
 from stickslip.engine.codegen.kernels import compiled_cfunc
 from stickslip.engine.series.{functions} import arcsinh_difference, exp_difference, exp_value
 from stickslip.engine.series.{functions} import log_difference, power_difference, power_value, tanh_difference
+from stickslip.engine.codegen.simd import fused
 from stickslip.engine.series.sine import sine, versine
 {lanes}
 _options = dict(nopython=True, error_model="numpy", fastmath={{"contract"}})
@@ -153,6 +154,18 @@ class FormulaWriter(Recurrences):
         radii = [f"r_{state.name} = k[{2 + n}]" for n, state in enumerate(self.states)]
         return ["r_slip = k[0]", "r_rate = k[1]", *radii, *self.balls.lines, *results]
 
+    def shares(self, unit: str) -> list[str]:
+        """Write the factors with which the parts of friction enter the contact equation, which is divided to give `unit` to mu."""
+        return [f"f{n} = -({factor} * {unit})" for n, factor in enumerate(self.parts(self.formula).values())]
+
+    def less_friction(self, rest: str, k: int) -> str:
+        """Write the k-th coefficient of what the contact equation gives: `rest` less friction."""
+        for n, part in enumerate(self.parts(self.formula)):
+            factor, name = self.series_of(part, k)
+            if name != "0.0":
+                rest = f"fused({factor} * f{n}, {name}, {rest})"
+        return rest
+
     def rate_jet(self) -> list[str]:
         """Write the body of `rate_jet(c, k, L, s)`, for a massless contact.
 
@@ -168,13 +181,12 @@ class FormulaWriter(Recurrences):
         else:
             body += [*self.order_zero(), "resistance = 1.0 / Z"]
             body += [f"s_0 = k[10] * (L[0] - S * ({self.difference(self.formula) or '0.0'} + offset)) * resistance"]
-        body += ["s[0] = s_0", "share = S * resistance", *self.centres()]
+        body += ["s[0] = s_0", *self.before_orders("A", "B"), *self.shares("S * resistance"), *self.centres()]
         for k in range(1, self.limit + 1):
             body.append(f"x_{k} = {_integral('s', k)}")
             self.pending_rate = k
             body += self.order(k)
-            friction = self.coefficient(self.formula, k)
-            body.append(f"s_{k} = L[{k}] * resistance{f' - share * {friction}' if friction else ''}")
+            body.append(f"s_{k} = {self.less_friction(f'L[{k}] * resistance', k)}")
             self.pending_rate = None
             for node in self.dynamic:
                 if self.rate_dependent[node]:
@@ -190,16 +202,15 @@ class FormulaWriter(Recurrences):
         body = ["Z = k[0]", "S = k[1]", "chi = k[2]", "A = k[3]", "B = k[4]", "dx = k[5]", "offset = k[6]", "inertia = 1.0 / k[7]"]
         body += ["K = k[8]", "s_0 = k[9]", *self.order_zero(), "s[0] = s_0"]
         force = f"L[0] - Z * s_0 - S * ({self.difference(self.formula) or '0.0'} + offset)"
-        body += [f"a_0 = (k[10] * ({force}) + k[11]) * inertia", *self.centres()]
+        body += [f"a_0 = (k[10] * ({force}) + k[11]) * inertia", *self.before_orders("chi * A", "chi * B")]
+        body += [*self.shares("S * inertia"), *self.centres()]
         for k in range(1, self.limit + 1):
             body += [f"q_{k} = {_integral('s', k)}", f"s_{k} = {_integral('a', k)}"]
             body.append(f"s[{k}] = s_{k}")
             if k == self.limit:
                 break
             body += [f"x_{k} = chi * q_{k}", *self.order(k), *self.weights(k)]
-            friction = self.coefficient(self.formula, k)
-            force = f"L[{k}] - K * q_{k} - Z * s_{k}{f' - S * {friction}' if friction else ''}"
-            body.append(f"a_{k} = ({force}) * inertia")
+            body.append(f"a_{k} = {self.less_friction(f'(L[{k}] - K * q_{k} - Z * s_{k}) * inertia', k)}")
         return body
 
     def statements(self, part: str) -> list[str]:

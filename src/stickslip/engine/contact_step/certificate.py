@@ -24,6 +24,7 @@ from stickslip.engine.codegen.compiler import call_radii, call_value, inlined, k
 from stickslip.engine.codegen.records import numbers_of
 from stickslip.engine.contact.contact_equation import constants_of
 from stickslip.engine.series.polynomial import RECIPROCAL, powers_of
+from stickslip.engine.series.step_size import quick_exp2, quick_log2
 from stickslip.engine.state.layout import TERMS, Ball, Floats, LawValue, SeriesInput, Stop
 from stickslip.engine.state.workspace import Run
 
@@ -48,6 +49,8 @@ HOPELESS = 1e100
 """Share (1) from which on a disc counts as too large for the law, which has a singularity on it."""
 SHORTEST, LONGEST = 0.2, 0.9
 """Smallest and largest factor (1) by which a step without a proof is shortened at a time."""
+SAFETY = 0.98
+"""Factor (1) for what that length is estimated too large."""
 NEAR = LONGEST ** (1.0 - TERMS)
 """Factor (1) by which a share falls at least if the step is shortened to LONGEST of its length: that costs one look at a disc, and
 the search for a better disc several."""
@@ -121,6 +124,13 @@ def size_of_rate(jet: Floats, length: float) -> float:
     """Return a size of the slip rate (m/s) over a step of the given length (in guesses)."""
     square = length * length
     return max(max(abs(jet[0]), length * abs(jet[1])), max(square * abs(jet[2]), square * length * abs(jet[3])))
+
+
+@inlined
+def shortened(length: float, share: float, largest: float) -> float:
+    """Return the length (in guesses) at which a step with a share that is too large may have the largest one."""
+    root = quick_exp2((quick_log2(largest) - quick_log2(share)) * (1.0 / (TERMS - 1)))
+    return length * min(max(SAFETY * root, SHORTEST), LONGEST)
 
 
 @inlined
@@ -222,7 +232,7 @@ def proven_length(run: Run, length: float) -> float:
         if not share <= enough:
             share = least_share(run, length, share, enough)
         if not share <= allowed(run):
-            length *= min(max(0.98 * (allowed(run) / share) ** (1.0 / (TERMS - 1)), SHORTEST), LONGEST)
+            length = shortened(length, share, allowed(run))
             share = share_on_disc(run, length, run.counts.disc)
         attempt += 1
     if not share <= allowed(run):

@@ -46,6 +46,8 @@ CONVERGED = 1e-10
 """Last correction by Newton's method, relative to the root (1): the next one would be about its square."""
 DOUBLINGS = 64
 """Largest number of doublings (1) that lead from the narrowest interval of a bisection to the whole of [0, 1], and more."""
+MOST_CROSSINGS = 32
+"""Largest number of crossings that are looked for: more than a polynomial of TERMS terms has, but for rounding."""
 MOST_INTERVALS = 4096
 """Largest number of intervals (1) of a bisection. Clusters of roots and roots of any order take at most some 400 of them; a
 polynomial that is not finite could be bisected for ever."""
@@ -385,12 +387,13 @@ def sign_changes(c: Floats, spare: Floats) -> int:
 
 
 @kernel
-def crossings(c: Floats, out: Floats) -> int:
-    """Write every x in (0, 1) at which p changes sign into `out`, ascending, up to its length; return their number.
+def crossings(c: Floats, out: Floats, part: Floats) -> int:
+    """Write every x in (0, 1) at which p changes sign into `out`, ascending, up to MOST_CROSSINGS; return their number.
 
-    A polynomial that is not finite has none. Most calls end at the signs of the Bernstein coefficients.
+    A polynomial that is not finite has none. Most calls end at the signs of the Bernstein coefficients. `part` is room for TERMS
+    numbers.
     """
-    sign, part = 0.0, np.empty(TERMS)
+    sign = 0.0
     for k in range(TERMS - 1, -1, -1):
         sign = c[k] if c[k] != 0.0 else sign  # just right of 0 p has the sign of its lowest term
     if sign == 0.0:
@@ -411,7 +414,7 @@ def _all_crossings(c: Floats, sign: float, part: Floats, out: Floats) -> int:
     """
     found, start, width = 0, 0.0, 1.0
     for _ in range(MOST_INTERVALS):
-        if start >= 1.0 or found >= len(out):
+        if start >= 1.0 or found >= MOST_CROSSINGS:
             break
         restrict(c, start + 0.5 * width, 0.5 * width, part)
         tail = magnitude(part)

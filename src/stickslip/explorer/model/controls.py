@@ -46,28 +46,12 @@ PARTLESS = tuple(kind for kind, law in LAWS.items() if not any(isinstance(entry,
 
 @dataclass(frozen=True)
 class Control:
-    """One entry of a setting that can be changed.
+    """One entry of a setting that can be changed: its path in the document, its name, and what it means with its allowed range.
 
-    Attributes
-    ----------
-    path : str
-        Its place in the document, for `Setting.value` and `Setting.with_value`.
-    label, meaning : str
-        Its name, and what it means with its allowed range.
-    kind : {"number", "whole", "choice", "text", "points"}
-        "whole" is a number of events or an exponent; "points" is a list of numbers.
-    value : float, str, tuple of float, or None
-        Its value in SI; None stands for `empty`.
-    unit, size : str, float
-        Unit in which a field shows the number ("" for a pure number), and its size in SI: shown = value / size.
-    slider : Range or None
-        Ends of the slider (SI), which do not follow it; None if it has no slider.
-    choices : tuple of str
-        What a choice allows.
-    empty : str
-        What an empty field stands for, such as "automatic"; "" if the entry is needed.
-    rare : bool
-        True for what is seldom changed.
+    The kind "whole" is a number of events or an exponent, "points" a list of numbers. `value` is in SI; None stands for `empty`,
+    such as "automatic", which is "" if the entry is needed. A field shows the number in `unit` ("" for a pure number), whose size
+    in SI is `size`: shown = value / size. The ends (SI) of the `slider` do not follow it. An entry is `rare` if it is seldom
+    changed.
     """
 
     path: str

@@ -11,8 +11,8 @@ from typing import Any
 
 from stickslip.bodies import as_slab
 from stickslip.explorer.model.controls import CONSTANT, STARTS_IN_MOTION
-from stickslip.explorer.model.runs import slab_of_figure
 from stickslip.explorer.model.setting import Setting
+from stickslip.explorer.model.solve import slab_of_figure
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, fields_of
 from stickslip.friction import FrictionLaw
@@ -27,27 +27,11 @@ from stickslip.scenarios.templates import STARTERS
 
 
 def with_kind(setting: Setting, table: str, kind: str) -> Setting:
-    """Return a setting with another kind of body, law, loading or start.
+    """Return a setting with another kind of body, law, loading or start in one of its tables: see `controls.Group`.
 
-    Parameters
-    ----------
-    setting : Setting
-        A setting that makes a scenario.
-    table : str
-        The table of a `controls.Group`: "body", "friction", "friction.slip", "loading", "loading.pull_rate" or "initial".
-    kind : str
-        One of its kinds.
-
-    Returns
-    -------
-    Setting
-        A new setting. Numbers with the same name, unit and an allowed value stay; others are those with which the scenario began,
-        or plausible ones. A contact whose law or body is exchanged starts at its static strength, or close to steady sliding.
-
-    Raises
-    ------
-    InputError
-        For an unknown kind.
+    Numbers with the same name, unit and an allowed value stay; others are those with which the scenario began, or plausible ones. A
+    contact whose law or body is exchanged starts at its static strength, or close to steady sliding. Raises InputError for an
+    unknown kind.
     """
     if table == "body":
         return _with_body(setting, kind)

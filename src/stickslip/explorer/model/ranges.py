@@ -41,18 +41,9 @@ class Range(NamedTuple):
 
 
 def range_of(path: str, declared: Quantity, anchor: float | None, problem: Problem) -> Range | None:
-    """Return the range of a slider, or None if a slider makes no sense.
+    """Return the range of a slider for the number at a path such as "body.density", or None if a slider makes no sense.
 
-    Parameters
-    ----------
-    path : str
-        Place of the number in the document, such as "body.density".
-    declared : Quantity
-        Its declaration.
-    anchor : float or None
-        The value (SI) with which the scenario began; the range does not follow the slider.
-    problem : Problem
-        The problem, for the sizes of loads.
+    It follows from `anchor`, the value (SI) with which the scenario began, and not from the slider.
     """
     if path in ("run.rtol", "run.creep_rtol", "run.shortest_event", "body.p_wave_speed") or anchor is None:
         return None

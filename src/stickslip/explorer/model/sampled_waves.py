@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stickslip.explorer.model.answer import Floats
+from stickslip.foundation.arrays import Floats
 from stickslip.observables.field import WaveInterval, slab_of
 from stickslip.observables.waves import Radiation, Waves
 from stickslip.solution.evaluation import Readings

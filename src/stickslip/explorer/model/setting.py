@@ -1,33 +1,66 @@
-"""The setting of the explorer's controls: a scenario document and what has been changed in it."""
+"""The setting of the controls, a scenario document and what was changed in it, and the link that reproduces it."""
 
 from __future__ import annotations
 
+import base64
+import binascii
+import json
 import tomllib
-from collections.abc import Mapping
+import zlib
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from copy import deepcopy
 from dataclasses import dataclass, field, replace
 from functools import cache
 from typing import Any, Self
 
-from stickslip.foundation.errors import InputError, gathered
+from stickslip.foundation.arguments import shown
+from stickslip.foundation.errors import InputError, gathered, nearest
 from stickslip.scenarios import library
-from stickslip.scenarios.entries import Source
+from stickslip.scenarios.entries import Source, typed_number
 from stickslip.scenarios.scenario import Scenario, scenario_of
+from stickslip.scenarios.schema import TABLES
+from stickslip.scenarios.source import all_slips_alike
+
+DEEPEST = 5
+"""Largest number of parts in a path."""
+
+
+def leaves_of(document: Mapping[str, Any]) -> dict[str, Any]:
+    """Return all entries that are no tables by their paths; an empty table is one of them."""
+    return dict(_leaves(document, ""))
+
+
+def _leaves(table: Mapping[str, Any], before: str) -> Iterator[tuple[str, Any]]:
+    for key, value in table.items():
+        if isinstance(value, Mapping) and value:
+            yield from _leaves(value, f"{before}{key}.")
+        else:
+            yield f"{before}{key}", value
+
+
+def document_of(leaves: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the document with these entries. Raises InputError if a path is too deep, or leads through an entry."""
+    document: dict[str, Any] = {}
+    for path, value in leaves.items():
+        *tables, key = path.split(".")
+        place = document
+        for table in tables:
+            place = place.setdefault(table, {})
+            if not isinstance(place, dict):
+                break
+        if len(tables) >= DEEPEST or not isinstance(place, dict) or isinstance(place.get(key), dict):
+            raise InputError(f"{ascii(path)[:60]} is not the place of an entry: it is too deep, or leads through another one")
+        place[key] = value
+    return document
 
 
 @dataclass(frozen=True)
 class Setting:
-    """A scenario as the controls hold it: a TOML document whose entries can be replaced one by one.
+    """A scenario as the controls hold it: a TOML document, never changed in place, whose entries can be replaced one by one.
 
-    Attributes
-    ----------
-    name : str
-        The bundled scenario it began with, or the name of a file or an upload.
-    document : dict
-        The tables of the scenario, as `tomllib` reads them; never changed in place.
-    notes : tuple of str
-        Doubts about the file from which the friction law was read, one line each; they go with that law.
+    `name` is the bundled scenario it began with, or the name of a file or an upload. `notes` are doubts about the file from which
+    the friction law was read, one line each; they go with that law.
     """
 
     name: str
@@ -91,10 +124,119 @@ class Setting:
         """Return the scenario, and doubts about its entries, one line each. Raises InputError as `scenario` does."""
         with gathered() as doubts:
             scenario = replace(scenario_of(self.document, Source(self.name, None)), name=self.name, title=self.title)
-        return scenario, tuple(dict.fromkeys((*self.notes, *doubts)))
+        return all_slips_alike("explore", scenario), tuple(dict.fromkeys((*self.notes, *doubts)))
 
 
 @cache
 def _bundled(name: str) -> dict[str, Any]:
     """Return the document of a bundled scenario, which must not be changed."""
     return tomllib.loads(library.text(name))
+
+
+VERSION = "1"
+"""Version of what links look like."""
+LONGEST = 16_000
+"""Largest number of characters of all parameters together: browsers and servers pass on about twice as many."""
+READABLE = 2_000
+"""Largest number of characters of readable parameters; a longer link is compressed."""
+LARGEST_DOCUMENT = 1_000_000
+"""Largest number of bytes of a document after it is unpacked."""
+LONGEST_NAME = 100
+"""Largest number of characters in the name of a setting."""
+
+
+def parameters_of(setting: Setting) -> dict[str, str]:
+    """Return the parameters of a link to a setting, not yet encoded for a URL. Raises InputError if they are too long for one."""
+    readable = _changes(setting) if setting.name in library.names() else None
+    if readable is not None and _length(readable) <= READABLE:
+        return readable
+    packed = base64.urlsafe_b64encode(zlib.compress(json.dumps(setting.document).encode(), 9)).decode().rstrip("=")
+    found = {"scenario": setting.name[:LONGEST_NAME], "document": packed, "v": VERSION}
+    if _length(found) > LONGEST:
+        raise InputError(f"link: the scenario is too large for a link of {LONGEST} characters; save it as a file instead")
+    return found
+
+
+def _length(parameters: Mapping[str, str]) -> int:
+    return sum(len(key) + len(value) + 2 for key, value in parameters.items())
+
+
+def _changes(setting: Setting) -> dict[str, str] | None:
+    """Return the changes of a bundled scenario; None if one of them cannot be written as text."""
+    began, now = leaves_of(Setting.bundled(setting.name).document), leaves_of(setting.document)
+    changed = {path: _written(value) for path, value in now.items() if path not in began or not _same(began[path], value)}
+    removed = {path: "" for path in began if path not in now}
+    if any("." not in path or not path.isprintable() for path in (*changed, *removed)) or "" in changed.values():
+        return None
+    return {"scenario": setting.name} | changed | removed | {"v": VERSION}
+
+
+def _same(one: Any, other: Any) -> bool:
+    return type(one) is type(other) and bool(one == other)
+
+
+def _written(value: Any) -> str:
+    """Return an entry as text: texts as they are unless they could be taken for another entry, all else as JSON."""
+    if isinstance(value, str) and _read(value) == value:
+        return value
+    return json.dumps(value)
+
+
+def _read(text: str) -> Any:
+    """Return the entry that was written as a text."""
+    if text[:1] in ("[", '"', "{") or text in ("true", "false", "null"):
+        try:
+            return json.loads(text)
+        except (ValueError, RecursionError):
+            return text
+    whole = text.lstrip("+-")
+    return int(text) if whole.isdecimal() and whole.isascii() and len(whole) < 18 else typed_number(text)
+
+
+def setting_of(parameters: Mapping[str, str]) -> Setting:
+    """Return the setting, which makes a scenario, to which the decoded parameters of a link lead.
+
+    Parameters that are no entries of a scenario, such as the place of a cursor, are left to others. Raises InputError, in one line,
+    if the link is too long, of another version, broken, or does not lead to a scenario.
+    """
+    ours = {key: value for key, value in parameters.items() if key in ("scenario", "document", "v") or key.split(".")[0] in TABLES}
+    if _length(ours) > LONGEST:
+        raise InputError(f"link: it has more than {LONGEST} characters")
+    if ours.get("v", VERSION) != VERSION:
+        raise InputError(f"link: version {shown(ours['v'])} is unknown, this explorer reads version {VERSION}")
+    name = ours.get("scenario", "")
+    setting = _unpacked(name, ours["document"]) if "document" in ours else _changed(name, ours)
+    setting.scenario()
+    return setting
+
+
+def _changed(name: str, parameters: Mapping[str, str]) -> Setting:
+    if name not in library.names():
+        raise InputError(f"link: no bundled scenario {ascii(name)[:60]}; {nearest(name, library.names())}")
+    leaves = leaves_of(Setting.bundled(name).document)
+    changes = {path: text for path, text in parameters.items() if path not in ("scenario", "v")}
+    for path, text in changes.items():
+        if text == "":
+            leaves.pop(path, None)
+        else:
+            leaves[path] = _read(text)
+    try:
+        return Setting(name, document_of(leaves))
+    except InputError as error:
+        raise InputError(f"link: {error}") from None
+
+
+def _unpacked(name: str, packed: str) -> Setting:
+    if not name or len(name) > LONGEST_NAME or not name.isprintable():
+        raise InputError(f"link: the name of the scenario must have 1 to {LONGEST_NAME} printable characters")
+    try:
+        stream = zlib.decompressobj()
+        text = stream.decompress(
+            base64.b64decode(packed + "=" * (-len(packed) % 4), altchars=b"-_", validate=True), LARGEST_DOCUMENT
+        )
+        document = json.loads(text)
+    except (binascii.Error, zlib.error, ValueError, RecursionError):
+        raise InputError("link: the document in it is broken or too large; was the link cut off?") from None
+    if not stream.eof or not isinstance(document, dict):
+        raise InputError("link: the document in it is broken or too large; was the link cut off?")
+    return Setting(name, document)

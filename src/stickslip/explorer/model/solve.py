@@ -2,53 +2,98 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 
+from stickslip.bodies import ElasticSlab
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
-from stickslip.explorer.model.answer import Answer, Motion
-from stickslip.explorer.model.contact_picture import contact_picture
-from stickslip.explorer.model.energy_picture import energy_picture
-from stickslip.explorer.model.findings import Found, key_numbers, marks_of
-from stickslip.explorer.model.law_picture import law_picture
-from stickslip.explorer.model.measured import Backdrop
-from stickslip.explorer.model.runs import run, run_companion
+from stickslip.explorer.model.answer import Answer, Backdrop, Motion
+from stickslip.explorer.model.findings import Found, key_numbers, marks_of, sentence
+from stickslip.explorer.model.pictures import contact_picture, energy_picture, law_picture, slab_picture
 from stickslip.explorer.model.sampled_waves import SampledWaves, Shown
-from stickslip.explorer.model.sentence import sentence
-from stickslip.explorer.model.slab_picture import slab_picture
-from stickslip.explorer.model.stop import Stopped, Told, silent
 from stickslip.foundation.errors import InputError
+from stickslip.problem.problem import Problem
+from stickslip.run.simulate import simulate
 from stickslip.scenarios.examine import warnings_of
-from stickslip.scenarios.scenario import Scenario
+from stickslip.scenarios.scenario import Scenario, load_scenario
 from stickslip.solution.solution import Solution
+from stickslip.studies.analogy import block_for
+
+Told = Callable[[str], None]
+"""A function that is told in one line how far a run is, some ten times a second. It raises `Stopped` to end the run there."""
+
+
+class Stopped(KeyboardInterrupt):
+    """Raised where a run reports its progress: the run ends with a valid solution up to there, as after Ctrl-C."""
+
+
+def silent(_: str) -> None:
+    """Ignore a report of progress."""
+
+
+MOST_PIECES = 100_000
+"""Largest number of pieces of a history: some 45 MB, so that several pages fit into memory."""
+SLABS = {"fig5-block": "fig5-slab-printed", "fig6-block": "fig6-slab", "fig7-block": "fig7-slab-critical"}
+"""Bundled slab that the paper shows beside a bundled block, by the beginning of the block's name."""
+
+
+def run(scenario: Scenario, told: Told) -> Solution:
+    """Run a scenario, with a bounded history. Raises InputError if it cannot even start, or was stopped before it did."""
+    try:
+        return simulate(scenario, progress=lambda report: told(str(report)), max_pieces=MOST_PIECES)
+    except Stopped:
+        raise InputError(f"{scenario.name}: stopped before the run had begun") from None
+
+
+def companion_of(scenario: Scenario) -> Scenario | None:
+    """Return the scenario of the companion, or None if there is none.
+
+    For a slab it is its equivalent block, for each m^2 of contact, so that its forces in N are the slab's stresses in Pa. For a
+    block of the paper it is the slab of the same figure, under the law, the loading and the rule of the block.
+    """
+    try:
+        if scenario.problem.body.has_waves:
+            return replace(scenario, problem=block_for(scenario.problem), creep_rtol=None, shortest_event=None)
+        slab = slab_of_figure(scenario.name)
+        return None if slab is None else replace(scenario, problem=_slab_beside(scenario.problem, load_scenario(slab).problem))
+    except InputError:  # such as a driver that is not rigid
+        return None
+
+
+def slab_of_figure(name: str) -> str | None:
+    """Return the name of the bundled slab that the paper shows beside a bundled block, or None for another name."""
+    return next((slab for start, slab in SLABS.items() if name.startswith(start)), None)
+
+
+def _slab_beside(block: Problem, slab: Problem) -> Problem:
+    assert isinstance(slab.body, ElasticSlab)
+    return replace(slab, friction=block.friction, pull_rate=block.pull_rate, selection=block.selection)
+
+
+def run_companion(scenario: Scenario, told: Told) -> Solution | None:
+    """Run the companion of a scenario, or return None if it has none, or if its run cannot start."""
+    other = companion_of(scenario)
+    try:
+        return None if other is None else run(other, lambda text: told(f"{_kind(other)}: {text}"))
+    except InputError:
+        return None
+
+
+def _kind(scenario: Scenario) -> str:
+    return "slab" if scenario.problem.body.has_waves else "equivalent block"
+
 
 LONG = 5_000
 """Number of pieces of a run from which on its pictures take long enough to be told of."""
 
 
 def solve(scenario: Scenario, told: Told = silent, behind: Backdrop | None = None) -> Answer:
-    """Run a scenario and return all that the explorer shows of it.
+    """Run a scenario, with a record drawn behind it if there is one, and return all that the explorer shows of it, in SI units.
 
-    Parameters
-    ----------
-    scenario : Scenario
-        What to run.
-    told : callable
-        Called with a line on the progress of a long run, some ten times a second. If it raises `Stopped` the run ends there, and
-        the answer shows it up to there.
-    behind : Backdrop, optional
-        A record that is drawn behind the run.
-
-    Returns
-    -------
-    Answer
-        The run, its companion, and all that is shown of them, in SI units.
-
-    Raises
-    ------
-    InputError
-        If the run cannot even start, in one line.
+    `told` is called with a line on the progress of a long run. If it raises `Stopped` the run ends there, and the answer shows it
+    up to there. Raises InputError, in one line, if the run cannot even start.
     """
     contact = uniqueness_of(scenario.problem)
     solution = run(scenario, told)

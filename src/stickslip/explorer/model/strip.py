@@ -14,10 +14,10 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stickslip.explorer.model.setting import Setting
-from stickslip.explorer.model.stop import Stopped
+from stickslip.explorer.model.solve import Stopped
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity
 from stickslip.scenarios.parameter_paths import EXCLUDE_EACH_OTHER, ParameterPath, find_parameter, parameter_paths
@@ -25,7 +25,6 @@ from stickslip.scenarios.scenario import Scenario
 from stickslip.sweeps.design.quantities import QUANTITIES, quantities_named
 from stickslip.sweeps.execution.chunk import Work, run_chunk
 
-Floats = NDArray[np.float64]
 Told = Callable[[str], None]
 
 MEMBERS = 200
@@ -59,26 +58,11 @@ class StripRange:
 
 @dataclass(frozen=True)
 class Strip:
-    """The results of the runs of a strip, in the order of `values` (SI).
+    """The results of the runs of a strip, in the order of the `values` (SI) of the parameter that moves.
 
-    Attributes
-    ----------
-    parameter : str
-        The parameter that moves, such as "friction.alpha".
-    meaning, unit : str
-        What it is, in words, and its SI unit ("1" for a pure number).
-    values : array, shape (members,)
-        Its values.
-    here : float
-        Its value in the setting from which the strip was made; NaN if the setting has none.
-    log : bool
-        True if the values are evenly spaced in the logarithm.
-    results : dict of str to array, shape (members,)
-        The quantities `SHOWN`, and "irregular": 1 where several slip rates solve the contact equation. NaN for runs that failed.
-    units : dict of str to str
-        The SI unit of each result.
-    refused : dict of int to str
-        Why runs failed, in one line, by their number.
+    `here` is its value in the setting from which the strip was made; NaN if the setting has none. `results` are the quantities
+    `SHOWN`, and "irregular": 1 where several slip rates solve the contact equation; NaN for runs that failed. `refused` says why,
+    in one line, by the number of the run. Units are in SI, "1" for a pure number.
     """
 
     parameter: str
@@ -102,27 +86,9 @@ class Strip:
 def strip_of(scenario: Scenario, where: StripRange, told: Told = lambda text: None, members: int = MEMBERS) -> Strip:
     """Run a scenario for many values of one parameter.
 
-    Parameters
-    ----------
-    scenario : Scenario
-        The scenario as it is shown.
-    where : StripRange
-        The parameter and the range of its values.
-    told : callable
-        Called with a line on the progress while runs are made one after the other. If it raises `Stopped`, the runs so far are
-        the result.
-    members : int
-        Number of runs.
-
-    Returns
-    -------
-    Strip
-        The results; a run whose value makes no valid scenario, or that does not come to its end, has NaN and a reason.
-
-    Raises
-    ------
-    InputError
-        If there is no such parameter, if it is a word and no number, or if the range is none.
+    `told` is called with a line on the progress while runs are made one after the other; if it raises `Stopped`, the runs so far
+    are the result. A run whose value makes no valid scenario, or that does not come to its end, has NaN and a reason. Raises
+    InputError if there is no such parameter, if it is a word and no number, or if the range is none.
     """
     found = numeric(scenario, where.parameter)
     values = where.values(members)

@@ -18,28 +18,10 @@ Panel = Literal["law", "contact", "shape", "slip", "rate", "traction", "field", 
 
 @dataclass(frozen=True)
 class Step:
-    """One step of the tour.
+    """One step of the tour: what is seen and why, in 40 to 80 words; a sentence that follows "Look at"; and something to try.
 
-    Attributes
-    ----------
-    title : str
-        Two or three words.
-    text : str
-        What is seen and why, in 40 to 80 words.
-    look : str
-        What to look at, in one sentence that follows "Look at".
-    question : str
-        Something to try.
-    panel : str
-        The panel to look at.
-    cursor : float
-        The time (s) at which the cursor is.
-    strip : StripRange
-        The parameter to move, and how far.
-    scenario : str
-        The bundled scenario.
-    changes : dict
-        The entries that differ from it, by their path; None leaves an entry away.
+    It shows a bundled scenario with `changes`, entries by their path (None leaves an entry away), a panel to look at with the
+    cursor at a time (s), and a parameter to move.
     """
 
     title: str

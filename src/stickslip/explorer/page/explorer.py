@@ -8,7 +8,7 @@ from typing import Any, Literal, Protocol
 
 from stickslip.explorer.model.answer import Answer
 from stickslip.explorer.model.setting import Setting
-from stickslip.explorer.model.stop import Told
+from stickslip.explorer.model.solve import Told
 from stickslip.explorer.model.strip import StripRange
 from stickslip.foundation.errors import InputError, gathered
 from stickslip.scenarios.scenario import Scenario
@@ -34,28 +34,11 @@ class Desk(Protocol):
 class Explorer:
     """The centre of a page. Parts of it change the setting here, and are told here of the answer.
 
-    Attributes
-    ----------
-    setting : Setting
-        What the controls hold. It is always one that could be read: a bad entry never gets here.
-    answer : Answer or None
-        The answer that is shown, None before the first one.
-    fault : str
-        What was wrong with the last entry, in one line; "" if nothing was.
-    progress : str
-        One line on work that is under way; "" if there is none.
-    shown : tuple of (Setting, Answer), or None
-        The answer that is shown, with its own setting: that of the controls may be newer.
-    pinned : tuple of (Setting, Answer), or None
-        The run with which the shown one is compared.
-    files : Desk
-        Where files are written: work there does not drop the work on an answer.
-    cursor : float
-        The time (s) at which all panels show the cursor.
-    tour : int
-        The step of the tour that is shown, from 1; 0 if the tour is closed.
-    strip : StripRange or None
-        The parameter through which a strip goes, and its range; None if no strip is shown.
+    `setting` is what the controls hold. It is always one that could be read: a bad entry never gets here, and `fault` says in one
+    line what was wrong with it. `answer` is None before the first one, and `shown` is it with its own setting, since the controls
+    may be newer; `pinned` is the run with which it is compared. Work on `files` does not drop the work on an answer. `cursor` is
+    the time (s) at which all panels show the cursor, `tour` the step of the tour that is shown, from 1, and `strip` the range of
+    the strip.
     """
 
     def __init__(self, setting: Setting, desk: Desk, answer: Callable[..., Answer], files: Desk | None = None) -> None:

@@ -1,4 +1,4 @@
-"""The page: all its parts in their places. `build` is what the server shows to each browser."""
+"""The page: all its parts in their places, for a server (`build`) and for the cell of a notebook (`build_for_notebook`)."""
 
 from __future__ import annotations
 
@@ -6,19 +6,15 @@ from typing import Any
 
 import panel as pn
 
-from stickslip.explorer.page.components import PlayerBar, asset
+from stickslip.explorer.page.components import Markup, PlayerBar, asset, style_sheet
 from stickslip.explorer.page.controls import Controls
 from stickslip.explorer.page.explorer import Explorer
-from stickslip.explorer.page.look import style_sheet
 from stickslip.explorer.page.panels import plots, view_of
-from stickslip.explorer.page.pin import PinnedRun
 from stickslip.explorer.page.stage import Stage
 from stickslip.explorer.page.strip import StripView
 from stickslip.explorer.page.tools import Tools
-from stickslip.explorer.page.tour import Tour
-from stickslip.explorer.page.view import View, headings_of
-from stickslip.explorer.page.view_bytes import view_bytes
-from stickslip.explorer.page.words import Words
+from stickslip.explorer.page.view import View, headings_of, view_bytes
+from stickslip.explorer.page.words import PinnedRun, Tour, Words
 
 TITLES = {
     "law": "Friction law", "contact": "Contact g(v)", "shape": "Body now", "slip": "Slip", "rate": "Slip rate",
@@ -67,15 +63,7 @@ class Panels:
 
 
 def build(explorer: Explorer, **parts: Any) -> Any:
-    """Return the page of an explorer, for a server.
-
-    Parameters
-    ----------
-    explorer : Explorer
-        The centre of the page.
-    **parts
-        Further parts by the name of their place, one of `SLOTS`.
-    """
+    """Return the page of an explorer, for a server; `parts` are further parts by the name of their place, one of `SLOTS`."""
     panels, words, controls = Panels(explorer), Words(explorer), Controls(explorer)
     parts = {"bar": Tools(explorer).view, "above": PinnedRun(explorer).view} | parts
     tour, strip = Tour(explorer), StripView(explorer)
@@ -91,3 +79,47 @@ def build(explorer: Explorer, **parts: Any) -> Any:
     for name, part in {**own, **parts}.items():
         page.add_panel(name, part)
     return page
+
+
+HEIGHTS = {"slip": 110, "rate": 110, "traction": 150, "field": 180, "energy": 190, "law": 240, "contact": 240, "shape": 240}
+"""Heights (px) of the panels, with their headings."""
+ROWS = (("law", "contact", "shape"), (("slip", "rate", "traction"), ("field", "energy")))
+"""The rows of panels: names side by side, and within the second row names below each other."""
+
+
+def build_for_notebook(explorer: Explorer) -> Any:
+    """Return the explorer as an object that a notebook shows below a cell."""
+    panels = Panels(explorer)
+    headings = {name: Markup(sizing_mode="stretch_width", stylesheets=[asset("heading.css")]) for name in panels.plots}
+    cards = {name: _card(headings[name], panels.plots[name], HEIGHTS[name]) for name in panels.plots}
+
+    def show() -> None:
+        for name, html in panels.headings.items():
+            headings[name].object = html
+            cards[name].visible = name not in panels.view.hidden
+
+    for news in ("answer", "pin"):
+        explorer.listen(news, show)
+    show()
+    first = pn.Row(*(cards[name] for name in ROWS[0]), sizing_mode="stretch_width")
+    stacks = [pn.Column(*(cards[name] for name in stack), sizing_mode="stretch_width") for stack in ROWS[1]]
+    tour, wide = Tour(explorer), {"sizing_mode": "stretch_width"}
+    side = pn.Column(Controls(explorer).view, width=300, height=660, scroll="y-auto", margin=(0, 10, 0, 0))
+    body = pn.Column(first, pn.Row(*stacks, **wide), **wide)
+    return pn.Column(
+        pn.Row(pn.layout.HSpacer(), tour.button, Tools(explorer, linked=False).view, **wide),
+        Words(explorer).view,
+        tour.card,
+        PinnedRun(explorer).view,
+        pn.Row(side, body, **wide),
+        panels.player,
+        StripView(explorer).view,
+        stylesheets=[style_sheet(":host") + asset("notebook_page.css")],
+        min_width=900,
+        **wide,
+    )
+
+
+def _card(heading: Any, plot: Any, height: int) -> Any:
+    """Return a panel with its heading."""
+    return pn.Column(heading, plot, height=height, sizing_mode="stretch_width", margin=2)

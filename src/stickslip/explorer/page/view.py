@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -27,24 +28,10 @@ class Key(NamedTuple):
 class View:
     """All that changes on the page from one answer to the next, in the units shown.
 
-    Attributes
-    ----------
-    columns : dict
-        The columns of each source of data, by its name.
-    limits : dict
-        The ends of each axis that is not found from the data, by the name of its range.
-    labels : dict
-        The text of each axis, by its name.
-    titles : dict
-        The title of each panel, by the panel's name; it names quantity and unit where the vertical axis has no text of its own.
-    keys : dict
-        The legend of each panel, by the panel's name.
-    hidden : set of str
-        Names of panels and of renderers and axes that have nothing to show.
-    fastest : float
-        The velocity at both ends of the colour scale; 0 if there is no image.
-    facts : dict
-        What the browser needs to move the cursor: units, marks, and how the body is drawn.
+    `columns` are those of each source of data, `limits` the ends of each axis that is not found from the data, `labels` the texts
+    of the axes, `titles` and `keys` (legends) those of the panels. `hidden` names panels, renderers and axes that have nothing to
+    show. `fastest` is the velocity at both ends of the colour scale; 0 if there is no image. `facts` are what the browser needs to
+    move the cursor: units, marks, and how the body is drawn.
     """
 
     columns: dict[str, Columns] = field(default_factory=dict)
@@ -150,3 +137,45 @@ def heading(title: str, keys: Sequence[Key]) -> str:
 def headings_of(view: View, titles: Mapping[str, str]) -> dict[str, str]:
     """Return the heading of each panel as HTML; `titles` are used for panels of which the view says none."""
     return {name: heading(view.titles.get(name, title), view.keys.get(name, ())) for name, title in titles.items()}
+
+
+STEP = 8
+"""Numbers begin at multiples of so many bytes, as arrays in a browser must."""
+
+
+def view_bytes(view: View, headings: Mapping[str, str]) -> bytes:
+    """Return a view, with the heading of each panel as HTML, as `readView` in assets/view.js takes it.
+
+    The block begins with the length of a text (8 bytes), and the text, which is JSON. After it follow the numbers: the columns in
+    double precision, and images in single precision.
+    """
+    arrays: list[bytes] = []
+    columns = {
+        source: {name: _placed(values, arrays) for name, values in columns.items()} for source, columns in view.columns.items()
+    }
+    content = {
+        "columns": columns,
+        "limits": view.limits,
+        "labels": view.labels,
+        "headings": dict(headings),
+        "hidden": sorted(view.hidden),
+        "fastest": view.fastest or 1.0,
+        "facts": view.facts,
+    }
+    text = _padded(json.dumps(content, allow_nan=False, separators=(",", ":")).encode("ascii"), b" ")
+    return b"".join((len(text).to_bytes(STEP, "little"), text, *arrays))
+
+
+def _placed(values: Any, arrays: list[bytes]) -> Any:
+    """Add the numbers of a column to the block, and return where they are: `at` (bytes) and `length`, for an image its `shape`."""
+    if isinstance(values, list) and any(np.ndim(one) for one in values):
+        return [_placed(one, arrays) for one in values]
+    found = np.asarray(values)
+    at = sum(map(len, arrays))
+    is_image = found.ndim == 2
+    arrays.append(_padded(found.astype("<f4" if is_image else "<f8").tobytes(), b"\0"))
+    return {"at": at, "shape": list(found.shape)} if is_image else {"at": at, "length": found.size}
+
+
+def _padded(content: bytes, filling: bytes) -> bytes:
+    return content + filling * (-len(content) % STEP)

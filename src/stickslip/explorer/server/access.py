@@ -54,17 +54,10 @@ class Reply:
 class Access:
     """The conditions under which requests are answered.
 
-    Attributes
-    ----------
-    names : frozenset of str or None
-        Names of hosts, without a port, under which the server may be asked; None for any. The list for a server on the loopback
-        address protects it from pages that let their own name point to this computer.
-    origins : frozenset of str
-        Hosts, with a port unless it is the usual one, whose pages may connect, beside the server's own.
-    is_full : callable
-        Function that returns a sentence if no further page can be opened, and otherwise "".
-    token : str
-        What the first address must contain; the browser keeps it as a cookie.
+    `names` are the hosts, without a port, under which the server may be asked; None for any. The list for a server on the loopback
+    address protects it from pages that let their own name point to this computer. Pages of `origins` (with a port unless it is the
+    usual one) may connect, beside the server's own. `is_full` returns a sentence if no further page can be opened. The first
+    address must contain the `token`, which the browser keeps as a cookie.
     """
 
     names: frozenset[str] | None

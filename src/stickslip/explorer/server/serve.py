@@ -6,7 +6,7 @@ import errno
 import signal
 import socket
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import partial
@@ -19,12 +19,51 @@ import panel as pn
 from tornado.ioloop import IOLoop, PeriodicCallback
 
 from stickslip.explorer.page.explorer import Explorer
-from stickslip.explorer.page.link_in_url import begin
+from stickslip.explorer.page.tools import begin
 from stickslip.explorer.server.access import LOOPBACK, Access
-from stickslip.explorer.server.desk import Call, ThreadDesk, unforeseen
-from stickslip.explorer.server.sessions import LOOK_EVERY_MS, NEVER_SEEN_MS, Sessions
-from stickslip.explorer.server.warm import Warming
+from stickslip.explorer.server.desk import Call, ThreadDesk, Warming, unforeseen
 from stickslip.foundation.errors import InputError
+
+LINGER_MS = 5_000.0
+"""How long (ms) a page that has lost its connection is kept: it may come back after a gap in the network."""
+NEVER_SEEN_MS = 60_000
+"""How long (ms) a page that has never connected is kept: a browser on a slow line loads its scripts first."""
+LOOK_EVERY_MS = 1_000
+"""Time (ms) between two looks for pages that have been closed."""
+
+
+class Sessions:
+    """Counts the open pages of a server, of which there may be `most`, and has those that were closed removed."""
+
+    def __init__(self, most: int) -> None:
+        self.most = most
+        self.contexts: Iterable[Any] = ()
+        """The application contexts of the Bokeh server, which hold its sessions."""
+        self._seen: set[str] = set()
+
+    def refusal(self) -> str:
+        """Return a sentence if no further page can be opened, and otherwise an empty text."""
+        if sum(not self._is_closed(session) for session in self._all()) < self.most:
+            return ""
+        pages = "1 page is" if self.most == 1 else f"{self.most} pages are"
+        return f"{pages} open here, which is the limit (--sessions of `stickslip explore`): close one, and load this page again."
+
+    def look(self) -> None:
+        """Ask for the removal of pages whose browser has gone: Bokeh itself knows one waiting time for these and for new pages."""
+        everything = list(self._all())
+        self._seen &= {session.id for session in everything}
+        self._seen |= {session.id for session in everything if session.connection_count > 0}
+        for session in everything:
+            if self._is_closed(session) and session.milliseconds_since_last_unsubscribe > LINGER_MS:
+                session.request_expiration()
+
+    def _all(self) -> Iterator[Any]:
+        for context in self.contexts:
+            yield from list(context.sessions)
+
+    def _is_closed(self, session: Any) -> bool:
+        return session.connection_count == 0 and session.id in self._seen
+
 
 FIRST_PORT = 5018
 """The port that is tried first; the next free one is taken."""
@@ -47,18 +86,10 @@ Build = Callable[[Explorer], Any]
 
 @dataclass(frozen=True, kw_only=True)
 class Endpoint:
-    """Where a server listens, and for whom.
+    """Where a server listens, and for whom. The default address can be reached from this computer only.
 
-    Attributes
-    ----------
-    address : str
-        Address of the network interface to listen on; the default can be reached from this computer only.
-    port : int or None
-        Port to listen on; 0 for any free one, None for the first free one from FIRST_PORT on.
-    origins : tuple of str
-        Hosts (`name` or `name:port`) under which the page may be reached, beside the address itself.
-    sessions : int
-        Largest number of pages that may be open at the same time.
+    The port is 0 for any free one, None for the first free one from FIRST_PORT on. `origins` are hosts (`name` or `name:port`)
+    under which the page may be reached, beside the address itself. At most `sessions` pages may be open at the same time.
     """
 
     address: str = LOOPBACK[0]
@@ -75,14 +106,8 @@ class Endpoint:
 class ExplorerServer:
     """A server that is bound to its port, and answers once its event loop runs.
 
-    Parameters
-    ----------
-    endpoint : Endpoint
-        Where it listens.
-    make : callable
-        Function that makes the explorer of a new page, given its desk, and that on which files are written.
-    build : callable
-        Function that builds the page of an explorer.
+    `make` makes the explorer of a new page, given its desk and that on which files are written; `build` builds the page of an
+    explorer.
     """
 
     def __init__(self, endpoint: Endpoint, make: MakeExplorer, build: Build) -> None:
@@ -195,7 +220,7 @@ class ExplorerServer:
         freeze = getattr(document.models, "freeze", nullcontext)
         with freeze():  # otherwise Bokeh looks through all models again for each one that is added: 1 s in place of 0.2
             page.server_doc(document, title=TITLE, location=False)
-        begin(explorer, arguments_of(pn.state.session_args))
+        begin(explorer, {name: values[-1].decode("utf-8", "replace") for name, values in pn.state.session_args.items() if values})
 
 
 def application_of(server: Any) -> Any:
@@ -214,11 +239,6 @@ def check_free(address: str, port: int) -> None:
     """Raise OSError if nothing can listen there. Tornado would find out too, but leave sockets open."""
     family = socket.AF_INET6 if ":" in address else socket.AF_INET
     socket.create_server((address, port), family=family).close()
-
-
-def arguments_of(given: Mapping[str, list[bytes]]) -> dict[str, str]:
-    """Return the parameters of an address as texts, the last one of those with the same name."""
-    return {name: values[-1].decode("utf-8", "replace") for name, values in given.items() if values}
 
 
 class DeliveryToTab:

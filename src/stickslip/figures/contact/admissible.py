@@ -21,7 +21,6 @@ from stickslip.figures.style import (
     GREEN,
     GREY,
     INK,
-    Floats,
     axis_text,
     curve_quantity,
     label,
@@ -31,6 +30,7 @@ from stickslip.figures.style import (
     unit_of,
     unit_shown,
 )
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 from stickslip.solution.place import Place

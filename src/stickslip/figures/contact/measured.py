@@ -11,7 +11,8 @@ from matplotlib.axes import Axes
 
 from stickslip.figures.panels import letter_panels, set_title, zero_line
 from stickslip.figures.sheet import sheet, shown_or_saved
-from stickslip.figures.style import BLUE, GREY, INK, Floats, axis_text, quantity, spans_decades, styled, unit_shown
+from stickslip.figures.style import BLUE, GREY, INK, axis_text, quantity, spans_decades, styled, unit_shown
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.friction import Fit, Smooth
 from stickslip.solution.place import Place

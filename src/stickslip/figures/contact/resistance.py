@@ -16,20 +16,8 @@ from stickslip.contact.branches import branches_of, rate_on
 from stickslip.contact.equation import resistance
 from stickslip.figures.panels import letter_panels, panels, zero_line
 from stickslip.figures.sheet import sheet
-from stickslip.figures.style import (
-    BLUE,
-    GREY,
-    INK,
-    PURPLE,
-    VERMILLION,
-    Floats,
-    curve_quantity,
-    label,
-    quantity,
-    shown,
-    styled,
-    unit_shown,
-)
+from stickslip.figures.style import BLUE, GREY, INK, PURPLE, VERMILLION, curve_quantity, label, quantity, shown, styled, unit_shown
+from stickslip.foundation.arrays import Floats
 from stickslip.problem.problem import Problem
 from stickslip.solution.place import Place
 

@@ -25,7 +25,6 @@ from stickslip.figures.style import (
     INK,
     VERMILLION,
     WIDE,
-    Floats,
     curve_label,
     curve_quantity,
     quantity,
@@ -35,6 +34,7 @@ from stickslip.figures.style import (
     title_of,
     unit_of,
 )
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.observables.predictability import is_followed, predictability
 from stickslip.solution.interval import last_large_event

@@ -18,7 +18,6 @@ from stickslip.figures.style import (
     INK,
     PURPLE,
     VERMILLION,
-    Floats,
     axis_text,
     clock,
     curve_label,
@@ -29,6 +28,7 @@ from stickslip.figures.style import (
     unit_of,
 )
 from stickslip.foundation.arguments import shown
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.solution.evaluation import Curve, Readings, times_of

@@ -23,7 +23,6 @@ from stickslip.figures.style import (
     GREEN,
     INK,
     VERMILLION,
-    Floats,
     clock,
     curve_quantity,
     label,
@@ -37,9 +36,9 @@ from stickslip.figures.style import (
     unit_of,
     unit_shown,
 )
+from stickslip.foundation.arrays import Floats
 from stickslip.observables.field import slab_of
-from stickslip.solution.fronts import fronts_of
-from stickslip.solution.interval import choose_interval
+from stickslip.solution.interval import choose_interval, fronts_of
 from stickslip.solution.place import Place
 
 if TYPE_CHECKING:

@@ -11,7 +11,8 @@ from matplotlib.axes import Axes
 from stickslip.figures.panels import add_legend, letter_panels, set_scale, set_title, zero_line
 from stickslip.figures.runs.curves import draw_curve, draw_friction, draw_stress, fit_height, interval, mark_shocks, set_time
 from stickslip.figures.sheet import sheet
-from stickslip.figures.style import GREY, INK, PALE, Floats, styled, time_unit, title_of, unit_of
+from stickslip.figures.style import GREY, INK, PALE, styled, time_unit, title_of, unit_of
+from stickslip.foundation.arrays import Floats
 from stickslip.loading import LoadingHistory
 from stickslip.problem.problem import MAY_VARY
 from stickslip.solution.evaluation import Readings

@@ -14,7 +14,8 @@ from matplotlib.lines import Line2D
 from stickslip.figures.contact import resistance
 from stickslip.figures.panels import add_legend, letter_panels, set_title, zero_line
 from stickslip.figures.sheet import sheet
-from stickslip.figures.style import GREY, INK, LINE_COLOURS, Floats, curve_quantity, label, quantity, shown, styled, unit_shown
+from stickslip.figures.style import GREY, INK, LINE_COLOURS, curve_quantity, label, quantity, shown, styled, unit_shown
+from stickslip.foundation.arrays import Floats
 from stickslip.solution.place import Place
 from stickslip.studies.regularisations import kind_of
 

@@ -16,8 +16,9 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
 from stickslip.figures.panels import add_legend, set_log_ticks
-from stickslip.figures.style import GREY, PALE, TWO, Floats
+from stickslip.figures.style import GREY, PALE, TWO
 from stickslip.figures.sweeps.varied import ROOM, Shown, folded
+from stickslip.foundation.arrays import Floats
 
 FEW = 10
 """Up to this number of different whole numbers, each has its own colour in a key; more are drawn with a scale."""

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 
 from stickslip.figures.panels import add_legend, count_ticks, finish, set_log_ticks
 from stickslip.figures.sheet import one_panel
-from stickslip.figures.style import BLUE, GREY, LINE_COLOURS, Floats
+from stickslip.figures.style import BLUE, GREY, LINE_COLOURS
 from stickslip.figures.sweeps.varied import Scaled, Shown, folded, names_of, scaled, shown
+from stickslip.foundation.arrays import Floats
 from stickslip.solution.place import Place
 
 MOST_CURVES = 4
@@ -128,19 +129,9 @@ def show_ordinate(axes: Axes, quantity: Shown) -> None:
 
 
 def jumps(values: Floats, *, whole: bool = False) -> NDArray[np.bool_]:
-    """Return for each step between neighbours whether the quantity jumps there.
+    """Return for each step between neighbours whether the quantity, as it is drawn, jumps there; False beside a missing value.
 
-    Parameters
-    ----------
-    values : ndarray
-        Values of the quantity as they are drawn (logarithms on a logarithmic axis), n of them; NaN where there is none.
-    whole : bool
-        True for counts, which jump wherever they change.
-
-    Returns
-    -------
-    ndarray
-        n - 1 truth values; False beside a missing value.
+    Counts (`whole`) jump wherever they change.
     """
     steps = np.abs(np.diff(values))
     known = np.isfinite(steps)

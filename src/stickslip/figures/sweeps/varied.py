@@ -8,13 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from numpy.typing import NDArray
 
 from stickslip.figures.names import parameter_name, plain_name, symbol
 from stickslip.figures.panels import set_log_ticks
 from stickslip.figures.style import axis_text, unit_of
-
-Floats = NDArray[np.float64]
+from stickslip.foundation.arrays import Floats
 
 SPREAD = 3.0
 """Values that span less than this factor are drawn on a linear axis: the two spreads could not be told apart."""

@@ -9,8 +9,9 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.determined import covariance_of, misses_trend, sizes_and_correlation, undetermined
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import html_table, text_table, with_uncertainty
@@ -18,8 +19,6 @@ from stickslip.friction.custom.fit_parameters import Leaf, leaves, numbers_of, r
 from stickslip.friction.custom.fit_search import WHOLE, search
 from stickslip.friction.custom.measured import Points
 from stickslip.friction.law import FrictionLaw
-
-Floats = NDArray[np.float64]
 
 EXACT = 1e-9
 """Residual (no unit) below which points lie on a law but for the errors of calculation."""

@@ -9,15 +9,13 @@ from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stickslip.foundation.arguments import shown
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import NamedNumbers, Part, Quantity, Series, fields_of
 from stickslip.friction.contract import states_in
 from stickslip.friction.law import FrictionLaw
-
-Floats = NDArray[np.float64]
 
 STEP = 1e-100
 """Imaginary step by which a formula is differentiated; it loses no digit (Squire & Trapp 1998, SIAM Rev. 40, 110)."""

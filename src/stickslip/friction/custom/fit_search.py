@@ -7,14 +7,12 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.friction.custom.fit_parameters import Leaf, leaves, rebuilt, slopes
 from stickslip.friction.custom.measured import Points
 from stickslip.friction.law import FrictionLaw
-
-Floats = NDArray[np.float64]
 
 PER_SCALE = 9
 """Number of starts along a slip or a slip rate of the law, evenly spaced in the logarithm over the points and a factor 3 beyond."""

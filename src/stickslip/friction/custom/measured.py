@@ -9,15 +9,15 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from stickslip.foundation.arguments import as_path, shown
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.columns import COLUMNS, Table, missing, read_mapping, read_text
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.friction.piecewise import PiecewiseLaw, note_percent
 
-Floats = NDArray[np.float64]
 Along = Literal["slip", "slip_rate"]
 """The two variables on which friction can depend, as columns of files are called."""
 

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from stickslip.foundation.arrays import Floats
 
 BINS = 256
 """Number of equal parts of [0, 1] in each of which points are replaced by their mean: a curve does not follow shorter features."""
@@ -29,24 +29,11 @@ INFLATION = 1.4
 
 @dataclass(frozen=True, eq=False)
 class PenalisedSpline:
-    """The smoothing splines of all strengths for the same points.
+    """The smoothing splines of all strengths for the same points, at k ascending places in [0, 1].
 
-    Parameters
-    ----------
-    places
-        Ascending places in [0, 1], shape (k,).
-    roots
-        Square root of the share of the points that each place stands for, shape (k,).
-    modes
-        Combinations of the values that bend independently of each other, one in each row, shape (k, k).
-    bent
-        Integral of f''^2 for each combination, shape (k,).
-    data
-        What the points say about each combination, shape (k,).
-    within
-        Mean squared difference of the points from the means that replace them.
-    count
-        Number of points.
+    `roots` are square roots of the share of the points that each place stands for. `modes` are combinations of the values that bend
+    independently of each other, one in each row; `bent` is the integral of f''^2 for each, and `data` is what the points say about
+    it. `within` is the mean squared difference of the `count` points from the means that replace them.
     """
 
     places: Floats

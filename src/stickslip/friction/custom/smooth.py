@@ -7,17 +7,16 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from stickslip.foundation.arguments import is_number, shown
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, InputWarning, nearest
 from stickslip.foundation.formatting import html_table, text_table
 from stickslip.friction.custom.measured import Points
 from stickslip.friction.custom.penalised_spline import PenalisedSpline
 from stickslip.friction.custom.table import FromTable
 from stickslip.friction.noise import SMALLEST, reversals
-
-Floats = NDArray[np.float64]
 
 SCALES = ("auto", "linear", "log")
 """Scales of slip or slip rate in which points can be smoothed."""

@@ -7,13 +7,12 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.friction.contract import MOST_STATES
 from stickslip.friction.formula.parse import RESERVED
 
-Floats = NDArray[np.float64]
 EXAMPLE = '"dz/dt = (1 - z)/tau"'
 _EQUATION = re.compile(r"\s*d\s*([A-Za-z_]\w{0,39})\s*/\s*dt\s*=(?!=)(.*)", re.DOTALL)
 SIZES = np.geomspace(1e-18, 1e18, 145)

@@ -27,16 +27,13 @@ def harmless_overflows(nodes: Sequence[Expression]) -> set[Expression]:
     for node in reversed(nodes):
         ways = parents[node]
         if ways and all(
-            parent.operation in SQUASH or _divides(node, parent) or (parent in below and _keeps_large(node, parent))
+            parent.operation in SQUASH
+            or (parent.operation == "div" and parent.arguments[1] == node and (parent.arguments[0] != node))
+            or (parent in below and _keeps_large(node, parent))
             for parent in ways
         ):
             below.add(node)
     return below
-
-
-def _divides(node: Expression, parent: Expression) -> bool:
-    """Return True if a node is the denominator, and not also the numerator, of its parent."""
-    return parent.operation == "div" and parent.arguments[1] == node and parent.arguments[0] != node
 
 
 def _keeps_large(node: Expression, parent: Expression) -> bool:

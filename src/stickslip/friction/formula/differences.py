@@ -14,12 +14,11 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from stickslip.foundation.arrays import Floats
 from stickslip.friction.formula.denominators import LARGEST_EXPONENT, harmless_overflows
 from stickslip.friction.formula.expression import RATE, SLIP, STATES, VARIABLES, Expression, nodes_of
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -37,8 +36,8 @@ class _Node:
 
 
 def difference(
-    tree: Expression, parameters: Mapping[str, ArrayLike], slip: float | Array, slip_step: ArrayLike, rate: ArrayLike
-) -> tuple[Array, Array]:
+    tree: Expression, parameters: Mapping[str, ArrayLike], slip: float | Floats, slip_step: ArrayLike, rate: ArrayLike
+) -> tuple[Floats, Floats]:
     """Return mu(slip + slip_step, rate) - mu(slip, 0), and dmu/drate (s/m) at the end point.
 
     `slip` and `slip_step` are in m, `rate` >= 0 in m/s. `tree` is one piece of a law's formula and `parameters` holds the law's
@@ -54,7 +53,7 @@ def difference(
 
 def value_and_slopes(
     tree: Expression, parameters: Mapping[str, ArrayLike], slip: ArrayLike, rate: ArrayLike, *states: ArrayLike
-) -> tuple[Array, Array]:
+) -> tuple[Floats, Floats]:
     """Return a formula and its derivatives by slip, slip rate and each of the states, as an array with one axis more in front.
 
     The arguments are those of `difference`; `states` are in the form that the formulas use. All broadcast, and so do parameters:

@@ -18,9 +18,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from stickslip.bodies import as_slab
+from stickslip.foundation.arrays import Floats
 from stickslip.observables.quadrature import FULL, NODES, WEIGHTS, Integrand, between, up_to
 from stickslip.observables.waves import Radiation, Waves
-from stickslip.trajectory.history import Epoch, Floats, History, Positions
+from stickslip.trajectory.history import Epoch, History, Positions
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -15,11 +15,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stickslip.bodies import as_slab
+from stickslip.foundation.arrays import Floats
 from stickslip.observables.energy.balance import epochs, event_energies, kinetic
 from stickslip.observables.energy.pulses import Pulses
 from stickslip.observables.event_table import ENERGY_COLUMNS, EVENT_COLUMNS, friction_before
 from stickslip.observables.waves import Radiation, Waves
-from stickslip.trajectory.history import Floats, History, Positions
+from stickslip.trajectory.history import History, Positions
 from stickslip.trajectory.slip_events import SlipEvents
 
 if TYPE_CHECKING:

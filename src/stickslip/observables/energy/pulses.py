@@ -13,9 +13,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.observables.quadrature import between
-from stickslip.trajectory.history import Floats, History, Positions
+from stickslip.trajectory.history import History, Positions
 from stickslip.trajectory.slip_events import SlipEvents, walk
+from stickslip.trajectory.turning_points import Turn
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -51,7 +53,8 @@ class Pulses(NamedTuple):
     @classmethod
     def of(cls, history: History, events: SlipEvents, threshold: float) -> Pulses:
         """Find the pulses of the slip events above a threshold (m/s)."""
-        piece, xi, rate, kind = walk(history, threshold)
+        turns = Turn.of(walk(history, threshold))
+        piece, xi, rate, kind = turns.piece, turns.xi, turns.rate, turns.kind
         starts = np.append(np.flatnonzero(kind == 1), len(kind))[: len(events.pulses) + 1]
         places = [_starts(rate, begin, past) for begin, past in zip(starts[:-1].tolist(), starts[1:].tolist(), strict=True)]
         event = np.repeat(np.arange(len(places)), [len(found) for found in places])
@@ -106,7 +109,7 @@ def pulses_table(history: History, threshold: float) -> pd.DataFrame:
 def _starts(rate: Floats, begin: int, past: int) -> list[int]:
     """Return the indices at which the pulses of an event begin among the turning points of |v|.
 
-    The pulses are those that `trajectory.slip_events.count_pulses` counts.
+    The pulses are those that `trajectory.slip_events.group_turns` counts.
     """
     found: list[int] = []
     peak, low = 0.0, begin

@@ -14,7 +14,7 @@ At w = 0 this is the exact mean of the load over the step. Friction is so integr
 or slip rate stays stable, which central differences do not achieve.
 
 The lines end at a rigid driver. Otherwise they go on through the half-space of impedance Zd beyond x = h, so far that nothing
-comes back from their end in time. At x = h, where two half cells meet,
+comes back to the slab from their end in time. At x = h, where two half cells meet,
 
     (Z + Zd) [u_i(n+1) + u_i(n-1)] = 2 cos(w dt) [Z u_{i-1}(n) + Zd u_{i+1}(n)].
 """
@@ -57,7 +57,7 @@ class Volume:
         if case.driver_impedance == 0.0:
             beyond = 1  # without mass; its far end stays at rest
         elif case.driver_impedance < inf:
-            beyond = max(1, ceil(0.5 * duration / self.step_of_time) + 1 - inside)
+            beyond = max(1, ceil(0.5 * (duration / self.step_of_time - inside)) + 1)
         self._impedance = np.repeat((case.impedance, case.driver_impedance if beyond else 0.0), (inside, beyond))
         """Impedance of each cell."""
         near = 2.0 * self._impedance[:-1] / (self._impedance[:-1] + self._impedance[1:])
@@ -77,9 +77,8 @@ class Volume:
     def advance(self) -> None:
         """Take one step of time."""
         case, dt, Z = self.case, self.step_of_time, self.case.impedance
-        now, cosine = self._now, self._cosine
         if self.steps:
-            arrived = Z / dt * (case.to_nodes(cosine * now[1]) - self._slip_before)
+            arrived = Z / dt * (case.to_nodes(self._cosine * self._now[1]) - self._slip_before)
             load = 2.0 * (case.load_at_rest(self.time) + arrived) - self._load
         else:
             load = case.load_at_rest(0.5 * dt)
@@ -88,10 +87,15 @@ class Volume:
         traction = 0.5 * (traction + self.traction) if self.steps else self.traction
         slip = self.slip + dt * self.slip_rate
         self.heat += 0.5 * case.node_area * float(np.sum(traction * (slip - self._slip_before)))
-        self._slip_before, self.slip, self._load = self.slip, slip, load
-        after = self._before  # its memory is used again
-        after[1:-1] = cosine * (self._near * now[:-2] + (2.0 - self._near) * now[2:]) - after[1:-1]
-        after[0] = case.to_waves(self.slip)
+        self._load = load
+        self.move(slip)
+
+    def move(self, slip: Array) -> None:
+        """Take one step of time, after which the contact has a given slip (m), whatever friction may say."""
+        now, after = self._now, self._before  # the memory of the latter is used again
+        self._slip_before, self.slip = self.slip, slip
+        after[1:-1] = self._cosine * (self._near * now[:-2] + (2.0 - self._near) * now[2:]) - after[1:-1]
+        after[0] = self.case.to_waves(slip)
         self._before, self._now = now, after
         self.steps += 1
 
@@ -110,16 +114,25 @@ class Volume:
         conserves: from the first step on, energy and heat add up to a constant but for rounding. That constant is 0 if nothing
         slips in the first step, and otherwise of order 1 in the step of time.
         """
-        case, dt = self.case, self.step_of_time
-        dx = case.wave_speed * dt
-        cells = self._impedance * dt
-        masses = 0.5 * (np.append(cells, 0.0) + np.append(0.0, cells))
+        return sum(self.energies())
+
+    def energies(self) -> tuple[float, float, float]:
+        """Return the parts of `energy`: kinetic and elastic energy of the slab, and the energy of the driver.
+
+        The work of the initial stress is part of the elastic energy.
+        """
+        case, dt, inside = self.case, self.step_of_time, round(0.5 * self.case.two_way_time / self.step_of_time)
         now, before, along = self._now, self._before, 2.0 * (1.0 - self._cosine) / dt**2  # w^2 as the scheme has it
-        velocity, stretch, stretch_before = (now - before) / dt, np.diff(now, axis=0) / dx, np.diff(before, axis=0) / dx
-        nodes = masses @ self._product(velocity, velocity) + masses @ self._product(along * now, before)
-        stretched = case.wave_speed**2 * (cells @ self._product(self._cosine * stretch, stretch_before))
-        slip = 0.5 * (self.slip + self._slip_before)
-        return float(0.5 * (nodes + stretched) - case.node_area * np.sum(case.initial_load * slip))
+        velocity, stretch, stretch_before = (now - before) / dt, np.diff(now, axis=0) / dt, np.diff(before, axis=0) / dt
+        moving, shifted = self._product(velocity, velocity), self._product(along * now, before)
+        stretched = self._product(self._cosine * stretch, stretch_before)
+        work = case.node_area * float(np.sum(case.initial_load * (0.5 * (self.slip + self._slip_before))))
+        parts = []
+        for cells in (self._impedance * (np.arange(len(self._impedance)) < inside), self._impedance.copy()):
+            masses = 0.25 * dt * (np.append(cells, 0.0) + np.append(0.0, cells))
+            parts.append((float(masses @ moving), float(masses @ shifted + 0.5 * dt * (cells @ stretched))))
+        (kinetic, elastic), whole = parts[0], sum(parts[1])
+        return kinetic, elastic - work, whole - kinetic - elastic if len(self._impedance) > inside else 0.0
 
     def _product(self, one: Waves, other: Waves) -> Array:
         """Return the integral over the contact of the product of two quantities, for each layer parallel to it."""

@@ -7,16 +7,14 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.solution.solution import Solution
 from stickslip.studies.inference.features import DROPS, FEATURES, Samples, features_in
 from stickslip.studies.inference.model import JUMPING, Model, measured
 from stickslip.studies.inference.part import Part
 from stickslip.studies.inference.record import Record
-
-Floats = NDArray[np.float64]
 
 CYCLES = 6.0
 """Length of a run in times between events of the record; its first events are passed over."""
@@ -34,13 +32,7 @@ FEWEST = 4.0
 
 @dataclass(frozen=True, eq=False)
 class FeaturePart(Part):
-    """Features of the events of a part; its record holds them at the times of the events.
-
-    Parameters
-    ----------
-    whole
-        The part itself, with all samples.
-    """
+    """Features of the events of a part, at the times of the events; `whole` is the part itself, with all samples."""
 
     whole: Part | None = None
 

@@ -8,16 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.determined import covariance_of, sizes_and_correlation, undetermined
 from stickslip.foundation.formatting import brief
 from stickslip.studies.inference.directions import IDLE, better_known, null_directions, told, without
 from stickslip.studies.inference.estimate import Estimate
 from stickslip.studies.inference.free import Free
-from stickslip.studies.inference.losses import cost_of, weights
 from stickslip.studies.inference.model import FAILED, Model
+from stickslip.studies.inference.noise import cost_of, weights
 from stickslip.studies.inference.search import Tell
-
-Floats = NDArray[np.float64]
 
 EXACT = 1e-10
 """Relative tolerance of the runs from which derivatives at the best fit are taken."""
@@ -39,24 +38,12 @@ CHORDS, PLACES = 6, 10
 
 @dataclass(frozen=True)
 class Certainty:
-    """What a record determines.
+    """What a record determines of the searched numbers.
 
-    Parameters
-    ----------
-    covariance
-        Covariance of the searched numbers, NaN for those that are not determined and 0 for those on a bound.
-    widths
-        Their standard uncertainties, infinite where the record does not determine a number, 0 on a bound.
-    correlation
-        Their correlations.
-    factor
-        Half the width of an interval of 95 %, in standard uncertainties.
-    on_bound
-        True for numbers that lie on a bound.
-    notes
-        Sentences on what is not determined.
-    slopes
-        Derivatives of the residuals with respect to the searched numbers.
+    `covariance` is NaN for those that are not determined and 0 for those on a bound. `widths` are their standard uncertainties,
+    infinite where the record does not determine a number, 0 on a bound; `factor` times that is half the width of an interval of 95
+    %. `notes` are sentences on what is not determined, and `slopes` derivatives of the residuals with respect to the searched
+    numbers.
     """
 
     covariance: Floats
@@ -157,18 +144,10 @@ def _slopes(model: Model, x: Floats) -> tuple[Floats, dict[int, str]]:
 
 @dataclass(frozen=True)
 class Profile:
-    """The likelihood along one number, with all others fitted anew.
+    """The likelihood along one number (SI, ascending), with all others fitted anew.
 
-    Parameters
-    ----------
-    name
-        The number.
-    values
-        Its values (SI), ascending.
-    rise
-        Twice the logarithm of the likelihood below that of the best fit, at each value.
-    low, high
-        Ends of the interval of 95 % (SI); infinite or a bound where the rise is never reached.
+    `rise` is twice the logarithm of the likelihood below that of the best fit; `low` and `high` are the ends of the interval of 95
+    %, infinite or a bound where the rise is never reached.
     """
 
     name: str

@@ -9,9 +9,8 @@ from itertools import combinations, product
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.studies.inference.model import Model
-
-Floats = NDArray[np.float64]
 
 FAINT = 0.02
 """Effect of a direction, as a share of the largest, below which a run tells if it has any."""

@@ -5,14 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from stickslip.studies.inference.losses import cost_of
+from stickslip.foundation.arrays import Floats
 from stickslip.studies.inference.model import Model
-from stickslip.studies.inference.noise import GAUSSIAN, Block, memory_of
+from stickslip.studies.inference.noise import GAUSSIAN, Block, cost_of, memory_of
 from stickslip.studies.inference.search import COMPETES, Best, Tell, is_rough, light, polished, searched_minima, solved
-
-Floats = NDArray[np.float64]
 
 FEW = 1500
 """Number of samples of a part with which starts are compared and followed."""
@@ -31,20 +28,10 @@ APART = 5.0
 
 @dataclass(frozen=True)
 class Estimate:
-    """The result of a search.
+    """The result of a search: the model, with the size and the memory of the noise as they were estimated, and the best fit.
 
-    Parameters
-    ----------
-    model
-        The model, with the size and the memory of the noise as they were estimated.
-    searched
-        The searched numbers at the best fit.
-    others
-        Searched numbers of other minima that compete.
-    finished
-        False after Ctrl-C.
-    loss
-        The function of squared residuals that is summed.
+    `others` are searched numbers of other minima that compete; `finished` is False after Ctrl-C; `loss` is the function of squared
+    residuals that is summed.
     """
 
     model: Model

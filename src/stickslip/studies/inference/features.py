@@ -13,9 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.studies.inference.noise import noise_of
-
-Floats = NDArray[np.float64]
 
 DROPS = ("friction_drop", "shear_stress_drop", "shear_force_drop")
 """Names of the fall of shear in an event, by what was measured."""

@@ -8,15 +8,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError, full_name
 from stickslip.foundation.quantities import Quantity
 from stickslip.problem.problem import Problem
-
-Floats = NDArray[np.float64]
 
 FARTHEST, FARTHEST_PURE = 1e3, 30.0
 """Factors by which positive numbers, with a unit and without, may differ from where the search begins, unless bounds say."""
@@ -30,15 +25,10 @@ _PRIOR = re.compile(r"\s*(normal|lognormal|uniform)\s*\(\s*([^,()]+)\s*,\s*([^,(
 
 @dataclass(frozen=True)
 class Prior:
-    """What is known of a number before.
+    """What is known of a number before, by its kind and two numbers (SI).
 
-    Parameters
-    ----------
-    kind
-        "normal" with mean and standard deviation, "lognormal" with median and standard deviation of the logarithm, or "uniform"
-        with both ends.
-    first, second
-        Its two numbers, in SI.
+    They are mean and standard deviation ("normal"), median and standard deviation of the logarithm ("lognormal"), or both ends
+    ("uniform").
     """
 
     kind: str
@@ -56,28 +46,10 @@ class Prior:
 
 @dataclass(frozen=True)
 class Free:
-    """A free number.
+    """A free number, by its full name such as "friction.a", with its limits and the value at which the search begins (SI).
 
-    Parameters
-    ----------
-    name
-        Its full name, such as "friction.a".
-    declared
-        Its unit and its meaning.
-    start
-        The value at which the search begins (SI).
-    low, high
-        Limits (SI).
-    log
-        True if it is positive, so that the search goes along its logarithm.
-    prior
-        What is known of it before, or None.
-    part
-        The part of the record to which alone it belongs, or None.
-    scale
-        The size of a step for numbers that are not positive (SI).
-    bounded
-        True if the user gave the limits.
+    If it is positive (`log`) the search goes along its logarithm; if not, `scale` is the size of a step (SI). `part` is the part of
+    the record to which alone it belongs, or None; `bounded` is True if the user gave the limits.
     """
 
     name: str

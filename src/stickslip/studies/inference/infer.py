@@ -23,11 +23,10 @@ from stickslip.studies.inference.certainty import Certainty, Profile, certainty_
 from stickslip.studies.inference.directions import IDLE
 from stickslip.studies.inference.estimate import Estimate, estimate
 from stickslip.studies.inference.free import read_free, with_scale
-from stickslip.studies.inference.held_out import share_of, shortened
 from stickslip.studies.inference.inference import Inference
-from stickslip.studies.inference.losses import LOSSES
 from stickslip.studies.inference.model import Model
-from stickslip.studies.inference.part import Part, first_sizes
+from stickslip.studies.inference.noise import LOSSES
+from stickslip.studies.inference.part import Part, first_sizes, share_of, shortened
 from stickslip.studies.inference.record import Record
 from stickslip.studies.inference.resample import resampled
 from stickslip.studies.inference.sampling import sample

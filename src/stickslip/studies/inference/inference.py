@@ -13,6 +13,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.atomic_write import write_atomically, write_table
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief, with_uncertainty
@@ -29,8 +30,6 @@ from stickslip.studies.inference.model import OF_NO_ZERO, Model, unit_of
 from stickslip.studies.inference.part import Part
 from stickslip.studies.inference.words import notes_of
 from stickslip.studies.study import Study
-
-Floats = NDArray[np.float64]
 
 
 def _near(value: float, uncertainty: float) -> str:

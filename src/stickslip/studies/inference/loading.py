@@ -7,15 +7,13 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief
 from stickslip.loading import LoadingHistory, Steps
 from stickslip.studies.inference.noise import noise_of, rounding_of
 from stickslip.studies.inference.record import Record
-
-Floats = NDArray[np.float64]
 
 MOST_PARTS = 2000
 """Largest number of straight parts; a record that needs more is approximated more coarsely."""

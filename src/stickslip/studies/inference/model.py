@@ -8,21 +8,19 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 from stickslip.run.simulate import simulate
 from stickslip.solution.solution import Solution
 from stickslip.studies.inference.free import DELAY, LOAD, STATE, TREND, Free
-from stickslip.studies.inference.jumps import RAMP, Jumps, jumps_in, spread, unsure
 from stickslip.studies.inference.noise import Block, independent, whitened
 from stickslip.studies.inference.part import Part, changed
 from stickslip.studies.inference.record import UNITS
+from stickslip.studies.inference.resample import RAMP, Jumps, jumps_in, spread, unsure
 from stickslip.studies.study import uninterrupted
 from stickslip.trajectory.history import Side
-
-Floats = NDArray[np.float64]
 
 OF_NO_ZERO = ("slip",)
 """Quantities that a sensor measures from a zero of its own: the mean of their residual is taken away."""
@@ -44,34 +42,14 @@ CHANGED, ABOVE_NOISE = 0.5, 30.0
 
 @dataclass
 class Model:
-    """Residuals of a record as a function of searched numbers.
+    """Residuals of a record, part by part, as a function of the searched numbers.
 
-    Parameters
-    ----------
-    problem
-        The problem whose numbers are free.
-    parts
-        The parts of the record.
-    free
-        The free numbers.
-    rtol
-        Relative tolerance of the runs.
-    sizes
-        Standard deviation of each observed quantity that has no column of them (SI).
-    memory
-        Time over which residuals of a quantity remember themselves (s), 0 for white noise.
-    every
-        Each how many-th sample is used.
-    step
-        Step of differences, in searched numbers: one for all, or one for each.
-    smooth
-        Share of the samples over which residuals are averaged, so that an event at another time is felt from afar.
-    max_pieces
-        Largest number of pieces of a run; a run that needs more has failed.
-    blur
-        Number of samples over which a jump of a run is spread.
-    unsure
-        Standard deviation (SI) of each used sample from the unknown time of a jump beside it, by part and quantity.
+    `sizes` are standard deviations (SI) of each observed quantity that has no column of them, and `memory` is the time over which
+    residuals of a quantity remember themselves (s), 0 for white noise. Each `every`-th sample is used. `step` is that of
+    differences, in searched numbers: one for all, or one for each. `smooth` is the share of the samples over which residuals are
+    averaged, so that an event at another time is felt from afar. A run that needs more than `max_pieces` has failed. A jump of a
+    run is spread over `blur` samples, and `unsure` is the standard deviation (SI) of each used sample from the unknown time of a
+    jump beside it, by part and quantity.
     """
 
     problem: Problem

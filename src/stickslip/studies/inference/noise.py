@@ -1,14 +1,40 @@
-"""Noise of a record: its size from one sample to the next, and the time over which residuals remember themselves."""
+"""Noise of a record, samples that tell of the sensor and not of friction, and how residuals count in the sum of a search."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from stickslip.foundation.arrays import Floats
+
+OUTLYING = 2.0
+"""Residual, in standard deviations, from which a loss other than the linear one counts it less."""
+
+
+def cost_of(residual: Floats, loss: str = "linear") -> float:
+    """Return the sum that a search minimises; unless the loss is linear, residuals beyond `OUTLYING` count less than squares."""
+    return OUTLYING**2 * float(np.sum(_LOSSES[loss][0]((residual / OUTLYING) ** 2)))
+
+
+def weights(residual: Floats, loss: str) -> Floats:
+    """Return the weight of each squared residual in the derivatives of the sum."""
+    return np.asarray(_LOSSES[loss][1]((residual / OUTLYING) ** 2))
+
+
+_LOSSES: dict[str, tuple[Callable[[Floats], Floats], Callable[[Floats], Floats]]] = {
+    "linear": (lambda z: z, np.ones_like),
+    "soft_l1": (lambda z: 2.0 * (np.sqrt(1.0 + z) - 1.0), lambda z: 1.0 / np.sqrt(1.0 + z)),
+    "huber": (lambda z: np.where(z <= 1.0, z, 2.0 * np.sqrt(z) - 1.0), lambda z: 1.0 / np.sqrt(np.maximum(z, 1.0))),
+    "cauchy": (np.log1p, lambda z: 1.0 / (1.0 + z)),
+}
+"""Functions of squared residuals, as in scipy's least_squares, and their derivatives."""
+LOSSES = tuple(_LOSSES)
+"""Names of the functions of squared residuals that may be summed."""
+
 
 GAUSSIAN = 0.6744897501960817
 """Median magnitude of a normal deviate with standard deviation 1."""
@@ -158,3 +184,47 @@ def _size_and_determinant(residual: Floats, slopes: Floats) -> tuple[float, floa
     taken = float(np.sum(along**2 / spectrum[seen]))
     log_det = float(np.sum(np.log(np.maximum(spectrum, UNSEEN)))) + 2.0 * float(np.sum(np.log(sizes[sizes > 0.0])))
     return math.sqrt(max(total - taken, 0.0) / max(n - used.shape[1], 1)), log_det
+
+
+RAIL = 8
+"""Number of equal samples at the end of the range of a quantity from which its sensor counts as saturated."""
+LONE = 10.0
+"""Factor by which such a run is longer than other runs of equal samples."""
+FEW, DIGITS_OF_NOISE = 3, 10.0
+"""Number of equal samples that noise makes unlikely, and its size, in steps of the digitiser, from which it does."""
+LEAST_NOISE = 1e-4
+"""The same as a share of the range: a record without noise may rest at one value."""
+BEYOND = 10.0
+"""Factor by which a lone sample is larger than nine of ten samples: noise, and the marks of a missing number, as -999."""
+MOMENT = 3
+"""Largest number of such samples that follow each other."""
+
+
+def saturated(values: Floats) -> NDArray[np.bool_]:
+    """Return True for samples of a run of one value at an end of the range, which is longer than other runs of equal samples."""
+    flat = np.zeros(len(values), bool)
+    if len(values) < 2 * RAIL:
+        return flat
+    begins = np.flatnonzero(np.append(True, values[1:] != values[:-1]))
+    lengths = np.diff(np.append(begins, len(values)))
+    usual = float(np.quantile(lengths, 0.9))
+    step = 2.0 * rounding_of(values)
+    noisy = noise_of(values) > max(DIGITS_OF_NOISE * step, LEAST_NOISE * float(np.nanmax(values) - np.nanmin(values)))
+    longest = max(FEW, 2.0 * usual) if noisy and step > 0.0 else max(RAIL, LONE * usual)
+    ends = (np.nanmin(values), np.nanmax(values))
+    for begin, length in zip(begins.tolist(), lengths.tolist(), strict=True):
+        if length >= longest and length < 0.5 * len(values) and values[begin] in ends:
+            flat[begin : begin + length] = True
+    return flat
+
+
+def spikes(values: Floats) -> NDArray[np.bool_]:
+    """Return True for samples far beyond the rest that stand alone, or with one or two neighbours."""
+    sizes = np.abs(values)
+    usual = float(np.nanquantile(sizes, 0.9))
+    far = sizes > BEYOND * usual if usual > 0.0 else np.zeros(len(values), bool)
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], far, [False]])))
+    for begin, end in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
+        if end - begin > MOMENT:
+            far[begin:end] = False
+    return far

@@ -1,4 +1,4 @@
-"""A part of a record with a run of its own: how the run is loaded and begins, and the problem with other numbers."""
+"""A part of a record with a run of its own: how it is loaded and begins, its end that is left out, and other numbers in it."""
 
 from __future__ import annotations
 
@@ -9,16 +9,14 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.quantities import Quantity
 from stickslip.loading import LoadingHistory
 from stickslip.problem.problem import Problem
 from stickslip.studies.inference.free import LOAD
 from stickslip.studies.inference.noise import first_value, noise_of
 from stickslip.studies.inference.record import Record
-
-Floats = NDArray[np.float64]
 
 SMALLEST_NOISE = 1e-9
 """Smallest noise, as a share of the range of a quantity: a record without noise has rounding."""
@@ -28,18 +26,9 @@ SMALLEST_NOISE = 1e-9
 class Part:
     """A part of a record with its own run.
 
-    Parameters
-    ----------
-    record
-        The samples.
-    loading
-        The pull rate since the first sample, or None for the problem's own.
-    observed
-        Names of the quantities that are fitted.
-    sensor
-        "contact" if shear is measured at the contact, "spring" for a load cell behind the spring of a block.
-    start
-        "steady", "record" or "problem": how the run begins.
+    `loading` is the pull rate since the first sample, or None for the problem's own; `observed` are the quantities that are fitted.
+    `sensor` is "contact" if shear is measured there, "spring" for a load cell behind the spring of a block. The run begins
+    ("start") in "steady" sliding, as the "record" does, or as the "problem" says.
     """
 
     record: Record
@@ -145,3 +134,40 @@ def first_sizes(parts: Sequence[Part]) -> dict[str, float]:
         least = SMALLEST_NOISE * max(widest, 1e-3 * largest, 1e-300)
         found[name] = max(*(noise_of(r.measured[name]) for r in having), least)
     return found
+
+
+LEFT_OUT = Quantity("s", "time at the end of the record that is left out", above=0.0)
+LEAST = 8
+"""Smallest number of samples that a part keeps."""
+
+
+def share_of(held_out: Any, parts: Sequence[Part]) -> float:
+    """Return the share of a record at its end that is left out, from a share or a time. Raises InputError."""
+    if held_out is None:
+        return 0.0
+    if isinstance(held_out, int | float) and not isinstance(held_out, bool):
+        if not 0.0 < held_out < 1.0:
+            raise InputError(f"infer: held_out must be a share between 0 and 1, or a time with a unit, got {held_out:g}")
+        return float(held_out)
+    seconds, whole = LEFT_OUT.check("infer", "held_out", held_out), sum(part.duration for part in parts)
+    if seconds >= whole:
+        raise InputError(f"infer: held_out of {seconds:g} s leaves nothing of a record of {whole:g} s")
+    return seconds / whole
+
+
+def shortened(parts: Sequence[Part], share: float) -> list[Part]:
+    """Return the parts that are fitted: of one record its first part, of several the whole ones that come first.
+
+    Parts that are left out as a whole follow nothing; a record in several parts keeps the first of them. Raises InputError if too
+    little is left.
+    """
+    if share == 0.0:
+        return list(parts)
+    if len(parts) > 1:
+        count = max(1, min(len(parts) - 1, round(len(parts) * (1.0 - share))))
+        return list(parts[:count])
+    (part,) = parts
+    record = part.record.part(None, float(part.record.time[0] + (1.0 - share) * part.duration))
+    if len(record) < LEAST:
+        raise InputError(f"infer: held_out leaves {len(record)} samples to be fitted")
+    return [replace(part, record=record)]

@@ -12,14 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.foundation.arguments import as_path, shown
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.columns import Table, find, missing, read_mapping, read_text
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief
-from stickslip.studies.inference.noise import noise_of
-from stickslip.studies.inference.sensors import saturated, spikes
-
-Floats = NDArray[np.float64]
+from stickslip.studies.inference.noise import noise_of, saturated, spikes
 
 LARGEST_FILE = 500_000_000
 """Size (bytes) of the largest record that is read."""

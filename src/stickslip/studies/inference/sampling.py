@@ -7,16 +7,14 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.studies.inference.certainty import Certainty
 from stickslip.studies.inference.estimate import Estimate
-from stickslip.studies.inference.losses import cost_of
 from stickslip.studies.inference.model import FAILED
+from stickslip.studies.inference.noise import cost_of
 from stickslip.studies.inference.search import Tell
-
-Floats = NDArray[np.float64]
 
 WALKERS = 4
 """Number of walkers for each free number; there are 16 at least."""

@@ -7,13 +7,12 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.studies.inference.losses import OUTLYING, cost_of
 from stickslip.studies.inference.model import FAILED, Model
+from stickslip.studies.inference.noise import OUTLYING, cost_of
 
-Floats = NDArray[np.float64]
 Tell = Callable[[str], Any]
 
 COMPETES = 20.0

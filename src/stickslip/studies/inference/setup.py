@@ -8,8 +8,8 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.formatting import brief
 from stickslip.friction.law import FrictionLaw
@@ -20,8 +20,6 @@ from stickslip.studies.inference.free import LOAD, STATE, TREND, Free, Prior, kn
 from stickslip.studies.inference.loading import loading_of
 from stickslip.studies.inference.part import Part
 from stickslip.studies.inference.record import HIGHEST, LOWEST, MEASURED, SHEAR, Record
-
-Floats = NDArray[np.float64]
 
 STARTS = ("steady", "record", "problem")
 """How a run may begin: in steady sliding at the first rate, with the load of the first samples, or as the problem says."""

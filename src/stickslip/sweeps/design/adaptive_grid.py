@@ -17,9 +17,9 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 
-Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 MOST_MEMBERS = 10_000_000

@@ -24,20 +24,10 @@ Of = Callable[["Solution"], Any]
 
 @dataclass(frozen=True)
 class Summary:
-    """A number that summarises a whole run.
+    """A number that summarises a whole run: its name and meaning in the dataset of a sweep, its SI unit, and what computes it.
 
-    Parameters
-    ----------
-    name : str
-        Name of the variable in the dataset of a sweep.
-    unit : str
-        SI unit. "load" stands for Pa (slab) or N (block), "energy" for J m-2 or J.
-    meaning : str
-        Description in words, stored as the variable's long name.
-    of : callable
-        Function of a `Solution` that returns the number, or NaN where the run has no such number.
-    is_flag : bool
-        True for a quantity that is 1 for yes and 0 for no.
+    The unit "load" stands for Pa (slab) or N (block), "energy" for J m-2 or J. `of` returns it for a `Solution`, or NaN where the
+    run has no such number. A flag is 1 for yes and 0 for no.
     """
 
     name: str

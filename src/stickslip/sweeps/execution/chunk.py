@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from stickslip.batch import run_members, why_not
 from stickslip.engine.state.layout import Stop
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.run.simulate import simulate
 from stickslip.scenarios.entries import Source
@@ -27,7 +28,6 @@ from stickslip.sweeps.design.quantities import QUANTITIES, Summary
 from stickslip.trajectory.status import BAD_PARAMETERS as REFUSED
 from stickslip.trajectory.status import ENOUGH_EVENTS, FULL_HISTORY, STATUSES, Status
 
-Floats = NDArray[np.float64]
 END = "end_time"
 """The quantity that the message on a failed member needs: the time (s) at which its run ended."""
 MAX_PIECES = 200_000

@@ -18,6 +18,7 @@ from stickslip.friction.contract import STATE_NAMES
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import DURATION
 from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
+from stickslip.scenarios.source import all_slips_alike
 from stickslip.solution.evaluation import CURVES
 from stickslip.sweeps.design.axis import Values
 from stickslip.sweeps.design.design import GRID, Design, read_design
@@ -103,7 +104,7 @@ def scenario_to_vary(given: Problem | Scenario | str | Path, duration: float | s
     if not isinstance(given, Problem):
         if duration is not None:
             raise InputError("sweep: duration belongs to a Problem: a scenario has its own, which run.duration varies")
-        return given if isinstance(given, Scenario) else load_scenario(given)
+        return all_slips_alike("sweep", given if isinstance(given, Scenario) else load_scenario(given))
     if duration is None:
         raise InputError("sweep: a Problem needs a duration (s)")
     return read_scenario(Scenario(given, DURATION.check("sweep", "duration", duration)).to_toml(), "problem")

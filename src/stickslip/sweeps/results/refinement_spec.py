@@ -1,4 +1,4 @@
-"""The specification that determines the members of a refined map; it is stored with them, so that cells can be reconstructed."""
+"""What determines the members of a refined map, stored with them to reconstruct cells, and where the answer of a sweep changes."""
 
 from __future__ import annotations
 
@@ -13,10 +13,54 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from stickslip.foundation.arguments import check_whole, shown
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.sweeps.design.adaptive_grid import Floats, Integers, Lattice, Refined, refine_cells
+from stickslip.sweeps.design.adaptive_grid import Integers, Lattice, Refined, refine_cells
 from stickslip.sweeps.design.axis import Axis
 from stickslip.sweeps.execution.chunk import NOT_RUN
+
+LARGEST_COUNT = 12
+"""Largest number of distinct values of a quantity that is reported case by case; one with more is a number, not a case."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """The changes of a quantity along one key: the number of pairs of neighbours that differ, and the values that enclose them.
+
+    All `pairs` pairs lie between the values `low` and `high` of the key (SI, or words).
+    """
+
+    key: str
+    pairs: int
+    low: float | str
+    high: float | str
+
+
+def cases(dataset: xr.Dataset, name: str) -> dict[float, int]:
+    """Return the number of members with each value, if the values are a few whole numbers; otherwise an empty dictionary."""
+    values = dataset[name].to_numpy()
+    found, count = np.unique(values[np.isfinite(values)], return_counts=True)
+    if found.size > LARGEST_COUNT or not np.array_equal(found, np.round(found)):
+        return {}
+    return dict(zip(found.tolist(), count.tolist(), strict=True))
+
+
+def changes(dataset: xr.Dataset, name: str) -> list[Change]:
+    """Return the changes of a quantity along each key of a grid. A missing value (NaN) counts as no change."""
+    values, found = dataset[name], []
+    for axis, key in enumerate(values.dims):
+        if key not in dataset.coords:
+            continue
+        along = np.moveaxis(values.to_numpy(), axis, 0)
+        differ = (along[1:] != along[:-1]) & np.isfinite(along[1:]) & np.isfinite(along[:-1])
+        at = np.flatnonzero(differ.any(axis=tuple(range(1, differ.ndim))))
+        if at.size:
+            places = dataset[key].to_numpy()
+            found.append(
+                Change(str(key), int(differ.sum()), places[at[0] : at[0] + 1].tolist()[0], places[at[-1] + 1 :].tolist()[0])
+            )
+    return found
+
 
 ATTRIBUTE = "refinement"
 """Name of the attribute of the dataset that holds the specification (JSON)."""
@@ -94,17 +138,9 @@ class RefinementSpec:
 
 @dataclass(frozen=True, eq=False)
 class RefinedMap:
-    """The cells of a refined map.
+    """The cells of a refined map: their lower and upper ends by parameter (SI), and the answer around each.
 
-    Attributes
-    ----------
-    low, high : dict of str to array, shape (cells,)
-        Lower and upper ends of the cells, by parameter (SI).
-    answer : array, shape (cells,)
-        The answer around each cell: NaN where it changes, and where there is none. With a factor, the mean of the smallest and
-        the largest answer.
-    changes : array of bool, shape (cells,)
-        True where the answer changes around the cell.
+    The answer is NaN where it `changes`, and where there is none; with a factor, it is the mean of the smallest and the largest.
     """
 
     low: dict[str, Floats]
@@ -121,22 +157,10 @@ class RefinedMap:
 
 
 def cells_of(dataset: xr.Dataset) -> RefinedMap:
-    """Reconstruct the cells of a refined map.
+    """Return the cells of a refined map that were not halved, from the dataset that `stickslip.refine` returned or stored.
 
-    Parameters
-    ----------
-    dataset : xarray.Dataset
-        What `stickslip.refine` returned or stored. If the search was stopped, only its complete rounds are used.
-
-    Returns
-    -------
-    RefinedMap
-        The cells that were not halved.
-
-    Raises
-    ------
-    InputError
-        For any other dataset, and for a search that was stopped before its coarse grid was complete.
+    If the search was stopped, only its complete rounds are used. Raises InputError for any other dataset, and for a search that was
+    stopped before its coarse grid was complete.
     """
     spec = RefinementSpec.read(dataset)
     missing = np.flatnonzero(dataset["status"].values == NOT_RUN)

@@ -1,0 +1,45 @@
+"""Show a run whose contact has many nodes: its size before the start, and what happened at its end."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from stickslip.cli.output.files import file_size
+from stickslip.cli.output.show import console, say, titled
+from stickslip.foundation.formatting import brief
+from stickslip.scenarios.scenario import doubts
+
+if TYPE_CHECKING:
+    from stickslip.scenarios.scenario import Scenario
+    from stickslip.solution.planar import PlanarSolution
+
+
+def size_of(scenario: Scenario) -> str:
+    """Return the memory that a run of a scenario needs, in words."""
+    from stickslip.run.planar_run import FRAMES, memory_of
+
+    assert scenario.contact is not None
+    solved, _ = scenario.planar_slab.alone_for(scenario.duration)
+    beyond = "" if solved.shape == scenario.planar_slab.shape else f", with {_shape(solved.shape)} nodes against replicas"
+    return f"{file_size(memory_of(solved, scenario.duration, scenario.contact.frames or FRAMES))}{beyond}"
+
+
+def announce_run(scenario: Scenario) -> None:
+    """Print on standard output what is about to be run."""
+    slab, size = scenario.planar_slab, size_of(scenario)
+    step = slab.body.two_way_time / slab.steps_per_round_trip
+    apart = " and ".join(brief(one, "m") for one in slab.spacing)
+    steps = f"{math.ceil(scenario.duration / step - 1e-9)} steps up to {brief(scenario.duration, 's')}"
+    screen = titled(scenario)
+    say(screen, f"{_shape(slab.shape)} nodes, {apart} apart; {steps}; needs {size}")
+    say(screen, *(f"warning: {one}" for one in doubts(scenario.problem)))
+
+
+def show_run(solution: PlanarSolution) -> None:
+    """Print the summary of a run on standard output."""
+    say(console(), str(solution.status), *solution.sentences)
+
+
+def _shape(shape: tuple[int, ...]) -> str:
+    return " x ".join(map(str, shape))

@@ -1,0 +1,150 @@
+"""Where a run may leap over creep, and where slip events that are too short to be told apart may be lumped, or are.
+
+Under rate weakening every slip steepens the echoes that it sends back, and the events that they cause get shorter and shorter.
+With a `shortest_event`, shorter pieces of load are replaced by their mean, so that they slip as a whole or not at all, and a
+piece at rest begins to slip only where more of it than that length is beyond the strength. This bounds the number of pieces in a
+round trip.
+
+The engine counts what automatic leaps and lumping depend on, so that a single run, a run that is resumed and a member of a batch
+make the same choice. Until then a run is bit for bit the same as one that never leaps or lumps.
+
+Without a given `shortest_event`, nothing is lumped until a round trip has more than MOST_PIECES pieces. A contact that creeps
+below the critical rate weakening doubles them in each round trip, because it answers each echo with a larger one of the opposite
+sign. No computation can follow that for long, and the events that are lumped then could not be resolved anyway.
+"""
+
+from __future__ import annotations
+
+import math
+
+from stickslip.bodies import BodyOnCharacteristics
+from stickslip.engine.state import layout as at
+from stickslip.engine.state.layout import Counts, Params
+from stickslip.foundation.errors import InputError
+from stickslip.problem.problem import Problem
+
+LARGEST_RTOL = 1e-2
+"""Largest creep_rtol that is accepted."""
+PATIENCE = 200
+"""Number of round trips with slip that are all computed before automatic leaps may begin: on the printed slab 40 000 pieces and
+0.1 s.
+"""
+PER_ROOT_RTOL = 0.1
+"""Automatic creep_rtol divided by the square root of rtol: the time of the first pulse then has a relative error of about rtol."""
+TIGHTEST, LOOSEST = 1e-6, 1e-3
+"""Bounds of the automatic creep_rtol: tighter ones leave too many round trips to compute, looser ones have not been measured."""
+
+
+def creep_tolerance(problem: Problem, creep_rtol: float | None, rtol: float) -> float:
+    """Return the tolerance of leaps over creep in a run: the given or the automatic one, or 0 if there are no leaps."""
+    if creep_rtol is not None:
+        return creep_rtol
+    return 0.0 if _missing(problem) else min(max(PER_ROOT_RTOL * math.sqrt(rtol), TIGHTEST), LOOSEST)
+
+
+def check_creep_rtol(problem: Problem, creep_rtol: float | None, where: str, name: str = "creep_rtol") -> float | None:
+    """Check a tolerance of leaps over creep that `simulate` takes (None is automatic). Raises InputError beginning with `where`."""
+    if creep_rtol is None:
+        return None
+    if not 0.0 <= creep_rtol <= LARGEST_RTOL:
+        allowed = f"0 (no leaps over creep, every round trip is run) or at most {LARGEST_RTOL:g}"
+        raise InputError(f"{where}: {name} must be {allowed}, got {creep_rtol:g}")
+    if creep_rtol > 0.0 and (missing := _missing(problem)):
+        raise InputError(f"{where}: {name} must be 0 here: leaps over creep need {missing}")
+    return creep_rtol
+
+
+def _missing(problem: Problem) -> str:
+    """Return what a problem lacks for leaps over creep; empty if it lacks nothing."""
+    return missing_but_pull(problem) or ("" if problem.pull_rate != 0.0 else "a pull rate that is not 0")
+
+
+def missing_but_pull(problem: Problem) -> str:
+    """Return what a problem lacks besides a pull rate, which may differ between the members of a batch."""
+    body, law = problem.body, problem.friction
+    if not body.has_waves:
+        return "a slab, which creeps from round trip to round trip"
+    if not body.is_driven_rigidly:
+        return "a rigid driver (no driver_impedance)"
+    if body.has_inertia:
+        return "a contact without mass (no contact_mass)"
+    if law.states or law.depends_on_rate:
+        return f"a friction law of slip alone ({type(law).__name__} is not one)"
+    if law.memory != "all":
+        return "a friction law that remembers all slip (no memory of its own)"
+    if problem.varies:
+        return "a constant pull rate"
+    return ""
+
+
+LARGEST_SHARE = 0.01
+"""Largest shortest_event, as a share of the two-way travel time: a body with a longer one would no longer behave as a slab."""
+MOST_PIECES = 4096
+"""Number of pieces in a round trip above which events are lumped automatically: each costs about 0.4 kB and a microsecond."""
+AUTOMATIC_SHARE = 1.0 / 1024.0
+"""Shortest event of automatic lumping, as a share of the two-way travel time: a few pieces fit into each such interval."""
+
+
+def check_shortest_event(problem: Problem, shortest: float | None, where: str, name: str = "shortest_event") -> float | None:
+    """Check a shortest event (s; None is automatic) that `simulate` takes. Raises InputError beginning with `where`."""
+    if shortest is None or shortest == 0.0:
+        return shortest
+    body = problem.body
+    if not (body.has_waves and body.is_driven_rigidly):
+        raise InputError(f"{where}: {name} must be 0 here: only under a slab with a rigid driver do echoes get ever shorter")
+    if problem.varies:
+        raise InputError(f"{where}: {name} must be 0 here: events are lumped under a constant pull only")
+    largest = LARGEST_SHARE * body.round_trip_time
+    if not 0.0 < shortest <= largest:
+        raise InputError(f"{where}: {name} must be 0 or at most {largest:g} s (1 % of the two-way travel time), got {shortest:g} s")
+    return shortest
+
+
+def lumps_by_itself(problem: Problem) -> bool:
+    """Return True if events are lumped automatically.
+
+    That requires echoes that come back whole, and friction that depends on the slip rate and has no state variable.
+    """
+    body, law = problem.body, problem.friction
+    return (
+        body.has_waves
+        and body.is_driven_rigidly
+        and not body.has_inertia
+        and not problem.varies
+        and law.depends_on_rate
+        and not law.states
+    )
+
+
+def automatic_length(body: BodyOnCharacteristics) -> float:
+    """Return the shortest event (s) of automatic lumping."""
+    return AUTOMATIC_SHARE * body.round_trip_time
+
+
+def wait_for_creep(count: Counts, problem: Problem, creep_rtol: float | None) -> None:
+    """Have the engine pause when a run that leaps automatically has had PATIENCE round trips with slip."""
+    if creep_rtol is None and not missing_but_pull(problem):
+        count.creep_in = PATIENCE
+
+
+def set_lumping(count: Counts, problem: Problem, shortest: float | None) -> None:
+    """Set the counts at t = 0 that say when short pieces are lumped: from the start, later, or never."""
+    lumps = shortest is not None and shortest > 0.0
+    count.lumps, count.lumped_since = lumps, 0 if lumps else at.NEVER
+    count.lump_above = MOST_PIECES if shortest is None and lumps_by_itself(problem) else at.NEVER
+
+
+def set_length(params: Params, shortest: float | None) -> None:
+    """Set the length of the pieces that are lumped, in `Setup.params` or in one with a column for each member."""
+    params.shortest = AUTOMATIC_SHARE * params.round_trip_time if shortest is None else shortest
+
+
+def lumping_note(count: Counts, params: Params, shortest: float | None) -> str:
+    """Return one line on automatic lumping in a run; empty if it did not begin."""
+    if shortest is not None or count.lumps == 0:
+        return ""
+    since = count.lumped_since * params.round_trip_time
+    return (
+        f"events shorter than {params.shortest:.3g} s are lumped from {since:.6g} s on, where a round trip had more than"
+        f" {MOST_PIECES} pieces: what follows is right only on average (shortest_event = 0 resolves every event)"
+    )

@@ -1,0 +1,149 @@
+"""The command line with a contact of many nodes, in 2D and 3D: what it says, and what it refuses in one line."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from typer import Context
+
+from stickslip.cli.app import COMMANDS
+from stickslip.cli.options import complete_scenario, complete_vary
+from tests.cli.conftest import Outcome
+
+Command = Callable[..., Outcome]
+SMALL = ("planar-patch", "--set", "contact.nodes=64", "--duration", "1 s")
+IN_1D = {
+    "analogy": ("--map", "friction.static=0.6..0.8:3", "--map", "friction.dynamic=0.4..0.5:3", "planar-patch"),
+    "compare": ("planar-patch", "fig6-slab"),
+    "ensemble": ("planar-patch",),
+    "explore": ("planar-patch", "--no-browser"),
+    "export": ("planar-patch", "out.txt"),
+    "infer": ("planar-patch", "record.csv", "--free", "friction.static=0.6..0.8"),
+    "regularise": ("planar-patch",),
+    "schemes": ("planar-patch",),
+    "sweep": ("planar-patch", "--vary", "friction.static=0.6,0.7"),
+}
+"""Arguments for each command that is for a contact of one place."""
+WITHOUT_SCENARIO = {"benchmark", "doctor", "fit", "new", "paper"}
+WITH_CONTACT = {"run", "check", "show"}
+
+
+def test_run_says_how_large_it_is_and_what_happened(command: Command, tmp_path: Path) -> None:
+    shown = command("run", *SMALL, "--figure", "a.png", "--animation", "a.gif")
+    assert shown.code == 0
+    lines = shown.out.splitlines()
+    assert lines[0] == "A fault in 2D: a nucleus between barriers: contact.nodes = 64"
+    assert lines[1].startswith("64 nodes, 625 m apart; 12 steps up to 1 s; needs ")
+    assert lines[2].startswith("finished")
+    assert lines[3].startswith("27% of the contact slips")
+    assert lines[-2:] == ["written: a.png", "written: a.gif"]
+    assert all((tmp_path / name).stat().st_size > 1000 for name in ("a.png", "a.gif"))
+
+
+def test_check_says_what_it_means_and_what_is_resolved(command: Command) -> None:
+    out = command("check", "planar-patch").out
+    for text in (
+        "[contact]",
+        "patches[1]",
+        "359 steps, 256 in R",
+        "process zone",
+        "memory",
+        "51 of 256 nodes slip at once, 25 are locked",
+    ):
+        assert text in out
+    assert "rtol" not in out
+    assert "warning" not in out
+
+
+@pytest.mark.parametrize(
+    ("change", "warning"),
+    [
+        ("contact.nodes=128", "the process zone has 3.88 nodes, not resolved: 5 are wanted, as with 166 nodes along y"),
+        ("contact.patches[0].initial.load=70 MPa", "no node is loaded to its strength before the run ends: nothing will slip"),
+        ("contact.replicas=true", "the contact repeats itself every 40 km, and waves of its replicas arrive"),
+        ("run.duration=3 s", "the run ends before the first echo returns at R = 5.71429 s"),
+        ("body.normal_stress=1 Pa", "the normal stress is 1 Pa"),
+    ],
+)
+def test_check_asks_about_numbers(command: Command, change: str, warning: str) -> None:
+    assert warning in " ".join(command("check", "planar-patch", "--set", change).out.split())
+
+
+@pytest.mark.parametrize("name", [name for name in COMMANDS if name not in WITHOUT_SCENARIO | WITH_CONTACT])
+def test_what_is_for_one_place_is_refused_in_one_line(command: Command, name: str) -> None:
+    shown = command(name, *IN_1D[name])
+    assert shown.code == 2
+    assert shown.err.startswith(
+        f"stickslip: {name}: planar-patch has a [contact] of many nodes (2D or 3D), which only `stickslip run`"
+    )
+    assert shown.err.count("\n") == 1
+    assert not shown.out
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--path", "a.png"), "run: a [contact] of many nodes has --figure and --animation: leave out --path"),
+        (("--catalogue-figure", "a.png"), "leave out --catalogue-figure"),
+        (("--space-time", "a.png", "--energy-figure", "b.png"), "leave out --energy-figure, --space-time"),
+        (("--rtol", "1e-8"), "run: --rtol has no effect with a [contact], whose nodes and courant set the accuracy: leave it out"),
+        (("--creep-rtol", "1e-8"), "run: --creep-rtol"),
+        (("--shortest-event", "1 s"), "run: --shortest-event"),
+        (("--events", "3"), "run: --events has no effect"),
+        (("--selection", "maxwell"), "run: --selection has no effect"),
+        (("--max-pieces", "3"), "run: --max-pieces has no effect"),
+        (("--catalogue", "a.csv"), "run: --catalogue has no effect"),
+        (("--energy",), "run: --energy belongs to --catalogue FILE"),
+        (("--out", "a.nc"), "--out a.nc: the name must end in .zarr"),
+        (("--set", "contact.nodes=33"), "[contact] nodes must be an even whole number, at least 8, got 33"),
+        (("--set", "contact.nodes=many"), "contact.nodes must be a number, got 'many'"),
+        (("--set", "contact.node=3"), "did you mean 'contact.nodes'?"),
+        (("--set", "contact.replicas=perhaps"), "contact.replicas 'perhaps' is unknown"),
+        (("--set", "patches[7].taper=3"), "'patches[7].taper' is not a parameter of this scenario"),
+        (("--duration", "3 km"), "'km' does not convert to s"),
+        (("--duration", "10 days"), "864000 s without replicas need 19360000 nodes"),
+    ],
+)
+def test_options_that_it_does_not_have_are_refused_in_one_line(command: Command, options: tuple[str, ...], said: str) -> None:
+    shown = command("run", "planar-patch", *options)
+    assert (shown.code, shown.out) == (2, "")
+    assert said in shown.err
+    assert shown.err.count("\n") == 1
+
+
+def test_check_refuses_figures_of_a_single_place(command: Command) -> None:
+    shown = command("check", "planar-patch", "--figure", "a.png")
+    assert shown.code == 2
+    assert "leave them out with a [contact]" in shown.err
+
+
+def test_an_interrupted_run_ends_with_its_code(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    class Interrupted:
+        noted = True
+
+        def __enter__(self) -> Interrupted:
+            return self
+
+        def __exit__(self, *_: object) -> None:
+            pass
+
+    monkeypatch.setattr("stickslip.run.planar_run.Interrupts", Interrupted)
+    shown = command("run", *SMALL)
+    assert (shown.code, shown.err) == (130, "stickslip: interrupted\n")
+    assert "interrupted" in shown.out
+
+
+def test_a_missing_library_is_named(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(__import__("sys").modules, "stickslip.planar.solver", None)
+    shown = command("run", *SMALL)
+    assert shown.code == 2
+    assert "pip install 'stickslip[planar]'" in shown.err
+
+
+def test_the_shell_completes_the_numbers_of_a_contact() -> None:
+    assert complete_scenario("planar") == ["planar-patch", "planar-plane"]
+    context = Context.__new__(Context)
+    context.params, context.args = {"scenario": "planar-patch"}, []
+    assert {"contact.nodes=", "contact.patches[0].initial.load="} <= set(complete_vary(context, "contact."))
