@@ -189,11 +189,11 @@ def solve(request: Request) -> tuple[Scenario, Solution]:
             from stickslip.run.simulate import simulate  # imports the compiler, which takes a second
 
             return chosen, simulate(chosen, progress=report, **keep)
-    from stickslip.io.netcdf import open_solution
+    from stickslip.io.netcdf import read_solution
     from stickslip.run.options import RunOptions
     from stickslip.run.resume import resume_run
 
-    stopped = open_solution(request.resume)
+    stopped = read_solution(request.resume)
     check_same(request, stopped.problem)
     with _watched(request, stopped.problem, request.resume.stem) as report:
         others = {"progress": report, "checkpoint": request.out or request.resume, "max_pieces": request.max_pieces}

@@ -217,6 +217,10 @@ class PlanarSlab(CheckedArguments):
         waves = 2.0 * self.body.thickness / (self.courant * min(self.spacing))
         return math.ceil(max(waves, self.body.two_way_time * steep / (STEEPEST * self.body.impedance)) - 1e-9)
 
+    def round_trips(self, duration: float) -> int:
+        """Return the number of round trips that a run of this duration (s) begins."""
+        return max(1, math.ceil(duration / self.body.two_way_time - 1e-9))
+
     def alone_for(self, duration: float) -> tuple[PlanarSlab, tuple[slice, ...]]:
         """Return a periodic slab that holds this contact so far from its replicas that no wave of them arrives in time.
 

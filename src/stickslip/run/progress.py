@@ -52,20 +52,27 @@ class Report(NamedTuple):
     left: float
 
     def __str__(self) -> str:
-        length, unit = in_unit(self.duration)
         wanted = f" of {self.max_events}" if self.max_events else ""
         parts = [
-            f"{number(self.time / length, 6)} of {number(self.duration / length, 6)} {unit}",
+            how_far(self.time, self.duration),
             f"{self.events}{wanted} slip event{'' if self.events == 1 and not wanted else 's'}",
             self.doing,
         ]
         if self.pieces >= LONG_RUN:
             parts.append(f"{number(self.pieces / 1e6, 3)} million pieces")
-        if self.pace > 0.0:
-            parts.append(f"{about_time(self.pace)} a second")
-        if 1.0 <= self.left < math.inf:
-            parts.append(f"{about_time(self.left)} left")
-        return ", ".join(parts)
+        return ", ".join(parts + how_fast(self.pace, self.left))
+
+
+def how_far(time: float, duration: float) -> str:
+    """Return in words how far a run has come: both in s."""
+    length, unit = in_unit(duration)
+    return f"{number(time / length, 6)} of {number(duration / length, 6)} {unit}"
+
+
+def how_fast(pace: float, left: float) -> list[str]:
+    """Return in words the simulated time per wall-clock time, and the wall-clock time left (s), as far as they are known."""
+    parts = [f"{about_time(pace)} a second"] if pace > 0.0 else []
+    return [*parts, f"{about_time(left)} left"] if 1.0 <= left < math.inf else parts
 
 
 Progress = Callable[[Report], object]
@@ -73,20 +80,35 @@ Progress = Callable[[Report], object]
 
 
 @dataclass
-class Reporter:
-    """Make reports on a run and pass them to a callback.
+class Pace:
+    """Measure how fast a run goes.
 
-    `started` is the wall-clock time (s) at which the run was started or resumed; `from_share` and `from_time` (s) are the share
-    of the run that was done, and the simulated time, at the first report.
+    `started` is the wall-clock time (s) at which the run was started or resumed; `first` is the simulated time (s), and the share
+    of the run that was done, at the first report.
     """
+
+    started: float = field(default_factory=time.monotonic)
+    first: tuple[float, float] | None = None
+
+    def at(self, now: float, share: float) -> tuple[float, float]:
+        """Return the pace and the wall-clock time left (s; see `Report`) at a simulated time (s), with a share of the run done."""
+        if self.first is None:
+            self.first = now, share
+        from_time, from_share = self.first
+        took, done = time.monotonic() - self.started, share - from_share
+        pace = (now - from_time) / took if took > 0 else float("nan")
+        return pace, took * (1.0 - share) / done if done > 0 else float("nan")
+
+
+@dataclass
+class Reporter:
+    """Make reports on a run and pass them to a callback."""
 
     tell: Progress
     duration: float
     max_events: int | None
     event_rate: float
-    started: float = field(default_factory=time.monotonic)
-    from_share: float | None = None
-    from_time: float = 0.0
+    pace: Pace = field(default_factory=Pace)
 
     @classmethod
     def of(cls, options: RunOptions, event_rate: float) -> Self | None:
@@ -98,10 +120,6 @@ class Reporter:
         """Call the callback with the progress of the run."""
         now = min(run.time, self.duration)
         share = max(now / self.duration, events / self.max_events if self.max_events else 0.0)
-        if self.from_share is None:
-            self.from_share, self.from_time = share, now
-        took, done = time.monotonic() - self.started, share - self.from_share
-        pace = (now - self.from_time) / took if took > 0 else float("nan")
-        left = took * (1.0 - share) / done if done > 0 else float("nan")
         doing: Doing = "stuck" if run.fastest == 0.0 else "slipping" if run.fastest > self.event_rate else "creeping"
-        self.tell(Report(now, self.duration, events, self.max_events, run.forgotten + run.length, doing, pace, left))
+        pieces = run.forgotten + run.length
+        self.tell(Report(now, self.duration, events, self.max_events, pieces, doing, *self.pace.at(now, share)))

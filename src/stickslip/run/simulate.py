@@ -33,6 +33,8 @@ def simulate(
     *,
     frames: int | None = None,
     progress: PlanarProgress | bool | None = None,
+    checkpoint: str | Path | None = None,
+    checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
 ) -> PlanarSolution: ...
 
 
@@ -75,7 +77,7 @@ def simulate(
     problem : Problem, Scenario, PlanarSlab, str or Path
         The problem itself, a scenario, the name of a bundled scenario (`stickslip.scenarios` lists them), or a scenario file.
         Options that you leave out come from the scenario. A `PlanarSlab` and a scenario with a contact of many nodes take
-        `duration`, `frames` and `progress` only.
+        `duration`, `frames`, `progress`, `checkpoint` and `checkpoint_every` only.
     duration : float or str
         Latest end of the run: a number in s, or a text with a unit such as "480 years". A scenario has one; a problem has none.
         Other times may be given as texts, too, and as quantities of the library pint.
@@ -96,7 +98,7 @@ def simulate(
         `stickslip.run.progress.Report` while the run continues.
     checkpoint : str or Path, optional
         File (.nc) from which `stickslip.resume` can continue the run, even after it has been killed. At the end it holds the
-        solution.
+        solution. For a `PlanarSlab` a folder (NAME.zarr) that does not exist yet, to which all frames are written.
     checkpoint_every : float or str
         Interval between two checkpoints, s of wall clock.
     max_pieces : int, optional
@@ -143,11 +145,12 @@ def simulate(
                 "creep_rtol": creep_rtol,
                 "shortest_event": shortest_event,
                 "max_events": max_events,
+                "max_pieces": max_pieces,
             }
-            others |= {"checkpoint": checkpoint, "max_pieces": max_pieces}
             if needless := [name for name, value in others.items() if value is not None]:
                 raise InputError(f"simulate: a PlanarSlab has no {needless[0]}: its nodes and its courant set the accuracy")
-            return simulate_planar(found, duration, frames=frames, progress=report)
+            keep: dict[str, Any] = {"checkpoint": checkpoint, "checkpoint_every": checkpoint_every}
+            return simulate_planar(found, duration, frames=frames, progress=report, **keep)
         if frames is not None:
             raise InputError("simulate: frames is for a PlanarSlab: a slab in 1D is known at all times")
         given, options = problem_and_options(

@@ -40,9 +40,9 @@ ARRAYS = tuple(field.name for field in fields(Checkpoint) if field.name != "engi
 
 
 @cache
-def engine() -> str:
+def engine(folders: tuple[str, ...] = DECIDE) -> str:
     """Return a hash of the code that decides the result of a run; a run that continues with other code may differ in its digits."""
     package, digest = Path(__file__).parents[1], hashlib.sha256(SOURCES.encode())
-    for path in sorted(path for folder in DECIDE for path in (package / folder).rglob("*.py")):
+    for path in sorted(path for folder in folders for path in (package / folder).rglob("*.py")):
         digest.update(path.read_bytes())
     return digest.hexdigest()[:16]

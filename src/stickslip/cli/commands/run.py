@@ -121,9 +121,7 @@ def run(
         run = solve_contact(request)
         show_run(run)
         announce(out or resume, *drawn.draw_contact(run))
-        if run.status == "interrupted":
-            raise KeyboardInterrupt
-        return
+        _leave(run.status)
     if request.keeps_events_only:
         chosen, found = list_events(request)
         show_catalogue(chosen, found)
