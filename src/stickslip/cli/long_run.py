@@ -16,8 +16,7 @@ from stickslip.cli.output.files import CATALOGUES, Target, check_targets, file_s
 from stickslip.cli.overrides import load_with, read
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import number
-from stickslip.run.progress import LONG_RUN
-from stickslip.run.progress_line import progress_line
+from stickslip.run.progress import LONG_RUN, progress_line
 from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.schema import check_events, read_duration
 

@@ -28,10 +28,9 @@ from stickslip.scenarios import Scenario, read_scenario
 from stickslip.solution.evaluation import Curve, Readings
 from stickslip.solution.solution import Solution
 from stickslip.solution.window import Window
-from stickslip.trajectory.checkpoint import ARRAYS, Checkpoint
 from stickslip.trajectory.history import NO_LEAPS, History
 from stickslip.trajectory.slip_events import SlipEvents, default_event_rate
-from stickslip.trajectory.status import ENOUGH_EVENTS, STATUSES, Status
+from stickslip.trajectory.status import ARRAYS, ENOUGH_EVENTS, STATUSES, Checkpoint, Status
 from stickslip.trajectory.tables import SHOCK_COLUMNS, rule_in_force, shock_columns
 
 if TYPE_CHECKING:

@@ -35,8 +35,7 @@ from stickslip.planar.slab import PlanarSlab
 from stickslip.scenarios.contact import GRID, Contact
 from stickslip.scenarios.scenario import LARGEST_TEXT, Scenario, read_scenario
 from stickslip.solution.planar import FIELDS, Frames, PlanarSolution
-from stickslip.trajectory.checkpoint import engine
-from stickslip.trajectory.status import STATUSES, UNDER_WAY, Status
+from stickslip.trajectory.status import STATUSES, UNDER_WAY, Status, engine
 
 if TYPE_CHECKING:
     from stickslip.planar.solver import Motion, PlanarSolver

@@ -18,13 +18,12 @@ from stickslip.run.catalogue import Catalogue, alone_with, checkpoint_of, follow
 from stickslip.run.monitor import run_to_end
 from stickslip.run.options import CHECKPOINT_EVERY, RunOptions
 from stickslip.run.planar_run import PlanarProgress, resume_planar
-from stickslip.run.progress import Progress
-from stickslip.run.progress_line import told
+from stickslip.run.progress import Progress, told
 from stickslip.run.session import Session
 from stickslip.run.simulate import WholeHistory
 from stickslip.solution.planar import PlanarSolution
 from stickslip.solution.solution import Solution
-from stickslip.trajectory.checkpoint import engine
+from stickslip.trajectory.status import engine
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -13,8 +13,7 @@ from stickslip.problem.problem import Problem
 from stickslip.run.monitor import run_to_end
 from stickslip.run.options import CHECKPOINT_EVERY, problem_and_options
 from stickslip.run.planar_run import PlanarProgress, simulate_planar
-from stickslip.run.progress import Progress
-from stickslip.run.progress_line import told
+from stickslip.run.progress import Progress, told
 from stickslip.run.session import Session
 from stickslip.run.solver import Events, NewEvents, Solver
 from stickslip.scenarios.source import read_source

@@ -27,7 +27,7 @@ from stickslip.io.netcdf import LONG_NAMES, PAPER
 from stickslip.sweeps.design.design import GRID, IN_WORDS
 from stickslip.sweeps.execution.chunk import MEANINGS, NOT_RUN, PREFIX, TIME
 from stickslip.sweeps.execution.plan import Plan
-from stickslip.trajectory.checkpoint import engine
+from stickslip.trajectory.status import engine
 
 FORMAT = 1
 """Version of the layout, stored in the attribute `stickslip_sweep`."""
