@@ -25,6 +25,7 @@ from stickslip.paper.planar import (
     table,
     weakening,
 )
+from stickslip.reference.planar import LawAtNodes, PlanarCase, Volume
 
 TRIP = 40.0 / 7.0
 PAGE = Path(__file__).parents[2] / "docs" / "fault-in-2d-and-3d.md"
@@ -88,6 +89,23 @@ def test_a_stored_row_is_what_the_run_gives() -> None:
     rate = middle_rate(run)
     assert peaks(run.times, rate) == pytest.approx(wanted[wanted < 2.0 * TRIP], abs=0.02)
     assert pulses_of(rate) == np.sum(wanted < 2.0 * TRIP)
+
+
+def test_the_volume_method_sees_the_pulses_after_the_echo_too() -> None:
+    """L = 2 h in 2D, on the grid of the run and on its own in the slab: five pulses, at the stored times to 0.03 s."""
+    fault = Fault(pulsing(LARGE), 2.0)
+    large, _ = fault.slab.alone_for(2.0 * TRIP)
+    body, values, middle = large.body, large.values, large.shape[0] // 2
+    friction = LawAtNodes(fault.problem.friction, values.normal, values.law_slip)
+    case = PlanarCase(body.density, body.wave_speed, body.thickness, large.extent, values.load, friction, locked=large.locked)
+    run, rates = Volume(case, 340, 2.0 * TRIP), []
+    while run.time < 2.0 * TRIP:
+        run.advance()
+        rates.append((run.time - 0.5 * run.step_of_time, run.slip_rate[middle]))
+    row = next(row for row in stored() if (row["law"], row["excess"], row["L/h"], row["nodes"]) == ("slip", "0.1", "2", "422"))
+    wanted = np.array(row["peaks [s]"].split(), float)
+    assert len(wanted[wanted < 2.0 * TRIP]) == 5
+    assert peaks(*np.transpose(rates)) == pytest.approx(wanted[wanted < 2.0 * TRIP], abs=0.03)
 
 
 def test_without_the_library_the_chapter_shows_the_stored_run_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
