@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.contact.along_slip import regimes_along_slip, slip_reach
-from stickslip.contact.regime_map import Axis, regime_map
+from stickslip.contact.regime_map import Axis, regime_map, regimes_along_slip, slip_reach
 
 from .laws import S, Z, hyperbolic, slab_problem
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.explorer.model.measured import Backdrop
+from stickslip.explorer.model.answer import Backdrop
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.solve import solve
 from stickslip.explorer.page.panels import view_of

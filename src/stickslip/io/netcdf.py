@@ -28,14 +28,15 @@ from stickslip.scenarios import Scenario, read_scenario
 from stickslip.solution.evaluation import Curve, Readings
 from stickslip.solution.solution import Solution
 from stickslip.solution.window import Window
-from stickslip.trajectory.checkpoint import ARRAYS, Checkpoint
 from stickslip.trajectory.history import NO_LEAPS, History
 from stickslip.trajectory.slip_events import SlipEvents, default_event_rate
-from stickslip.trajectory.status import ENOUGH_EVENTS, STATUSES, Status
+from stickslip.trajectory.status import ARRAYS, ENOUGH_EVENTS, STATUSES, Checkpoint, Status
 from stickslip.trajectory.tables import SHOCK_COLUMNS, rule_in_force, shock_columns
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from stickslip.solution.planar import PlanarSolution
 
 FORMAT = 1
 """Version of the file layout below; a file with another version is refused."""
@@ -289,18 +290,18 @@ def _tables(solution: Solution) -> dict[str, Variable]:
     return variables
 
 
-def open_solution(path: str | Path) -> Solution:
-    """Read a solution from a netCDF file that `Solution.to_netcdf` or a run wrote.
+def open_solution(path: str | Path) -> Solution | PlanarSolution:
+    """Read a solution from a netCDF file that `Solution.to_netcdf` or a run wrote, or from the folder of a `PlanarSlab`'s run.
 
     Parameters
     ----------
     path : str or Path
-        Name of the file.
+        Name of the file or folder.
 
     Returns
     -------
-    Solution
-        The solution, bit for bit as it was.
+    Solution or PlanarSolution
+        The solution, bit for bit as it was. The fields of a `PlanarSolution` are read when they are first used.
 
     Raises
     ------
@@ -309,7 +310,16 @@ def open_solution(path: str | Path) -> Solution:
         its selection rule is not registered.
     """
     file = as_path("open_solution: path", path)
-    return to_solution(read(file), file)
+    if file.is_dir():
+        from stickslip.io.planar_store import open_planar  # with zarr, which takes half a second to load
+
+        return open_planar(file)
+    return read_solution(file)
+
+
+def read_solution(path: Path) -> Solution:
+    """Read a solution from a netCDF file, and raise InputError, as `open_solution` does."""
+    return to_solution(read(path), path)
 
 
 def read(path: Path, kind: str = "stickslip_format") -> xr.Dataset:

@@ -14,10 +14,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.foundation.arguments import CheckedArguments
-from stickslip.foundation.brief_repr import brief_repr
+from stickslip.foundation.brief_repr import brief_repr, document_fields
 from stickslip.foundation.conversion import unit_among
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.field_docs import document_fields
 from stickslip.foundation.quantities import Quantity, Series, check_fields, fields_of
 
 VARYING = "m/s or Pa"

@@ -52,6 +52,11 @@ def exponentials(longest: float, points: int = POINTS) -> Exponentials:
     return Exponentials(poles, -2.0 / math.pi * weights * root * poles)
 
 
+def horizon(round_trips: int) -> int:
+    """Return the number of round trips for which a run makes its exponentials: up to there it can be prolonged."""
+    return 1 << (round_trips - 1).bit_length()
+
+
 class Recurrence(NamedTuple):
     """How the memory of each wavenumber is advanced by one step: a row for each exponential, then the axes of wavenumbers.
 

@@ -19,7 +19,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief, html_table
 from stickslip.foundation.quantities import Quantity, check_fields, quantities_of, quantity
 from stickslip.friction import FrictionLaw
-from stickslip.friction.custom.any_law import as_law
+from stickslip.friction.custom.from_function import as_law
 from stickslip.loading import LoadingHistory
 from stickslip.loading.contract import SILENT, VARYING
 from stickslip.problem.parameters import Parameters

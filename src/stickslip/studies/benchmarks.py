@@ -21,7 +21,7 @@ from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.netcdf_file import write
 from stickslip.friction import HyperbolicRate, LinearSlipWeakening, SinusoidalSlip
-from stickslip.friction.laws.coulomb import Coulomb
+from stickslip.friction.laws.of_rate import Coulomb
 from stickslip.io.series import read_series
 from stickslip.problem.problem import Problem
 from stickslip.run.simulate import simulate

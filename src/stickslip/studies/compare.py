@@ -13,7 +13,7 @@ import pandas as pd
 import stickslip
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
-from stickslip.io.netcdf import PAPER, open_solution
+from stickslip.io.netcdf import PAPER, read_solution
 from stickslip.observables.energy.energetics import extreme_tractions
 from stickslip.observables.energy.pulses import Pulses
 from stickslip.problem.run_quantities import DURATION, check_rtol
@@ -71,7 +71,7 @@ def read_source(
     if isinstance(source, Solution):
         return Source("run", lambda _: source)
     if Path(str(source)).suffix == ".nc":
-        solution = open_solution(str(source))
+        solution = read_solution(Path(str(source)))
         return Source(Path(str(source)).stem, lambda _: solution)
     scenario = all_slips_alike(who, source if isinstance(source, Scenario) else load_scenario(source))
     changed = replace(scenario, duration=duration or scenario.duration, rtol=rtol or scenario.rtol)

@@ -28,10 +28,10 @@ from stickslip.schemes.registry import scheme_of
 from stickslip.schemes.run import check_runs, check_suitable, run_scheme
 from stickslip.schemes.series import Series
 from stickslip.solution.solution import Solution
-from stickslip.studies.rule_followed import NONE, UNTOLD, RulePaths, exact_runs
 from stickslip.studies.scheme_measures import COLUMNS, Measured
 from stickslip.studies.scheme_shocks import SHOCK_COLUMNS, check_length, check_units
 from stickslip.studies.study import Study, TextProgress, telling
+from stickslip.studies.verdict import NONE, UNTOLD, RulePaths, exact_runs
 
 if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.constants import YEAR
-from stickslip.run.progress_line import told
+from stickslip.run.progress import told
 from stickslip.solution.accessors import figure_of_study, known_to_pyplot
 from stickslip.solution.solution import Solution
 
