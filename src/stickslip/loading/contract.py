@@ -24,16 +24,9 @@ VARYING = "m/s or Pa"
 
 
 class Segment(NamedTuple):
-    """A straight part of a history, which lasts until the next segment or for ever.
+    """A straight part of a history from a time `start` (s) on: a value there (m/s or Pa), and its change per second.
 
-    Parameters
-    ----------
-    start
-        Time at which the segment begins (s since the start of the run).
-    value
-        Value at `start` (m/s or Pa).
-    slope
-        Change of the value per second (m/s^2 or Pa/s).
+    It lasts until the next segment or for ever.
     """
 
     start: float
@@ -46,17 +39,7 @@ class Segment(NamedTuple):
 
 
 class Tone(NamedTuple):
-    """A sinusoid amplitude sin(frequency t + phase) that is added to the segments.
-
-    Parameters
-    ----------
-    amplitude
-        Amplitude (m/s or Pa).
-    frequency
-        Angular frequency (rad/s), positive.
-    phase
-        Phase at the start of the run (rad).
-    """
+    """A sinusoid amplitude (m/s or Pa) sin(frequency t + phase), of an angular frequency (rad/s) > 0, beside the segments."""
 
     amplitude: float
     frequency: float

@@ -12,29 +12,11 @@ from stickslip.foundation.errors import InputError
 
 @dataclass(frozen=True, eq=False)
 class Series:
-    """A series at the contact; every array has the shape of `time`.
+    """A series at the contact: slip since t = 0 (m), slip rate (m/s) and traction (Pa) at ascending times (s).
 
-    Parameters
-    ----------
-    time
-        Times (s), ascending.
-    slip
-        Slip since t = 0, m.
-    rate
-        Slip rate, m/s.
-    traction
-        Traction at the contact, Pa.
-    name
-        Name of the scheme or program.
-    cells
-        Number of cells in the thickness; 0 if unknown.
-    energies
-        A row of `Energies` (J/m^2) for each time; None if they are unknown.
-
-    Raises
-    ------
-    InputError
-        If there are fewer than three times, if they do not ascend, or if shapes differ or a number is not finite.
+    `name` is that of the scheme or program, and `cells` the number of cells in the thickness, 0 if unknown. `energies` has a row of
+    `Energies` (J/m^2) for each time, or is None. Raises InputError if there are fewer than three times, if they do not ascend, or
+    if shapes differ or a number is not finite.
     """
 
     time: Floats

@@ -34,20 +34,10 @@ WANTED = (*ALONG, "friction", *STRESSES)
 
 @dataclass(frozen=True, eq=False)
 class Points:
-    """Measured friction coefficients, with the slip or the slip rate of each point, or both.
+    """Measured friction coefficients (no unit), with the slip (m) or the slip rate (m/s, not negative) of each point, or both.
 
-    Make one with `Points.read`. Points may be in any order and may repeat a slip or a slip rate.
-
-    Parameters
-    ----------
-    friction
-        Friction coefficients (no unit), shape (n,).
-    slip
-        Slips of the points (m), shape (n,), or None.
-    slip_rate
-        Slip rates of the points (m/s), shape (n,), not negative, or None.
-    name
-        Name for messages and figures.
+    Make one with `Points.read`. Points may be in any order and may repeat a slip or a slip rate. `name` is for messages and
+    figures.
     """
 
     friction: Floats
