@@ -109,9 +109,9 @@ class Readings:
         return np.asarray(seen[number]).reshape(shape)
 
     def field(self, x: ArrayLike, t: ArrayLike, side: Side = "right") -> Field:
-        """Return displacement (m), velocity (m/s) and shear stress (Pa) in the slab, at distances from the contact (m) and times (s).
+        """Return displacement (m), velocity (m/s) and shear stress (Pa) in the slab, at distances from the contact and times.
 
-        `x` and `t` are broadcast together: `field(x, t[:, None])` has one row per time. `side` is the limit in time to take at a
+        `x` (m) and `t` (s) are broadcast together: `field(x, t[:, None])` has one row per time. `side` is the limit in time to take at a
         wave front. Raises InputError for a block, and for `x` outside the slab. See also `stickslip.observables.field`.
         """
         from stickslip.observables.field import field
