@@ -111,8 +111,8 @@ class Readings:
     def field(self, x: ArrayLike, t: ArrayLike, side: Side = "right") -> Field:
         """Return displacement (m), velocity (m/s) and shear stress (Pa) in the slab, at distances from the contact and times.
 
-        `x` (m) and `t` (s) are broadcast together: `field(x, t[:, None])` has one row per time. `side` is the limit in time to take at a
-        wave front. Raises InputError for a block, and for `x` outside the slab. See also `stickslip.observables.field`.
+        `x` (m) and `t` (s) are broadcast together: `field(x, t[:, None])` has one row per time. `side` is the limit in time to take
+        at a wave front. Raises InputError for a block, and for `x` outside the slab. See also `stickslip.observables.field`.
         """
         from stickslip.observables.field import field
 
