@@ -82,7 +82,6 @@ class LoadingHistory(CheckedArguments, ABC):
         check_fields(self, units={VARYING: self.unit})
 
     def _varying(self) -> Iterator[Any]:
-        """Yield the values as they were given, those of a series one by one."""
         for name, (declared, _) in fields_of(type(self)).items():
             item, value = declared.item if isinstance(declared, Series) else declared, getattr(self, name)
             if isinstance(item, Quantity) and item.unit == VARYING:

@@ -251,7 +251,6 @@ class EventRows:
             self.told = Told(self.rows.size, replace(stream))
 
     def _about(self, run: Session, told: Told, rows: Rows) -> dict[str, Any]:
-        """Return the attributes of the checkpoint."""
         stream = told.stream
         return {
             CATALOGUE: FORMAT,

@@ -183,7 +183,6 @@ def _written(value: Any) -> str:
 
 
 def _read(text: str) -> Any:
-    """Return the entry that was written as a text."""
     if text[:1] in ("[", '"', "{") or text in ("true", "false", "null"):
         try:
             return json.loads(text)

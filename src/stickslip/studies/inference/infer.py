@@ -234,7 +234,6 @@ def _records(source: Any, begin: float | None, end: float | None) -> list[Record
 
 
 def _model(problem: Problem, parts: list[Part], names: Sequence[str] | str, wishes: Wishes) -> Model:
-    """Return the model that is fitted. Raises InputError if there is too little to fit it to."""
     chosen = read_free(
         problem, names, hints_of(problem, parts[0]), bounds=wishes.bounds, priors=wishes.priors, start=wishes.begin_at
     )

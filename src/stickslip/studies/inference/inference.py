@@ -33,7 +33,6 @@ from stickslip.studies.study import Study
 
 
 def _near(value: float, uncertainty: float) -> str:
-    """Return a number with the digits that its uncertainty leaves."""
     size = abs(value) / uncertainty if 0.0 < uncertainty < math.inf else 1.0
     return f"{value:.{min(max(2 + math.ceil(math.log10(max(size, 1e-3))), 3), 12)}g}"
 
