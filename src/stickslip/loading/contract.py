@@ -13,8 +13,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.foundation.arguments import CheckedArguments
-from stickslip.foundation.brief_repr import brief_repr, document_fields
+from stickslip.foundation.brief_repr import Declared, brief_repr
 from stickslip.foundation.conversion import unit_among
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, Series, check_fields, fields_of
@@ -50,7 +49,7 @@ SILENT = Tone(0.0, 1.0, 0.0)
 """The tone of a history without oscillation; its frequency of 1 rad/s has no effect, but a frequency must be positive."""
 
 
-class LoadingHistory(CheckedArguments, ABC):
+class LoadingHistory(Declared, ABC):
     """A pull rate (m/s) or far stress (Pa) as a function of time (s) since the start of the run.
 
     Before the start of the run the value is the one at the start. A run meets the breaking points of the history exactly.
@@ -64,14 +63,6 @@ class LoadingHistory(CheckedArguments, ABC):
     """Name of the history in scenario files and in HISTORIES."""
     example: ClassVar[dict[str, Any]]
     """Plausible values of the fields, in the form of a scenario file."""
-    source: ClassVar[str] = ""
-    """Paper from which the history is taken, if there is one."""
-
-    def __init_subclass__(cls, **options: Any) -> None:
-        super().__init_subclass__(**options)
-        document_fields(cls, vars(cls).get("source", ""))
-        if "__repr__" not in vars(cls):  # the decorator `dataclass` keeps one that the class itself has
-            cls.__repr__ = LoadingHistory.__repr__  # type: ignore[method-assign]
 
     unit: str = VARYING
     """Unit of the values, "m/s" or "Pa", if they were given with one; plain numbers fit both."""
