@@ -35,12 +35,11 @@ _CANDIDATES = 50
 
 @dataclass(frozen=True)
 class RuleInfluence:
-    """Decisions of the selection rule in a run.
+    """Decisions of the selection rule in a run, in a `regime` of the contact.
 
-    `regime` is the regime of the contact. `shocks` says for each row of `solution.shocks` whether the rule decided it: the load was
-    between the folds before or after the shock, or the load reached a fold by itself (cause "fold"). `since` is the first time (s)
-    at which the load lay between the folds, or None. `folds_move` is True for a law whose folds move with slip; then `shocks` is
-    empty and `since` is None.
+    `shocks` says for each row of `solution.shocks` whether the rule decided it: the load was between the folds before or after the
+    shock, or the load reached a fold by itself (cause "fold"). `since` is the first time (s) at which the load lay between the
+    folds, or None. `folds_move` is True for a law whose folds move with slip; then `shocks` is empty and `since` is None.
     """
 
     rule: str
