@@ -128,11 +128,6 @@ def analogy(
         True shows the progress in one line, on a terminal or in a notebook. A function is called with a line of text after each
         point.
 
-    Returns
-    -------
-    Analogy
-        The events at all points, and their ratios.
-
     Raises
     ------
     InputError

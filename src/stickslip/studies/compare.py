@@ -150,11 +150,6 @@ def compare(
         True shows the progress in one line, on a terminal or in a notebook. A function is called with the name of each run as it
         begins.
 
-    Returns
-    -------
-    Comparison
-        The runs, with their table and figure.
-
     Raises
     ------
     InputError

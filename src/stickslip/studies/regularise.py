@@ -225,11 +225,6 @@ def regularise(
     max_pieces : int
         Largest number of pieces of history of one run. A run that needs more ends early, and all runs are compared up to that time.
 
-    Returns
-    -------
-    Regularisation
-        The runs, their differences, and the rule to which they converge.
-
     Raises
     ------
     InputError

@@ -97,11 +97,6 @@ def fit(points: Any, law: Any, *, start: Mapping[str, Any] | None = None, fixed:
     fixed : mapping, optional
         Values of known parameters, which are not fitted.
 
-    Returns
-    -------
-    Fit
-        The law, the parameters with their standard uncertainties, the residual, and what was noticed.
-
     Raises
     ------
     InputError

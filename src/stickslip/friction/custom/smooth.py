@@ -159,11 +159,6 @@ def smooth(
         Scale along which the curve is smooth: slip or slip rate x itself, or ln(1 + x / smallest x above 0). By default the scale
         on which the curve predicts left-out points better.
 
-    Returns
-    -------
-    Smooth
-        The law, the residual, and what was noticed.
-
     Raises
     ------
     InputError

@@ -73,11 +73,6 @@ class Record:
         begin, end : float, optional
             Times (s, as in the record) between which the record is taken.
 
-        Returns
-        -------
-        Record
-            The record in SI, sorted by time.
-
         Raises
         ------
         InputError
