@@ -98,6 +98,10 @@ class Request:
         """Refuse files that could not be written, and options that exclude each other. Raises InputError."""
         if self.scenario is None and self.resume is None:
             raise InputError("run: nothing to run: give a SCENARIO, or --resume FILE")
+        if self.has_contact and self.out is not None and self.out.exists():
+            raise InputError(
+                f"--out {self.out}: exists: --resume {self.out} continues the run in it; choose another name, or remove it"
+            )
         results = Target("--out", self.out, (".zarr",) if self.has_contact else (".nc",))
         check_targets(results, Target("--catalogue", self.catalogue, CATALOGUES), *self.pictures.targets())
         self.pictures.check()
@@ -169,13 +173,32 @@ class Request:
 
 def solve_contact(request: Request) -> PlanarSolution:
     """Run with a contact of many nodes, and say before the start how large the run is. Raises InputError."""
+    if request.resume is not None:
+        return _resume_contact(request, request.resume)
     chosen = request.chosen
     announce_run(chosen)
     with progress_line(f"{chosen.name}:") as report:
-        from stickslip.run.simulate import simulate
+        from stickslip.run.planar_run import simulate_planar
 
         assert chosen.contact is not None
-        return simulate(chosen.planar_slab, chosen.duration, frames=chosen.contact.frames, progress=report)
+        keep: dict[str, Any] = {"checkpoint": request.out, "scenario": chosen}
+        return simulate_planar(chosen.planar_slab, chosen.duration, frames=chosen.contact.frames, progress=report, **keep)
+
+
+def _resume_contact(request: Request, folder: Path) -> PlanarSolution:
+    from stickslip.io.planar_store import open_planar, scenario_in
+    from stickslip.run.planar_run import resume_planar
+    from stickslip.scenarios.contact import Contact
+
+    if request.out is not None:
+        raise InputError(f"run: --resume {folder} continues in its own folder: leave out --out")
+    stopped, began = open_planar(folder), scenario_in(folder)
+    check_same(request, stopped.slab.problem)
+    if request.scenario is not None and Contact.of(request.chosen.planar_slab) != Contact.of(stopped.slab):
+        raise InputError(f"{folder}: is a run of another problem than {request.scenario}: its [contact] differs")
+    announce_run(began if request.duration is None else replace(began, duration=request.duration))
+    with progress_line(f"{folder.stem}:") as report:
+        return resume_planar(folder, request.duration, progress=report)
 
 
 def solve(request: Request) -> tuple[Scenario, Solution]:

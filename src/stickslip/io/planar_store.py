@@ -13,7 +13,7 @@ import json
 import math
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Self
@@ -26,13 +26,14 @@ from zarr.storage import MemoryStore
 
 import stickslip
 from stickslip.foundation import netcdf_file, zarr_folder
-from stickslip.foundation.atomic_write import held, sync, write_atomically
+from stickslip.foundation.atomic_write import held, read_bounded, sync, write_atomically
 from stickslip.foundation.errors import InputError, printable
 from stickslip.foundation.netcdf_file import Variable
 from stickslip.io.netcdf import PAPER
 from stickslip.io.soundness import number, whole_number
 from stickslip.planar.slab import PlanarSlab
-from stickslip.scenarios.scenario import Scenario, read_scenario
+from stickslip.scenarios.contact import GRID, Contact
+from stickslip.scenarios.scenario import LARGEST_TEXT, Scenario, read_scenario
 from stickslip.solution.planar import FIELDS, Frames, PlanarSolution
 from stickslip.trajectory.status import STATUSES, UNDER_WAY, Status, engine
 
@@ -79,15 +80,15 @@ class PlanarStore(Frames):
 
     @classmethod
     @contextmanager
-    def new(cls, path: Path, slab: PlanarSlab, duration: float, frames: int, run: PlanarSolver) -> Iterator[Self]:
+    def new(cls, path: Path, slab: PlanarSlab, scenario: Scenario, frames: int, run: PlanarSolver) -> Iterator[Self]:
         """Create the folder of a run, locked against other processes. Raises InputError if the name exists."""
         if path.exists():
             raise InputError(f"{path}: exists: stickslip.resume continues the run in it; choose another name, or remove it")
-        about = attributes(slab, duration, frames, run)
+        about = attributes(slab, scenario, frames, run)
         with zarr_folder.writing(path, "choose another disk"), held(path, f"{path}: {BUSY}"):
             write_atomically(path, lambda draft: lay_out(draft, slab, about), folder=True)
         with held(path, f"{path}: {BUSY}"):
-            yield cls(slab, run.steps, path=path, duration=duration, frames=frames, digest=about["digest"])
+            yield cls(slab, run.steps, path=path, duration=scenario.duration, frames=frames, digest=about["digest"])
 
     @classmethod
     @contextmanager
@@ -209,24 +210,26 @@ def lay_out(place: Any, slab: PlanarSlab, about: Any) -> None:
     zarr_folder.consolidate(place)
 
 
-def attributes(slab: PlanarSlab, duration: float, frames: int, run: PlanarSolver) -> dict[str, Any]:
+def attributes(slab: PlanarSlab, scenario: Scenario, frames: int, run: PlanarSolver) -> dict[str, Any]:
     """Return the attributes of a new folder. Raises InputError for a problem that files cannot hold."""
-    names = ("nodes", "length", "width", "width_nodes", "replicas", "courant")
+    text = scenario.to_toml()
+    if len(text) > LARGEST_TEXT:  # the profiles are in the folder anyway
+        text = replace(scenario, contact=None).to_toml()
     about: dict[str, Any] = {
         "Conventions": "CF-1.11",
-        "title": f"stickslip run: PlanarSlab, {type(slab.problem.friction).__name__}",
+        "title": scenario.heading or f"stickslip run: PlanarSlab, {type(slab.problem.friction).__name__}",
         "source": f"stickslip {stickslip.__version__}",
         "references": PAPER,
-        "scenario": Scenario(slab.problem, duration).to_toml(),
+        "scenario": text,
         "selection_rule": slab.problem.rule,
-        "grid": {name: getattr(slab, name) for name in names},
+        "grid": {name: getattr(slab, name) for name in GRID},
         "along": list(slab.along),
         "modes": list(run.sent(0).shape[1:]),
         "frames": frames,
         "steps_per_round_trip": run.steps,
         KIND: FORMAT,
     }
-    return about | {"digest": _digest(about), "duration": duration} | _status(STATUSES[UNDER_WAY])
+    return about | {"digest": _digest(about), "duration": scenario.duration} | _status(STATUSES[UNDER_WAY])
 
 
 def _status(status: Status) -> dict[str, Any]:
@@ -304,6 +307,24 @@ def open_planar(path: Path) -> PlanarSolution:
             whole_number(group.attrs, "steps_per_round_trip", path, 1),
         )
         return PlanarSolution(slab, times, StoredFields(path, group, len(times)), steps, status)
+
+
+def scenario_in(path: Path) -> Scenario:
+    """Return the scenario of the run in a folder. Raises InputError as `open_planar` does."""
+    with reading(path):
+        group = opened(path)
+        about: Any = group.attrs
+        found = replace(read_scenario(about["scenario"], str(path), path.stem), duration=about["duration"])
+        contact = found.contact or Contact.of(slab_in(group, path))
+        return replace(found, contact=replace(contact, frames=about["frames"]))
+
+
+def is_planar(path: Path) -> bool:
+    """Return True if a folder says that it holds the run of a planar slab."""
+    try:
+        return KIND in json.loads(read_bounded(path / "zarr.json", LARGEST_TEXT))["attributes"]
+    except (InputError, OSError, ValueError, KeyError, TypeError):
+        return False
 
 
 def opened(path: Path, mode: Literal["r", "r+"] = "r", use_consolidated: bool | None = None) -> zarr.Group:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -19,6 +19,7 @@ from stickslip.problem.run_quantities import CHECKPOINT_INTERVAL, DURATION
 from stickslip.run.options import CHECKPOINT_EVERY
 from stickslip.run.progress import Pace, how_far, how_fast
 from stickslip.run.run_loop import Interrupts, NowAndThen
+from stickslip.scenarios.scenario import Scenario
 from stickslip.solution.planar import Frames, PlanarSolution
 from stickslip.trajectory.status import INTERRUPTED
 
@@ -83,6 +84,7 @@ def simulate_planar(
     progress: PlanarProgress | None = None,
     checkpoint: str | Path | None = None,
     checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
+    scenario: Scenario | None = None,
 ) -> PlanarSolution:
     """Run a planar slab from t = 0.
 
@@ -100,6 +102,8 @@ def simulate_planar(
         Folder (NAME.zarr) to which the frames are written while the run continues, and in which `resume_planar` continues it.
     checkpoint_every
         Interval between two checkpoints, s of wall clock.
+    scenario
+        The scenario of the slab, if it has one, which goes into the folder.
 
     Returns
     -------
@@ -125,7 +129,8 @@ def simulate_planar(
         return follow.to_end(Frames(slab, run.steps), run, here)
     from stickslip.io.planar_store import PlanarStore  # with zarr, which takes half a second to load
 
-    with PlanarStore.new(path, slab, length, wanted, run) as store:
+    about = replace(scenario or Scenario(slab.problem, length), duration=length)
+    with PlanarStore.new(path, slab, about, wanted, run) as store:
         return follow.to_end(store, run, here)
 
 

@@ -134,10 +134,11 @@ def simulate(
     """
     with told(progress, "simulate") as report:
         found = problem if isinstance(problem, PlanarSlab) else read_source("simulate", problem, contact=True)
+        keep: dict[str, Any] = {"checkpoint": checkpoint, "checkpoint_every": checkpoint_every}
         if not isinstance(found, Problem | PlanarSlab) and found.contact is not None:
             duration = found.duration if duration is None else duration
             frames = found.contact.frames if frames is None else frames
-            found = found.planar_slab
+            keep["scenario"], found = found, found.planar_slab
         if isinstance(found, PlanarSlab):
             others: dict[str, Any] = {
                 "rtol": rtol,
@@ -148,7 +149,6 @@ def simulate(
             }
             if needless := [name for name, value in others.items() if value is not None]:
                 raise InputError(f"simulate: a PlanarSlab has no {needless[0]}: its nodes and its courant set the accuracy")
-            keep: dict[str, Any] = {"checkpoint": checkpoint, "checkpoint_every": checkpoint_every}
             return simulate_planar(found, duration, frames=frames, progress=report, **keep)
         if frames is not None:
             raise InputError("simulate: frames is for a PlanarSlab: a slab in 1D is known at all times")
