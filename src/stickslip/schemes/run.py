@@ -1,4 +1,8 @@
-"""Run a numerical scheme on a grid, with the friction of a problem at its contact node."""
+"""Run a numerical scheme on a grid, with the friction of a problem at its contact node.
+
+If friction falls fast enough with the slip rate, several slip rates solve the contact equation `impedance v + S mu(u, v) = load` of
+a step. A program then takes one of them, by the way in which it searches. `SEARCHES` has the usual ways.
+"""
 
 from __future__ import annotations
 
@@ -13,8 +17,7 @@ from stickslip.bodies import as_slab
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.problem.problem import Problem
-from stickslip.schemes.contract import Answer, Grid, Meeting, Sample, Scheme
-from stickslip.schemes.series import Series
+from stickslip.schemes.contract import Answer, Grid, Meeting, Sample, Scheme, Series
 
 SEARCHES = {
     "stick-first": "stick wherever the static strength holds, otherwise the smallest root",

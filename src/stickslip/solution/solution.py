@@ -14,7 +14,7 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief, html_table
 from stickslip.observables.event_table import events_table
-from stickslip.observables.proof import Proof, proof_of
+from stickslip.observables.rule_influence import Proof, proof_of
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_event_rate
 from stickslip.solution.accessors import Exports, SolutionPlots, to_netcdf
