@@ -15,8 +15,8 @@ from stickslip.explorer.model.words import several, short
 from stickslip.observables.energy.pulses import PULSE_COLUMNS
 from stickslip.observables.rule_influence import RuleInfluence
 from stickslip.problem.problem import Problem
+from stickslip.solution.interval import last_large_event
 from stickslip.solution.solution import Solution
-from stickslip.solution.window import last_large_event
 
 MOST_EVENTS = 500
 """Number of slip events up to which pulses are looked for: each takes a millisecond, and single ones of more would not be seen."""

@@ -16,8 +16,9 @@ from stickslip.foundation.arrays import Floats
 from stickslip.observables.field import WaveInterval, slab_of
 from stickslip.observables.waves import Radiation, Waves
 from stickslip.solution.evaluation import Readings
+from stickslip.solution.interval import choose_interval
 from stickslip.solution.solution import Solution
-from stickslip.solution.window import Window, choose_interval
+from stickslip.solution.window import Window
 
 
 class Shown(NamedTuple):

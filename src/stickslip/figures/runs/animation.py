@@ -20,7 +20,7 @@ from stickslip.figures.runs.inside import Scales, about, contact_variables, fiel
 from stickslip.figures.style import BLUE, GREEN, GREY, INK, VERMILLION, narrow, styled, unit_of, unit_shown
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
-from stickslip.solution.window import choose_interval
+from stickslip.solution.interval import choose_interval
 
 if TYPE_CHECKING:
     from stickslip.solution.evaluation import Readings

@@ -37,9 +37,9 @@ from stickslip.figures.style import (
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.observables.predictability import is_followed, predictability
+from stickslip.solution.interval import last_large_event
 from stickslip.solution.place import Place
 from stickslip.solution.solution import Solution
-from stickslip.solution.window import last_large_event
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -25,8 +25,8 @@ from stickslip.figures.style import (
     unit_of,
 )
 from stickslip.observables.energy.balance import energies
+from stickslip.solution.interval import choose_interval
 from stickslip.solution.place import Place
-from stickslip.solution.window import choose_interval
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -38,8 +38,8 @@ from stickslip.figures.style import (
 )
 from stickslip.foundation.arrays import Floats
 from stickslip.observables.field import slab_of
+from stickslip.solution.interval import choose_interval, fronts_of
 from stickslip.solution.place import Place
-from stickslip.solution.window import choose_interval, fronts_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
