@@ -18,6 +18,7 @@ from stickslip.friction import HyperbolicRate, SinusoidalSlip
 from stickslip.observables.event_table import EVENT_COLUMNS
 from stickslip.paper.cases import READINGS, Runs, problem, typed
 from stickslip.paper.claims import Verdict
+from stickslip.paper.planar import STORED
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.tables import SHOCK_COLUMNS
 
@@ -30,6 +31,7 @@ def all_tables(runs: Runs, verdicts: Sequence[Verdict]) -> dict[str, pd.DataFram
         "shocks": _stacked(runs, "shocks", SHOCK_COLUMNS),
         "claims": claims_table(verdicts),
         "constants": pd.DataFrame(constants()),
+        "planar": pd.read_csv(STORED, dtype=str, keep_default_na=False),
     }
 
 
