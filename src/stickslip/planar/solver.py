@@ -84,18 +84,9 @@ class Constants(NamedTuple):
 
 @dataclass(eq=False)
 class PlanarSolver:
-    """A run of a planar slab in progress.
+    """A run of a planar slab in progress, which may go up to a duration (s), on a number of devices (None for all).
 
-    Parameters
-    ----------
-    slab
-        What is solved.
-    duration
-        Time (s) up to which the run may go.
-    steps_per_round_trip
-        Number of time steps in a two-way travel time, or None for the smallest that keeps to the slab's `courant`.
-    devices
-        Number of devices over which the contact is spread, or None for all.
+    The number of time steps in a two-way travel time is the smallest that keeps to the slab's `courant` if it is None.
     """
 
     slab: PlanarSlab

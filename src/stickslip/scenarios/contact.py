@@ -39,18 +39,9 @@ class Points(NamedTuple):
 class Patch:
     """Part of a contact with values of its own: an interval of y, on a plane a box or an ellipse; or all the rest.
 
-    Attributes
-    ----------
-    values
-        Names of what varies, and its values (SI) on the patch: true or false for `LOCKED`.
-    y, z
-        Intervals (m); None for everywhere.
-    shape
-        "box" or "ellipse".
-    taper
-        Distance (m) beyond the box, or by which both half axes of the ellipse grow, in which the share of the patch falls to 0.
-    outside
-        True if the patch is everything but what the intervals describe.
+    `values` are those that vary (SI; true or false for `LOCKED`) by their names; y and z are intervals (m), None for everywhere.
+    Over the distance `taper` (m) beyond the box, or by which both half axes of the ellipse grow, the share of the patch falls to 0.
+    With `outside` the patch is everything but what the intervals describe.
     """
 
     values: tuple[tuple[str, float], ...]
