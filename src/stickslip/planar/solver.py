@@ -317,16 +317,10 @@ class PlanarSolver:
         return waves | {f"motion_{name}": one for name, one in self.now()._asdict().items()}
 
     def restore(self, state: Mapping[str, Floats], trip: int, step: int, sent: Callable[[int], Floats]) -> None:
-        """Go to an earlier state of a run: of this number of devices, or of another.
+        """Go to an earlier state of a run, of this number of devices or of another: what `state` returned.
 
-        Parameters
-        ----------
-        state
-            What `state` returned.
-        trip, step
-            Number of whole round trips then, and of steps since.
-        sent
-            W at the steps of a round trip, the present one up to the present step, as `sent` returned it.
+        It was after `trip` whole round trips and `step` steps. `sent` is W at the steps of a round trip, the present one up to the
+        present step, as `sent` returned it.
         """
         more = self.layout.modes[-1] - self.layout.half
 

@@ -74,18 +74,10 @@ Profile = Points | tuple[Any, ...]
 
 @dataclass(frozen=True)
 class Contact:
-    """A grid along the contact of a slab, and what varies along it.
+    """A grid along the contact of a slab, with the fields of `stickslip.PlanarSlab`, and what varies along it.
 
-    Attributes
-    ----------
-    nodes, length, width, width_nodes, replicas, courant
-        As in `stickslip.PlanarSlab`.
-    frames
-        Number of frames that a run keeps of each two-way travel time; None for the default of `stickslip.simulate`.
-    along
-        What varies, by name: a profile for each.
-    patches
-        Patches, later ones on top of earlier ones and of `along`.
+    A run keeps so many `frames` of each two-way travel time; None stands for the default of `stickslip.simulate`. `along` has a
+    profile for the name of what varies. Later `patches` are on top of earlier ones and of `along`.
     """
 
     nodes: int = declare(*_DECLARED["nodes"])
