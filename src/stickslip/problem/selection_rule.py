@@ -31,7 +31,7 @@ _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,59}")
 
 @dataclass(frozen=True)
 class SelectionTable:
-    """The loads at which a contact leaves stick, and between which it stays on each branch, as excess over the static strength (Pa).
+    """The loads at which a contact leaves stick, and between which it stays on each branch: excesses over the static strength (Pa).
 
     A stuck contact stays stuck while excess <= stick_to; otherwise it takes the first branch i, slowest first, that is ever taken
     with excess <= keep_to[i]. A branch that is never taken has keep_from > keep_to.
