@@ -105,9 +105,10 @@ def simulate_planar(
     """Run a planar slab from t = 0: see `stickslip.simulate`. The run ends with the step that reaches the duration.
 
     It keeps so many `frames` of each two-way travel time, as far as there are as many steps; 100 by default. `progress` is called
-    with a `PlanarReport` before the start and after each frame. Frames are written to the folder `checkpoint` (NAME.zarr) while the run continues, with
-    the scenario of the slab, if it has one, and `resume_planar` continues it. Ctrl-C ends the run with the frames that are done.
-    Raises InputError if an argument is out of range, or the library JAX is missing (`pip install 'stickslip[planar]'`).
+    with a `PlanarReport` before the start and after each frame. Frames are written to the folder `checkpoint` (NAME.zarr) while the
+    run continues, with the scenario of the slab, if it has one, and `resume_planar` continues it. Ctrl-C ends the run with the
+    frames that are done. Raises InputError if an argument is out of range, or the library JAX is missing (`pip install
+    'stickslip[planar]'`).
     """
     if duration is None:
         raise InputError("simulate: a PlanarSlab needs a duration, in s or with a unit")
