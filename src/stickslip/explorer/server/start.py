@@ -44,15 +44,23 @@ LEADS_ON = """<!DOCTYPE html>
 
 
 def start(
-    setting: Setting, endpoint: Endpoint, *, browser: bool, say: Callable[[str], object], behind: Backdrop | None = None
+    scenario: Scenario, endpoint: Endpoint, *, browser: bool, say: Callable[[str], object], behind: Backdrop | None = None
 ) -> None:
-    """Serve the explorer until Ctrl-C, with a setting that is shown first; `say` shows a line to the user.
+    """Serve the explorer until Ctrl-C, with a scenario that is shown first; `say` shows a line to the user.
 
     Raises InputError if the port is taken.
     """
-    from stickslip.explorer.page.page import build
+    if scenario.contact is None:
+        from stickslip.explorer.page.page import build
 
-    server = ExplorerServer(endpoint, partial(explorer_of, setting, behind=behind), build)
+        server = ExplorerServer(endpoint, partial(explorer_of, Setting.of(scenario), behind=behind), build)
+    else:
+        from stickslip.explorer.page.fault import FaultSetting, build_fault, solve_fault
+
+        of_fault: Any = (FaultSetting(scenario), solve_fault)
+        server = ExplorerServer(
+            endpoint, lambda desk, files: Explorer(of_fault[0], desk, of_fault[1], files), build_fault, warms=False
+        )
     if not endpoint.is_loopback:
         say(WARNING.format(address=endpoint.address))
     say(f"explorer: {server.url}")
