@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 import stickslip as ss
 from stickslip.figures.runs.run import draw
 from stickslip.loading import HoldAndSlide, LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
-from tests.figures.labels import size_of
+from tests.figures.legible import size_of
 
 mpl.use("Agg")
 

@@ -20,8 +20,7 @@ from stickslip.figures.panels import letter_panels, set_title
 from stickslip.figures.style import UNITS, image, unit_of
 from stickslip.scenarios.library import names
 from stickslip.scenarios.parameter_paths import ParameterPath, parameter_paths
-from tests.figures.labels import SIZES
-from tests.figures.problems import SLAB_PROBLEM
+from tests.figures.legible import SIZES, SLAB_PROBLEM
 
 
 def declared() -> list[ParameterPath]:

@@ -164,28 +164,12 @@ def _curves(solution: Readings, t: NDArray[np.float64], values: Mapping[Curve, N
 
 
 def write_solution(solution: Solution, path: str | Path) -> Path:
-    """Write a solution to a netCDF file, from which `open_solution` gives it back bit for bit.
+    """Write a solution to a netCDF file, as a whole or not at all; `open_solution` gives it back bit for bit. Return the path.
 
     Besides the history, the file holds curves for drawing (with both limits at shocks), the tables of events and shocks, and as
-    attributes the version, the full scenario, the selection rule and the tolerance.
-
-    Parameters
-    ----------
-    solution : Solution
-        The solution to write.
-    path : str or Path
-        Name of the file, which is written as a whole or not at all.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be written. If the disk is full, it is a FullDiskError, whose attribute `solution` is the solution, to be
-        saved elsewhere; if a loading history is not registered, the file could not be read back.
+    attributes the version, the full scenario, the selection rule and the tolerance. Raises InputError if the file cannot be
+    written. If the disk is full, it is a FullDiskError, whose attribute `solution` is the solution, to be saved elsewhere; if a
+    loading history is not registered, the file could not be read back.
     """
     file = as_path("to_netcdf: path", path)
     variables = history_variables(solution) | _drawing(solution) | _tables(solution)
@@ -293,21 +277,9 @@ def _tables(solution: Solution) -> dict[str, Variable]:
 def open_solution(path: str | Path) -> Solution | PlanarSolution:
     """Read a solution from a netCDF file that `Solution.to_netcdf` or a run wrote, or from the folder of a `PlanarSlab`'s run.
 
-    Parameters
-    ----------
-    path : str or Path
-        Name of the file or folder.
-
-    Returns
-    -------
-    Solution or PlanarSolution
-        The solution, bit for bit as it was. The fields of a `PlanarSolution` are read when they are first used.
-
-    Raises
-    ------
-    InputError
-        If the file is missing, damaged, no solution of this version of stickslip, or holds numbers that no run can have; also if
-        its selection rule is not registered.
+    It is bit for bit as it was; the fields of a `PlanarSolution` are read when they are first used. Raises InputError if the file
+    is missing, damaged, no solution of this version of stickslip, or holds numbers that no run can have; also if its selection rule
+    is not registered.
     """
     file = as_path("open_solution: path", path)
     if file.is_dir():

@@ -138,17 +138,9 @@ class LoadingHistory(CheckedArguments, ABC):
         return self.segments[0].value + self.tone.amplitude * math.sin(self.tone.phase)
 
     def at(self, t: ArrayLike) -> NDArray[np.float64]:
-        """Return the values of the history at given times.
+        """Return the values (m/s or Pa) of the history at times (s since the start of the run) of any shape.
 
-        Parameters
-        ----------
-        t
-            Times (s since the start of the run), of any shape.
-
-        Returns
-        -------
-        array
-            Values (m/s or Pa), with the shape of `t`. At a jump it is the value after the jump; before 0 s it is the value at 0 s.
+        At a jump it is the value after the jump; before 0 s it is the value at 0 s.
         """
         time = np.maximum(np.asarray(t, float), 0.0)
         start, value, slope = self._table

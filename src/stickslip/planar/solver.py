@@ -26,7 +26,7 @@ from stickslip.planar.driving import locked_load
 from stickslip.planar.echo import Echo, echo_of, echo_weights, kernel_spectra, silent
 from stickslip.planar.friction import Contact, Nodes
 from stickslip.planar.layout import Layout, whole
-from stickslip.planar.memory import horizon, recurrence
+from stickslip.planar.memory import advanced, horizon, recurrence
 from stickslip.planar.slab import PlanarSlab
 
 Floats = NDArray[np.float64]
@@ -186,7 +186,8 @@ class PlanarSolver:
     @property
     def _spread_echo(self) -> Echo:
         rank = 1 + len(self.slab.shape)
-        return Echo(self.layout.along_k(rank + 2), self.layout.along_k(rank))
+        ends = self.layout.along_k(rank + 1)
+        return Echo(self.layout.along_k(rank + 2), ends, ends, PartitionSpec(), self.layout.along_k(rank))
 
     @property
     def _spread_constants(self) -> Constants:
@@ -246,8 +247,7 @@ class PlanarSolver:
         loads = constants.initial_load + loading, arriving
         guess, _ = self._moved(now, (motion, waves.rate), constants, loads)
         found, waves = self._moved(now, (guess, self.layout.amplitudes(guess.rate)), constants, loads)
-        memory = constants.decay * waves.memory + constants.gain * waves.slip
-        inherited = sum(term.real for term in memory)  # of slices: compiled into one loop, five times as fast as a reduction
+        memory, inherited = advanced(waves.memory, constants.decay, constants.gain, waves.slip)
         waves = waves._replace(memory=memory, inherited=inherited, rate=self.layout.amplitudes(found.rate))
         sent = jax.lax.dynamic_update_index_in_dim(waves.sent, self._leaving(waves, arriving), step, 0)
         return found, waves._replace(sent=sent)

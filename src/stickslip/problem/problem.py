@@ -242,18 +242,7 @@ class Problem(CheckedArguments):
         }
 
     def pull_rate_at(self, t: ArrayLike) -> NDArray[np.float64]:
-        """Return the pull rate V at given times.
-
-        Parameters
-        ----------
-        t
-            Times (s since the start of the run), of any shape.
-
-        Returns
-        -------
-        array
-            V (m/s), with the shape of `t`.
-        """
+        """Return the pull rate V (m/s) at times (s since the start of the run) of any shape."""
         rate = self.pull_rate
         return rate.at(t) if isinstance(rate, LoadingHistory) else np.full(np.shape(t), rate)
 

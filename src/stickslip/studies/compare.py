@@ -80,19 +80,10 @@ def read_source(
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Comparison(Study):
-    """The result of `compare`.
+    """The result of `compare`: finished runs by name, and the `event` that the figure shows of each, in time since its start.
 
-    Attributes
-    ----------
-    runs : dict of Solution
-        Finished runs, keyed by name.
-    event : int or None
-        Row of `Solution.events`: the figure shows this slip event of each run, in time since its start. None shows whole runs.
-
-    Raises
-    ------
-    InputError
-        If there are fewer than two runs, or if a run has no such event.
+    The event is a row of `Solution.events`; None shows whole runs. Raises InputError if there are fewer than two runs, or if a run
+    has no such event.
     """
 
     runs: dict[str, Solution]

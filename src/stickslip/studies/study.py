@@ -67,14 +67,7 @@ class Study:
     def plot(self, **place: Unpack[Place]) -> Figure:
         """Plot the result; the panels are described with each study in the documentation.
 
-        Parameters
-        ----------
-        **place
-            Where to draw, and how large: `figure`, `size` and `dpi`, as for `solution.plot()`.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
+        The keywords `figure`, `size` and `dpi` say where to draw, and how large, as for `solution.plot()`.
         """
         figure: Figure = self._figure().draw(self.to_dataset(), **place)
         return known_to_pyplot(figure, place)

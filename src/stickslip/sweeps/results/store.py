@@ -214,20 +214,8 @@ def check_store(path: Path) -> set[str]:
 def open_store(path: str | Path) -> xr.Dataset:
     """Open the store of a sweep or of a refined map, after checking every file against its checksum.
 
-    Parameters
-    ----------
-    path : str or pathlib.Path
-        Folder of the store.
-
-    Returns
-    -------
-    xarray.Dataset
-        The contents, whose variables are read when they are used.
-
-    Raises
-    ------
-    InputError
-        If there is no such store, if a file is damaged or unreadable, or if chunks of a stopped sweep have no checksums.
+    The variables of the dataset are read when they are used. Raises InputError if there is no such store, if a file is damaged or
+    unreadable, or if chunks of a stopped sweep have no checksums.
     """
     path = Path(path)
     if not path.exists():
