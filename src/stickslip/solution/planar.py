@@ -174,6 +174,8 @@ class PlanarSolution:
         import xarray
 
         times = self.times if t is None else np.atleast_1d(np.asarray(t, float))
+        if len(self.times) < 2:
+            raise InputError("energy: the run ended at its first frame")
         if times.min() < self.times[0] or times.max() > self.times[-1]:
             raise InputError(f"energy: times must be from {self.times[0]:g} to {self.times[-1]:g} s")
         unit, found = "J" if self.slab.is_plane else "J m-1", self._energies

@@ -172,7 +172,6 @@ class FromExpression(RemembersSlip):
 
     @cached_property
     def _equations(self) -> dict[str, str]:
-        """The texts of the rates of change of the states, by the states' names."""
         try:
             return read_evolution(self.evolution, self.parameters()) if self.evolution else {}
         except InputError as error:
@@ -180,7 +179,6 @@ class FromExpression(RemembersSlip):
 
     @property
     def _changes(self) -> tuple[Expression, ...]:
-        """The rates of change of the states as expression trees."""
         try:
             return tuple(parse(text, self.parameters(), tuple(self._equations)) for text in self._equations.values())
         except InputError as error:
