@@ -111,7 +111,7 @@ static double falling_root(const double *c) {
         else if (value < 0.0) high = x;
         else return x;
         double step = slope < 0.0 ? x - value / slope : 0.5 * (low + high);
-        if (!(low < step && step < high) && step != s) step = 0.5 * (low + high);
+        if (!(low < step && step < high)) step = 0.5 * (low + high);
         if (step == x || high - low < 1e-17) return x;
         x = step;
     }
