@@ -58,7 +58,7 @@ $(BIN)/python:
 # The lowest and the newest versions of libraries that pyproject.toml allows, each in an environment of its own, with `doctor` and the
 # tests that depend on libraries most. Needs uv; run both before a release and when a bound changes.
 MATTER = tests/engine/test_verified_numbers.py tests/batch/test_members.py tests/figures/test_figures.py tests/sweeps/test_store.py \
-    tests/exports tests/scenarios tests/test_quantities.py tests/test_storage.py tests/cli/test_commands.py tests/explorer/test_page_build.py
+    tests/exports tests/scenarios tests/test_quantities.py tests/test_storage.py tests/cli/test_commands.py tests/explorer/test_page_views.py
 oldest: RESOLUTION = lowest-direct
 oldest: OLD_WARNINGS = -W ignore::DeprecationWarning
 newest: RESOLUTION = highest

@@ -1,179 +1,78 @@
 """Do the tests notice? Wrong versions of the source, one at a time, and what the tests say to each.
 
-    python -m benchmarks.mutation_map tests/contact tests/observables tests/engine ... --map reach.jsonl     # once
-    python -m benchmarks.mutations --map reach.jsonl --named                                                     # mistakes by name
-    python -m benchmarks.mutations --map reach.jsonl --count 40 --seed 1 --only contact --results mutations.jsonl
+    python -m benchmarks.mutations tests/contact tests/observables --named
+    python -m benchmarks.mutations tests/contact --count 40 --seed 1 --only contact --results mutations.jsonl
 
-The tests that enter the changed function run first, quick ones first, up to the first failure. Where all pass, hashes of a fixed
-suite (`benchmarks.mutation_check`) decide between "survived" and "equivalent". Results are appended to a file and not made again;
-Ctrl-C ends with the table. A mutant of Python code takes seconds, one of the engine the compilation of what depends on it.
+Each mutant is a copy of the package in a temporary folder, on which the tests run up to the first failure. Where all pass, hashes
+of a fixed suite (`benchmarks.mutation_check`) decide between "survived" and "equivalent". Results are appended to a file and not
+made again; Ctrl-C ends with the table. A mutant of the engine is compiled anew.
 """
 
 from __future__ import annotations
 
 import argparse
-import hashlib
 import json
+import os
+import shutil
+import subprocess
 import sys
+import tempfile
 import time
 from collections import Counter
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from benchmarks.mutants import PACKAGES, SOURCE, Mutant, drawn, named
-from benchmarks.mutation_map import Reach
-from benchmarks.mutation_reach import depends_on_no_cache, must_compile
-from benchmarks.mutation_trial import TREE, exchange, function_around, hashes, import_changed, in_child, make_hot, run_tests, runs
 
-LIMITS = {"exchanged": 25.0, "imported": 25.0, "compiled": 90.0}
-FIRST_SECONDS = {"exchanged": 4.0, "imported": 6.0, "compiled": 50.0}
-"""Seconds of processor time for the tests of one mutant, and for those before the hashes; the last test that began may end."""
-ENGINE_TESTS = (
-    "tests/engine/test_verified_numbers.py",
-    "tests/engine/test_event_sequences.py",
-    "tests/adversarial/test_known_failures.py",
-    "tests/engine/test_located_events.py",
-    "tests/engine/test_solution.py",
-    "tests/engine/test_certificate.py",
-    "tests/reference",
-)
-"""Where mistakes in compiled code show soonest."""
+TREE = Path(__file__).resolve().parent.parent
+VERDICTS = ("caught", "survived", "equivalent")
 
 
 class Campaign:
-    """What is known of the tests, and the hashes without any mutant."""
+    """A copy of the package, the tests that are run on it, and the hashes without any mutant."""
 
-    def __init__(self, options: argparse.Namespace) -> None:
-        self.reach, self.left_out = Reach(options.map), set(options.deselect)
-        self.path, self.quick = Path(options.results), options.quick
-        self.results = _known(options.results, options.quick)
-        self.places = sorted({test.split("::")[0] for test in self.reach.seconds})
-        self.runs: Any = None
-        self.before = self.hashes_before(options.map.with_suffix(".hashes.json"))
+    def __init__(self, copy: Path, tests: list[str], limit: float) -> None:
+        shutil.copytree(TREE / SOURCE, copy / "stickslip", ignore=shutil.ignore_patterns("__pycache__"))
+        self.copy, self.limit = copy, limit
+        self.tests = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *tests]
+        self.before = self.hashes()
 
-    def hashes_before(self, path: Path) -> dict[str, str]:
-        """Hashes of the source as it is, kept beside the map."""
-        digest = hashlib.sha256()
-        for file in sorted((TREE / SOURCE).rglob("*.py")):
-            digest.update(file.read_bytes())
-        if path.exists():
-            kept = json.loads(path.read_text())
-            if kept["source"] == digest.hexdigest():
-                return dict(kept["hashes"])
-        found = in_child(lambda _: {"hashes": hashes()})
-        if "hashes" not in found:
-            raise SystemExit(f"mutations: without any mutant the suite fails: {found}")
-        path.write_text(json.dumps({"source": digest.hexdigest(), "hashes": found["hashes"]}))
-        return dict(found["hashes"])
+    def called(self, command: list[str]) -> subprocess.CompletedProcess[str]:
+        """Run a command on the copy, for `limit` seconds at most."""
+        paths = os.pathsep.join([str(self.copy), str(TREE)])
+        environment = os.environ | {"PYTHONPATH": paths, "PYTHONDONTWRITEBYTECODE": "1"}
+        return subprocess.run(command, cwd=TREE, env=environment, capture_output=True, text=True, timeout=self.limit, check=False)
 
-    def kind(self, mutant: Mutant) -> str:
-        """What a mutant needs: "exchanged" code, a changed text "imported", or the engine "compiled"."""
-        if depends_on_no_cache(mutant.path) or must_compile(TREE, mutant):
-            return "compiled"
-        return "exchanged" if function_around((TREE / SOURCE / mutant.path).read_bytes(), mutant) else "imported"
+    def hashes(self) -> str:
+        """The hashes of the fixed suite, as text."""
+        return self.called([sys.executable, "-m", "benchmarks.mutation_check"]).stdout
 
-    def rank(self, mutant: Mutant, kind: str) -> dict[str, float]:
-        """The tests for a mutant in their order, with their usual seconds."""
-        function = function_around((TREE / SOURCE / mutant.path).read_bytes(), mutant)
-        if kind == "compiled":
-            tests = self.reach.of("run/run_loop.py", None)
-        else:
-            tests = self.reach.of(mutant.path, function if kind == "exchanged" else None)
-        near = tests if kind == "imported" else set()
-        tests = tests if kind != "imported" else set(self.reach.seconds)  # not every use of a number enters a function of its file
-        killers = Counter(result["by"] for result in self.results if result["path"] == mutant.path)
-
-        def order(test: str) -> tuple[int, bool, int, float]:
-            first = [n for n, place in enumerate(ENGINE_TESTS) if test.startswith(place)] if kind == "compiled" else []
-            return -killers[test], test not in near, first[0] if first else len(ENGINE_TESTS), self.reach.seconds[test]
-
-        return {test: self.reach.seconds[test] for test in sorted(tests - self.left_out, key=order)}
-
-    def tried(self, mutant: Mutant, kind: str) -> dict[str, Any]:
+    def tried(self, mutant: Mutant) -> dict[str, Any]:
         """What becomes of one mutant."""
-        rank, began = self.rank(mutant, kind), time.monotonic()
+        path, began = self.copy / "stickslip" / mutant.path, time.monotonic()
+        original = path.read_bytes()
+        path.write_bytes(mutant.applied(original))
+        try:
+            verdict, by = self.judged()
+        except subprocess.TimeoutExpired:
+            verdict, by = "caught", "the time was up"
+        finally:
+            path.write_bytes(original)
+        seconds = round(time.monotonic() - began, 1)
+        return {"mutant": mutant.name, "path": mutant.path, "verdict": verdict, "by": by, "seconds": seconds}
 
-        def work(note: Callable[[str], None]) -> dict[str, Any]:
-            if kind != "exchanged":
-                import_changed(mutant)
-            elif not exchange(mutant):
-                return {"broken": "the code cannot be exchanged"}
-            return self.judged(rank, kind, note, mutant.package)
-
-        found = in_child(work)
-        changed = sum(found.get("hashes", {}).get(name) != value for name, value in self.before.items())
-        verdict, by = self.verdict(found, changed, len(rank))
-        took = round(time.monotonic() - began, 1)
-        return {
-            "mutant": mutant.name,
-            "path": mutant.path,
-            "kind": kind,
-            "verdict": verdict,
-            "by": by,
-            "passed": found.get("passed", -1),
-            "changed": -1 if verdict not in ("survived", "equivalent") else changed,
-            "seconds": took,
-        }
-
-    def judged(self, rank: dict[str, float], kind: str, note: Callable[[str], None], package: str) -> dict[str, Any]:
-        """Run the first tests, then the hashes, and the other tests only if a hash has changed."""
-        found = run_tests(rank, FIRST_SECONDS[kind], note)
-        if found["failed"] or self.quick:
-            return found
-        note("the hashes")
-        found["hashes"] = hashes(self.runs if package == "observables" and kind == "exchanged" else None)
-        if found["unfinished"] and any(found["hashes"].get(name) != value for name, value in self.before.items()):
-            rest = dict(list(rank.items())[found["passed"] :])
-            later = run_tests(rest, LIMITS[kind], note)
-            found |= {**later, "passed": found["passed"] + later["passed"]}
-        return found
-
-    @staticmethod
-    def verdict(found: dict[str, Any], changed: int, tests: int) -> tuple[str, str]:
-        """The verdict, and the test or the reason."""
-        if "died" in found:
-            return "caught", f"{found['during'] or 'import'} (killed by signal {found['died']})"
-        if "broken" in found:
-            return "broken", found["broken"]
-        if found["failed"]:
-            return "caught", found["failed"]
-        tests = f"{found['passed']} of {tests} tests passed" + (", then the time was up" if found["unfinished"] else "")
-        if "hashes" not in found:
-            return "pending", tests
-        return ("survived" if changed else "equivalent"), tests
-
-    def run(self, wanted: list[Mutant]) -> None:
-        """Try the mutants that have no result yet: those that need an import of their own first, then the others."""
-        known = {result["mutant"] for result in self.results}
-        kinds = {mutant: self.kind(mutant) for mutant in wanted if mutant.name not in known}
-        for mutant in [one for kind in ("imported", "compiled") for one in kinds if kinds[one] == kind]:
-            self.tell(mutant, kinds[mutant])
-        hot = [one for one in kinds if kinds[one] == "exchanged"]
-
-        def work() -> None:
-            self.runs = runs()
-            for mutant in hot:
-                self.tell(mutant, "exchanged")
-
-        if hot:
-            make_hot(self.places, work)
-
-    def tell(self, mutant: Mutant, kind: str) -> None:
-        """Try a mutant; print and keep the result."""
-        result = self.tried(mutant, kind)
-        self.results.append(result)
-        with self.path.open("a") as file:
-            file.write(json.dumps(result) + "\n")
-        say(f"{len(self.results)}: {result['verdict']:10} {result['seconds']:6.1f} s  {result['mutant']}  {result['by'][:90]}")
+    def judged(self) -> tuple[str, str]:
+        """The verdict, and the test that failed or how many passed."""
+        done = self.called(self.tests)
+        lines = done.stdout.splitlines()
+        if done.returncode:
+            return "caught", next((line for line in lines if line.startswith(("FAILED", "ERROR"))), f"exit code {done.returncode}")
+        return ("equivalent" if self.hashes() == self.before else "survived"), lines[-1]
 
 
-def _known(path: str, quick: bool) -> list[dict[str, Any]]:
-    """Results of earlier campaigns in the file; pending ones only if they are not to be decided now."""
-    if not Path(path).exists():
-        return []
-    results = {one["mutant"]: one for one in map(json.loads, Path(path).read_text().splitlines())}
-    return [one for one in results.values() if quick or one["verdict"] != "pending"]
+def known(path: Path) -> list[dict[str, Any]]:
+    """Results of earlier campaigns in the file."""
+    return [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
 
 
 def say(text: str) -> None:
@@ -184,43 +83,41 @@ def say(text: str) -> None:
 
 def table(results: list[dict[str, Any]]) -> None:
     """Counts by package and verdict, then the survivors."""
-    verdicts = ("caught", "survived", "equivalent", "broken", "pending")
     counts = Counter((result["path"].split("/")[0], result["verdict"]) for result in results)
-    say(f"\n{'package':16}" + "".join(f"{verdict:>12}" for verdict in verdicts))
+    say(f"\n{'package':16}" + "".join(f"{verdict:>12}" for verdict in VERDICTS))
     for package in sorted({package for package, _ in counts}):
-        say(f"{package:16}" + "".join(f"{counts[package, verdict]:12}" for verdict in verdicts))
+        say(f"{package:16}" + "".join(f"{counts[package, verdict]:12}" for verdict in VERDICTS))
     for result in results:
         if result["verdict"] == "survived":
-            say(f"survived: {result['mutant']} ({result['changed']} hashes changed; {result['by']})")
+            say(f"survived: {result['mutant']} ({result['by']})")
 
 
 def main() -> int:
     """Read the command line and run."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.mutations", description=__doc__.splitlines()[0] if __doc__ else "")
+    parser.add_argument("tests", nargs="+", help="the tests that are to notice: files or folders, the quick ones first")
     parser.add_argument("--named", action="store_true", help="the mistakes by name")
-    parser.add_argument("--names", nargs="*", help="of the mutants only these")
     parser.add_argument("--count", type=int, default=0, help="random mutants")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", nargs="*", choices=PACKAGES, help="packages of the random mutants")
-    parser.add_argument("--kinds", nargs="*", choices=tuple(LIMITS), help="of the mutants only those that need this")
-    parser.add_argument("--quick", action="store_true", help="only the first tests; the others are decided without this option")
-    parser.add_argument("--most", type=int, help="of the mutants only so many")
-    parser.add_argument("--results", default="mutations.jsonl")
-    parser.add_argument("--deselect", nargs="*", default=[], help="tests that fail without any mutant")
-    parser.add_argument("--map", type=Path, required=True, help="what benchmarks.mutation_map recorded")
+    parser.add_argument("--limit", type=float, default=1200.0, help="seconds for the tests of one mutant")
+    parser.add_argument("--results", type=Path, default=Path("mutations.jsonl"))
     options = parser.parse_args()
     wanted = named(TREE) if options.named else []
     wanted += drawn(TREE, options.count, options.seed, tuple(options.only or PACKAGES))
-    if options.names:
-        wanted = [one for one in wanted if one.name in options.names]
-    campaign = Campaign(options)
-    if options.kinds:
-        wanted = [one for one in wanted if campaign.kind(one) in options.kinds]
-    try:
-        campaign.run(wanted[: options.most])
-    except KeyboardInterrupt:
-        say("interrupted")
-    table(campaign.results)
+    results = known(options.results)
+    with tempfile.TemporaryDirectory() as folder:
+        try:
+            campaign = Campaign(Path(folder), options.tests, options.limit)
+            for mutant in [one for one in wanted if one.name not in {result["mutant"] for result in results}]:
+                results.append(campaign.tried(mutant))
+                with options.results.open("a") as file:
+                    file.write(json.dumps(results[-1]) + "\n")
+                found = results[-1]
+                say(f"{len(results)}: {found['verdict']:10} {found['seconds']:6.1f} s  {mutant.name}  {found['by'][:90]}")
+        except KeyboardInterrupt:
+            say("interrupted")
+    table(results)
     return 0
 
 

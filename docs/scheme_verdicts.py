@@ -23,7 +23,7 @@ from stickslip.schemes.registry import SCHEMES
 from stickslip.schemes.run import run_scheme
 from stickslip.schemes.series import Series
 from stickslip.studies.regularisations import regularised
-from stickslip.studies.rule_followed import RulePaths, exact_runs
+from stickslip.studies.verdict import RulePaths, exact_runs
 
 FIGURE = Path(__file__).with_name("figures") / "scheme-verdicts.png"
 CELLS = (25, 50, 100, 200, 400, 800)

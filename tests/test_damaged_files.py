@@ -22,7 +22,7 @@ from stickslip.engine.state.layout import Counts, State
 from stickslip.foundation import atomic_write, netcdf_file
 from stickslip.foundation.atomic_write import DRAFT, STALE, held, write_atomically
 from stickslip.io.netcdf import save_checkpoint
-from stickslip.trajectory.checkpoint import Checkpoint
+from stickslip.trajectory.status import Checkpoint
 
 PROBLEM = ss.load_scenario("cycles-block").problem
 POSIX = pytest.mark.skipif(os.name != "posix", reason="needs locks and limits of POSIX")

@@ -62,7 +62,7 @@ ROOMS = {
         ("contract",),
         ("series",),
         ("finite_elements",),
-        ("central_differences", "characteristics", "newmark", "sbp", "theta"),
+        ("central_differences", "characteristics", "newmark", "sbp"),
         ("registry", "run"),
     ),
     "reference": (("rate_and_state",), ("block", "planar", "slab"), ("method_of_steps",)),

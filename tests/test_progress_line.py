@@ -13,7 +13,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.contact.regime_map import Axis
-from stickslip.run.progress_line import progress_line
+from stickslip.run.progress import progress_line
 
 PROBLEM = ss.load_scenario("fig6-slab").problem
 CYCLES = ss.load_scenario("cycles-block")

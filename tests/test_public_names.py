@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import stickslip as ss
-from tests.typed import mypy_on
+from tests.limits import mypy_on
 
 LAZY = ("stickslip", "stickslip.studies", "stickslip.figures")
 """Packages whose names are those of their stub."""

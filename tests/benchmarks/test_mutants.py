@@ -7,8 +7,6 @@ from pathlib import Path
 
 import pytest
 from benchmarks.mutants import NAMED, SOURCE, drawn, named
-from benchmarks.mutation_reach import must_compile
-from benchmarks.mutation_trial import function_around
 from benchmarks.soak_checks import run
 from benchmarks.soak_problems import draw
 
@@ -40,26 +38,3 @@ def test_soak_draws_every_kind_reproducibly() -> None:
 @pytest.mark.parametrize("index", range(4))
 def test_soak_finds_nothing_wrong_with_the_first_problems(index: int) -> None:
     assert run(draw(5, index), limit=60.0).wrong == ()
-
-
-def test_only_functions_that_use_a_mutant_are_compiled_again() -> None:
-    by_name = {mutant.name: mutant for mutant in named(ROOT)}
-    sign = must_compile(ROOT, by_name["echo-sign"])
-    assert ("stickslip.engine.waves.incoming_load", "echo_piece") in sign
-    assert ("stickslip.engine.loop", "run_until") in sign
-    assert ("stickslip.engine.series.polynomial", "evaluate") not in sign
-    for name in ("tolerance-times-1000", "left-and-right-exchanged", "heat-at-zero-rate", "year-of-365-days"):
-        assert must_compile(ROOT, by_name[name]) == set()
-
-
-def test_each_mutant_knows_the_function_around_it() -> None:
-    around = {
-        mutant.name: function_around((ROOT / SOURCE / mutant.path).read_bytes(), mutant)
-        for mutant in named(ROOT)
-        if mutant.path in ("trajectory/history.py", "foundation/constants.py")
-    }
-    assert around == {
-        "left-and-right-exchanged": "History.find",
-        "heat-at-zero-rate": "History.resistance",
-        "year-of-365-days": None,
-    }

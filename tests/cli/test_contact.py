@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from typer import Context
 
+import stickslip as ss
 from stickslip.cli.app import COMMANDS
 from stickslip.cli.options import complete_scenario, complete_vary
+from stickslip.scenarios import read_scenario
 from tests.cli.conftest import Outcome
 
 Command = Callable[..., Outcome]
@@ -97,6 +100,7 @@ def test_what_is_for_one_place_is_refused_in_one_line(command: Command, name: st
         (("--catalogue", "a.csv"), "run: --catalogue has no effect"),
         (("--energy",), "run: --energy belongs to --catalogue FILE"),
         (("--out", "a.nc"), "--out a.nc: the name must end in .zarr"),
+        (("--out", "none/a.zarr"), "there is no folder none"),
         (("--set", "contact.nodes=33"), "[contact] nodes must be an even whole number, at least 8, got 33"),
         (("--set", "contact.nodes=many"), "contact.nodes must be a number, got 'many'"),
         (("--set", "contact.node=3"), "did you mean 'contact.nodes'?"),
@@ -119,7 +123,7 @@ def test_check_refuses_figures_of_a_single_place(command: Command) -> None:
     assert "leave them out with a [contact]" in shown.err
 
 
-def test_an_interrupted_run_ends_with_its_code(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_interrupted_run_is_shown_and_resumed(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
     class Interrupted:
         noted = True
 
@@ -129,10 +133,33 @@ def test_an_interrupted_run_ends_with_its_code(command: Command, monkeypatch: py
         def __exit__(self, *_: object) -> None:
             pass
 
-    monkeypatch.setattr("stickslip.run.planar_run.Interrupts", Interrupted)
-    shown = command("run", *SMALL)
+    with monkeypatch.context() as patched:
+        patched.setattr("stickslip.run.planar_run.Interrupts", Interrupted)
+        shown = command("run", *SMALL, "--out", "fault.zarr")
     assert (shown.code, shown.err) == (130, "stickslip: interrupted\n")
-    assert "interrupted" in shown.out
+    assert "\ninterrupted: " in shown.out
+    shown = command("show", "fault.zarr", "--figure", "a.png")
+    assert shown.code == 0
+    assert shown.out.startswith("A fault in 2D: a nucleus between barriers: contact.nodes = 64\n64 nodes, ")
+    for arguments, said in (
+        (("run", *SMALL, "--out", "fault.zarr"), "--out fault.zarr: exists: --resume fault.zarr continues"),
+        (("run", "--resume", "fault.zarr", "--out", "more.zarr"), "run: --resume fault.zarr continues in its own folder"),
+        (("run", "planar-patch", "--resume", "fault.zarr"), "another problem than planar-patch: its [contact] differs"),
+        (("run", "planar-plane", "--resume", "fault.zarr"), "another problem than planar-plane: its body is"),
+        (("show", "fault.zarr", "--path", "p.png"), "fault.zarr: a [contact] of many nodes has --figure and --animation"),
+        (("show", "fault.zarr", "--quantity", "slip"), "show: --quantity chooses what is drawn of a sweep"),
+        (("compare", "fault.zarr", "fig6-slab"), "fault.zarr: a folder of results, not a scenario"),
+    ):
+        refused = command(*arguments)
+        assert refused.code == 2, refused
+        assert said in refused.err
+    shown = command("run", "--resume", "fault.zarr")
+    assert shown.code == 0
+    assert "27% of the contact slips" in shown.out
+    expected = ss.scenarios["planar-patch"].with_values({"contact.nodes": 64, "run.duration": 1.0})
+    again = read_scenario(command("show", "fault.zarr", "--scenario").out, "again")
+    assert again.contact == replace(expected.contact, frames=100)
+    assert (again.problem, again.duration) == (expected.problem, 1.0)
 
 
 def test_a_missing_library_is_named(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -13,7 +13,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.friction import LAWS
 from stickslip.friction.contract import one_argument
 from stickslip.friction.law import FrictionLaw
-from tests.engine.examples import SLAB, example_law, example_problem
+from tests.engine.drawn import SLAB, example_law, example_problem
 
 
 @pytest.mark.parametrize("kind", [kind for kind in LAWS if example_law(kind).trees()])

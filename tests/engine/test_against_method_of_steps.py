@@ -11,9 +11,8 @@ import stickslip as ss
 from stickslip.friction import LAWS, FrictionLaw
 from stickslip.reference.method_of_steps import method_of_steps
 from tests.engine import problems
-from tests.engine.examples import BODIES, SLAB, example_problem
-from tests.engine.problems import KINDS
-from tests.engine.shocks import away_from_jumps
+from tests.engine.drawn import BODIES, SLAB, example_problem
+from tests.engine.problems import KINDS, away_from_jumps
 
 
 @pytest.mark.sampled(every=4)

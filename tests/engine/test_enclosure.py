@@ -24,7 +24,7 @@ from stickslip.friction.formula.expression import (
     exp,
     nodes_of,
 )
-from tests.engine.enclosing import enclose
+from tests.engine.formulas import enclose
 
 mpmath = pytest.importorskip("mpmath")
 mpmath.mp.dps = 50

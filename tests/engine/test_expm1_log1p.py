@@ -18,7 +18,7 @@ from stickslip.engine.series import differences
 from stickslip.engine.series.sine import sine, versine
 from stickslip.friction.formula.expression import COMPOSED, RATE, SLIP, Expression, expm1, log1p
 from stickslip.friction.formula.parse import parse
-from tests.engine.enclosing import enclose
+from tests.engine.formulas import enclose
 
 ROUNDINGS = 5
 """Of numbers up to 2: what the libraries' functions and a product or two make."""

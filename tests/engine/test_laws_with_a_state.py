@@ -17,7 +17,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import stickslip as ss
-from tests.engine.examples import example_problem
+from tests.engine.drawn import example_problem
 
 Floats = NDArray[np.float64]
 CLOSE = 1e-7

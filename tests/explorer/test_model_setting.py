@@ -12,12 +12,10 @@ import pytest
 
 import stickslip as ss
 from stickslip.explorer.model.answer import Answer
-from stickslip.explorer.model.code import python_of, toml_of
 from stickslip.explorer.model.controls import Control, controls_of
-from stickslip.explorer.model.difference import difference
+from stickslip.explorer.model.difference import difference, python_of, toml_of
 from stickslip.explorer.model.exchange import with_kind
-from stickslip.explorer.model.link import LONGEST, parameters_of, setting_of
-from stickslip.explorer.model.setting import Setting
+from stickslip.explorer.model.setting import LONGEST, Setting, parameters_of, setting_of
 from stickslip.explorer.model.solve import solve
 from stickslip.explorer.page.controls import FIRST, OTHERS, offered, with_expression
 from stickslip.explorer.page.files import opened

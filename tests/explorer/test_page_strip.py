@@ -14,7 +14,7 @@ from stickslip.explorer.model.strip import SHOWN, Strip, StripRange, setting_at,
 from stickslip.explorer.model.tour import TOUR
 from stickslip.explorer.page.explorer import Explorer
 from stickslip.explorer.page.strip import StripView, place_of, view_of_strip
-from stickslip.explorer.page.tour import Tour, told_steps
+from stickslip.explorer.page.words import Tour, told_steps
 from tests.explorer.desk_at_once import DeskAtOnce
 
 SLAB = Setting.bundled("fig6-slab")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import io
 import re
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qsl
@@ -25,24 +24,9 @@ from stickslip.explorer.page.files import FORMATS, content_of, export, file_name
 from stickslip.explorer.page.tools import Tools, begin, query_of
 from stickslip.explorer.page.words import PinnedRun, words_of
 from stickslip.foundation.errors import InputError
+from tests.explorer.desk_at_once import DeskAtOnce
 
 SETTING = Setting.bundled("fig6-slab").with_value("friction.alpha", 0.7)
-
-
-class AtOnce:
-    """A desk that does its work at once."""
-
-    def ask(self, work: Callable[..., Any], done: Callable[[Any], None], failed: Callable[[Exception], None]) -> None:
-        """Do the work."""
-        try:
-            result = work(lambda text: None)
-        except InputError as error:
-            failed(error)
-            return
-        done(result)
-
-    def stop(self) -> None:
-        """There is nothing to stop."""
 
 
 @pytest.fixture(scope="module")
@@ -53,7 +37,7 @@ def answer() -> Answer:
 @pytest.fixture
 def explorer(answer: Answer) -> Explorer:
     """A page whose every answer is the same, which links and buttons do not mind."""
-    made = Explorer(SETTING, AtOnce(), lambda scenario, told: answer)
+    made = Explorer(SETTING, DeskAtOnce(), lambda scenario, told: answer)
     made.change(SETTING)
     return made
 
@@ -155,7 +139,7 @@ def test_an_opened_table_becomes_the_friction_law(heading: str, key: str) -> Non
 
 def test_doubts_about_an_opened_table_are_notes_of_the_answer_until_another_law_is_chosen() -> None:
     """A column without a unit, and friction in percent; that they are warnings of the package would fail here."""
-    here = Explorer(SETTING, AtOnce(), solve)
+    here = Explorer(SETTING, DeskAtOnce(), solve)
     here.change(opened("points.csv", b"slip,mu\n0,80\n1000,50\n", SETTING))
     doubts = ("points.csv, line 1: column 1, slip, has no unit and is read in m", "friction reaches 80")
     assert here.answer is not None
@@ -169,7 +153,7 @@ def test_doubts_about_an_opened_table_are_notes_of_the_answer_until_another_law_
 
 def test_noisy_points_are_noted_once() -> None:
     rows = "".join(f"{k},{0.8 - 0.01 * k + 0.05 * (-1) ** k}\n" for k in range(30))
-    here = Explorer(SETTING, AtOnce(), solve)
+    here = Explorer(SETTING, DeskAtOnce(), solve)
     here.change(opened("points.csv", f"slip (m),mu\n{rows}".encode(), SETTING))
     assert here.answer is not None
     assert sum("noisy" in note for note in here.answer.notes) == 1
@@ -257,7 +241,7 @@ def test_a_link_reproduces_the_view(explorer: Explorer, answer: Answer) -> None:
     query = query_of(explorer)
     assert "scenario=fig6-slab&friction.alpha=0.9&" in query
 
-    other = Explorer(Setting.bundled("fig4-loop"), AtOnce(), lambda scenario, told: answer)
+    other = Explorer(Setting.bundled("fig4-loop"), DeskAtOnce(), lambda scenario, told: answer)
     asked: list[float] = []
     other.listen("setting", lambda: asked.append(other.setting.value("friction.alpha")))
     begin(other, dict(parse_qsl(query)))
@@ -284,7 +268,7 @@ def test_a_link_reproduces_the_view(explorer: Explorer, answer: Answer) -> None:
 def test_a_link_that_cannot_be_followed_shows_the_first_scenario_and_says_why(
     parameters: dict[str, str], fault: str, answer: Answer
 ) -> None:
-    explorer = Explorer(SETTING, AtOnce(), lambda scenario, told: answer)
+    explorer = Explorer(SETTING, DeskAtOnce(), lambda scenario, told: answer)
     begin(explorer, parameters)
     assert explorer.answer is answer
     assert fault in explorer.fault
@@ -294,7 +278,7 @@ def test_a_link_that_cannot_be_followed_shows_the_first_scenario_and_says_why(
 
 
 def test_the_address_follows_the_page_once_the_first_answer_is_there(answer: Answer) -> None:
-    explorer = Explorer(SETTING, AtOnce(), lambda scenario, told: answer)
+    explorer = Explorer(SETTING, DeskAtOnce(), lambda scenario, told: answer)
     tools = Tools(explorer)
     assert tools.view.query == ""
     explorer.change(SETTING)

@@ -14,7 +14,7 @@ import pytest
 import stickslip as ss
 from stickslip.cli.main import main
 from stickslip.explorer.page.components import Markup
-from stickslip.explorer.server import in_notebook
+from stickslip.explorer.server import start
 from stickslip.foundation.errors import InputError
 
 
@@ -61,10 +61,10 @@ def test_scripts_and_style_sheets_come_from_the_packages(monkeypatch: pytest.Mon
 
 def test_of_many_explorers_the_oldest_ends_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     """A cell that is run again and again must not leave a thread each time."""
-    monkeypatch.setattr(in_notebook, "MOST_EXPLORERS", 1)
+    monkeypatch.setattr(start, "MOST_EXPLORERS", 1)
     monkeypatch.setattr("stickslip.explorer.page.page.build_for_notebook", lambda explorer: SimpleNamespace())
 
-    monkeypatch.setattr(in_notebook, "_AT_WORK", deque())
+    monkeypatch.setattr(start, "_AT_WORK", deque())
 
     async def cells() -> None:
         before = desk_threads()
@@ -73,9 +73,9 @@ def test_of_many_explorers_the_oldest_ends_and_says_so(monkeypatch: pytest.Monke
         second = ss.explore("fig6-slab").explorer
         thread.join(20.0)
         assert not thread.is_alive()
-        assert (first.fault, second.fault) == (in_notebook.ENDED, "")
+        assert (first.fault, second.fault) == (start.ENDED, "")
         assert len(desk_threads() - before) == 1
-        for desk in in_notebook._AT_WORK[0][1]:
+        for desk in start._AT_WORK[0][1]:
             desk.close()
 
     asyncio.run(cells())

@@ -1,12 +1,48 @@
-"""Whether the texts of a figure can be read: none is cut by the edge, and none covers another."""
+"""Texts of a figure: its labels, and whether they can be read: none is cut by the edge, and none covers another."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from itertools import combinations
 from typing import Any
 
 from matplotlib.figure import Figure
+
+import stickslip as ss
+
+SLAB = ss.ElasticSlab(density=2800, wave_speed=3500, thickness=1e4, normal_stress=1e8)
+BLOCK = ss.SpringBlock(mass=2.8e12, stiffness=3.43e13, normal_force=1e14)
+LAW = ss.friction.HyperbolicRate(static=0.8, dynamic=0.3, alpha=1.0)
+SLAB_PROBLEM = ss.Problem(SLAB, LAW, pull_rate=0.05 / ss.YEAR, initial_excess=0.0)
+BLOCK_PROBLEM = ss.Problem(BLOCK, LAW, pull_rate=0.05 / ss.YEAR, initial_excess=0.0)
+
+
+SIZES = {"year": ss.YEAR, "day": 86_400.0, "s/m": 1.0} | {
+    prefix + unit: size
+    for unit in ("s", "m", "m/s", "Pa", "N", "J", "J/m²")
+    for prefix, size in {"": 1.0, "T": 1e12, "G": 1e9, "M": 1e6, "k": 1e3, "m": 1e-3, "µ": 1e-6, "n": 1e-9}.items()
+}
+"""Size in SI units of each unit that a label may name."""
+UNIT = re.compile(rf"\(({'|'.join(map(re.escape, SIZES))})\)$")
+
+
+def labels(figure: Figure) -> list[str]:
+    """Return the axis labels that are shown."""
+    return [text for axes in figure.axes if axes.axison for text in (axes.get_xlabel(), axes.get_ylabel()) if text]
+
+
+def has_unit(text: str) -> bool:
+    """Return True if a label ends with a unit, or names a number without one."""
+    return bool(UNIT.search(text)) or text.startswith("friction coefficient")
+
+
+def size_of(text: str) -> float:
+    """Return the size, in SI units, of the unit that a label names."""
+    found = UNIT.search(text)
+    assert found is not None, text
+    return SIZES[found.group(1)]
+
 
 SLACK = 1.5
 """Points by which the boxes around two texts may overlap, and by which one may pass the edge: they are wider than the letters."""

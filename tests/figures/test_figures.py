@@ -21,8 +21,7 @@ from stickslip.figures.runs import comparison
 from stickslip.figures.runs.run import draw
 from stickslip.figures.studies import ensemble, regularise
 from stickslip.figures.style import INK, STYLE, image
-from tests.figures.labels import has_unit, labels, size_of
-from tests.figures.problems import BLOCK, BLOCK_PROBLEM, LAW, SLAB, SLAB_PROBLEM
+from tests.figures.legible import BLOCK, BLOCK_PROBLEM, LAW, SLAB, SLAB_PROBLEM, has_unit, labels, size_of
 
 mpl.use("Agg")
 

@@ -18,8 +18,7 @@ from PIL import Image
 import stickslip as ss
 from stickslip.figures.runs import animation, inside
 from stickslip.figures.style import image
-from tests.figures.labels import SIZES, labels
-from tests.figures.problems import BLOCK_PROBLEM, SLAB, SLAB_PROBLEM
+from tests.figures.legible import BLOCK_PROBLEM, SIZES, SLAB, SLAB_PROBLEM, labels
 
 mpl.use("Agg")
 

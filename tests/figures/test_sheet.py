@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 import stickslip as ss
 from stickslip.figures import sheet
 from stickslip.figures.sheet import StickslipFigure, read_size
-from tests.figures.problems import SLAB_PROBLEM
+from tests.figures.legible import SLAB_PROBLEM
 
 mpl.use("Agg")
 

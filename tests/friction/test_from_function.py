@@ -16,7 +16,7 @@ import stickslip as ss
 from stickslip import InputError
 from stickslip.friction import FromFunction, HyperbolicRate
 from stickslip.friction.formula.expression import RATE, SLIP
-from tests.typed import mypy_on
+from tests.limits import mypy_on
 
 
 def hyperbolic(u: Any, v: Any, static: float, dynamic: float, alpha: float = 1.0) -> Any:

@@ -19,8 +19,7 @@ from stickslip.run.options import RunOptions
 from stickslip.run.progress import Report
 from stickslip.run.resume import resume_run
 from stickslip.run.session import Session
-from stickslip.trajectory.checkpoint import Checkpoint
-from stickslip.trajectory.status import UNDER_WAY
+from stickslip.trajectory.status import UNDER_WAY, Checkpoint
 from tests.long_runs.problems import RUNS, differences, differences_of_files
 from tests.long_runs.processes import killed
 

@@ -5,8 +5,10 @@ from __future__ import annotations
 import json
 import math
 import os
+import socket
 import subprocess
 import sys
+from typing import Any
 
 import numpy as np
 import pytest
@@ -207,28 +209,57 @@ def test_slip_of_one_contact_is_symmetric_and_locked_nodes_rest() -> None:
 
 
 SEVERAL = """
-import json, sys
-import numpy as np
+import json, re, sys
+import jax, numpy as np
+if len(sys.argv) > 1:
+    jax.distributed.initialize(sys.argv[1], num_processes=2, process_id=int(sys.argv[2]))
+from stickslip.planar.solver import PlanarSolver, in_double_precision
 from tests.planar.patches import patch
-from stickslip.planar.solver import PlanarSolver
-import jax
 found = []
 for grid in ({"nodes": 32, "length": 2e4}, {"nodes": 32, "length": 2e4, "width": 2e4, "width_nodes": 16}):
     run = PlanarSolver(patch(**grid), 8.0)
     while run.advance(1000):
         pass
     found.append(run.now().slip.ravel().tolist())
-print(json.dumps([len(jax.devices()), found]))
+with in_double_precision():
+    step = run._march.lower(run.motion, run.waves, run.constants, run.loading[0], np.array([0, 1])).compile().as_text()
+print(json.dumps([len(jax.devices()), found, sorted(set(re.findall("all-[a-z-]+[a-z]", step)))]))
 """
 
 
-def test_two_devices_give_the_numbers_of_one() -> None:
-    answers = []
-    for count in (1, 2):
-        flags = {"XLA_FLAGS": f"--xla_force_host_platform_device_count={count}", "JAX_PLATFORMS": "cpu"}
-        run = subprocess.run([sys.executable, "-c", SEVERAL], env=os.environ | flags, capture_output=True, text=True, check=True)
-        devices, slip = json.loads(run.stdout.splitlines()[-1])
-        assert devices == count
-        answers.append(slip)
-    for one, two in zip(*answers, strict=True):
-        assert np.abs(np.subtract(one, two)).max() < 1e-12 * np.abs(one).max()
+def started(devices: int, *arguments: str) -> subprocess.Popen[str]:
+    flags = {"XLA_FLAGS": f"--xla_force_host_platform_device_count={devices}", "JAX_PLATFORMS": "cpu"}
+    command = [sys.executable, "-c", SEVERAL, *arguments]
+    return subprocess.Popen(command, env=os.environ | flags, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def answered(process: subprocess.Popen[str]) -> Any:
+    output, errors = process.communicate(timeout=300)
+    assert process.returncode == 0, errors
+    return json.loads(output.splitlines()[-1])
+
+
+def agree(one: Any, other: Any) -> bool:
+    return all(np.abs(np.subtract(a, b)).max() < 1e-12 * np.abs(a).max() for a, b in zip(one, other, strict=True))
+
+
+def test_two_devices_give_the_numbers_of_one_and_transpose_planes() -> None:
+    """The compiled step of a plane exchanges parts (all-to-all), and never gathers a plane."""
+    (one, slip, _), (two, others, exchanges) = (answered(started(count)) for count in (1, 2))
+    assert (one, two) == (1, 2)
+    assert agree(slip, others)
+    assert exchanges == ["all-to-all"]
+
+
+@pytest.mark.slow
+def test_two_processes_give_the_numbers_of_one() -> None:
+    """They find each other at a port of this machine, as processes of a cluster do."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        address = f"127.0.0.1:{free.getsockname()[1]}"
+    processes = [started(1, address, str(rank)) for rank in (0, 1)]
+    _, slip, _ = answered(started(1))
+    for devices, others, exchanges in map(answered, processes):
+        assert devices == 2
+        assert agree(slip, others)
+        assert exchanges == ["all-to-all"]

@@ -2,11 +2,83 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
+from stickslip.reference.planar import PlanarCase, SlipWeakeningAtNodes, Volume
 from stickslip.reference.planar.closed_forms import SteadyFront
-from tests.reference.planar_fronts import DYNAMIC, Front, start
+
+Array = NDArray[np.float64]
+
+DYNAMIC = 5.0
+"""Dynamic strength, far enough from 0 that slip does not reverse."""
+
+
+class ForcedFront(SlipWeakeningAtNodes):
+    """Linear slip weakening with a fracture energy of `share` G0, and strength that falls in time once a forced front has passed.
+
+    The forced front leaves y = 0 in both directions with speed 0, approaches its speed in a time `ramp`, and ends at `reach`.
+    """
+
+    def __init__(self, y: Array, share: float, strength: float, speed: float, reach: float, width: float, ramp: float) -> None:
+        super().__init__(y.shape, DYNAMIC + strength, DYNAMIC, share / strength)
+        times = np.linspace(0.0, 400.0, 100_001)
+        places = speed * (times - ramp * (1.0 - np.exp(-times / ramp))) if ramp else speed * times
+        self.passes = np.where(np.abs(y) < reach, np.interp(np.abs(y), places, times), np.inf)
+        self.time, self.fall = 0.0, width / speed
+
+    def __call__(self, slip: Array, rate: Array, nodes: NDArray[np.intp]) -> tuple[Array, Array, Array]:
+        strength, by_slip, by_rate = super().__call__(slip, rate, nodes)
+        left = np.clip(1.0 - (self.time - self.passes[nodes]) / self.fall, 0.0, 1.0)
+        forced = self.dynamic[nodes] + (self.static[nodes] - self.dynamic[nodes]) * left
+        return np.minimum(strength, forced), np.where(forced < strength, 0.0, by_slip), by_rate
+
+
+@dataclass
+class Front:
+    """A run of two fronts that leave y = 0."""
+
+    y: Array
+    run: Volume
+    friction: ForcedFront
+    passed: Array
+    """When half of the weakening had happened at each node; NaN if it has not."""
+
+    def speeds(self, places: Array, around: float = 0.25) -> tuple[Array, Array]:
+        """Return times and speeds of the front at some places, from parabolas through the nodes around each."""
+        fits = []
+        for place in places:
+            near = (np.abs(self.y - place) <= around) & np.isfinite(self.passed)
+            fits.append(np.polyfit(self.y[near] - place, self.passed[near], 2) if near.sum() > 3 else np.full(3, np.nan))
+        _, slowness, times = np.transpose(fits)
+        return times, 1.0 / slowness
+
+    def place(self) -> float:
+        """Return the y that the forced front has reached."""
+        right = self.y >= 0.0
+        return float(np.interp(self.run.time, self.friction.passes[right], self.y[right]))
+
+    def advance(self) -> None:
+        """Take a step, and note when the front passes."""
+        run, before = self.run, self.run.slip
+        self.friction.time = run.time + 0.5 * run.step_of_time
+        run.advance()
+        half = 0.5 * self.friction.distance
+        new = np.isnan(self.passed) & (run.slip >= half)
+        self.passed[new] = run.time - run.step_of_time * ((run.slip - half)[new] / (run.slip - before)[new])
+
+
+def start(length: float, per_thickness: int, duration: float, strength: float = 3.0, *forced: float, share: float = 1e9) -> Front:
+    """Return a run at its start, with so many nodes in a length h; `forced`: speed, reach, width and ramp of `ForcedFront`."""
+    n = round(length * per_thickness)
+    y = np.arange(n) / per_thickness - 0.5 * length
+    friction = ForcedFront(y, share, strength, *forced)
+    case = PlanarCase(1.0, 1.0, 1.0, (length,), np.full(n, DYNAMIC + 1.0), friction)
+    return Front(y, Volume(case, 2 * per_thickness, duration), friction, np.full(n, np.nan))
+
 
 THEORY = SteadyFront(1.0, 1.0, 1.0, 1.0)
 inf = np.inf
@@ -40,10 +112,11 @@ def _force(front: Front, end: float) -> float:
     return float(np.polyfit(times[seen][momentum < 3.2], momentum[momentum < 3.2], 1)[0])
 
 
-def test_a_steady_front_releases_g0_whatever_its_speed() -> None:
-    """Forced at 0.6 c by strength that falls in time: (tau0 - tau_d)^2 h / (2 G) within 1e-3, from the energy of the slab."""
-    front = start(48.0, 40, 60.0, 3.0, 0.6, inf, 0.6, 4.0)
-    assert _released(front, 16.0, 22.0) == pytest.approx(THEORY.released_energy, rel=1e-3)
+@pytest.mark.parametrize(("speed", "near"), [(0.3, 10.0), (0.6, 16.0), (0.9, 22.0)])
+def test_a_steady_front_releases_g0_whatever_its_speed(speed: float, near: float) -> None:
+    """Forced by strength that falls in time: (tau0 - tau_d)^2 h / (2 G) within 1e-3, from the energy of the slab."""
+    front = start(2.0 * near + 16.0, 40, 60.0, 3.0, speed, inf, 0.6, 3.0)
+    assert _released(front, near, near + 6.0) == pytest.approx(THEORY.released_energy, rel=1e-3)
 
 
 def test_slip_behind_a_steady_front_tends_to_its_end_from_below() -> None:
@@ -118,3 +191,19 @@ def test_a_front_has_the_inertia_of_the_closed_form(share: float, speed: float, 
 def test_a_front_is_steady_at_any_speed_if_fracture_energy_is_g0(speed: float) -> None:
     """The force on it is 0 within 0.2 % of what G0 alone would exert."""
     assert abs(_force(_run(1.0, speed, 3.0, 80, 10.0, 20.0), 9.0)) < 0.002 / THEORY.INERTIA
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("strength", "per_thickness", "share"), [(3.0, 80, 0.857), (4.0, 160, 0.834)])
+def test_the_process_zone_of_a_slow_front_is_five_sixths_of_the_estimate(strength: float, per_thickness: int, share: float) -> None:
+    """Distance from where slip begins to where strength is lost, over 9 pi/16 G Dc / (tau_s - tau_d) a, at 0.44 c: within 2 %."""
+    front = start(22.0, per_thickness, 22.0, strength, 0.4, 3.0, 0.08, 0.0, share=1.0)
+    times, distance = np.full((2, len(front.y)), np.nan), front.friction.distance[0]
+    chosen = (front.y > 4.5) & (front.y < 6.0)
+    while np.isnan(times[1, chosen]).any():
+        front.advance()
+        for found, slip in zip(times, (0.0, distance), strict=True):
+            found[np.isnan(found) & (front.run.slip > slip)] = front.run.time
+    speed = float(front.speeds(np.arange(4.5, 6.0, 0.25))[1].mean())
+    length = speed * float((times[1] - times[0])[chosen].mean())
+    assert length / (9.0 * np.pi / 16.0 / strength**2 * np.sqrt(1.0 - speed**2)) == pytest.approx(share, rel=0.02)

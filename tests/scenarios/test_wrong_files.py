@@ -115,7 +115,7 @@ def test_results_are_told_from_scenarios(tmp_path: Path):
     renamed = run.rename(tmp_path / "run.toml")
     assert refusal(renamed).startswith("a file of results, not a scenario")
     ss.sweep("fig6-slab", {"friction.alpha": np.array([0.5, 1.0])}, out=sweep)
-    assert refusal(sweep) == f"the results of a sweep, not a scenario: `stickslip show {sweep}` summarises them"
+    assert refusal(sweep) == f"a folder of results, not a scenario: `stickslip show {sweep}` summarises them"
     table.write_text("slip,friction\n0,0.8\n")
     assert refusal(table).startswith("a table, not a scenario: a scenario names it, as [friction] file")
     picture = tmp_path / "a.png"

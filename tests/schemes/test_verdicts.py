@@ -12,8 +12,8 @@ import pytest
 
 import stickslip as ss
 from stickslip.schemes.series import Series
-from stickslip.studies.rule_followed import NONE, STRICT, UNTOLD
 from stickslip.studies.schemes import Schemes, judge_series, schemes
+from stickslip.studies.verdict import NONE, STRICT, UNTOLD
 
 LOOP = ss.load_scenario("fig4-loop")
 TIME = np.linspace(0.0, 5.7, 2001)

@@ -288,7 +288,7 @@ def test_the_command_continues_a_stopped_sweep(
         main([*command[:4], "--out", "first.zarr", "--chunk", "1"])  # compiles what is needed, which is announced
     capsys.readouterr()
     stop = Stop(2)
-    monkeypatch.setattr("stickslip.run.progress_line.progress_line", lambda _: nullcontext(stop))
+    monkeypatch.setattr("stickslip.run.progress.progress_line", lambda _: nullcontext(stop))
     with pytest.raises(SystemExit) as ended:
         main(command)
     assert ended.value.code == 130

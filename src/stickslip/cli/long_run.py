@@ -16,8 +16,7 @@ from stickslip.cli.output.files import CATALOGUES, Target, check_targets, file_s
 from stickslip.cli.overrides import load_with, read
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import number
-from stickslip.run.progress import LONG_RUN
-from stickslip.run.progress_line import progress_line
+from stickslip.run.progress import LONG_RUN, progress_line
 from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.schema import check_events, read_duration
 
@@ -99,6 +98,10 @@ class Request:
         """Refuse files that could not be written, and options that exclude each other. Raises InputError."""
         if self.scenario is None and self.resume is None:
             raise InputError("run: nothing to run: give a SCENARIO, or --resume FILE")
+        if self.has_contact and self.out is not None and self.out.exists():
+            raise InputError(
+                f"--out {self.out}: exists: --resume {self.out} continues the run in it; choose another name, or remove it"
+            )
         results = Target("--out", self.out, (".zarr",) if self.has_contact else (".nc",))
         check_targets(results, Target("--catalogue", self.catalogue, CATALOGUES), *self.pictures.targets())
         self.pictures.check()
@@ -170,13 +173,32 @@ class Request:
 
 def solve_contact(request: Request) -> PlanarSolution:
     """Run with a contact of many nodes, and say before the start how large the run is. Raises InputError."""
+    if request.resume is not None:
+        return _resume_contact(request, request.resume)
     chosen = request.chosen
     announce_run(chosen)
     with progress_line(f"{chosen.name}:") as report:
-        from stickslip.run.simulate import simulate
+        from stickslip.run.planar_run import simulate_planar
 
         assert chosen.contact is not None
-        return simulate(chosen.planar_slab, chosen.duration, frames=chosen.contact.frames, progress=report)
+        keep: dict[str, Any] = {"checkpoint": request.out, "scenario": chosen}
+        return simulate_planar(chosen.planar_slab, chosen.duration, frames=chosen.contact.frames, progress=report, **keep)
+
+
+def _resume_contact(request: Request, folder: Path) -> PlanarSolution:
+    from stickslip.io.planar_store import open_planar, scenario_in
+    from stickslip.run.planar_run import resume_planar
+    from stickslip.scenarios.contact import Contact
+
+    if request.out is not None:
+        raise InputError(f"run: --resume {folder} continues in its own folder: leave out --out")
+    stopped, began = open_planar(folder), scenario_in(folder)
+    check_same(request, stopped.slab.problem)
+    if request.scenario is not None and Contact.of(request.chosen.planar_slab) != Contact.of(stopped.slab):
+        raise InputError(f"{folder}: is a run of another problem than {request.scenario}: its [contact] differs")
+    announce_run(began if request.duration is None else replace(began, duration=request.duration))
+    with progress_line(f"{folder.stem}:") as report:
+        return resume_planar(folder, request.duration, progress=report)
 
 
 def solve(request: Request) -> tuple[Scenario, Solution]:
@@ -189,11 +211,11 @@ def solve(request: Request) -> tuple[Scenario, Solution]:
             from stickslip.run.simulate import simulate  # imports the compiler, which takes a second
 
             return chosen, simulate(chosen, progress=report, **keep)
-    from stickslip.io.netcdf import open_solution
+    from stickslip.io.netcdf import read_solution
     from stickslip.run.options import RunOptions
     from stickslip.run.resume import resume_run
 
-    stopped = open_solution(request.resume)
+    stopped = read_solution(request.resume)
     check_same(request, stopped.problem)
     with _watched(request, stopped.problem, request.resume.stem) as report:
         others = {"progress": report, "checkpoint": request.out or request.resume, "max_pieces": request.max_pieces}

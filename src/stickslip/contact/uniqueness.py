@@ -110,44 +110,18 @@ class Uniqueness:
         return self.resistance.plateaus if self.resistance else ()
 
     def g(self, rate: ArrayLike) -> NDArray[np.float64]:
-        """Return the resistance Z v + S mu(v) to slip, an odd function of v.
+        """Return the resistance Z v + S mu(v) to slip (Pa) at slip rates v (m/s), an odd function of v; 0 means the limit 0+.
 
-        Parameters
-        ----------
-        rate : array_like
-            Slip rates v (m/s); 0 means the limit 0+.
-
-        Returns
-        -------
-        ndarray
-            Resistance (Pa), of the shape of `rate`.
-
-        Raises
-        ------
-        InputError
-            If the slip rate is a state: a block, a contact with mass, or a law with a state.
+        Raises InputError if the slip rate is a state: a block, a contact with mass, or a law with a state.
         """
         g, rates = self._equation(), np.asarray(rate, float)
         return np.where(rates < 0.0, -1.0, 1.0) * (g.strength + g.excess(np.abs(rates)))
 
     def admissible(self, load: float) -> NDArray[np.float64]:
-        """Return all slip rates that solve the contact equation at a load.
+        """Return all slip rates (m/s) that solve the contact equation at a load (Pa), ascending, with stick (0) and backward slip.
 
-        Parameters
-        ----------
-        load : float
-            Load (Pa).
-
-        Returns
-        -------
-        ndarray, shape (n,)
-            Slip rates (m/s), ascending, with stick (0) and backward slip. If all slip rates of an interval are solutions, its two
-            ends represent it: see `continuum`.
-
-        Raises
-        ------
-        InputError
-            If the slip rate is a state: a block, a contact with mass, or a law with a state.
+        If all slip rates of an interval are solutions, its two ends represent it: see `continuum`. Raises InputError if the slip
+        rate is a state: a block, a contact with mass, or a law with a state.
         """
         return self._solutions(load)[0]
 

@@ -51,7 +51,7 @@ def explore(
         scenario because its law is a function of Python.
     """
     check_extra("explore")
-    from stickslip.explorer.server.in_notebook import shown_in_notebook
+    from stickslip.explorer.server.start import shown_in_notebook
     from stickslip.scenarios.scenario import Scenario
     from stickslip.scenarios.source import read_source
 
@@ -62,7 +62,7 @@ def explore(
         found = replace(found, duration=duration)
     behind = None
     if record is not None:
-        from stickslip.explorer.model.measured import Backdrop
+        from stickslip.explorer.model.answer import Backdrop
         from stickslip.studies.inference.record import Record
 
         behind = Backdrop.of(Record.read(record), sensor, found.problem)

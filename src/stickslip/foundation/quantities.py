@@ -36,23 +36,12 @@ LARGEST_SERIES = 10_000
 
 @dataclass(frozen=True)
 class Quantity:
-    """Unit (SI), meaning and allowed range of a number.
+    """Unit (SI; "1" for a pure number), meaning and allowed range of a number.
 
-    Parameters
-    ----------
-    unit : str
-        SI unit, "1" for a pure number.
-    meaning : str
-        Description for people.
-    above, at_least : float, optional
-        Exclusive and inclusive lower bound, in `unit`.
-    infinite : bool
-        If True, infinite values and magnitudes above `LARGEST` are allowed.
-    word : str
-        Text that may be given for infinity besides "inf", if `infinite`.
-    whole : bool
-        If True, only whole numbers up to `LARGEST_WHOLE` in magnitude are allowed, such as an exponent. In a friction law such a
-        number is written into the formula and is not a parameter of it.
+    `above` and `at_least` are exclusive and inclusive lower bounds, in `unit`. If `infinite`, infinite values and magnitudes above
+    `LARGEST` are allowed, and `word` may be given for infinity besides "inf". If `whole`, only whole numbers up to `LARGEST_WHOLE`
+    in magnitude are allowed, such as an exponent. In a friction law such a number is written into the formula and is not a
+    parameter of it.
     """
 
     unit: str

@@ -1,6 +1,6 @@
 """Define what a friction law states about itself: everything that the author of a law may write is on this page.
 
-`laws/hyperbolic_rate.py` is a typical law. What the code works out from these statements is in `law.py`.
+`HyperbolicRate` in `laws/of_rate.py` is a typical law. What the code works out from these statements is in `law.py`.
 """
 
 from __future__ import annotations
@@ -14,9 +14,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.foundation.arguments import CheckedArguments
-from stickslip.foundation.brief_repr import brief_repr
+from stickslip.foundation.brief_repr import brief_repr, document_fields
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.field_docs import document_fields
 from stickslip.foundation.quantities import check_fields
 from stickslip.friction.formula.expression import STATES
 

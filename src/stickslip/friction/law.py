@@ -112,22 +112,10 @@ class FrictionLaw(LawContract):
         return tuple(w) if many > 1 and np.ndim(w) else (w,) * many
 
     def coefficient(self, u: ArrayLike, v: ArrayLike = 0.0, w: ArrayLike = 0.0) -> NDArray[np.float64]:
-        """Return the friction coefficient mu while the contact slips.
+        """Return the friction coefficient mu (no unit) while the contact slips; the arguments broadcast.
 
-        Parameters
-        ----------
-        u
-            Slip (m) as the law counts it.
-        v
-            Magnitude of the slip rate (m/s), not negative; 0 means the limit v = 0+.
-        w
-            State in the form that the formulas use (`inner_state`), for a law with a state; for several states an array with one
-            more axis in front, with one entry for each state.
-
-        Returns
-        -------
-        array
-            mu (no unit), with the shape to which the arguments broadcast.
+        `u` is the slip (m) as the law counts it, `v` the magnitude of the slip rate (m/s), where 0 means the limit v = 0+, and `w`
+        the state in the form that the formulas use (`inner_state`); for several states it is an array with one more axis in front.
         """
         given = (np.asarray(one, float) for one in (u, v, *self.each_state(w)))
         slip, rate, *states = np.broadcast_arrays(*given)

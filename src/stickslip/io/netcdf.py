@@ -28,14 +28,15 @@ from stickslip.scenarios import Scenario, read_scenario
 from stickslip.solution.evaluation import Curve, Readings
 from stickslip.solution.solution import Solution
 from stickslip.solution.window import Window
-from stickslip.trajectory.checkpoint import ARRAYS, Checkpoint
 from stickslip.trajectory.history import NO_LEAPS, History
 from stickslip.trajectory.slip_events import SlipEvents, default_event_rate
-from stickslip.trajectory.status import ENOUGH_EVENTS, STATUSES, Status
+from stickslip.trajectory.status import ARRAYS, ENOUGH_EVENTS, STATUSES, Checkpoint, Status
 from stickslip.trajectory.tables import SHOCK_COLUMNS, rule_in_force, shock_columns
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from stickslip.solution.planar import PlanarSolution
 
 FORMAT = 1
 """Version of the file layout below; a file with another version is refused."""
@@ -163,28 +164,12 @@ def _curves(solution: Readings, t: NDArray[np.float64], values: Mapping[Curve, N
 
 
 def write_solution(solution: Solution, path: str | Path) -> Path:
-    """Write a solution to a netCDF file, from which `open_solution` gives it back bit for bit.
+    """Write a solution to a netCDF file, as a whole or not at all; `open_solution` gives it back bit for bit. Return the path.
 
     Besides the history, the file holds curves for drawing (with both limits at shocks), the tables of events and shocks, and as
-    attributes the version, the full scenario, the selection rule and the tolerance.
-
-    Parameters
-    ----------
-    solution : Solution
-        The solution to write.
-    path : str or Path
-        Name of the file, which is written as a whole or not at all.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be written. If the disk is full, it is a FullDiskError, whose attribute `solution` is the solution, to be
-        saved elsewhere; if a loading history is not registered, the file could not be read back.
+    attributes the version, the full scenario, the selection rule and the tolerance. Raises InputError if the file cannot be
+    written. If the disk is full, it is a FullDiskError, whose attribute `solution` is the solution, to be saved elsewhere; if a
+    loading history is not registered, the file could not be read back.
     """
     file = as_path("to_netcdf: path", path)
     variables = history_variables(solution) | _drawing(solution) | _tables(solution)
@@ -289,27 +274,24 @@ def _tables(solution: Solution) -> dict[str, Variable]:
     return variables
 
 
-def open_solution(path: str | Path) -> Solution:
-    """Read a solution from a netCDF file that `Solution.to_netcdf` or a run wrote.
+def open_solution(path: str | Path) -> Solution | PlanarSolution:
+    """Read a solution from a netCDF file that `Solution.to_netcdf` or a run wrote, or from the folder of a `PlanarSlab`'s run.
 
-    Parameters
-    ----------
-    path : str or Path
-        Name of the file.
-
-    Returns
-    -------
-    Solution
-        The solution, bit for bit as it was.
-
-    Raises
-    ------
-    InputError
-        If the file is missing, damaged, no solution of this version of stickslip, or holds numbers that no run can have; also if
-        its selection rule is not registered.
+    It is bit for bit as it was; the fields of a `PlanarSolution` are read when they are first used. Raises InputError if the file
+    is missing, damaged, no solution of this version of stickslip, or holds numbers that no run can have; also if its selection rule
+    is not registered.
     """
     file = as_path("open_solution: path", path)
-    return to_solution(read(file), file)
+    if file.is_dir():
+        from stickslip.io.planar_store import open_planar  # with zarr, which takes half a second to load
+
+        return open_planar(file)
+    return read_solution(file)
+
+
+def read_solution(path: Path) -> Solution:
+    """Read a solution from a netCDF file, and raise InputError, as `open_solution` does."""
+    return to_solution(read(path), path)
 
 
 def read(path: Path, kind: str = "stickslip_format") -> xr.Dataset:

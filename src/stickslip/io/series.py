@@ -24,26 +24,12 @@ NAMES: dict[str, dict[str, float]] = {
 
 
 def read_series(path: str | Path, *, cells: int = 0) -> Series:
-    """Read a series from a file.
+    """Read a series, named after the file; `cells` is the number of cells in the thickness, if it is known.
 
-    Parameters
-    ----------
-    path : str or Path
-        Text with lines of comment that begin with #, one line with the names of columns, and a line for each time; columns are
-        separated by commas or spaces. NAMES lists the names that are understood. Slip counts from t = 0. Of two lines with the same
-        time, as at a shock, the last one counts.
-    cells : int
-        Number of cells in the thickness, if it is known.
-
-    Returns
-    -------
-    Series
-        The series, named after the file.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, if a column is missing, if a value is not a finite number, or if times do not ascend.
+    The text has lines of comment that begin with #, one line with the names of columns (NAMES lists those that are understood), and
+    a line for each time; columns are separated by commas or spaces. Slip counts from t = 0. Of two lines with the same time, as at
+    a shock, the last one counts. Raises InputError if the file cannot be read, if a column is missing, if a value is not a finite
+    number, or if times do not ascend.
     """
     file = Path(path)
     try:

@@ -23,8 +23,8 @@ from stickslip.engine_input.prepare import prepare
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import InputError
 from stickslip.solution.solution import Solution
-from stickslip.trajectory.checkpoint import Checkpoint
 from stickslip.trajectory.history import History
+from stickslip.trajectory.status import Checkpoint
 
 ROUND_TRIP_ROUNDING = 1e-9
 """Share of a round trip by which rounding may carry an offset beyond its end; also the tolerance of xi around 0 and 1."""

@@ -14,10 +14,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.foundation.arguments import CheckedArguments
-from stickslip.foundation.brief_repr import brief_repr
+from stickslip.foundation.brief_repr import brief_repr, document_fields
 from stickslip.foundation.conversion import unit_among
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.field_docs import document_fields
 from stickslip.foundation.quantities import Quantity, Series, check_fields, fields_of
 
 VARYING = "m/s or Pa"
@@ -139,17 +138,9 @@ class LoadingHistory(CheckedArguments, ABC):
         return self.segments[0].value + self.tone.amplitude * math.sin(self.tone.phase)
 
     def at(self, t: ArrayLike) -> NDArray[np.float64]:
-        """Return the values of the history at given times.
+        """Return the values (m/s or Pa) of the history at times (s since the start of the run) of any shape.
 
-        Parameters
-        ----------
-        t
-            Times (s since the start of the run), of any shape.
-
-        Returns
-        -------
-        array
-            Values (m/s or Pa), with the shape of `t`. At a jump it is the value after the jump; before 0 s it is the value at 0 s.
+        At a jump it is the value after the jump; before 0 s it is the value at 0 s.
         """
         time = np.maximum(np.asarray(t, float), 0.0)
         start, value, slope = self._table

@@ -93,21 +93,9 @@ class Run(Protocol):
 
 
 def predictability(run: Run) -> Predictability:
-    """Return how far disturbances have grown along a run.
+    """Return how far disturbances have grown along a run of a slab without contact mass, under a law of slip rate only.
 
-    Parameters
-    ----------
-    run : Solution
-        Run of a slab without contact mass, under a law of slip rate only.
-
-    Returns
-    -------
-    Predictability
-
-    Raises
-    ------
-    InputError
-        For any other problem: there, slip, inertia or a state variable decide how a disturbance grows.
+    Raises InputError for any other problem: there, slip, inertia or a state variable decide how a disturbance grows.
     """
     if not isinstance(getattr(run, "history", None), History):
         raise InputError(f"predictability: needs a Solution, got {shown(run)}")

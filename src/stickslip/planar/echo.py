@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +21,7 @@ from scipy.special import j1, roots_legendre
 Floats = NDArray[np.float64]
 MOST = 1024
 """Largest number of Gauss points of one step of the integral, where J1 oscillates many times within the step."""
-BLOCK = 4_000_000
+BLOCK = 100_000
 """Evaluations of J1 at a time."""
 
 
@@ -97,21 +98,28 @@ def kernel_spectra(weights: Weights, steps_per_round_trip: int, unique: NDArray[
 
 
 class Echo(NamedTuple):
-    """Echoes of what has been sent so far. The last axes of all arrays are those of the amplitudes: 2 and the wavenumbers."""
+    """What has been sent so far. The last axes of all arrays are those of the amplitudes: 2 and the wavenumbers."""
 
-    ahead: Any
-    """Fourier transforms of the integrals of the coming round trips, the next one first: (round trips, steps + 1, ...)."""
+    past: Any
+    """Fourier transforms of W, for each round trip that has passed, over its steps + 1 moments: (round trips, steps + 1, ...)."""
+    first: Any
+    """W at the first moment of each of these round trips: (round trips, ...)."""
     last: Any
+    """W at their last moments."""
+    count: Any
+    """The number of round trips that have passed."""
+    integral: Any
     """The integral at the end of the present round trip."""
 
 
 def silent(round_trips: int, steps: int, shape: tuple[int, ...]) -> Echo:
     """Return the echo of a contact that has not slipped, for a number of coming round trips."""
-    return Echo(np.zeros((round_trips, steps + 1, *shape), complex), np.zeros(shape))
+    ends = np.zeros((round_trips, *shape))
+    return Echo(np.zeros((round_trips, steps + 1, *shape), complex), ends, ends, np.zeros((), int), np.zeros(shape))
 
 
 def echo_of(sent: Any, echo: Echo, spectra: Any, reflection: float) -> tuple[Any, Echo]:
-    """Return the echo P of the coming round trip, and the echo that is prepared for those after it.
+    """Return the echo P of the coming round trip, and what has been sent until then.
 
     Parameters
     ----------
@@ -129,10 +137,20 @@ def echo_of(sent: Any, echo: Echo, spectra: Any, reflection: float) -> tuple[Any
     tuple
         P (Pa), with the shape of `sent`, and the next `Echo`.
     """
-    steps = sent.shape[0] - 1
-    late, early = (jnp.fft.rfft(part, n=2 * steps, axis=0) for part in (sent[1:], sent[:-1]))
-    new = spectra[:, 0, :, None] * late + spectra[:, 1, :, None] * early
-    ahead = new + jnp.concatenate([echo.ahead[1:], jnp.zeros_like(echo.ahead[:1])])
-    integral = jnp.fft.irfft(ahead[0], n=2 * steps, axis=0)[steps:]
-    integral = jnp.concatenate([echo.last[None], integral])
-    return reflection * (sent - integral), Echo(ahead, integral[-1])
+    put = jax.lax.dynamic_update_index_in_dim
+    steps, count = sent.shape[0] - 1, echo.count
+    found = jnp.fft.rfft(sent, n=2 * steps, axis=0)
+    past, first, last = (
+        put(array, one, count, 0) for array, one in ((echo.past, found), (echo.first, sent[0]), (echo.last, sent[-1]))
+    )
+    moments = np.arange(steps + 1).reshape(-1, *(1,) * (sent.ndim - 1))
+    forward, end = np.exp(1j * np.pi * moments / steps), (-1.0) ** moments  # of one step, and of a round trip back
+
+    def added(n: Any, total: Any) -> Any:
+        """Add what was sent n round trips before the one that ends: at the late ends of its steps, and at the early ones."""
+        one, kernel = past[count - n], spectra[n]
+        return total + kernel[0][:, None] * forward * (one - first[count - n]) + kernel[1][:, None] * (one - end * last[count - n])
+
+    total = jax.lax.fori_loop(0, count + 1, added, jnp.zeros_like(found))
+    integral = jnp.concatenate([echo.integral[None], jnp.fft.irfft(total, n=2 * steps, axis=0)[steps:]])
+    return reflection * (sent - integral), Echo(past, first, last, count + 1, integral[-1])

@@ -52,24 +52,24 @@ class Layout:
         return int(self.mesh.size)
 
     @property
-    def _half(self) -> int:
+    def half(self) -> int:
         """The number of wavenumbers of the axis on which a real transform is made."""
         return self.shape[-1] // 2 + 1
 
     @property
     def modes(self) -> tuple[int, ...]:
         """The shape of the wavenumbers, filled up so that the last axis can be spread over the devices."""
-        return (*self.shape[:-1], -(-self._half // self.count) * self.count)
+        return (*self.shape[:-1], -(-self.half // self.count) * self.count)
 
     @cached_property
     def wavenumbers(self) -> NDArray[np.float64]:
         """|k| (rad/m), of shape `modes`; 0 where wavenumbers are only filled up."""
         last = np.zeros(self.modes[-1])
-        last[: self._half] = 2.0 * np.pi * np.fft.rfftfreq(self.shape[-1], self.spacing[-1])
+        last[: self.half] = 2.0 * np.pi * np.fft.rfftfreq(self.shape[-1], self.spacing[-1])
         if len(self.shape) == 1:
             return last
         first = 2.0 * np.pi * np.fft.fftfreq(self.shape[0], self.spacing[0])
-        return np.where(np.arange(last.size) < self._half, np.hypot(first[:, None], last), 0.0)
+        return np.where(np.arange(last.size) < self.half, np.hypot(first[:, None], last), 0.0)
 
     def amplitudes(self, field: Any) -> Any:
         """Return the Fourier amplitudes of a field, real and imaginary parts apart, on the part of this device."""
@@ -87,14 +87,14 @@ class Layout:
         """Return the field with these Fourier amplitudes, on the part of this device."""
         found = amplitudes[0] + 1j * amplitudes[1]
         if len(self.shape) == 1:
-            whole = jnp.fft.irfft(jax.lax.all_gather(found, AXIS, tiled=True)[: self._half], n=self.shape[0])
+            whole = jnp.fft.irfft(jax.lax.all_gather(found, AXIS, tiled=True)[: self.half], n=self.shape[0])
             size = self.shape[0] // self.count
             return jax.lax.dynamic_slice_in_dim(whole, jax.lax.axis_index(AXIS) * size, size)
         found = jax.lax.all_to_all(jnp.fft.ifft(found, axis=0), AXIS, 0, 1, tiled=True)
-        return jnp.fft.irfft(found[:, : self._half], n=self.shape[1], axis=1)
+        return jnp.fft.irfft(found[:, : self.half], n=self.shape[1], axis=1)
 
     def _filled(self, found: Any) -> Any:
-        missing = self.modes[-1] - self._half
+        missing = self.modes[-1] - self.half
         return jnp.pad(found, [(0, 0)] * (found.ndim - 1) + [(0, missing)])
 
     def along_y(self, rank: int) -> PartitionSpec:

@@ -11,7 +11,7 @@ sqrt(1 - exp(2 i a)) z exp(z x) with z = i exp(i a). The real part of z is never
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,6 +52,11 @@ def exponentials(longest: float, points: int = POINTS) -> Exponentials:
     return Exponentials(poles, -2.0 / math.pi * weights * root * poles)
 
 
+def horizon(round_trips: int) -> int:
+    """Return the number of round trips for which a run makes its exponentials: up to there it can be prolonged."""
+    return 1 << (round_trips - 1).bit_length()
+
+
 class Recurrence(NamedTuple):
     """How the memory of each wavenumber is advanced by one step: a row for each exponential, then the axes of wavenumbers.
 
@@ -85,6 +90,16 @@ def recurrence(frequencies: Floats, impedance: float, step: float, duration: flo
     begin, end = strength * (phi1 - phi2), strength * phi2  # what slip at the beginning and at the end of a step adds
     decay = np.exp(rates)
     return Recurrence(decay, decay * end + begin, end.real.sum(axis=0))
+
+
+def advanced(memory: Any, decay: Any, gain: Any, slip: Any) -> tuple[Any, Any]:
+    """Return the memory after a step (see `Recurrence`), and the sum of its real parts, for arrays of numpy or JAX.
+
+    As complex numbers the product is compiled into one loop in place; apart, real and imaginary parts need two loops and a copy.
+    The sum is written as one of slices, because JAX's reduction over the first axis is ten times as slow on a processor.
+    """
+    memory = decay * memory + gain * slip
+    return memory, sum(term.real for term in memory)
 
 
 def _phi(z: Complex) -> tuple[Complex, Complex]:

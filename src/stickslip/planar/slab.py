@@ -33,7 +33,8 @@ WIDEST_STEP = 2.5
 ENOUGH_NODES = 5.0
 """Nodes in a process zone from which a front is called resolved: a rule of thumb, which twice the nodes put to the test."""
 PROCESS_ZONE = 9.0 * math.pi / 16.0
-"""Length of the process zone of a slow front, times the largest -S mu'/G: twice that between two half-spaces."""
+"""Length of the process zone of a slow front, times the largest -S mu'/G: K^2/(4 G) is the fracture energy (strength drop) Dc/2,
+with K = 4/3 sqrt(2 length/pi) (strength drop)."""
 STEEPEST = 0.5
 """Largest change of strength with slip in one time step, S |mu'| dt, as a share of the impedance."""
 
@@ -195,8 +196,10 @@ class PlanarSlab(CheckedArguments):
     def nodes_per_process_zone(self, reach: float) -> float:
         """Return the nodes within the process zone of a slow front, where friction falls from its peak; NaN if it does not fall.
 
-        It is 9 pi/16 G divided by the largest fall of strength with slip (Pa/m) and by the distance of nodes (Day et al. 2005, for
-        linear slip weakening; twice their length, because G acts on one side here). Fronts that run fast have shorter ones.
+        It is 9 pi/16 G divided by the largest fall of strength with slip (Pa/m) and by the distance of nodes: the length over which
+        strength that falls linearly with distance takes the fracture energy of linear slip weakening. (Between two half-spaces it
+        is 9 pi/32, for which codes cite Day et al. 2005.) Zones of slow fronts were measured to have 5/6 of it, in
+        `tests/reference/test_long_faults.py`; those of fronts of speed V are shorter by sqrt(1 - V^2/c^2).
 
         Parameters
         ----------
@@ -216,6 +219,10 @@ class PlanarSlab(CheckedArguments):
         steep = max(self.values.slopes(self.reach)) if self.reach > 0.0 else 0.0
         waves = 2.0 * self.body.thickness / (self.courant * min(self.spacing))
         return math.ceil(max(waves, self.body.two_way_time * steep / (STEEPEST * self.body.impedance)) - 1e-9)
+
+    def round_trips(self, duration: float) -> int:
+        """Return the number of round trips that a run of this duration (s) begins."""
+        return max(1, math.ceil(duration / self.body.two_way_time - 1e-9))
 
     def alone_for(self, duration: float) -> tuple[PlanarSlab, tuple[slice, ...]]:
         """Return a periodic slab that holds this contact so far from its replicas that no wave of them arrives in time.

@@ -10,7 +10,7 @@ at all nodes. The error is of order 2 in the time step where the motion is smoot
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -26,7 +26,7 @@ from stickslip.planar.driving import locked_load
 from stickslip.planar.echo import Echo, echo_of, echo_weights, kernel_spectra, silent
 from stickslip.planar.friction import Contact, Nodes
 from stickslip.planar.layout import Layout, whole
-from stickslip.planar.memory import recurrence
+from stickslip.planar.memory import advanced, horizon, recurrence
 from stickslip.planar.slab import PlanarSlab
 
 Floats = NDArray[np.float64]
@@ -114,7 +114,7 @@ class PlanarSolver:
         self.steps = self.steps_per_round_trip or self.slab.steps_per_round_trip
         self.body = body = self.slab.body
         self.dt = body.two_way_time / self.steps
-        self.trips = max(1, int(np.ceil(self.duration / body.two_way_time - 1e-9)))
+        self.trips = self.slab.round_trips(self.duration)
         self.layout = Layout(self.slab.shape, self.slab.spacing, self.devices)
         self.contact = Contact(self.slab.values.law, body.impedance)
         with in_double_precision():
@@ -128,7 +128,12 @@ class PlanarSolver:
     @property
     def last_step(self) -> int:
         """The number of steps in the whole run."""
-        return int(np.ceil(self.duration / self.dt - 1e-9))
+        return min(int(np.ceil(self.duration / self.dt - 1e-9)), self.trips * self.steps)
+
+    @property
+    def steps_left(self) -> int:
+        """The number of steps up to the end of the run."""
+        return max(0, self.last_step - self.trip * self.steps - self.step)
 
     @cached_property
     def loading(self) -> Floats:
@@ -140,7 +145,7 @@ class PlanarSolver:
     def _begin(self) -> None:
         layout, values = self.layout, self.slab.values
         frequencies = layout.wavenumbers * self.body.wave_speed
-        law_of_waves = recurrence(frequencies, self.body.impedance, self.dt, self.trips * self.body.two_way_time)
+        law_of_waves = recurrence(frequencies, self.body.impedance, self.dt, horizon(self.trips) * self.body.two_way_time)
         nodes = Nodes.of(values, self.slab.locked)
         decay, gain, now = law_of_waves.decay[:, None], law_of_waves.gain[:, None], law_of_waves.now
         self.constants = self._put(Constants(nodes, values.load, decay, gain, now), self._spread_constants)
@@ -181,7 +186,8 @@ class PlanarSolver:
     @property
     def _spread_echo(self) -> Echo:
         rank = 1 + len(self.slab.shape)
-        return Echo(self.layout.along_k(rank + 2), self.layout.along_k(rank))
+        ends = self.layout.along_k(rank + 1)
+        return Echo(self.layout.along_k(rank + 2), ends, ends, PartitionSpec(), self.layout.along_k(rank))
 
     @property
     def _spread_constants(self) -> Constants:
@@ -241,8 +247,7 @@ class PlanarSolver:
         loads = constants.initial_load + loading, arriving
         guess, _ = self._moved(now, (motion, waves.rate), constants, loads)
         found, waves = self._moved(now, (guess, self.layout.amplitudes(guess.rate)), constants, loads)
-        memory = constants.decay * waves.memory + constants.gain * waves.slip
-        inherited = sum(term.real for term in memory)  # of slices: compiled into one loop, five times as fast as a reduction
+        memory, inherited = advanced(waves.memory, constants.decay, constants.gain, waves.slip)
         waves = waves._replace(memory=memory, inherited=inherited, rate=self.layout.amplitudes(found.rate))
         sent = jax.lax.dynamic_update_index_in_dim(waves.sent, self._leaving(waves, arriving), step, 0)
         return found, waves._replace(sent=sent)
@@ -281,15 +286,15 @@ class PlanarSolver:
 
     def advance(self, count: int) -> int:
         """Take at most `count` steps, no further than the end of the round trip or of the run; return how many were taken."""
+        if not self.steps_left:
+            return 0
         with in_double_precision():
-            if self.step == self.steps and self.trip + 1 < self.trips:
+            if self.step == self.steps:
                 self._begin_next_round_trip()
-            left = self.last_step - self.trip * self.steps
-            taken = max(0, min(count, self.steps - self.step, left - self.step))
-            if taken:
-                loading, between = self.loading[self.trip], np.array([self.step, self.step + taken])
-                self.motion, self.waves = self._march(self.motion, self.waves, self.constants, loading, between)
-                self.step += taken
+            taken = min(count, self.steps - self.step, self.steps_left)
+            loading, between = self.loading[self.trip], np.array([self.step, self.step + taken])
+            self.motion, self.waves = self._march(self.motion, self.waves, self.constants, loading, between)
+            self.step += taken
             return taken
 
     def _begin_next_round_trip(self) -> None:
@@ -305,6 +310,54 @@ class PlanarSolver:
         """Return the motion at the present moment as numpy arrays."""
         with in_double_precision():
             return Motion(*(whole(one) for one in self.motion))
+
+    # ---- stop, and continue ------------------------------------------------------------------------------------------------------
+
+    def sent(self, since: int) -> Floats:
+        """Return W from a step of this round trip to the present one: (steps, 2, wavenumbers), without those that are filled up."""
+        with in_double_precision():
+            return np.asarray(whole(self.waves.sent[since : self.step + 1]))[..., : self.layout.half]
+
+    def state(self) -> dict[str, Floats]:
+        """Return what a run needs to continue, beside W since its start."""
+        with in_double_precision():
+            waves = {f"waves_{name}": whole(getattr(self.waves, name))[..., : self.layout.half] for name in KEPT}
+        waves["waves_memory"] = np.stack([waves["waves_memory"].real, waves["waves_memory"].imag])
+        return waves | {f"motion_{name}": one for name, one in self.now()._asdict().items()}
+
+    def restore(self, state: Mapping[str, Floats], trip: int, step: int, sent: Callable[[int], Floats]) -> None:
+        """Go to an earlier state of a run: of this number of devices, or of another.
+
+        Parameters
+        ----------
+        state
+            What `state` returned.
+        trip, step
+            Number of whole round trips then, and of steps since.
+        sent
+            W at the steps of a round trip, the present one up to the present step, as `sent` returned it.
+        """
+        more = self.layout.modes[-1] - self.layout.half
+
+        def filled(amplitudes: Any) -> Any:
+            return np.pad(amplitudes, [(0, 0)] * (amplitudes.ndim - 1) + [(0, more)])
+
+        with in_double_precision():
+            where, arriving = self._spread_waves, self.waves.arriving
+            for n in range(trip):  # the echoes follow from what was sent
+                arriving, self.echo = self._turn(self.layout.put(filled(sent(n)), where.sent), self.echo, self.spectra)
+            kept = {name: filled(state[f"waves_{name}"]) for name in KEPT}
+            kept["memory"] = kept["memory"][0] + 1j * kept["memory"][1]
+            path = np.zeros((self.steps + 1, *self.waves.now.shape))
+            path[: step + 1] = filled(sent(trip))
+            put = {name: self.layout.put(value, getattr(where, name)) for name, value in (kept | {"sent": path}).items()}
+            self.waves = Waves(arriving=arriving, **put)
+            self.motion = self._put(Motion(*(state[f"motion_{name}"] for name in Motion._fields)), self._spread_motion)
+            self.trip, self.step = trip, step
+
+
+KEPT = tuple(name for name in Waves._fields if name not in ("arriving", "sent"))
+"""Fields of `Waves` that the state of a run holds."""
 
 
 @contextmanager

@@ -22,17 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Parameter:
-    """A number of a problem.
-
-    Parameters
-    ----------
-    name
-        Full name of the number, such as "friction.alpha".
-    value
-        Its value (SI).
-    declared
-        Its unit, its meaning and its allowed range.
-    """
+    """A number of a problem: its full name, such as "friction.alpha", its value (SI), and its unit, meaning and allowed range."""
 
     name: str
     value: float
@@ -48,23 +38,7 @@ class Parameter:
         return self.declared.unit
 
     def put(self, value: float) -> Problem:
-        """Return the problem with another value of this number.
-
-        Parameters
-        ----------
-        value
-            The new value (SI).
-
-        Returns
-        -------
-        Problem
-            A new problem; the old one is unchanged.
-
-        Raises
-        ------
-        InputError
-            If the problem does not allow the value.
-        """
+        """Return a new problem with another value (SI) of this number. Raises InputError if the problem does not allow it."""
         return self._put(value)
 
 

@@ -19,7 +19,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief, html_table
 from stickslip.foundation.quantities import Quantity, check_fields, quantities_of, quantity
 from stickslip.friction import FrictionLaw
-from stickslip.friction.custom.any_law import as_law
+from stickslip.friction.custom.from_function import as_law
 from stickslip.loading import LoadingHistory
 from stickslip.loading.contract import SILENT, VARYING
 from stickslip.problem.parameters import Parameters
@@ -242,18 +242,7 @@ class Problem(CheckedArguments):
         }
 
     def pull_rate_at(self, t: ArrayLike) -> NDArray[np.float64]:
-        """Return the pull rate V at given times.
-
-        Parameters
-        ----------
-        t
-            Times (s since the start of the run), of any shape.
-
-        Returns
-        -------
-        array
-            V (m/s), with the shape of `t`.
-        """
+        """Return the pull rate V (m/s) at times (s since the start of the run) of any shape."""
         rate = self.pull_rate
         return rate.at(t) if isinstance(rate, LoadingHistory) else np.full(np.shape(t), rate)
 

@@ -25,19 +25,8 @@ from stickslip.foundation.errors import InputError
 
 @dataclass(frozen=True)
 class CoulombBlock:
-    """One slip event of a spring-block without damping, under Coulomb friction.
+    """One slip event of a spring-block without damping, under Coulomb friction; a pull rate V (m/s) of 0 means the limit 0+.
 
-    Parameters
-    ----------
-    body : SpringBlock
-        The block.
-    static, dynamic : float
-        Friction coefficients muS at rest and muD while slipping.
-    pull_rate : float
-        Pull rate V (m/s); 0 means the limit 0+.
-
-    Notes
-    -----
     The block is released at its static strength. Its initial load, its slip and the path that it has slipped count from there.
 
     Source: Campillo et al. 1996, eqs (4)-(6), with the limit alpha -> infinity of the rate law (15).
@@ -92,29 +81,11 @@ class CoulombBlock:
 
 @dataclass(frozen=True)
 class LinearBlock:
-    """One slip event of a spring-block without damping, under linear slip weakening.
+    """One slip event of a spring-block without damping, under linear slip weakening over the distance Dc (m).
 
-    Parameters
-    ----------
-    body : SpringBlock
-        The block.
-    static, dynamic : float
-        Friction coefficients muS and muD before and after weakening.
-    distance : float
-        Weakening distance Dc (m).
-    pull_rate : float
-        Pull rate V (m/s).
-    excess : float
-        Excess E of the initial load over the static strength (N).
-
-    Raises
-    ------
-    InputError
-        If the spring is at least as stiff as the law weakens (there is no growth then), or if nothing sets the block in motion.
-
-    Notes
-    -----
-    The slip grows exponentially until it reaches the weakening distance, and oscillates harmonically after that.
+    The pull rate is V (m/s), and `excess` is that of the initial load over the static strength (N). The slip grows exponentially
+    until it reaches the weakening distance, and oscillates harmonically after that. Raises InputError if the spring is at least as
+    stiff as the law weakens (there is no growth then), or if nothing sets the block in motion.
 
     Source: Campillo et al. 1996, eqs (4)-(6); the law is from Ida 1972, J. Geophys. Res. 77, 3796.
     """

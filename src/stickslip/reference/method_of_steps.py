@@ -41,15 +41,7 @@ class Piece:
 
 @dataclass(frozen=True)
 class StepsSolution:
-    """A run by the method of steps, in adjoining pieces; values at a joint are right limits.
-
-    Attributes
-    ----------
-    problem : Problem
-        What was run.
-    pieces : list of Piece
-        The motion between breaking points, in the order of time.
-    """
+    """A run by the method of steps: its motion between breaking points in order of time; values at a joint are right limits."""
 
     problem: Problem
     pieces: list[Piece]

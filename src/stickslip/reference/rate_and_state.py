@@ -19,22 +19,9 @@ import numpy as np
 
 @dataclass(frozen=True)
 class SteadySliding:
-    """Sliding at a constant rate under a rate-and-state law.
+    """Sliding at a constant rate V (m/s) under a rate-and-state law with a characteristic slip distance Dc (m).
 
-    Parameters
-    ----------
-    normal : float
-        Normal load S (slab: Pa, block: N).
-    a, b : float
-        Coefficients of the law.
-    distance : float
-        Characteristic slip distance Dc (m).
-    rate : float
-        Slip rate V (m/s).
-
-    Notes
-    -----
-    Masses, dampings and stiffnesses below belong to a block (kg, N s/m, N/m), or are all per unit area like the normal load.
+    The normal load, masses, dampings and stiffnesses below belong to a block (N, kg, N s/m, N/m), or are all per unit area.
 
     Source: Rice & Ruina 1983, J. Appl. Mech. 50, 343, for the block; for the slab the same linearised friction meets the waves of
     Campillo et al. 1996, eqs (7)-(13).

@@ -22,8 +22,7 @@ from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_event_rate
 from stickslip.run.monitor import run_to_end
 from stickslip.run.options import CHECKPOINT_EVERY, RunOptions, problem_and_options
-from stickslip.run.progress import Progress
-from stickslip.run.progress_line import told
+from stickslip.run.progress import Progress, told
 from stickslip.run.session import Session
 from stickslip.trajectory.status import ENOUGH_EVENTS, UNDER_WAY, Status
 from stickslip.trajectory.tables import creep_note

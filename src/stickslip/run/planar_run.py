@@ -3,22 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from stickslip.foundation.arguments import shown
+from stickslip.engine.state.layout import Stop
+from stickslip.foundation.arguments import as_path, shown
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.formatting import in_unit, number
-from stickslip.foundation.quantities import Quantity
+from stickslip.foundation.formatting import number
 from stickslip.planar.slab import PlanarSlab
-from stickslip.run.run_loop import Interrupts
-from stickslip.solution.planar import PlanarSolution
+from stickslip.problem.run_quantities import CHECKPOINT_INTERVAL, DURATION
+from stickslip.run.options import CHECKPOINT_EVERY
+from stickslip.run.progress import Pace, how_far, how_fast
+from stickslip.run.run_loop import Interrupts, NowAndThen
+from stickslip.scenarios.scenario import Scenario
+from stickslip.solution.planar import Frames, PlanarSolution
+from stickslip.trajectory.status import INTERRUPTED
+
+if TYPE_CHECKING:
+    from stickslip.io.planar_store import PlanarStore
+    from stickslip.planar.solver import PlanarSolver
 
 FRAMES = 100
 """Frames in a two-way travel time, by default."""
-DURATION = Quantity("s", "latest end of the run", above=0)
 MOST_MEMORY = 16e9
 """Largest memory of a run, bytes: echoes need most of it, and they are kept for all round trips to come."""
 
@@ -32,11 +42,14 @@ class PlanarReport(NamedTuple):
     """Simulated time at the end of the run, s."""
     fastest: float
     """Largest slip rate on the contact now, m/s."""
+    pace: float
+    """Simulated time per wall-clock time since the first report; NaN while it is not known."""
+    left: float
+    """Wall-clock time left at this pace, s; NaN while it is not known."""
 
     def __str__(self) -> str:
-        length, unit = in_unit(self.duration)
         moving = f"slips at up to {number(self.fastest, 3)} m/s" if self.fastest > 0.0 else "rests"
-        return f"{number(self.time / length, 6)} of {number(self.duration / length, 6)} {unit}, {moving}"
+        return ", ".join([how_far(self.time, self.duration), moving, *how_fast(self.pace, self.left)])
 
 
 PlanarProgress = Callable[[PlanarReport], object]
@@ -46,7 +59,7 @@ PlanarProgress = Callable[[PlanarReport], object]
 def memory_of(slab: PlanarSlab, duration: float, frames: int = FRAMES) -> float:
     """Return the memory (bytes) that a run of this duration (s) needs: exponentials, echoes and frames."""
     body = slab.problem.body
-    round_trips, steps = max(1.0, np.ceil(duration / body.round_trip_time)), slab.steps_per_round_trip
+    round_trips, steps = slab.round_trips(duration), slab.steps_per_round_trip
     modes = float(np.prod(slab.shape[:-1])) * (slab.shape[-1] // 2 + 1)
     exponentials = 5.0 * (2.0 + np.log2(4.0 * round_trips * steps)) * 64.0 * modes
     echoes = (round_trips - 1.0) * (steps + 1) * 96.0 * modes + 3.0 * (steps + 1) * 16.0 * modes
@@ -64,7 +77,14 @@ def check_memory(slab: PlanarSlab, duration: float, frames: int) -> None:
 
 
 def simulate_planar(
-    slab: PlanarSlab, duration: float | str | WithUnit | None, *, frames: int | None = None, progress: PlanarProgress | None = None
+    slab: PlanarSlab,
+    duration: float | str | WithUnit | None,
+    *,
+    frames: int | None = None,
+    progress: PlanarProgress | None = None,
+    checkpoint: str | Path | None = None,
+    checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
+    scenario: Scenario | None = None,
 ) -> PlanarSolution:
     """Run a planar slab from t = 0.
 
@@ -78,6 +98,12 @@ def simulate_planar(
         Number of frames that are kept of each two-way travel time, as far as there are as many steps; 100 by default.
     progress
         A function that is called with a `PlanarReport` after each frame.
+    checkpoint
+        Folder (NAME.zarr) to which the frames are written while the run continues, and in which `resume_planar` continues it.
+    checkpoint_every
+        Interval between two checkpoints, s of wall clock.
+    scenario
+        The scenario of the slab, if it has one, which goes into the folder.
 
     Returns
     -------
@@ -94,33 +120,125 @@ def simulate_planar(
     length, wanted = DURATION.check("simulate", "duration", duration), FRAMES if frames is None else frames
     if not isinstance(wanted, int) or isinstance(wanted, bool) or wanted < 1:
         raise InputError(f"simulate: frames must be a whole number above 0, got {shown(frames)}")
-    solved, here = slab.alone_for(length)
-    check_memory(solved, length, wanted)
-    try:
-        from stickslip.planar.solver import PlanarSolver
-    except ImportError:
-        raise InputError("simulate: a PlanarSlab needs the library JAX: pip install 'stickslip[planar]'") from None
-    run = PlanarSolver(solved, length)
-    every, kept, times = max(1, run.steps // wanted), [run.now().at(here)], [run.time]
-    with Interrupts() as interrupts:
-        while not interrupts.noted and run.advance(every):
-            kept.append(run.now().at(here))
-            times.append(run.time)
-            if progress is not None:
-                progress(PlanarReport(run.time, length, float(np.abs(kept[-1].rate).max())))
-    largest_slip = max(float(np.abs(motion.slip - kept[0].slip).max()) for motion in kept)
-    if not slab.values.is_unique(slab.body.impedance, largest_slip, max(float(np.abs(motion.rate).max()) for motion in kept)):
-        raise InputError(
-            f"simulate: within the {largest_slip:.3g} m that this PlanarSlab slips, friction falls with the slip rate by more than"
-            " radiation adds: several slip rates solve the contact equation, and no selection rule gives a solution in 2D or 3D"
-        )
-    return PlanarSolution(
-        slab,
-        np.array(times),
-        slip=np.stack([motion.slip for motion in kept]),
-        slip_rate=np.stack([motion.rate for motion in kept]),
-        traction=np.stack([motion.traction for motion in kept]),
-        heat=np.stack([motion.heat for motion in kept]),
-        steps_per_round_trip=run.steps,
-        status="interrupted" if interrupts.noted else "finished",
-    )
+    follow = Follow(length, wanted, progress, CHECKPOINT_INTERVAL.check("simulate", "checkpoint_every", checkpoint_every))
+    path = None if checkpoint is None else as_path("simulate: checkpoint", checkpoint)
+    if path is not None and path.suffix != ".zarr":
+        raise InputError(f"simulate: the checkpoint of a PlanarSlab is a folder NAME.zarr, got {shown(str(path))}")
+    run, here = follow.solver(slab)
+    if path is None:
+        return follow.to_end(Frames(slab, run.steps), run, here)
+    from stickslip.io.planar_store import PlanarStore  # with zarr, which takes half a second to load
+
+    about = replace(scenario or Scenario(slab.problem, length), duration=length)
+    with PlanarStore.new(path, slab, about, wanted, run) as store:
+        return follow.to_end(store, run, here)
+
+
+def resume_planar(
+    path: Path,
+    duration: float | str | WithUnit | None = None,
+    *,
+    progress: PlanarProgress | None = None,
+    checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
+) -> PlanarSolution:
+    """Continue the run of a planar slab in its folder: see `stickslip.run.resume.resume`."""
+    from stickslip.io.planar_store import PlanarStore
+
+    with PlanarStore.at(path) as store:
+        before = store.duration
+        if duration is not None:
+            store.duration = DURATION.check("resume", "duration", duration)
+        check_duration(store, before)
+        every = CHECKPOINT_INTERVAL.check("resume", "checkpoint_every", checkpoint_every)
+        follow = Follow(store.duration, store.frames, progress, every)
+        run, here = follow.solver(store.slab)
+        store.restore(run)
+        if run.step % follow.steps_of(run) and run.step < run.steps and run.steps_left:
+            store.drop_last()  # it was made because the run ended there
+        return follow.to_end(store, run, here)
+
+
+def check_duration(store: PlanarStore, before: float) -> None:
+    """Refuse a new duration that the run has passed, or for which it would have been prepared in another way. Raises InputError."""
+    slab, wanted, reached = store.slab, store.duration, store.times[-1]
+    if wanted == before:
+        return
+    from stickslip.planar.memory import horizon  # with scipy
+
+    horizon_trips = horizon(slab.round_trips(before))
+    if wanted < reached:
+        why = f"the run has already reached {reached:.9g} s"
+    elif not slab.replicas:
+        why = "without replicas it lies in a locked contact that is as long as waves get in this time; run it again from the start"
+    elif slab.round_trips(wanted) > horizon_trips:
+        why = f"its exponentials are made for {horizon_trips * slab.body.two_way_time:.9g} s; run it again from the start"
+    else:
+        return
+    raise InputError(f"{store.path}: the duration of {before:.9g} s cannot become {wanted:.9g} s: {why}")
+
+
+@dataclass(frozen=True)
+class Follow:
+    """How a run is followed to its end.
+
+    `frames` is the number of frames in a two-way travel time, and `every` the wall-clock time (s) between two checkpoints.
+    """
+
+    duration: float
+    frames: int
+    progress: PlanarProgress | None
+    every: float
+
+    def solver(self, slab: PlanarSlab) -> tuple[PlanarSolver, tuple[slice, ...]]:
+        """Return the solver at t = 0, and where the nodes of the contact are in it.
+
+        Raises InputError if the run needs too much memory, or if JAX is missing.
+        """
+        solved, here = slab.alone_for(self.duration)
+        check_memory(solved, self.duration, self.frames)
+        try:
+            from stickslip.planar.solver import PlanarSolver
+        except ImportError:
+            raise InputError("simulate: a PlanarSlab needs the library JAX: pip install 'stickslip[planar]'") from None
+        return PlanarSolver(solved, self.duration), here
+
+    def to_end(self, kept: Frames, run: PlanarSolver, here: tuple[slice, ...]) -> PlanarSolution:
+        """Run to the end, or to a Ctrl-C, and return the frames."""
+        if not kept.times:
+            kept.add(run.time, run.now().at(here))
+            kept.save(run)
+        with Interrupts() as interrupts:
+            code = self.follow(kept, run, here, interrupts)
+        kept.save(run, code)
+        slab, slip = kept.slab, kept.largest_slip
+        if not slab.values.is_unique(slab.body.impedance, slip, kept.fastest):
+            raise InputError(
+                f"simulate: within the {slip:.3g} m that this PlanarSlab slips, friction falls with the slip rate by more than"
+                " radiation adds: several slip rates solve the contact equation, and no selection rule gives a solution in 2D or 3D"
+            )
+        return kept.solution(code)
+
+    def steps_of(self, run: PlanarSolver) -> int:
+        """Return the number of steps from frame to frame; the end of a round trip is a frame, too."""
+        return max(1, run.steps // self.frames)
+
+    def follow(self, kept: Frames, run: PlanarSolver, here: tuple[slice, ...], interrupts: Interrupts) -> int:
+        """Run frame by frame, and return the code of what ended the run."""
+        every, saving, pace = self.steps_of(run), NowAndThen.from_now(self.every), Pace()
+        while run.steps_left and not interrupts.noted:
+            if run.step == run.steps:
+                kept.end_round_trip(run)
+            run.advance(every - run.step % every if run.step < run.steps else every)
+            now = run.now().at(here)
+            kept.add(run.time, now)
+            if saving.is_due:
+                with saving.done():
+                    kept.save(run)
+            if self.progress is not None:
+                done = min(run.time / self.duration, 1.0)
+                report = PlanarReport(run.time, self.duration, float(np.abs(now.rate).max()), *pace.at(run.time, done))
+                try:
+                    self.progress(report)
+                except KeyboardInterrupt:
+                    return INTERRUPTED
+        return INTERRUPTED if run.steps_left else Stop.FINISHED

@@ -1,18 +1,97 @@
-"""Report the progress of a run to a callback."""
+"""Report the progress of a run to a callback, or in one line on a terminal or in a notebook."""
 
 from __future__ import annotations
 
 import math
+import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Self, TypeVar
 
-from stickslip.foundation.formatting import about_time, in_unit, number
+from stickslip.foundation.arguments import shown
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.formatting import about_time, clean, in_unit, number
 
 if TYPE_CHECKING:
     from stickslip.run.options import RunOptions
     from stickslip.run.solver import Solver
+
+News = TypeVar("News")
+Show = Callable[[str], object]
+"""A function that shows a line of text in place of the one before."""
+
+
+@contextmanager
+def told(progress: Callable[[News], object] | bool | None, what: str) -> Iterator[Callable[[News], object] | None]:
+    """Provide the function that receives the progress of `what`: the user's function, or a display if `progress` is True.
+
+    It is None if no progress is wanted. Raises InputError for anything else.
+    """
+    if progress is True:
+        with progress_line(f"{what}:") as report:
+            yield report
+        return
+    if not (progress is None or progress is False or callable(progress)):
+        raise InputError(f"{what}: progress must be True or a function, got {shown(progress)}")
+    yield progress or None
+
+
+@contextmanager
+def progress_line(what: str) -> Iterator[Callable[..., None]]:
+    """Show progress on a terminal or in a notebook until the end of the context, which removes the line.
+
+    Yields a function that shows its arguments after `what`. Messages about compilation are shown in the same place.
+    """
+    notebook = _notebook()
+    if notebook is None and not sys.stderr.isatty():
+        yield lambda *news: None
+        return
+    from stickslip.engine.codegen.cache import announce_by, tell  # with the compiler behind it, which is needed now anyway
+
+    with _in_notebook(notebook) if notebook else _on_terminal(what) as show:
+
+        def report(*news: object) -> None:
+            show(" ".join([what, *(clean(str(one)) for one in news)]))
+
+        announce_by(report)
+        try:
+            yield report
+        finally:
+            announce_by(tell)
+
+
+@contextmanager
+def _on_terminal(what: str) -> Iterator[Show]:
+    from rich.console import Console
+    from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+    console = Console(file=sys.stderr, highlight=False, markup=False, emoji=False)
+    with Progress(SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn(), console=console, transient=True) as bar:
+        task = bar.add_task(what)
+        yield lambda line: bar.update(task, description=line)
+
+
+def _notebook() -> Callable[..., Any] | None:
+    """Return IPython's function `display` in a notebook; None elsewhere, without importing anything."""
+    shell = getattr(sys.modules.get("IPython"), "get_ipython", lambda: None)()
+    if getattr(shell, "kernel", None) is None:  # a shell in a terminal has none
+        return None
+    from IPython.display import display
+
+    return display  # type: ignore[no-any-return]
+
+
+@contextmanager
+def _in_notebook(display: Callable[..., Any]) -> Iterator[Show]:
+    """Replace the text of one display; rich would need a library of widgets for that, which many notebooks lack."""
+    handle = display({"text/plain": ""}, raw=True, display_id=True)
+    try:
+        yield lambda line: handle.update({"text/plain": line}, raw=True)
+    finally:
+        handle.update({"text/plain": ""}, raw=True)
+
 
 Doing = Literal["stuck", "creeping", "slipping"]
 
@@ -52,20 +131,27 @@ class Report(NamedTuple):
     left: float
 
     def __str__(self) -> str:
-        length, unit = in_unit(self.duration)
         wanted = f" of {self.max_events}" if self.max_events else ""
         parts = [
-            f"{number(self.time / length, 6)} of {number(self.duration / length, 6)} {unit}",
+            how_far(self.time, self.duration),
             f"{self.events}{wanted} slip event{'' if self.events == 1 and not wanted else 's'}",
             self.doing,
         ]
         if self.pieces >= LONG_RUN:
             parts.append(f"{number(self.pieces / 1e6, 3)} million pieces")
-        if self.pace > 0.0:
-            parts.append(f"{about_time(self.pace)} a second")
-        if 1.0 <= self.left < math.inf:
-            parts.append(f"{about_time(self.left)} left")
-        return ", ".join(parts)
+        return ", ".join(parts + how_fast(self.pace, self.left))
+
+
+def how_far(time: float, duration: float) -> str:
+    """Return in words how far a run has come: both in s."""
+    length, unit = in_unit(duration)
+    return f"{number(time / length, 6)} of {number(duration / length, 6)} {unit}"
+
+
+def how_fast(pace: float, left: float) -> list[str]:
+    """Return in words the simulated time per wall-clock time, and the wall-clock time left (s), as far as they are known."""
+    parts = [f"{about_time(pace)} a second"] if pace > 0.0 else []
+    return [*parts, f"{about_time(left)} left"] if 1.0 <= left < math.inf else parts
 
 
 Progress = Callable[[Report], object]
@@ -73,20 +159,35 @@ Progress = Callable[[Report], object]
 
 
 @dataclass
-class Reporter:
-    """Make reports on a run and pass them to a callback.
+class Pace:
+    """Measure how fast a run goes.
 
-    `started` is the wall-clock time (s) at which the run was started or resumed; `from_share` and `from_time` (s) are the share
-    of the run that was done, and the simulated time, at the first report.
+    `started` is the wall-clock time (s) at which the run was started or resumed; `first` is the simulated time (s), and the share
+    of the run that was done, at the first report.
     """
+
+    started: float = field(default_factory=time.monotonic)
+    first: tuple[float, float] | None = None
+
+    def at(self, now: float, share: float) -> tuple[float, float]:
+        """Return the pace and the wall-clock time left (s; see `Report`) at a simulated time (s), with a share of the run done."""
+        if self.first is None:
+            self.first = now, share
+        from_time, from_share = self.first
+        took, done = time.monotonic() - self.started, share - from_share
+        pace = (now - from_time) / took if took > 0 else float("nan")
+        return pace, took * (1.0 - share) / done if done > 0 else float("nan")
+
+
+@dataclass
+class Reporter:
+    """Make reports on a run and pass them to a callback."""
 
     tell: Progress
     duration: float
     max_events: int | None
     event_rate: float
-    started: float = field(default_factory=time.monotonic)
-    from_share: float | None = None
-    from_time: float = 0.0
+    pace: Pace = field(default_factory=Pace)
 
     @classmethod
     def of(cls, options: RunOptions, event_rate: float) -> Self | None:
@@ -98,10 +199,6 @@ class Reporter:
         """Call the callback with the progress of the run."""
         now = min(run.time, self.duration)
         share = max(now / self.duration, events / self.max_events if self.max_events else 0.0)
-        if self.from_share is None:
-            self.from_share, self.from_time = share, now
-        took, done = time.monotonic() - self.started, share - self.from_share
-        pace = (now - self.from_time) / took if took > 0 else float("nan")
-        left = took * (1.0 - share) / done if done > 0 else float("nan")
         doing: Doing = "stuck" if run.fastest == 0.0 else "slipping" if run.fastest > self.event_rate else "creeping"
-        self.tell(Report(now, self.duration, events, self.max_events, run.forgotten + run.length, doing, pace, left))
+        pieces = run.forgotten + run.length
+        self.tell(Report(now, self.duration, events, self.max_events, pieces, doing, *self.pace.at(now, share)))

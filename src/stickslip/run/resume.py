@@ -11,18 +11,19 @@ from stickslip.foundation.arguments import as_path
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.io.catalogue_rows import Rows, check_catalogue
-from stickslip.io.netcdf import CATALOGUE, is_catalogue, open_solution, read, to_solution
+from stickslip.io.netcdf import CATALOGUE, is_catalogue, read, read_solution, to_solution
 from stickslip.io.soundness import check_checkpoint, check_place
 from stickslip.observables.event_stream import HistoryPlace
 from stickslip.run.catalogue import Catalogue, alone_with, checkpoint_of, follow
 from stickslip.run.monitor import run_to_end
 from stickslip.run.options import CHECKPOINT_EVERY, RunOptions
-from stickslip.run.progress import Progress
-from stickslip.run.progress_line import told
+from stickslip.run.planar_run import PlanarProgress, resume_planar
+from stickslip.run.progress import Progress, told
 from stickslip.run.session import Session
 from stickslip.run.simulate import WholeHistory
+from stickslip.solution.planar import PlanarSolution
 from stickslip.solution.solution import Solution
-from stickslip.trajectory.checkpoint import engine
+from stickslip.trajectory.status import engine
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -33,11 +34,11 @@ def resume(
     duration: float | str | WithUnit | None = None,
     *,
     max_events: int | None = None,
-    progress: Progress | bool | None = None,
+    progress: Progress | PlanarProgress | bool | None = None,
     checkpoint: str | Path | None = None,
     checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
     max_pieces: int | None = None,
-) -> Solution | pd.DataFrame:
+) -> Solution | PlanarSolution | pd.DataFrame:
     """Continue a run or a catalogue where its file left it.
 
     The result is the same, bit for bit, as if the run had never stopped, and as if it had had this duration from the start.
@@ -46,7 +47,7 @@ def resume(
     ----------
     path : str or Path
         File of a run (.nc) that `simulate`, `Solution.to_netcdf` or Ctrl-C left, or a catalogue's NAME.checkpoint.nc, with the
-        catalogue's rows in the same folder.
+        catalogue's rows in the same folder; or the folder (.zarr) of a run of a `PlanarSlab`.
     duration : float or str, optional
         New end of the run, counted from its start: a number in s, or a text with a unit. The previous one by default.
     max_events : int, optional
@@ -55,11 +56,11 @@ def resume(
     progress, checkpoint_every, max_pieces
         See `simulate`, or `catalogue` for a catalogue.
     checkpoint : str or Path, optional
-        File for checkpoints and, at the end, the solution; `path` by default. A catalogue keeps its own file.
+        File for checkpoints and, at the end, the solution; `path` by default. A catalogue, and a folder, keep their own name.
 
     Returns
     -------
-    Solution or pandas.DataFrame
+    Solution, PlanarSolution or pandas.DataFrame
         The whole run from t = 0, or the whole table of a catalogue.
 
     Raises
@@ -67,17 +68,26 @@ def resume(
     InputError
         If the file holds no run or no state of the engine, if another version of the engine's code has made it, if `duration` lies
         before the time that the run has reached, or if the run has already had the wanted number of events. For a catalogue also if
-        rows are missing, have been changed, or are behind a symbolic link, or if `checkpoint` is given.
+        rows are missing, have been changed, or are behind a symbolic link, or if `checkpoint` is given. For a `PlanarSlab` also if
+        `max_events`, `checkpoint` or `max_pieces` is given, or if `duration` is more than the run is prepared for: up to the next
+        power of two of two-way travel times, and none but its own without replicas.
 
     Notes
     -----
     Rows of a catalogue that were written after its checkpoint are cut off and computed again.
     """
     file = as_path("resume: path", path)
+    if file.is_dir():
+        others: dict[str, Any] = {"max_events": max_events, "checkpoint": checkpoint, "max_pieces": max_pieces}
+        if needless := [name for name, value in others.items() if value is not None]:
+            raise InputError(f"resume: {file}: the run of a PlanarSlab continues in its own folder, without {needless[0]}")
+        tell: Any
+        with told(progress, "resume") as tell:
+            return resume_planar(file, duration, progress=tell, checkpoint_every=checkpoint_every)
     paused = PausedCatalogue.read(file) if is_catalogue(file) else None
     if paused is not None and checkpoint is not None:
         raise InputError(f"resume: {file}: a catalogue is resumed in its own file: leave out checkpoint")
-    stopped = open_solution(file) if paused is None else paused.stopped
+    stopped = read_solution(file) if paused is None else paused.stopped
     kept = file if checkpoint is None else as_path("resume: checkpoint", checkpoint)
     with told(progress, "resume") as report:
         others = {"progress": report, "checkpoint_every": checkpoint_every, "max_pieces": max_pieces}

@@ -26,11 +26,10 @@ from stickslip.observables.event_stream import EventStream
 from stickslip.problem.problem import Problem
 from stickslip.run.options import RunOptions
 from stickslip.solution.solution import Solution
-from stickslip.trajectory.checkpoint import Checkpoint, engine
 from stickslip.trajectory.history import NO_LEAPS, History
 from stickslip.trajectory.phase_index import standing_behind
 from stickslip.trajectory.slip_events import default_event_rate
-from stickslip.trajectory.status import ENOUGH_EVENTS, STATUSES, rounding_note
+from stickslip.trajectory.status import ENOUGH_EVENTS, STATUSES, Checkpoint, engine, rounding_note
 
 FIRST_CAPACITY = 256
 """Pieces of history for which a run has room at first, 0.1 MB; the room grows fourfold when it is full."""

@@ -13,8 +13,7 @@ from stickslip.problem.problem import Problem
 from stickslip.run.monitor import run_to_end
 from stickslip.run.options import CHECKPOINT_EVERY, problem_and_options
 from stickslip.run.planar_run import PlanarProgress, simulate_planar
-from stickslip.run.progress import Progress
-from stickslip.run.progress_line import told
+from stickslip.run.progress import Progress, told
 from stickslip.run.session import Session
 from stickslip.run.solver import Events, NewEvents, Solver
 from stickslip.scenarios.source import read_source
@@ -33,6 +32,8 @@ def simulate(
     *,
     frames: int | None = None,
     progress: PlanarProgress | bool | None = None,
+    checkpoint: str | Path | None = None,
+    checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
 ) -> PlanarSolution: ...
 
 
@@ -75,7 +76,7 @@ def simulate(
     problem : Problem, Scenario, PlanarSlab, str or Path
         The problem itself, a scenario, the name of a bundled scenario (`stickslip.scenarios` lists them), or a scenario file.
         Options that you leave out come from the scenario. A `PlanarSlab` and a scenario with a contact of many nodes take
-        `duration`, `frames` and `progress` only.
+        `duration`, `frames`, `progress`, `checkpoint` and `checkpoint_every` only.
     duration : float or str
         Latest end of the run: a number in s, or a text with a unit such as "480 years". A scenario has one; a problem has none.
         Other times may be given as texts, too, and as quantities of the library pint.
@@ -96,7 +97,7 @@ def simulate(
         `stickslip.run.progress.Report` while the run continues.
     checkpoint : str or Path, optional
         File (.nc) from which `stickslip.resume` can continue the run, even after it has been killed. At the end it holds the
-        solution.
+        solution. For a `PlanarSlab` a folder (NAME.zarr) that does not exist yet, to which all frames are written.
     checkpoint_every : float or str
         Interval between two checkpoints, s of wall clock.
     max_pieces : int, optional
@@ -133,21 +134,22 @@ def simulate(
     """
     with told(progress, "simulate") as report:
         found = problem if isinstance(problem, PlanarSlab) else read_source("simulate", problem, contact=True)
+        keep: dict[str, Any] = {"checkpoint": checkpoint, "checkpoint_every": checkpoint_every}
         if not isinstance(found, Problem | PlanarSlab) and found.contact is not None:
             duration = found.duration if duration is None else duration
             frames = found.contact.frames if frames is None else frames
-            found = found.planar_slab
+            keep["scenario"], found = found, found.planar_slab
         if isinstance(found, PlanarSlab):
             others: dict[str, Any] = {
                 "rtol": rtol,
                 "creep_rtol": creep_rtol,
                 "shortest_event": shortest_event,
                 "max_events": max_events,
+                "max_pieces": max_pieces,
             }
-            others |= {"checkpoint": checkpoint, "max_pieces": max_pieces}
             if needless := [name for name, value in others.items() if value is not None]:
                 raise InputError(f"simulate: a PlanarSlab has no {needless[0]}: its nodes and its courant set the accuracy")
-            return simulate_planar(found, duration, frames=frames, progress=report)
+            return simulate_planar(found, duration, frames=frames, progress=report, **keep)
         if frames is not None:
             raise InputError("simulate: frames is for a PlanarSlab: a slab in 1D is known at all times")
         given, options = problem_and_options(

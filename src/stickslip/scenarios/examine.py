@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from stickslip.bodies import ElasticSlab, as_slab
-from stickslip.contact.along_slip import regimes_along_slip
 from stickslip.contact.critical import critical_normal_stress
+from stickslip.contact.regime_map import regimes_along_slip
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
 from stickslip.engine_input.limits import MOST_PIECES, PATIENCE, automatic_length, creep_tolerance, lumps_by_itself
 from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, Text, fields_of, in_units

@@ -72,7 +72,7 @@ def text_of(content: bytes, file: str) -> str:
 def _about_folder(path: Path, file: str) -> str:
     """Return what a folder is, and what to do with it."""
     if path.suffix == ".zarr" or (path / "zarr.json").exists():
-        return f"the results of a sweep, not a scenario: `stickslip show {file}` summarises them"
+        return f"a folder of results, not a scenario: `stickslip show {file}` summarises them"
     inside = sorted(one.name for one in path.glob("*.toml"))
     found = f"its scenarios: {', '.join(inside[:5])}{' ...' if len(inside) > 5 else ''}" if inside else "it holds no TOML file"
     return f"is a folder, not a scenario; {found if all(map(str.isprintable, inside)) else 'name a file in it'}"

@@ -6,9 +6,8 @@ from stickslip.foundation.errors import InputError, nearest
 from stickslip.schemes.central_differences import CentralDifferences, MassRedistribution
 from stickslip.schemes.characteristics import Characteristics
 from stickslip.schemes.contract import Scheme
-from stickslip.schemes.newmark import Newmark
+from stickslip.schemes.newmark import Newmark, Theta
 from stickslip.schemes.sbp import SummationByParts
-from stickslip.schemes.theta import Theta
 
 
 class Regularised(CentralDifferences):

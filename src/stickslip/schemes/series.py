@@ -8,7 +8,6 @@ import numpy as np
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.schemes.contract import Energies
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,11 +58,6 @@ class Series:
                 raise InputError(f"{self.name}: {name} must have as many numbers as there are times")
             if not np.isfinite(values).all():
                 raise InputError(f"{self.name}: {name}: a number is not finite")
-
-    @property
-    def last_energies(self) -> Energies | None:
-        """The energies at the last time, J/m^2; None if they are unknown."""
-        return None if self.energies is None else Energies(*self.energies[-1].tolist())
 
     @property
     def step(self) -> float:

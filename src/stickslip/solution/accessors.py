@@ -109,23 +109,9 @@ class Plots(Generic[Run]):
         return known_to_pyplot(inside.draw_space_time(inside.space_time_data(self._run, start, end), **place), place)
 
     def snapshots(self, t: ArrayLike | None = None, **place: Unpack[Place]) -> Figure:
-        """Draw displacement, velocity and stress across the slab at several times.
+        """Draw displacement, velocity and stress across the slab at times (s), by default six over one round trip of the waves.
 
-        Parameters
-        ----------
-        t : array_like, optional
-            Times, s. The default is six times over one round trip of the waves.
-        **place
-            Where to draw, and how large: see `Plots`.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-
-        Raises
-        ------
-        InputError
-            For a block.
+        Raises InputError for a block.
         """
         from stickslip.figures.runs import inside
 
@@ -149,28 +135,12 @@ class Plots(Generic[Run]):
         frames: int | None = None,
         progress: Callable[[int, int], object] | None = None,
     ) -> Path:
-        """Write an animation of the slab, beside the curves of the contact, to a file.
+        """Write an animation of the slab, beside the curves of the contact, to a .gif, .mp4 or .webm, and return the path.
 
-        Parameters
-        ----------
-        path : str or Path
-            File to write: .gif; .mp4 and .webm need ffmpeg.
-        start, end : float, optional
-            First and last time to show, s; defaults as for `field`.
-        frames : int, optional
-            Number of frames, shown at 20 per second. The default is 150.
-        progress : callable, optional
-            Function that is called with the number of finished frames and the number of all frames.
-
-        Returns
-        -------
-        Path
-            The file that was written.
-
-        Raises
-        ------
-        InputError
-            For a block, for fewer than two frames, and if the software that writes such a file is missing.
+        The last two need ffmpeg. The animation shows the times from `start` to `end` (s; by default those of `field`) in 150
+        `frames`, unless another number is given, 20 per second. `progress` is called with the number of finished frames and the
+        number of all frames. Raises InputError for a block, for fewer than two frames, and if the software that writes such a file
+        is missing.
         """
         from stickslip.figures.runs import animation
 
@@ -184,25 +154,10 @@ class SolutionPlots(Plots["Solution"]):
     def catalogue(self, event: int | None = None, **place: Unpack[Place]) -> Figure:
         """Draw the slip events, one of them in ever closer zooms, and their distributions.
 
-        A figure of one journal column has two panels in a row instead of three. Panels for which a figure is too low are left out,
-        the zooms first.
-
-        Parameters
-        ----------
-        event : int, optional
-            Row number in `solution.events`; negative ones count from the last. The default is the last event whose slip is at
-            least 99 % of the largest.
-        **place
-            Where to draw, and how large: see `Plots`.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-
-        Raises
-        ------
-        InputError
-            If the run has no slip event, or not the one asked for.
+        `event` is the row number in `solution.events` of the zooms; negative ones count from the last. By default it is the last
+        event whose slip is at least 99 % of the largest. A figure of one journal column has two panels in a row instead of three.
+        Panels for which a figure is too low are left out, the zooms first. Raises InputError if the run has no slip event, or not
+        the one asked for.
         """
         from stickslip.figures.runs import catalogue
 
@@ -227,26 +182,11 @@ class Exports(Readings):
         return Plots(self)
 
     def to_dataset(self, t: ArrayLike, x: ArrayLike | None = None) -> xr.Dataset:
-        """Return slip, slip rate, traction and load at given times, with units and provenance.
+        """Return slip, slip rate, traction and load at given times (s), with units and provenance.
 
-        In a window the slip counts from the start of the event, and attributes hold the epoch.
-
-        Parameters
-        ----------
-        t : array_like
-            Times (s), one-dimensional.
-        x : array_like, optional
-            Distances from the contact (m), one-dimensional. With them the dataset also holds displacement, velocity and
-            stress inside the slab, over time and x.
-
-        Returns
-        -------
-        xarray.Dataset
-
-        Raises
-        ------
-        InputError
-            For more than 2e7 values of a quantity.
+        With distances `x` from the contact (m) the dataset also holds displacement, velocity and stress inside the slab, over time
+        and x. In a window the slip counts from the start of the event, and attributes hold the epoch. Raises InputError for more
+        than 2e7 values of a quantity.
         """
         from stickslip.io.netcdf import to_dataset
 
@@ -254,42 +194,18 @@ class Exports(Readings):
         return to_dataset(self, t, x)
 
     def to_scec(self, path: str | Path, sampling_rate: float, **options: Any) -> Path:
-        """Write time, slip, slip rate and shear stress as SCEC's on-fault time series.
+        """Write time, slip, slip rate and shear stress at a sampling rate (Hz) as SCEC's on-fault time series, and return the path.
 
-        Parameters
-        ----------
-        path : str or Path
-            File to write.
-        sampling_rate : float
-            Samples per second, Hz.
-        **options
-            Options of `stickslip.io.scec.write_scec`.
-
-        Returns
-        -------
-        Path
-            The file that was written.
+        The options are those of `stickslip.io.scec.write_scec`.
         """
         from stickslip.io.scec import write_scec
 
         return write_scec(self, path, sampling_rate, **options)
 
     def to_seismogram(self, path: str | Path, sampling_rate: float, **options: Any) -> list[Path]:
-        """Write miniSEED or SAC files through ObsPy.
+        """Write miniSEED or SAC files at a sampling rate (Hz) through ObsPy, and return their paths.
 
-        Parameters
-        ----------
-        path : str or Path
-            File to write.
-        sampling_rate : float
-            Samples per second, Hz.
-        **options
-            Options of `stickslip.io.seismogram.write_seismogram`.
-
-        Returns
-        -------
-        list of Path
-            The files that were written.
+        The options are those of `stickslip.io.seismogram.write_seismogram`.
         """
         from stickslip.io.seismogram import write_seismogram
 

@@ -1,4 +1,4 @@
-"""Choose the times of a run whose waves are shown: all of it, or those around its last large slip event."""
+"""Choose the times of a run whose waves are shown, all or those around its last large slip event, and find its wave fronts."""
 
 from __future__ import annotations
 
@@ -6,8 +6,61 @@ import numpy as np
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.observables.field import slab_of
 from stickslip.solution.evaluation import Readings
 from stickslip.solution.solution import Solution
+from stickslip.solution.window import Window
+from stickslip.trajectory.tables import shocks_table
+
+FAINT = 0.1
+"""A characteristic ends when reflections at the driver leave less than this share of the wave: a fainter one cannot be seen."""
+MOST_FRONTS = 60
+"""If more fronts than this leave the contact none is returned: they could not be told apart."""
+
+
+def fronts_of(readings: Readings, start: float, end: float) -> list[Floats]:
+    """Return for each front between two times (s) the times at which it is at the contact, at the driver, and so on in turn.
+
+    Raises InputError for a block.
+    """
+    body = slab_of(readings.problem)
+    return [bounces_of(time, end, body.two_way_time, body.reflection) for time in origins_of(readings, start, end)]
+
+
+def origins_of(readings: Readings, start: float, end: float) -> Floats:
+    """Return the times (s) of shocks, starts and ends of slip at the contact, from one round trip before `start` on.
+
+    A time that is a whole number of round trips after an earlier one is left out: it is taken for an echo, on the same
+    characteristic. The result is empty if more than `MOST_FRONTS` remain, which could not be told apart.
+    """
+    history, round_trip = readings.history, slab_of(readings.problem).two_way_time
+    run = readings.solution if isinstance(readings, Window) else readings
+    assert isinstance(run, Solution)
+    events = run.events
+    begin = history.seconds(events.start_row.to_numpy(), events.start_offset.to_numpy(float))
+    shocks = shocks_table(history, start - round_trip, end).time.to_numpy(float)
+    times = np.sort(np.concatenate([shocks, begin, begin + events.duration.to_numpy(float)]))
+    times = times[(times >= start - round_trip) & (times <= end)]
+    kept: list[float] = []
+    for time in times:
+        phases = (time - np.array(kept)) / round_trip
+        if not (np.abs(phases - np.round(phases)) < 1e-6).any():
+            kept.append(float(time))
+    return np.array(kept if len(kept) <= MOST_FRONTS else [])
+
+
+def bounces_of(time: float, end: float, round_trip: float, reflection: float) -> Floats:
+    """Return the times (s) at which a wave that leaves the contact at `time` is at the contact, at the driver, and so on in turn.
+
+    The last is the first that is not before `end`, or earlier the last arrival at the driver of a wave not fainter than `FAINT`.
+    """
+    count = 1 + int(np.ceil(2.0 * (end - time) / round_trip))
+    share = abs(reflection)
+    if share < 1.0:
+        trips = 0 if share == 0.0 else int(np.log(FAINT) / np.log(share))
+        count = min(count, 2 + 2 * trips)
+    return np.asarray(time + 0.5 * round_trip * np.arange(max(count, 2)))
+
 
 LONG = 50
 """Of a run over more round trips than this, only the time around one slip event is shown: waves could not be seen otherwise."""

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -18,11 +19,18 @@ from stickslip.observables.planar import pulses, rupture_speed, rupture_times
 from stickslip.planar.slab import ENOUGH_NODES, PlanarSlab
 from stickslip.solution.accessors import PlanarPlots
 from stickslip.trajectory.slip_events import default_event_rate
+from stickslip.trajectory.status import STATUSES, UNDER_WAY, Status
 
 if TYPE_CHECKING:
     import xarray as xr
 
+    from stickslip.planar.solver import Motion, PlanarSolver
+
 Floats = NDArray[np.float64]
+FIELDS = {"slip": "m", "slip_rate": "m s-1", "traction": "Pa", "heat": "J m-2"}
+"""Unit of each field of a frame."""
+MOTION = {"slip": "slip", "slip_rate": "rate", "traction": "traction", "heat": "heat"}
+"""Name in the solver's `Motion` of each field of a frame."""
 FEWEST_STEPS, QUICK = 100.0, 2e8
 """Steps in a round trip in which energies are followed, at least; and `cost` up to which a summary has them: about two seconds."""
 
@@ -37,14 +45,8 @@ class PlanarSolution:
         What was solved.
     times
         Times of the frames (s).
-    slip
-        Slip (m).
-    slip_rate
-        Slip rate (m/s), after a jump where there is one.
-    traction
-        Friction while a node slips, and the load that it bears while it rests (Pa).
-    heat
-        Work of friction since the start (J/m^2).
+    fields
+        The arrays by the names in `FIELDS`, each read when it is first used.
     steps_per_round_trip
         Number of time steps in a two-way travel time.
     status
@@ -53,19 +55,36 @@ class PlanarSolution:
 
     slab: PlanarSlab
     times: Floats
-    slip: Floats
-    slip_rate: Floats
-    traction: Floats
-    heat: Floats
+    fields: Mapping[str, Floats]
     steps_per_round_trip: int
-    status: str = "finished"
+    status: Status
 
     def __repr__(self) -> str:
         nodes = " x ".join(str(count) for count in self.slab.shape)
-        return f"PlanarSolution({nodes} nodes, {len(self.times)} frames up to {self.times[-1]:.6g} s, {self.status})"
+        return f"PlanarSolution({nodes} nodes, {len(self.times)} frames up to {self.times[-1]:.6g} s, {self.status.name})"
 
     def __str__(self) -> str:
         return "\n".join(self.sentences)
+
+    @cached_property
+    def slip(self) -> Floats:
+        """Slip (m)."""
+        return self.fields["slip"]
+
+    @cached_property
+    def slip_rate(self) -> Floats:
+        """Slip rate (m/s), after a jump where there is one."""
+        return self.fields["slip_rate"]
+
+    @cached_property
+    def traction(self) -> Floats:
+        """Friction while a node slips, and the load that it bears while it rests (Pa)."""
+        return self.fields["traction"]
+
+    @cached_property
+    def heat(self) -> Floats:
+        """Work of friction since the start (J/m^2)."""
+        return self.fields["heat"]
 
     @property
     def sentences(self) -> list[str]:
@@ -195,10 +214,43 @@ class PlanarSolution:
         import xarray
 
         axes = ("time", "y", "z")[: self.slip.ndim]
-        units = {"slip": "m", "slip_rate": "m s-1", "traction": "Pa", "heat": "J m-2"}
-        fields = {name: (axes, getattr(self, name), {"units": unit}) for name, unit in units.items()}
+        fields = {name: (axes, getattr(self, name), {"units": unit}) for name, unit in FIELDS.items()}
         places = {"time": self.times, "y": self.slab.y} | ({"z": self.slab.z} if self.slab.is_plane else {})
         made = xarray.Dataset(fields, coords=places)
         for axis in axes:
             made[axis].attrs["units"] = "s" if axis == "time" else "m"
         return made
+
+
+@dataclass(eq=False)
+class Frames:
+    """The frames of a run, in memory."""
+
+    slab: PlanarSlab
+    steps_per_round_trip: int
+    times: list[float] = field(default_factory=list)
+    waiting: dict[str, list[Floats]] = field(default_factory=lambda: {name: [] for name in FIELDS})
+    """Frames that are in memory, by field."""
+    largest_slip: float = 0.0
+    """Largest slip since the start, at any node and frame, m."""
+    fastest: float = 0.0
+    """Largest slip rate at any node and frame, m/s."""
+
+    def add(self, time: float, motion: Motion) -> None:
+        """Keep the motion at a time (s)."""
+        self.times.append(time)
+        for name, own in MOTION.items():
+            self.waiting[name].append(np.array(getattr(motion, own)))
+        self.largest_slip = max(self.largest_slip, float(np.abs(motion.slip - self.slab.values.slip).max()))
+        self.fastest = max(self.fastest, float(np.abs(motion.rate).max()))
+
+    def end_round_trip(self, run: PlanarSolver) -> None:
+        """Take what the solver is about to forget."""
+
+    def save(self, run: PlanarSolver, code: int = UNDER_WAY) -> None:
+        """Make what is there so far outlast the process, with the status that belongs to a code."""
+
+    def solution(self, code: int) -> PlanarSolution:
+        """Return the run, with the status that belongs to a code."""
+        fields = {name: np.stack(frames) for name, frames in self.waiting.items()}
+        return PlanarSolution(self.slab, np.array(self.times), fields, self.steps_per_round_trip, STATUSES[code])

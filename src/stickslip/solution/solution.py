@@ -19,10 +19,9 @@ from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_event_rate
 from stickslip.solution.accessors import Exports, SolutionPlots, to_netcdf
 from stickslip.solution.window import Window, window_around
-from stickslip.trajectory.checkpoint import Checkpoint
 from stickslip.trajectory.history import History
 from stickslip.trajectory.slip_events import default_event_rate
-from stickslip.trajectory.status import Status
+from stickslip.trajectory.status import Checkpoint, Status
 from stickslip.trajectory.tables import creep_note, creep_table
 
 if TYPE_CHECKING:

@@ -21,7 +21,7 @@ from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.netcdf_file import write
 from stickslip.friction import HyperbolicRate, LinearSlipWeakening, SinusoidalSlip
-from stickslip.friction.laws.coulomb import Coulomb
+from stickslip.friction.laws.of_rate import Coulomb
 from stickslip.io.series import read_series
 from stickslip.problem.problem import Problem
 from stickslip.run.simulate import simulate
@@ -143,24 +143,10 @@ def exact_series(name: str) -> xr.Dataset:
 
 
 def write_benchmark(name: str, folder: str | Path = ".") -> tuple[Path, Path, Path]:
-    """Write a problem for other programs, and return the paths of the three files.
+    """Write a problem of BENCHMARKS for other programs to a folder that exists, and return the paths of the three files.
 
-    Parameters
-    ----------
-    name : str
-        Name of the problem, one of BENCHMARKS.
-    folder : str or Path
-        Folder for the files, which exists.
-
-    Returns
-    -------
-    tuple of Path
-        NAME.toml, the scenario in SI units; NAME.nc, the exact series; NAME.sha256, the checksums of both for `sha256sum --check`.
-
-    Raises
-    ------
-    InputError
-        If the name is unknown, or a file cannot be written.
+    NAME.toml is the scenario in SI units, NAME.nc the exact series, and NAME.sha256 the checksums of both for `sha256sum --check`.
+    Raises InputError if the name is unknown, or a file cannot be written.
     """
     found, place = benchmark_of(name), Path(folder)
     if not place.is_dir():
@@ -174,26 +160,10 @@ def write_benchmark(name: str, folder: str | Path = ".") -> tuple[Path, Path, Pa
 
 
 def judge_benchmark(file: str | Path, name: str | None = None, *, progress: TextProgress | bool | None = None) -> Schemes:
-    """Compare the series of another program, in a file, with the exact solution of a problem.
+    """Compare the series of another program, in a file that `stickslip.io.series.read_series` reads, with the exact solution.
 
-    Parameters
-    ----------
-    file : str or Path
-        A file that `stickslip.io.series.read_series` reads.
-    name : str, optional
-        Name of the problem; by default that of the file without its suffix.
-    progress : bool or callable, optional
-        As for `stickslip.studies.schemes`.
-
-    Returns
-    -------
-    Schemes
-        The report.
-
-    Raises
-    ------
-    InputError
-        If the name is unknown, or the file cannot be read.
+    The problem is by default that with the name of the file; `progress` is as for `stickslip.studies.schemes`. Raises InputError if
+    the name is unknown, or the file cannot be read.
     """
     scenario = benchmark_of(Path(file).stem if name is None else name).scenario
     return judge_series(read_series(file), scenario, progress=progress)

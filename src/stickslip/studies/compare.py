@@ -13,7 +13,7 @@ import pandas as pd
 import stickslip
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
-from stickslip.io.netcdf import PAPER, open_solution
+from stickslip.io.netcdf import PAPER, read_solution
 from stickslip.observables.energy.energetics import extreme_tractions
 from stickslip.observables.energy.pulses import Pulses
 from stickslip.problem.run_quantities import DURATION, check_rtol
@@ -71,7 +71,7 @@ def read_source(
     if isinstance(source, Solution):
         return Source("run", lambda _: source)
     if Path(str(source)).suffix == ".nc":
-        solution = open_solution(str(source))
+        solution = read_solution(Path(str(source)))
         return Source(Path(str(source)).stem, lambda _: solution)
     scenario = all_slips_alike(who, source if isinstance(source, Scenario) else load_scenario(source))
     changed = replace(scenario, duration=duration or scenario.duration, rtol=rtol or scenario.rtol)
@@ -80,19 +80,10 @@ def read_source(
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Comparison(Study):
-    """The result of `compare`.
+    """The result of `compare`: finished runs by name, and the `event` that the figure shows of each, in time since its start.
 
-    Attributes
-    ----------
-    runs : dict of Solution
-        Finished runs, keyed by name.
-    event : int or None
-        Row of `Solution.events`: the figure shows this slip event of each run, in time since its start. None shows whole runs.
-
-    Raises
-    ------
-    InputError
-        If there are fewer than two runs, or if a run has no such event.
+    The event is a row of `Solution.events`; None shows whole runs. Raises InputError if there are fewer than two runs, or if a run
+    has no such event.
     """
 
     runs: dict[str, Solution]

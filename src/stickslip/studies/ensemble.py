@@ -39,20 +39,9 @@ MAX_TOTAL = 2_000_000
 class Ensemble(RunsCompared):
     """The result of `ensemble`, which compares all runs from t = 0 to `until` (s).
 
-    Attributes
-    ----------
-    reference : Solution
-        The undisturbed run.
-    runs : tuple of Solution
-        The runs of the members that were finished.
-    pushes : ndarray, shape (len(runs),)
-        Disturbances added to the initial load (Pa; block: N).
-    size : float
-        Largest magnitude of a disturbance, as a share of the static strength.
-    wanted : int
-        Number of members that were asked for.
-    event_rate : float or None
-        Slip rate (m/s) above which slip counts as an event; None for the default of `Solution.catalogue`.
+    `runs` are those of the members that were finished, of `wanted` members, beside the undisturbed run `reference`. `pushes` were
+    added to the initial load (Pa; block: N); their largest magnitude is `size`, as a share of the static strength. Above
+    `event_rate` (m/s) slip counts as an event; None stands for the default of `Solution.catalogue`.
     """
 
     reference: Solution

@@ -52,22 +52,8 @@ SIZES = Series(Quantity("s", "time in which the slip rate settles", above=0), le
 class Regularisation(RunsCompared):
     """The result of `regularise`, which compares all runs from t = 0 to `until` (s).
 
-    Attributes
-    ----------
-    problem : Problem
-        Problem without regularisation.
-    by : str
-        Kind of regularisation.
-    sizes : ndarray, shape (n,)
-        Sizes of the regularisation (s), descending.
-    rtol : float
-        Relative tolerance of the runs.
-    exact : dict of Solution
-        Run of the massless contact under each selection rule.
-    runs : tuple of Solution, length n
-        Regularised run for each size.
-    seconds : tuple of float, length n
-        Computing time of each regularised run (s).
+    `problem` has no regularisation, and `exact` holds its run under each selection rule. `runs` are regularised, one for each of
+    the descending `sizes` (s), and each took so many `seconds` of computing time.
     """
 
     problem: Problem

@@ -12,7 +12,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 from stickslip.schemes.series import Series
 from stickslip.solution.solution import Solution
-from stickslip.studies.rule_followed import cell_time
+from stickslip.studies.verdict import cell_time
 
 NEAR = 1.5
 """A number whose ratio to the expected one lies within this factor of a power of 1000 has a wrong unit."""

@@ -28,10 +28,10 @@ from stickslip.schemes.registry import scheme_of
 from stickslip.schemes.run import check_runs, check_suitable, run_scheme
 from stickslip.schemes.series import Series
 from stickslip.solution.solution import Solution
-from stickslip.studies.rule_followed import NONE, UNTOLD, RulePaths, exact_runs
 from stickslip.studies.scheme_measures import COLUMNS, Measured
 from stickslip.studies.scheme_shocks import SHOCK_COLUMNS, check_length, check_units
 from stickslip.studies.study import Study, TextProgress, telling
+from stickslip.studies.verdict import NONE, UNTOLD, RulePaths, exact_runs
 
 if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario
@@ -44,18 +44,9 @@ FEWEST, FALLING, NEGLIGIBLE = 3, 0.75, 0.02
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Schemes(Study):
-    """The result of `schemes` and `judge_series`.
+    """The result of `schemes` and `judge_series`: the exact run under each selection rule, and the series that were finished.
 
-    Attributes
-    ----------
-    problem : Problem
-        Problem.
-    exact : dict of Solution
-        Exact run under each selection rule.
-    series : tuple of Series
-        Series of each scheme and mesh that was finished.
-    interrupted : bool
-        True if Ctrl-C ended the study before all meshes were done.
+    `interrupted` is True if Ctrl-C ended the study before all meshes were done.
     """
 
     problem: Problem
@@ -250,31 +241,12 @@ def judge_series(
     rtol: float = 1e-10,
     progress: TextProgress | bool | None = None,
 ) -> Schemes:
-    """Compare series of any other program with the exact solution of every selection rule.
+    """Compare series of any other program with the exact solution of every selection rule, at the relative tolerance `rtol`.
 
-    Parameters
-    ----------
-    series : Series or sequence of Series
-        Slip since t = 0, slip rate and traction over time; `stickslip.io.series.read_series` reads them from a file.
-    problem : Problem, Scenario, str or Path
-        Problem that the program has solved, as for `schemes`.
-    rtol : float
-        Relative tolerance of the exact runs.
-    progress : bool or callable, optional
-        As for `schemes`.
-
-    Returns
-    -------
-    Schemes
-        The series with their table and figure.
-
-    Raises
-    ------
-    InputError
-        If the problem is not a slab's, if no series is given, or if one does not begin at t = 0, is shorter than the scenario's
-        duration, or has slip, slip rate or traction in wrong units.
-    KeyboardInterrupt
-        If the user presses Ctrl-C.
+    A series has slip since t = 0, slip rate and traction over time; `stickslip.io.series.read_series` reads it from a file. The
+    other arguments are as for `schemes`. Raises InputError if the problem is not a slab's, if no series is given, or if one does
+    not begin at t = 0, is shorter than the scenario's duration, or has slip, slip rate or traction in wrong units;
+    KeyboardInterrupt if the user presses Ctrl-C.
     """
     several = (series,) if isinstance(series, Series) else tuple(series)
     if not several:

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.observables.event_table import catalogue_statistics
 from stickslip.observables.predictability import LOST
-from stickslip.observables.statistics import catalogue_statistics
 from stickslip.problem.problem import Problem
 from stickslip.problem.start import written_out
 from stickslip.solution.solution import Solution

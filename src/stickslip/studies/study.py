@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.constants import YEAR
-from stickslip.run.progress_line import told
+from stickslip.run.progress import told
 from stickslip.solution.accessors import figure_of_study, known_to_pyplot
 from stickslip.solution.solution import Solution
 
@@ -67,14 +67,7 @@ class Study:
     def plot(self, **place: Unpack[Place]) -> Figure:
         """Plot the result; the panels are described with each study in the documentation.
 
-        Parameters
-        ----------
-        **place
-            Where to draw, and how large: `figure`, `size` and `dpi`, as for `solution.plot()`.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
+        The keywords `figure`, `size` and `dpi` say where to draw, and how large, as for `solution.plot()`.
         """
         figure: Figure = self._figure().draw(self.to_dataset(), **place)
         return known_to_pyplot(figure, place)

@@ -20,7 +20,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
-from stickslip.run.progress_line import told
+from stickslip.run.progress import told
 from stickslip.scenarios.parameter_paths import ParameterPath
 from stickslip.scenarios.scenario import Scenario
 from stickslip.sweeps.design.adaptive_grid import MOST_MEMBERS, Integers, refine_cells

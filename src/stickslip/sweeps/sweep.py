@@ -19,7 +19,7 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import about_time, number
 from stickslip.problem.problem import Problem
-from stickslip.run.progress_line import told
+from stickslip.run.progress import told
 from stickslip.scenarios.scenario import Scenario
 from stickslip.sweeps.design.axis import Values
 from stickslip.sweeps.design.quantities import DEFAULT, Wanted

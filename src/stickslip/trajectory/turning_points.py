@@ -188,6 +188,8 @@ def keeps_its_sign(c: Floats) -> bool:
     """
     if c[0] > 0.0 and bound_below(c) > SAME * c[0]:
         return True
+    if c[0] > 0.0 and total(c) < 0.0:
+        return False
     low = high = 0.0
     lead = 0
     while lead < TERMS - 1 and c[lead] == 0.0:

@@ -65,7 +65,7 @@ def analogy(
 
 def _study(scenario: Scenario, typed: list[str], within: float) -> Analogy:
     from stickslip.cli.overrides import read_axis
-    from stickslip.run.progress_line import progress_line
+    from stickslip.run.progress import progress_line
     from stickslip.studies.analogy import analogy as study
 
     x, y = (read_axis(scenario.problem, text, "analogy: --map") for text in typed)

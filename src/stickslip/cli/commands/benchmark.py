@@ -66,7 +66,7 @@ def _list() -> None:
 
 def _judge(file: Path, name: str | None, out: Path | None, picture: tuple[Path | None, Look]) -> None:
     from stickslip.cli.output.schemes import show_schemes, tables_of
-    from stickslip.run.progress_line import progress_line
+    from stickslip.run.progress import progress_line
     from stickslip.studies.benchmarks import benchmark_of, judge_benchmark
 
     asked = benchmark_of(file.stem if name is None else name)

@@ -98,7 +98,7 @@ def _map(loaded: Scenario, axes: list[str]) -> Callable[..., object]:
     from stickslip.cli.overrides import read_axis
     from stickslip.contact.regime_map import regime_map
     from stickslip.figures.contact import regimes
-    from stickslip.run.progress_line import progress_line
+    from stickslip.run.progress import progress_line
 
     x, y = (read_axis(loaded.problem, text, "check: --map") for text in axes)
     with progress_line("map:") as report:

@@ -60,7 +60,7 @@ def _compared(names: list[str], duration: str | None, rtol: float | None, event:
     """Read all sources before any of them is run, then run them. Raises InputError."""
     from stickslip.cli.overrides import STDIN, load, read
     from stickslip.problem.run_quantities import check_rtol
-    from stickslip.run.progress_line import progress_line
+    from stickslip.run.progress import progress_line
     from stickslip.scenarios.schema import read_duration
     from stickslip.studies.compare import Comparison, distinct, read_source
 

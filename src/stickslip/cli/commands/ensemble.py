@@ -68,7 +68,7 @@ def ensemble(
 
 
 def _study(scenario: Scenario, members: int, size: float, seed: int) -> Ensemble:
-    from stickslip.run.progress_line import progress_line
+    from stickslip.run.progress import progress_line
     from stickslip.studies.ensemble import ensemble as study
 
     with progress_line(f"{scenario.name}:") as report:

@@ -12,7 +12,7 @@ from stickslip.cli.options import SCENARIO, Changes, argument, complete_scenario
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
-    from stickslip.explorer.model.measured import Backdrop
+    from stickslip.explorer.model.answer import Backdrop
     from stickslip.problem.problem import Problem
 
 SERVER = "Server"
@@ -88,7 +88,7 @@ def explore(
 
 def _behind(record: Path, begin: str | None, end: str | None, sensor: str, problem: Problem) -> Backdrop:
     """Return the record that is drawn behind all runs. Raises InputError."""
-    from stickslip.explorer.model.measured import Backdrop
+    from stickslip.explorer.model.answer import Backdrop
     from stickslip.foundation.quantities import Quantity
     from stickslip.scenarios.entries import typed_number
     from stickslip.studies.inference.record import Record
@@ -103,7 +103,7 @@ def _write(folder: Path, scenario: str | None, changes: list[str] | None, record
     """Write the tour into a folder and say how large it is. Raises InputError."""
     from stickslip.explorer.static.export import write_tour
     from stickslip.foundation.errors import InputError
-    from stickslip.run.progress_line import progress_line
+    from stickslip.run.progress import progress_line
 
     if scenario is not None or changes or record is not None:
         raise InputError(

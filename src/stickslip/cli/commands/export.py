@@ -50,7 +50,7 @@ def export(
     """
     from stickslip.io.scec import write_scec
     from stickslip.io.seismogram import import_obspy, write_seismogram
-    from stickslip.run.progress_line import progress_line
+    from stickslip.run.progress import progress_line
 
     check_target(file, "FILE", (*TEXT, *SEISMOGRAMS))
     if file.suffix.lower() in TEXT:

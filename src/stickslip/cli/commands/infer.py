@@ -132,7 +132,7 @@ def infer(
 
 
 def _inferred(scenario: Any, data: list[str], free: str, options: dict[str, Any]) -> Inference:
-    from stickslip.run.progress_line import progress_line
+    from stickslip.run.progress import progress_line
     from stickslip.studies.inference.infer import infer as study
 
     with progress_line(f"{scenario.name}:") as report:

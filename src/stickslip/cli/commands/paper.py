@@ -24,7 +24,7 @@ def paper(
     \b
       stickslip paper --out paper
     """
-    from stickslip.run.progress_line import progress_line
+    from stickslip.run.progress import progress_line
 
     check_folder(out, "--out")
     from stickslip.paper import make

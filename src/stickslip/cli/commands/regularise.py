@@ -89,7 +89,7 @@ def _sizes(scenario: Scenario, largest: str | None, smallest: str | None, count:
 
 
 def _study(scenario: Scenario, by: str, sizes: list[float]) -> Regularisation:
-    from stickslip.run.progress_line import progress_line
+    from stickslip.run.progress import progress_line
     from stickslip.studies.regularise import regularise as study
 
     with progress_line(f"{scenario.name}:") as report:

@@ -44,9 +44,9 @@ MAX_PIECES = (
     "Largest number of pieces of history (0.42 kB each); the history is written whatever ended the run. Not given: a million, and "
     "a run that needs more is not written."
 )
-OUT = "Save the whole solution (netCDF, .nc), with a checkpoint every 30 s."
+OUT = "Save the whole solution, with a checkpoint every 30 s: netCDF (.nc), or with a [contact] a new folder (.zarr)."
 CATALOGUE = "Keep slip events only, in bounded memory (.csv, .parquet or .nc)."
-RESUME = "Resume the run in a file of --out, or a checkpoint of --catalogue."
+RESUME = "Resume the run in a file or folder of --out, or a checkpoint of --catalogue."
 ENERGY = "Add the energy of each event to --catalogue (slow)."
 RULE = "Override the selection rule."
 
@@ -90,6 +90,7 @@ def run(
       stickslip run fig5-slab-printed --duration "3 days"
       stickslip run cycles-block --duration "10000 years" --catalogue events.csv
       stickslip run --resume mine.nc --duration "1000 years"
+      stickslip run planar-patch --out fault.zarr --animation fault.gif
 
     Ctrl-C ends a run with a valid file, from which --resume continues. It also
     continues from the last checkpoint of a run that was killed. The result is
@@ -121,9 +122,7 @@ def run(
         run = solve_contact(request)
         show_run(run)
         announce(out or resume, *drawn.draw_contact(run))
-        if run.status == "interrupted":
-            raise KeyboardInterrupt
-        return
+        _leave(run.status)
     if request.keeps_events_only:
         chosen, found = list_events(request)
         show_catalogue(chosen, found)

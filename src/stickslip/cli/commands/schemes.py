@@ -77,7 +77,7 @@ def _cells(text: str) -> list[int]:
 
 
 def _study(scenario: Scenario, scheme: str, cells: list[int], search: str, courant: float | None) -> Schemes:
-    from stickslip.run.progress_line import progress_line
+    from stickslip.run.progress import progress_line
     from stickslip.schemes.registry import SCHEMES
     from stickslip.studies.schemes import schemes as study
 
@@ -89,7 +89,7 @@ def _study(scenario: Scenario, scheme: str, cells: list[int], search: str, coura
 
 def _judged(scenario: Scenario, files: list[Path]) -> Schemes:
     from stickslip.io.series import read_series
-    from stickslip.run.progress_line import progress_line
+    from stickslip.run.progress import progress_line
     from stickslip.studies.schemes import judge_series
 
     read = [read_series(file) for file in files]

@@ -34,9 +34,11 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
+    from stickslip.scenarios.scenario import Scenario
+    from stickslip.solution.planar import PlanarSolution
     from stickslip.solution.solution import Solution
 
-RESULT = "A file of `run --out`, a catalogue or its checkpoint, or the folder of a sweep."
+RESULT = "A file or folder of `run --out`, a catalogue or its checkpoint, or the folder of a sweep."
 QUANTITY = "Of a sweep, draw this quantity: by default the one that was refined, or the first."
 SCENARIO_ONLY = "Print the scenario of the results instead, as TOML with every value in SI."
 
@@ -69,6 +71,7 @@ def show(
       stickslip show events.csv
       stickslip show events.csv --catalogue-figure events.png
       stickslip show map.zarr --figure map.png --quantity slip
+      stickslip show fault.zarr --animation fault.gif
 
     Exit code: 0 done, 2 unusable input.
     """
@@ -141,6 +144,34 @@ class StoredRun(Stored):
 
 
 @dataclass(frozen=True)
+class StoredContact(Stored):
+    """A run with a contact of many nodes."""
+
+    solution: PlanarSolution
+    own: Scenario
+
+    def scenario(self) -> str:
+        """Return the scenario as TOML text."""
+        return self.own.to_toml()
+
+    def check(self, pictures: Pictures) -> None:
+        """Refuse pictures that these results do not have. Raises InputError."""
+        pictures.check_contact(str(self.path))
+
+    def summarise(self) -> None:
+        """Print the summary on standard output."""
+        from stickslip.cli.output.contact import announce_run, show_run
+
+        announce_run(self.own)
+        show_run(self.solution)
+        self.print_origin()
+
+    def draw(self, pictures: Pictures) -> None:
+        """Draw the pictures and say which files were written."""
+        announce(*pictures.draw_contact(self.solution))
+
+
+@dataclass(frozen=True)
 class StoredEvents(Stored):
     """A catalogue of slip events."""
 
@@ -200,8 +231,13 @@ def stored(path: Path, quantity: str | None = None) -> Stored:
 
     Raises InputError if there are none that can be read, and for a quantity of what is no sweep.
     """
-    if quantity is not None and not path.is_dir():
+    is_planar = path.is_dir() and _is_planar(path)
+    if quantity is not None and (is_planar or not path.is_dir()):
         raise InputError(f"show: --quantity chooses what is drawn of a sweep, and {path} is not a sweep")
+    if is_planar:
+        from stickslip.io.planar_store import open_planar, opened, scenario_in
+
+        return StoredContact(path, opened(path).attrs, open_planar(path), scenario_in(path))
     if path.is_dir():
         from stickslip.sweeps.results.layout import reading
         from stickslip.sweeps.results.store import open_store
@@ -217,6 +253,12 @@ def stored(path: Path, quantity: str | None = None) -> Stored:
     if suffix != ".nc":
         raise InputError(_not_results(path))
     return _netcdf(path)
+
+
+def _is_planar(path: Path) -> bool:
+    from stickslip.io.planar_store import is_planar
+
+    return is_planar(path)
 
 
 def _netcdf(path: Path) -> Stored:

@@ -198,7 +198,7 @@ def _losses() -> Iterator[None]:
 
 def _show_estimate(plan: Plan, resources: dict[str, Any]) -> None:
     from stickslip.cli.output.sweep_summary import show_estimate
-    from stickslip.run.progress_line import progress_line
+    from stickslip.run.progress import progress_line
     from stickslip.sweeps.estimate import estimate
     from stickslip.sweeps.sweep import runner_of
 
@@ -211,7 +211,7 @@ def _show_estimate(plan: Plan, resources: dict[str, Any]) -> None:
 @contextmanager
 def _progress_of(plan: Plan) -> Iterator[Callable[[SweepProgress], object]]:
     """Provide a function that shows the progress of a sweep in one line."""
-    from stickslip.run.progress_line import progress_line
+    from stickslip.run.progress import progress_line
 
     with progress_line(f"{plan.scenario.name}:") as tell:
         yield tell

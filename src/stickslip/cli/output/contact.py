@@ -38,7 +38,7 @@ def announce_run(scenario: Scenario) -> None:
 
 def show_run(solution: PlanarSolution) -> None:
     """Print the summary of a run on standard output."""
-    say(console(), solution.status, *solution.sentences)
+    say(console(), str(solution.status), *solution.sentences)
 
 
 def _shape(shape: tuple[int, ...]) -> str:

@@ -114,7 +114,7 @@ class Pictures:
 
 
 def _animate(solution: Solution | PlanarSolution, target: Path) -> Path:
-    from stickslip.run.progress_line import progress_line
+    from stickslip.run.progress import progress_line
 
     with progress_line(f"{target}:") as report:
         return solution.plot.animation(target, progress=lambda done, frames: report(f"frame {done} of {frames}"))

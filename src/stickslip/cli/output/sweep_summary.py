@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from stickslip.sweeps.estimate import Estimate
     from stickslip.sweeps.execution.plan import Plan
-    from stickslip.sweeps.results.changes import Change
+    from stickslip.sweeps.results.refinement_spec import Change
     from stickslip.sweeps.sweep import SweepProgress
 
 _NUMBER = re.compile(r"\d[\d.e+-]*")
@@ -123,7 +123,7 @@ def _show_quantities(dataset: xr.Dataset) -> None:
 
 
 def _show_changes(dataset: xr.Dataset, *, is_grid: bool) -> None:
-    from stickslip.sweeps.results.changes import cases, changes
+    from stickslip.sweeps.results.refinement_spec import cases, changes
 
     screen = console()
     for name in quantities_of(dataset):

@@ -13,8 +13,7 @@ from typing import ClassVar, Literal
 
 from stickslip.contact.branches import Branch, rate_on
 from stickslip.contact.equation import Resistance, resistance
-from stickslip.contact.rules.maxwell import area
-from stickslip.contact.rules.selection import selection_table
+from stickslip.contact.rules.selection import area, selection_table
 from stickslip.foundation.brief_repr import brief_repr
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SelectionTable

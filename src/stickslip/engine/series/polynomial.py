@@ -386,22 +386,36 @@ def sign_changes(c: Floats, spare: Floats) -> int:
     return changes
 
 
+@inlined
+def falls_through_zero(c: Floats, way: float, slope: Floats) -> bool:
+    """Return True if `way` times p clearly starts above zero and ends below it, and a bound proves that it only falls on [0, 1].
+
+    `slope` is room.
+    """
+    if not (way * c[0] > 0.0 and way * total(c) < -SIGN_ROUNDING * way * c[0]):
+        return False
+    for k in range(TERMS - 1):
+        slope[k] = -way * (k + 1) * c[k + 1]
+    slope[TERMS - 1] = 0.0
+    return slope[0] > 0.0 and bound_below(slope) > SIGN_ROUNDING * slope[0]
+
+
 @kernel
 def crossings(c: Floats, out: Floats, part: Floats) -> int:
     """Write every x in (0, 1) at which p changes sign into `out`, ascending, up to MOST_CROSSINGS; return their number.
 
-    A polynomial that is not finite has none. Most calls end at the signs of the Bernstein coefficients. `part` is room for TERMS
-    numbers.
+    A polynomial that is not finite has none. Most calls end at a bound, or at the signs of Bernstein coefficients. `part` is room.
     """
     sign = 0.0
     for k in range(TERMS - 1, -1, -1):
         sign = c[k] if c[k] != 0.0 else sign  # just right of 0 p has the sign of its lowest term
     if sign == 0.0:
         return 0
-    changes = sign_changes(c, part)
+    way = math.copysign(1.0, sign)
+    changes = 1 if falls_through_zero(c, way, part) else sign_changes(c, part)
     if changes == 1:
         for k in range(TERMS):
-            part[k] = math.copysign(1.0, sign) * c[k]
+            part[k] = way * c[k]
         out[0] = _falling_root(part, 0.0)
     return _all_crossings(c, sign, part, out) if changes == UNCLEAR or changes > 1 else changes
 

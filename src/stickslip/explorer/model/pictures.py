@@ -16,7 +16,7 @@ from stickslip.friction.contract import one_argument
 from stickslip.observables.energy.balance import energies, heat
 from stickslip.observables.quadrature import FULL
 from stickslip.problem.problem import Problem
-from stickslip.solution.fronts import fronts_of
+from stickslip.solution.interval import fronts_of
 from stickslip.solution.solution import Solution
 from stickslip.solution.window import Window
 from stickslip.trajectory.history import History, Positions

@@ -9,9 +9,8 @@ from functools import partial
 
 from stickslip.bodies import ElasticSlab
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
-from stickslip.explorer.model.answer import Answer, Motion
+from stickslip.explorer.model.answer import Answer, Backdrop, Motion
 from stickslip.explorer.model.findings import Found, key_numbers, marks_of, sentence
-from stickslip.explorer.model.measured import Backdrop
 from stickslip.explorer.model.pictures import contact_picture, energy_picture, law_picture, slab_picture
 from stickslip.explorer.model.sampled_waves import SampledWaves, Shown
 from stickslip.foundation.errors import InputError

@@ -1,4 +1,8 @@
-"""The parts of the page that are scripts in the browser: the time bar and the controls."""
+"""The look of the page, one colour for each role on a light and on a dark ground, and its parts that are scripts.
+
+Every model of Bokeh that has a colour or a size is tagged with its role (`paint`). The browser reads the tags when the ground
+changes (assets/theme.js), so that a page without Python can change it too.
+"""
 
 from __future__ import annotations
 
@@ -7,11 +11,70 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
+import numpy as np
 import param
 from panel.custom import JSComponent
 from panel.pane import HTML
 
-from stickslip.explorer.page.look import DARK, LIGHT, palettes
+from stickslip.figures.style import BLUE, GREEN, GREY, INK, ORANGE, PALE, PURPLE, SKY, VERMILLION
+
+LIGHT = {
+    "slip": BLUE, "rate": GREEN, "traction": VERMILLION, "load": INK,
+    "stick": INK, "stable": BLUE, "unstable": VERMILLION, "continuum": PURPLE, "path": ORANGE, "law": PURPLE,
+    "elastic": BLUE, "kinetic": GREEN, "radiated": SKY, "damped": PURPLE, "heat": VERMILLION,
+    "ink": INK, "muted": "#5A626C", "faint": "#C9CED5", "grid": "#E9ECF0", "card": "#FFFFFF", "ground": PALE, "grey": GREY,
+    "cursor": INK, "front": "#00000050", "pin": GREY,
+}  # fmt: skip
+"""Colours by role on a light ground: those of `stickslip.figures.style`."""
+DARK = LIGHT | {
+    "slip": "#4BA3E3", "rate": "#2FC79B", "traction": "#FF8640", "load": "#E8EAED",
+    "stick": "#E8EAED", "stable": "#4BA3E3", "unstable": "#FF8640", "continuum": "#E39BC6", "path": "#F2B53A", "law": "#E39BC6",
+    "elastic": "#4BA3E3", "kinetic": "#2FC79B", "radiated": "#9AD5F5", "damped": "#E39BC6", "heat": "#FF8640",
+    "ink": "#E8EAED", "muted": "#A3ACB8", "faint": "#454D58", "grid": "#272D36", "card": "#171B21",
+    "ground": "#39414B", "grey": "#8B95A1", "cursor": "#FFFFFF", "front": "#FFFFFF60", "pin": "#8B95A1",
+}  # fmt: skip
+"""The same on a dark ground: lighter, so that lines keep a contrast of at least 4.5."""
+FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'DejaVu Sans', sans-serif"
+"""Type of the page and of its plots: that of the reader's own system, because nothing is fetched from elsewhere."""
+COLOURS = 129
+"""Number of steps of a colour scale."""
+
+
+def blend(*colours: str) -> list[str]:
+    """Return a colour scale that passes evenly through the given colours (as #rrggbb)."""
+    corners = np.array([[int(colour[place : place + 2], 16) for place in (1, 3, 5)] for colour in colours])
+    at = np.linspace(0.0, len(colours) - 1.0, COLOURS)
+    channels = [np.interp(at, np.arange(len(colours)), channel) for channel in corners.T]
+    return ["#" + "".join(f"{round(part):02x}" for part in colour) for colour in zip(*channels, strict=True)]
+
+
+def palettes() -> dict[str, dict[str, list[str]]]:
+    """Return the colour scale of signed values on each ground; its middle is the colour of the ground."""
+    # ColorBrewer's red and blue, as in the package's figures of space and time.
+    blue, red = ("#2166AC", "#4393C3", "#92C5DE", "#D1E5F0"), ("#FDDBC7", "#F4A582", "#D6604D", "#B2182B")
+    dark = blend("#A8DCFF", "#2F8FD8", DARK["card"], "#E0602A", "#FFC49A")
+    return {"light": {"signed": blend(*blue, "#F7F7F7", *red)}, "dark": {"signed": dark}}
+
+
+def paint(model: Any, *, sizes: dict[str, float] | None = None, **roles: str) -> Any:
+    """Give a model the light colours of its roles, and note roles and sizes (px) in its tags; return the model."""
+    for key, role in roles.items():
+        setattr(model, key, LIGHT[role])
+    for key, size in (sizes or {}).items():
+        setattr(model, key, f"{size:g}px" if key.endswith("font_size") else round(size))
+    model.tags = [*model.tags, {"paint": roles, "sizes": sizes or {}}]
+    return model
+
+
+def style_sheet(root: str = ":root") -> str:
+    """Return the colours as variables of CSS, for both grounds; `root` selects the element that has them."""
+
+    def block(selector: str, colours: dict[str, str]) -> str:
+        return selector + " {" + "".join(f"--{role}: {colour};" for role, colour in colours.items()) + "}\n"
+
+    scales = {ground: f"linear-gradient(90deg, {', '.join(found['signed'][::16])})" for ground, found in palettes().items()}
+    light, dark = LIGHT | {"signed": scales["light"]}, DARK | {"signed": scales["dark"]}
+    return block(root, light) + block(f'{root}[data-ground="dark"]', dark)
 
 
 @cache

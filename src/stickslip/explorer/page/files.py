@@ -13,7 +13,7 @@ from tempfile import TemporaryDirectory
 
 import stickslip
 from stickslip.explorer.model.answer import Answer
-from stickslip.explorer.model.code import python_of, toml_of
+from stickslip.explorer.model.difference import python_of, toml_of
 from stickslip.explorer.model.exchange import with_kind
 from stickslip.explorer.model.setting import Setting
 from stickslip.foundation.atomic_write import write_table

@@ -6,17 +6,15 @@ from typing import Any
 
 import panel as pn
 
-from stickslip.explorer.page.components import Markup, PlayerBar, asset
+from stickslip.explorer.page.components import Markup, PlayerBar, asset, style_sheet
 from stickslip.explorer.page.controls import Controls
 from stickslip.explorer.page.explorer import Explorer
-from stickslip.explorer.page.look import style_sheet
 from stickslip.explorer.page.panels import plots, view_of
 from stickslip.explorer.page.stage import Stage
 from stickslip.explorer.page.strip import StripView
 from stickslip.explorer.page.tools import Tools
-from stickslip.explorer.page.tour import Tour
 from stickslip.explorer.page.view import View, headings_of, view_bytes
-from stickslip.explorer.page.words import PinnedRun, Words
+from stickslip.explorer.page.words import PinnedRun, Tour, Words
 
 TITLES = {
     "law": "Friction law", "contact": "Contact g(v)", "shape": "Body now", "slip": "Slip", "rate": "Slip rate",

@@ -7,7 +7,7 @@ from typing import Any
 from bokeh.models import ColumnDataSource, CustomJSTickFormatter, LinearAxis, LinearColorMapper, Range1d, Span
 from bokeh.plotting import figure
 
-from stickslip.explorer.page.look import FONT, paint, palettes
+from stickslip.explorer.page.components import FONT, paint, palettes
 from stickslip.explorer.page.view import View
 
 LEFT, NARROW, RIGHT = 62, 46, 14

@@ -24,9 +24,8 @@ from stickslip.explorer.model.strip import (
     strip_text,
     usual_range,
 )
-from stickslip.explorer.page.components import Markup, asset
+from stickslip.explorer.page.components import Markup, asset, paint
 from stickslip.explorer.page.explorer import Explorer
-from stickslip.explorer.page.look import paint
 from stickslip.explorer.page.stage import Stage
 from stickslip.explorer.page.view import Key, View, axis_label, heading, limits
 from stickslip.figures.style import SPELLED, unit_of

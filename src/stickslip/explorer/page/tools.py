@@ -10,8 +10,7 @@ from urllib.parse import parse_qsl, quote, urlencode
 import param
 from panel.custom import JSComponent
 
-from stickslip.explorer.model.link import parameters_of, setting_of
-from stickslip.explorer.model.setting import Setting
+from stickslip.explorer.model.setting import Setting, parameters_of, setting_of
 from stickslip.explorer.model.strip import StripRange
 from stickslip.explorer.model.tour import TOUR
 from stickslip.explorer.page.components import asset

@@ -20,16 +20,14 @@ from stickslip.explorer.model.answer import Answer
 from stickslip.explorer.model.solve import solve
 from stickslip.explorer.model.strip import setting_at, strip_of
 from stickslip.explorer.model.tour import TOUR, Step
-from stickslip.explorer.page.components import asset, look, player_script
-from stickslip.explorer.page.look import style_sheet
+from stickslip.explorer.page.components import asset, look, player_script, style_sheet
 from stickslip.explorer.page.page import TITLES
 from stickslip.explorer.page.panels import plots, view_of
 from stickslip.explorer.page.stage import Stage
 from stickslip.explorer.page.strip import place_of, view_of_strip
 from stickslip.explorer.page.strip import plots as strip_plots
-from stickslip.explorer.page.tour import told_steps
 from stickslip.explorer.page.view import View, headings_of
-from stickslip.explorer.page.words import words_of
+from stickslip.explorer.page.words import told_steps, words_of
 from stickslip.figures.style import unit_of
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError

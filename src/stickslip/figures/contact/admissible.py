@@ -55,36 +55,18 @@ _ARROWS = 0.3, 14
 
 
 def data(problem: Problem, solution: Solution | None = None, *, title: str = "") -> xr.Dataset:
-    """Return the set K for forward slip at the start of a problem, and the path of a run in it.
+    """Return the set K for forward slip at the start of a problem, and the path of a run in it, as a dataset.
 
-    Parameters
-    ----------
-    problem : Problem
-        A slab whose slip rate follows from the load alone.
-    solution : Solution, optional
-        A run of the problem; its path is drawn over the set.
-    title : str
-        Title of the figure; by default the run's title.
+    It holds the curve as excess over the static strength at the start (Pa) along `slip_rate` (m/s); `kind` (1 stable, -1 unstable,
+    0 continuum); the static strength (Pa); the jumps of the selection rule, shape (jumps, 3): slip rate before and after (m/s),
+    excess (Pa); and the path of the run: slip rate (m/s), excess (Pa) and slip of the law (m), empty if no run is given.
 
-    Returns
-    -------
-    xarray.Dataset
-        The curve as excess over the static strength at the start (Pa) along `slip_rate` (m/s); `kind` (1 stable, -1 unstable, 0
-        continuum); the static strength (Pa); the jumps of the selection rule, shape (jumps, 3): slip rate before and after (m/s),
-        excess (Pa); and the path of the run: slip rate (m/s), excess (Pa) and slip of the law (m), empty if no run is given.
+    If friction depends on slip, the set moves as the contact slips: at each moment the run is on the set of its own slip. If the
+    run slips, `set_slip` (m) are then some slips of the law that it passes, and `set_excess` (Pa), `set_kind` and `set_strength`
+    (Pa, minus that at the start) are the sets there. The title is by default that of the run.
 
-        If friction depends on slip and the run slips, `set_slip` (m) are some slips of the law that the run passes, and
-        `set_excess` (Pa), `set_kind` and `set_strength` (Pa, minus that at the start) are the sets there.
-
-    Raises
-    ------
-    InputError
-        For a block, a contact mass, or a law with a state variable: the slip rate is then a state, or follows from one, and there
-        is no such set.
-
-    Notes
-    -----
-    If friction depends on slip, the set moves as the contact slips: at each moment the run is on the set of its own slip.
+    Raises InputError for a block, a contact mass, or a law with a state variable: the slip rate is then a state, or follows from
+    one, and there is no such set.
     """
     contact = uniqueness_of(problem)
     g = contact.resistance

@@ -67,27 +67,13 @@ LINE = 17
 
 
 def data(solution: Solution, event: int | None = None) -> xr.Dataset:
-    """Return the catalogue of a run, its slip, and one event in local time.
+    """Return the catalogue of a run, its slip, and one event in local time, as a dataset in SI.
 
-    Parameters
-    ----------
-    solution : Solution
-        The run.
-    event : int, optional
-        Row number in `solution.events`; negative ones count from the last. By default the last event whose slip is at least 99 %
-        of the largest.
-
-    Returns
-    -------
-    xarray.Dataset
-        In SI: start (s), slip (m) and recurrence time (s) of all events; slip (m) against time (s) over the whole run, over the
-        event, and at the start of the event, the last two in s since the event began; the predictability `horizon` (s; inf if
-        there is none or it is not known); and `chosen`, the row number of the event.
-
-    Raises
-    ------
-    InputError
-        If the run has no slip event, or not the one asked for.
+    `event` is the row number in `solution.events`; negative ones count from the last. By default it is the last event whose slip is
+    at least 99 % of the largest, and `chosen` tells it. The dataset holds start (s), slip (m) and recurrence time (s) of all
+    events; slip (m) against time (s) over the whole run, over the event, and at the start of the event, the last two in s since the
+    event began; and the predictability `horizon` (s; inf if there is none or it is not known). Raises InputError if the run has no
+    slip event, or not the one asked for.
     """
     table = solution.events
     if table.empty:

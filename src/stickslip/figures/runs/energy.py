@@ -48,27 +48,12 @@ PARTS = {
 
 
 def data(readings: Readings, start: float | None = None, end: float | None = None) -> xr.Dataset:
-    """Return the parts of the energy against time, and their total.
+    """Return the parts of the energy against `time` (s), and their total, as a dataset (J/m^2 for a slab, J for a block).
 
-    Parameters
-    ----------
-    readings : Readings
-        A run, or a window on one.
-    start, end : float, optional
-        The interval (s); by default that of `choose_interval`.
-
-    Returns
-    -------
-    xarray.Dataset
-        The variables of `PARTS` and `total`, all in J/m^2 for a slab and in J for a block, along `time` (s). Heat, radiated and
-        damped energy count from `start`; elastic energy is the excess over its minimum in the interval; kinetic energy is
-        absolute. `total` is the elastic and kinetic energy at `start` plus the work of the driver since then, radiated energy
-        included: for an exact run it is the sum of the parts.
-
-    Raises
-    ------
-    InputError
-        For times outside the run, and if the waves inside the slab are not known (a leap over creep).
+    The interval from `start` to `end` (s) is by default that of `choose_interval`. Heat, radiated and damped energy count from
+    `start`; elastic energy is the excess over its minimum in the interval; kinetic energy is absolute. `total` is the elastic and
+    kinetic energy at `start` plus the work of the driver since then, radiated energy included: for an exact run it is the sum of
+    the parts. Raises InputError for times outside the run, and if the waves inside the slab are not known (a leap over creep).
     """
     readings, start, end = choose_interval(readings, start, end)
     breaks = readings.breaks[(readings.breaks > start) & (readings.breaks < end)]

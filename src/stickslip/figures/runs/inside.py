@@ -38,8 +38,7 @@ from stickslip.figures.style import (
 )
 from stickslip.foundation.arrays import Floats
 from stickslip.observables.field import slab_of
-from stickslip.solution.fronts import fronts_of
-from stickslip.solution.interval import choose_interval
+from stickslip.solution.interval import choose_interval, fronts_of
 from stickslip.solution.place import Place
 
 if TYPE_CHECKING:

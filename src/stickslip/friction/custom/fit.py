@@ -63,18 +63,9 @@ class Fit:
     _how: dict[str, str]
 
     def band(self, u: ArrayLike = 0.0, v: ArrayLike = 0.0) -> tuple[Floats, Floats]:
-        """Return the friction coefficient of the law and its standard error.
+        """Return friction of the law (no unit) at slips (m) and slip rates (m/s), which broadcast, and its standard error.
 
-        Parameters
-        ----------
-        u, v : array_like
-            Slips (m) and slip rates (m/s); they broadcast.
-
-        Returns
-        -------
-        tuple of ndarray
-            The law, and its standard error (no unit) from the uncertainty of the parameters. Parameters that the points do not
-            determine are taken as known.
+        The error follows from the uncertainty of the parameters. Those that the points do not determine are taken as known.
         """
         slip, rate = np.broadcast_arrays(np.asarray(u, float), np.asarray(v, float))
         by = slopes(self.law, list(self.uncertainty), slip.ravel(), rate.ravel())
@@ -156,22 +147,8 @@ def fit(points: Any, law: Any, *, start: Mapping[str, Any] | None = None, fixed:
 def fit_each(points: Any) -> list[Fit]:
     """Fit every law that suits the points, and return the fits, best first by `Fit.bic`.
 
-    These are the laws with parameters and without a state that depend on nothing but what the points have.
-
-    Parameters
-    ----------
-    points : Points, str, Path, DataFrame or mapping
-        The points; `Points.read` says what is understood.
-
-    Returns
-    -------
-    list of Fit
-        The fits.
-
-    Raises
-    ------
-    InputError
-        If the points cannot be used.
+    These are the laws with parameters and without a state that depend on nothing but what the points have; `Points.read` says what
+    is understood as points. Raises InputError if they cannot be used.
     """
     from stickslip.friction import LAWS
 

@@ -90,22 +90,9 @@ class Points:
         return tuple(name for name in ALONG if getattr(self, name) is not None)
 
     def along(self, variable: str | None = None) -> Points:
-        """Return the points along slip or along slip rate alone.
+        """Return the points along "slip" or "slip_rate" alone; leave the variable out if they have only one.
 
-        Parameters
-        ----------
-        variable : {"slip", "slip_rate"}, optional
-            The variable; leave it out if the points have only one.
-
-        Returns
-        -------
-        Points
-            The same points without the other variable.
-
-        Raises
-        ------
-        InputError
-            If the points do not have this variable, or have both and none is named.
+        Raises InputError if the points do not have this variable, or have both and none is named.
         """
         if variable is None and len(self.has) == 1:
             return self

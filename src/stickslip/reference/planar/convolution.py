@@ -93,25 +93,9 @@ def _integral(kernel: Callable[[float], Array], low: float, high: float) -> Arra
 def convolution(case: PlanarCase, duration: float, steps_per_two_way_time: int) -> PlanarSeries:
     """Solve a case by convolution over the whole history; its time grows with the square of the number of steps.
 
-    Parameters
-    ----------
-    case
-        What to solve.
-    duration
-        s; rounded to whole steps.
-    steps_per_two_way_time
-        Number of steps of time in R = 2 h / c.
-
-    Returns
-    -------
-    PlanarSeries
-        The solution at every step.
-
-    Raises
-    ------
-    InputError
-        If several slip rates may solve the contact equation at a node, or if the steps are longer than 2 / w for the largest w:
-        the method becomes unstable soon above this.
+    The arguments are those of `volume`, but any number of steps will do. Raises InputError if several slip rates may solve the
+    contact equation at a node, or if the steps are longer than 2 / w for the largest w: the method becomes unstable soon above
+    this.
     """
     enough = ceil(0.5 * case.frequencies().max() * case.two_way_time)
     if steps_per_two_way_time < enough:

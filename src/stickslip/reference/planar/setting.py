@@ -36,26 +36,15 @@ class Friction(Protocol):
     def __call__(self, slip: Array, rate: Array, nodes: NDArray[np.intp]) -> tuple[Array, Array, Array]:
         """Return the strength (Pa) at some nodes, and its derivatives by slip (Pa/m) and slip rate (Pa s/m).
 
-        Parameters
-        ----------
-        slip
-            Net slip since the start (m), one number for each of `nodes`.
-        rate
-            Magnitude of the slip rate (m/s); 0 means the limit 0+.
-        nodes
-            Indices of the nodes in the flattened contact.
+        `slip` is the net slip since the start (m) and `rate` the magnitude of the slip rate (m/s; 0 means the limit 0+), one number
+        for each of `nodes`, which are indices in the flattened contact.
         """
 
 
 class SlipWeakeningAtNodes:
     """Strength that falls linearly with the magnitude of slip, from `static` to `dynamic` (Pa) over `distance` (m).
 
-    Parameters
-    ----------
-    shape
-        Numbers of nodes along the contact.
-    static, dynamic, distance
-        Numbers, or arrays of this shape.
+    They are numbers, or arrays of the shape of the contact.
     """
 
     def __init__(self, shape: tuple[int, ...], static: float | Array, dynamic: float | Array, distance: float | Array) -> None:
@@ -72,16 +61,8 @@ class SlipWeakeningAtNodes:
 class LawAtNodes:
     """A friction law without a state and without a static excess, on nodes with normal stresses and initial slips of their own.
 
-    The law gets the net slip.
-
-    Parameters
-    ----------
-    law
-        The law.
-    normal_stress
-        Normal stress (Pa) at each node; its shape is that of the contact.
-    initial_slip
-        Slip as the law counts it at the start (m), a number or an array of this shape.
+    The law gets the net slip. `normal_stress` (Pa) has the shape of the contact; `initial_slip` (m), the slip as the law counts it
+    at the start, is a number or an array of this shape.
     """
 
     def __init__(self, law: FrictionLaw, normal_stress: Array, initial_slip: float | Array = 0.0) -> None:

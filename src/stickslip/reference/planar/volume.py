@@ -30,23 +30,11 @@ from stickslip.reference.planar.setting import Array, PlanarCase, PlanarSeries, 
 
 
 class Volume:
-    """The state of the whole slab, step by step.
+    """The state of the whole slab, step by step, for a `duration` (s) at most.
 
-    Parameters
-    ----------
-    case
-        What to solve.
-    steps_per_two_way_time
-        Number of steps of time in R = 2 h / c; even, because half as many cells fill the thickness.
-    duration
-        How long the run may become (s).
-
-    Attributes
-    ----------
-    slip, slip_rate, traction
-        Slip now (m); slip rate (m/s) and traction (Pa) of the last step.
-    heat
-        Work of friction from the start until half a step ago (J per m of strike in 2D, J in 3D), of tau(n) as defined above.
+    The number of steps in R = 2 h / c is even, because half as many cells fill the thickness. `slip` (m) is that now; `slip_rate`
+    (m/s) and `traction` (Pa) are those of the last step. `heat` is the work of friction from the start until half a step ago (J per
+    m of strike in 2D, J in 3D), of tau(n) as defined above.
     """
 
     def __init__(self, case: PlanarCase, steps_per_two_way_time: int, duration: float) -> None:
@@ -146,26 +134,9 @@ class Volume:
 
 
 def volume(case: PlanarCase, duration: float, steps_per_two_way_time: int) -> PlanarSeries:
-    """Solve a case by the volume method.
+    """Solve a case by the volume method at every step of a duration (s), which is rounded to whole steps.
 
-    Parameters
-    ----------
-    case
-        What to solve.
-    duration
-        s; rounded to whole steps.
-    steps_per_two_way_time
-        Even number of steps of time in R = 2 h / c.
-
-    Returns
-    -------
-    PlanarSeries
-        The solution at every step.
-
-    Raises
-    ------
-    InputError
-        If several slip rates may solve the contact equation at a node.
+    The number of steps in R = 2 h / c is even. Raises InputError if several slip rates may solve the contact equation at a node.
     """
     run = Volume(case, steps_per_two_way_time, duration)
     count = round(duration / run.step_of_time)

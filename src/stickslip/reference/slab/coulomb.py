@@ -16,23 +16,11 @@ from stickslip.bodies import ElasticSlab
 
 @dataclass(frozen=True)
 class CoulombSlab:
-    """One slip event of an elastic slab under Coulomb friction.
+    """One slip event of an elastic slab under Coulomb friction, a rigid driver and no contact mass.
 
-    The echo arrests the contact as long as pull_rate is at most half the slip rate at the start and the load stays within the
-    static strength.
-
-    Parameters
-    ----------
-    body : ElasticSlab
-        The slab, under a rigid driver and without contact mass.
-    static, dynamic : float
-        Friction coefficients at rest and while slipping.
-    pull_rate : float
-        Pull rate V (m/s); 0 means the limit 0+.
-
-    Notes
-    -----
-    Nothing checks the two conditions above: outside them the slab slips on after the echo, and these formulas do not hold.
+    The pull rate V is in m/s; 0 means the limit 0+. The echo arrests the contact as long as the pull rate is at most half the slip
+    rate at the start and the load stays within the static strength. Nothing checks these two conditions: outside them the slab
+    slips on after the echo, and these formulas do not hold.
 
     Source: Campillo et al. 1996, eqs (12)-(13), with the limit alpha -> infinity of the rate law (15).
     """

@@ -24,26 +24,10 @@ AIRY_ZERO = 2.338107410459767
 
 @dataclass(frozen=True)
 class HyperbolicFolds:
-    """Folds and jumps of the hyperbolic rate law on a slab.
+    """Folds and jumps of the hyperbolic rate law on a slab, with Z (Pa s/m), S (Pa) and alpha (s/m) of eq. (15).
 
-    Parameters
-    ----------
-    impedance : float
-        Impedance Z (Pa s/m).
-    normal_stress : float
-        Normal stress S (Pa).
-    static, dynamic : float
-        Friction coefficients muS at rest and muD at high slip rate.
-    alpha : float
-        Parameter alpha of eq. (15) (s/m), above alpha_c.
+    Raises InputError if the contact is regular (alpha <= alpha_c), so that there are no folds.
 
-    Raises
-    ------
-    InputError
-        If the contact is regular (alpha <= alpha_c), so that there are no folds.
-
-    Notes
-    -----
     Source: Campillo et al. 1996, section 3 and Figs 3-4, from eqs (12) and (15).
     """
 
@@ -107,24 +91,11 @@ def _imbalance(x: float, q: float) -> float:
 
 
 def fold_delay(inertia: float, curvature: float, load_rate: float) -> float:
-    """Return the delay of a jump after the load passes the fold, in the limit of small inertia.
+    """Return the delay (s) of a jump after the load passes the fold, in the limit of small inertia.
 
-    Parameters
-    ----------
-    inertia : float
-        Contact mass eps (Pa s^2/m, which is kg/m^2); for lagged friction, Z times the time of the lag.
-    curvature : float
-        |g''| at the fold (Pa s^2/m^2).
-    load_rate : float
-        Magnitude of the rate of change of the load at the fold (Pa/s).
+    `inertia` is the contact mass eps (Pa s^2/m, which is kg/m^2), or for lagged friction Z times the time of the lag; `curvature`
+    is |g''| at the fold (Pa s^2/m^2), and `load_rate` the magnitude of the rate of change of the load there (Pa/s).
 
-    Returns
-    -------
-    float
-        Delay (s).
-
-    Notes
-    -----
     Source: Haberman 1979, SIAM J. Appl. Math. 37, 69.
     """
     return float(AIRY_ZERO * (inertia**2 / (0.5 * curvature * load_rate)) ** (1.0 / 3.0))

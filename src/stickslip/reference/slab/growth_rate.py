@@ -15,23 +15,10 @@ from stickslip.bodies import ElasticSlab
 
 
 def growth_rate(slab: ElasticSlab, weakening: float) -> float:
-    """Return the growth rate lambda of a perturbation of a slab that weakens with slip.
+    """Return the growth rate (1/s) of a perturbation of a slab that weakens with slip by -mu'(u) (1/m); 0 if the slab is stable.
 
-    Parameters
-    ----------
-    slab : ElasticSlab
-        The slab, under a rigid driver and without contact mass.
-    weakening : float
-        Weakening -mu'(u) of the law (1/m).
-
-    Returns
-    -------
-    float
-        Growth rate (1/s); 0 if the slab is stable.
-
-    Notes
-    -----
-    The growth rate lambda solves lambda coth(lambda h / c) = c alpha_w with alpha_w = S weakening / G.
+    It solves lambda coth(lambda h / c) = c alpha_w with alpha_w = S weakening / G, for a slab under a rigid driver and without
+    contact mass.
 
     Source: Campillo et al. 1996, section 2, from eqs (7)-(13).
     """

@@ -17,32 +17,11 @@ from stickslip.foundation.errors import InputError
 
 @dataclass(frozen=True)
 class PulseTrain:
-    """Slip in pulses under a constant load and the sinusoidal slip law.
+    """Slip in pulses under a constant load beta (Pa) and the sinusoidal slip law, with Z (Pa s/m), S (Pa) and omega (1/m).
 
-    Parameters
-    ----------
-    impedance : float
-        Impedance Z (Pa s/m).
-    load : float
-        Load beta (Pa).
-    normal_stress : float
-        Normal stress S (Pa).
-    mean, amplitude : float
-        Mean mu0 and amplitude a > 0 of the friction coefficient.
-    wavenumber : float
-        Wavenumber omega > 0 of the law (1/m).
-    initial_slip : float
-        Slip u(0) (m).
-
-    Raises
-    ------
-    InputError
-        If beta does not exceed (mean + amplitude) S: slip would end at a strength that it cannot overcome.
-
-    Notes
-    -----
     The load of a slab is constant for ever where the driver absorbs all waves, and under another driver, if it does not move, until
-    the first echo of the slip returns.
+    the first echo of the slip returns. Raises InputError if beta does not exceed (mean + amplitude) S: slip would end at a strength
+    that it cannot overcome.
 
     Source: Campillo et al. 1996, eqs (12) and (14).
     """
@@ -84,11 +63,6 @@ class PulseTrain:
     def peak_rate(self) -> float:
         """The largest slip rate (m/s)."""
         return (self.surplus + self.wave) / self.impedance
-
-    @property
-    def least_rate(self) -> float:
-        """The smallest slip rate (m/s)."""
-        return (self.surplus - self.wave) / self.impedance
 
     def slip(self, t: ArrayLike) -> NDArray[np.float64]:
         """Return the slip u(t) (m) at times t (s), of the shape of t.

@@ -20,22 +20,10 @@ from stickslip.bodies import ElasticSlab
 
 @dataclass(frozen=True)
 class StuckSlab:
-    """A slab whose contact stays stuck.
+    """A slab whose contact stays stuck, from an initial load tau0 (Pa), under a pull rate V (m/s) or a far stress (Pa, and Pa/s).
 
-    Parameters
-    ----------
-    body : ElasticSlab
-        The slab.
-    initial_load : float
-        Initial load tau0 (Pa).
-    pull_rate : float
-        Pull rate V (m/s).
-    far_stress, far_stress_rate : float
-        Far stress (Pa) and its rate (Pa/s); they have no effect under a rigid driver.
-
-    Notes
-    -----
-    Nothing checks that the load stays within the static strength, beyond which the contact would slip.
+    Nothing checks that the load stays within the static strength, beyond which the contact would slip. The far stress has no effect
+    under a rigid driver.
 
     Source: Campillo et al. 1996, eq. (13), extended to a driver of finite impedance.
     """

@@ -18,8 +18,6 @@ FARTHEST, FARTHEST_PURE = 1e3, 30.0
 NEAR, NEAR_KNOWN = 10.0, 2.0
 """Factors within which starts are drawn: of slips and rates of a law, and of pure numbers and the body, which are known better."""
 TREND, DELAY, LOAD, STATE = "record.trend", "record.delay", "initial.load", "initial.state"
-ON_BOUND = 1e-6
-"""Distance from a bound, as a share of the standard uncertainty or of the range, at which a number is on it."""
 _PRIOR = re.compile(r"\s*(normal|lognormal|uniform)\s*\(\s*([^,()]+)\s*,\s*([^,()]+)\s*\)\s*")
 
 

@@ -40,26 +40,11 @@ def _near(value: float, uncertainty: float) -> str:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Inference(Study):
-    """The result of `infer`.
+    """The result of `infer`: the best fit with its model, and what the record determines.
 
-    Attributes
-    ----------
-    estimate : Estimate
-        The best fit, with its model.
-    certainty : Certainty
-        What the record determines.
-    parts : tuple of Part
-        The parts of the record, with what was left out of the fit.
-    about : tuple of str
-        What was done with the record, one sentence each.
-    profiles : tuple of Profile
-        Profiles of the likelihood, if they were asked for.
-    drawn : ndarray or None
-        Searched numbers that were drawn from the posterior distribution.
-    about_samples : tuple of str
-        How good the samples are.
-    asked : dict
-        The options that were given, by name.
+    `parts` are the parts of the record, with what was left out of the fit; `about` says what was done with it, one sentence each.
+    `profiles` of the likelihood and samples `drawn` from the posterior distribution are there if they were asked for;
+    `about_samples` says how good the samples are. `asked` are the options that were given, by name.
     """
 
     estimate: Estimate
@@ -131,18 +116,7 @@ class Inference(Study):
         return pd.DataFrame(self.certainty.correlation, labels, labels)
 
     def best_of(self, part: int = 0) -> Problem:
-        """Return the problem with the best numbers, under the loading of a part.
-
-        Parameters
-        ----------
-        part : int
-            Number of the part, 0 for the first.
-
-        Returns
-        -------
-        Problem
-            The best problem.
-        """
+        """Return the problem with the best numbers, under the loading of a part; 0 is the first."""
         return self._whole.at(self.estimate.searched, part)
 
     @property
@@ -278,26 +252,11 @@ class Inference(Study):
         return write_table(Path(path), self.table.reset_index(), [self.headline, *self.notes])
 
     def report(self, folder: str | Path, *others: Inference) -> Path:
-        """Write a report: a page that needs no other file, with figures, numbers, best scenario and data beside it.
+        """Write a report into a folder: a page that needs no other file, with figures, numbers, best scenario and data beside it.
 
-        Parameters
-        ----------
-        folder : str or Path
-            The folder; it is made if it is missing.
-        *others : Inference
-            Inferences from the same record with other laws, which the page ranks by what they predict, as `ranking` does.
-
-        Returns
-        -------
-        Path
-            The path of the page, `report.html`.
-
-        Raises
-        ------
-        InputError
-            If the best numbers do not run to the end of the record, or if `others` are of another record.
-        OSError
-            If the folder cannot be written.
+        It returns the path of the page, `report.html`, which ranks `others`, inferences from the same record with other laws, by
+        what they predict, as `ranking` does. Raises InputError if the best numbers do not run to the end of the record, or if
+        `others` are of another record, and OSError if the folder cannot be written.
         """
         return report_of_study(self, Path(folder), *others)
 

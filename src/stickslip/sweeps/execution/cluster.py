@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, TypeVar
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError
 from stickslip.sweeps.execution.chunk import run_chunk
-from stickslip.trajectory.checkpoint import engine
+from stickslip.trajectory.status import engine
 
 if TYPE_CHECKING:
     from distributed import Client, Future

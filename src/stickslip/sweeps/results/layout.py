@@ -6,8 +6,8 @@ A store that exists is checked: whether a sweep has written it, and whether it b
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
+from contextlib import AbstractContextManager
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 import zarr
-from zarr.codecs import Crc32cCodec, ZstdCodec
 from zarr.storage import MemoryStore
 
 import stickslip
+from stickslip.foundation import zarr_folder
 from stickslip.foundation.arguments import check_whole, shown
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import clean
@@ -27,7 +27,7 @@ from stickslip.io.netcdf import LONG_NAMES, PAPER
 from stickslip.sweeps.design.design import GRID, IN_WORDS
 from stickslip.sweeps.execution.chunk import MEANINGS, NOT_RUN, PREFIX, TIME
 from stickslip.sweeps.execution.plan import Plan
-from stickslip.trajectory.checkpoint import engine
+from stickslip.trajectory.status import engine
 
 FORMAT = 1
 """Version of the layout, stored in the attribute `stickslip_sweep`."""
@@ -37,8 +37,6 @@ NUMBERS, WORDS, CODES = "float64", "string", "int8"
 """The zarr data types of numbers, words and status codes."""
 FILLS = {NUMBERS: np.nan, WORDS: "", CODES: NOT_RUN}
 """The value of an element that has not been written, by data type."""
-COMPRESSED = (ZstdCodec(), Crc32cCodec())
-"""Codecs of every array: compression, then a CRC-32C checksum after each chunk, which every reader of zarr verifies."""
 _SAME = {
     "stickslip_sweep": "by another version of stickslip",
     "source": "by another version of stickslip",
@@ -82,12 +80,13 @@ def _variable(group: zarr.Group, plan: Plan, name: str, kind: str, about: dict[s
         shape=(*design.shape, *samples.values()),
         chunks=(*plan.tile, *samples.values()),
         dimension_names=(*design.dims, *samples),
-        chunk_key_encoding={"name": "default", "separator": "."},  # all chunks of a variable lie in one folder
+        chunk_key_encoding=zarr_folder.IN_ONE_FOLDER,
     )
 
 
 def _array(group: zarr.Group, name: str, kind: str, about: dict[str, Any], **layout: Any) -> zarr.Array[Any]:
-    return group.create_array(name, dtype=kind, compressors=COMPRESSED, fill_value=FILLS[kind], attributes=about, **layout)
+    layout |= {"compressors": zarr_folder.COMPRESSED, "fill_value": FILLS[kind]}
+    return group.create_array(name, dtype=kind, attributes=about, **layout)
 
 
 def array_of(group: zarr.Group, name: str) -> zarr.Array[Any]:
@@ -133,17 +132,9 @@ def attributes(plan: Plan) -> dict[str, Any]:
 # ---- reading what somebody else may have written -----------------------------------------------------------------------------
 
 
-@contextmanager
-def reading(place: Any) -> Iterator[None]:
+def reading(place: Any) -> AbstractContextManager[None]:
     """Turn every error in the `with` block, which reads a store, into an InputError with a message of one line."""
-    try:
-        yield
-    except InputError as error:
-        text = str(error)
-        raise (error if text.startswith(f"{place}: ") else InputError(f"{place}: not the store of a sweep: {text}")) from None
-    except Exception as error:  # the libraries raise errors of many kinds for a damaged file
-        text = f"{type(error).__name__}: {clean(' '.join(str(error).split()))[:200]}"
-        raise InputError(f"{place}: cannot be read: {text}") from None
+    return zarr_folder.reading(place, "the store of a sweep")
 
 
 def read_design(about: Mapping[str, Any]) -> tuple[str, list[str], tuple[int, ...]]:

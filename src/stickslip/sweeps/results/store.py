@@ -8,11 +8,10 @@ run again. Nothing in the store depends on when, in which order or by which proc
 
 from __future__ import annotations
 
-import errno
 import hashlib
 import warnings
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import AbstractContextManager, ExitStack
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -22,6 +21,7 @@ import xarray as xr
 import zarr
 from zarr.storage import MemoryStore
 
+from stickslip.foundation import zarr_folder
 from stickslip.foundation.atomic_write import held, read_bounded, write_atomically
 from stickslip.foundation.errors import InputError
 from stickslip.sweeps.execution.chunk import NOT_RUN, ChunkResult
@@ -193,16 +193,9 @@ class ResultStore:
             return ordered if isinstance(self.place, Path) else ordered.load()
 
 
-@contextmanager
-def writing(place: Path | MemoryStore) -> Iterator[None]:
+def writing(place: Path | MemoryStore) -> AbstractContextManager[None]:
     """Turn an error of the file system in the `with` block into an InputError with a message of one line."""
-    try:
-        yield
-    except OSError as error:
-        full = error.errno in (errno.ENOSPC, errno.EDQUOT)
-        kept = "; the results so far can be read, and the same command continues when there is room" if full else ""
-        where = ascii(error.filename)[1:-1] if error.filename else place
-        raise InputError(f"{where}: cannot be written: {error.strerror or error}{kept}") from None
+    return zarr_folder.writing(place, "the results so far can be read, and the same command continues when there is room")
 
 
 def check_store(path: Path) -> set[str]:
@@ -221,20 +214,8 @@ def check_store(path: Path) -> set[str]:
 def open_store(path: str | Path) -> xr.Dataset:
     """Open the store of a sweep or of a refined map, after checking every file against its checksum.
 
-    Parameters
-    ----------
-    path : str or pathlib.Path
-        Folder of the store.
-
-    Returns
-    -------
-    xarray.Dataset
-        The contents, whose variables are read when they are used.
-
-    Raises
-    ------
-    InputError
-        If there is no such store, if a file is damaged or unreadable, or if chunks of a stopped sweep have no checksums.
+    The variables of the dataset are read when they are used. Raises InputError if there is no such store, if a file is damaged or
+    unreadable, or if chunks of a stopped sweep have no checksums.
     """
     path = Path(path)
     if not path.exists():
@@ -258,10 +239,7 @@ def publish(path: Path, fill: Callable[[Path], object]) -> None:
 
     def write(draft: Path) -> None:
         fill(draft)
-        with warnings.catch_warnings():
-            # zarr warns that consolidated metadata is not part of its format, but xarray reads it.
-            warnings.simplefilter("ignore", category=UserWarning)
-            zarr.consolidate_metadata(draft)
+        zarr_folder.consolidate(draft)
         vouch_for_layout(draft)
 
     with writing(path):

@@ -8,7 +8,7 @@ import numpy as np
 from bokeh.models import Arrow, NormalHead
 
 from stickslip.explorer.model.answer import Answer, ContactPicture
-from stickslip.explorer.page.look import paint
+from stickslip.explorer.page.components import paint
 from stickslip.explorer.page.stage import Stage
 from stickslip.explorer.page.view import Columns, Key, Units, View, axis_label, limits
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from stickslip.explorer.model.answer import Answer
-from stickslip.explorer.page.look import paint
+from stickslip.explorer.page.components import paint
 from stickslip.explorer.page.stage import NARROW, Stage
 from stickslip.explorer.page.view import Columns, Key, Units, View, axis_label, limits
 from stickslip.figures.style import unit_of

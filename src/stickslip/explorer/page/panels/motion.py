@@ -9,7 +9,7 @@ import numpy as np
 
 from stickslip.explorer.model.answer import Answer, Motion
 from stickslip.explorer.model.words import short
-from stickslip.explorer.page.look import paint
+from stickslip.explorer.page.components import paint
 from stickslip.explorer.page.panels.units import Curve, held, share_loads
 from stickslip.explorer.page.stage import NARROW, Stage
 from stickslip.explorer.page.view import Columns, Key, Units, View, axis_label, limits

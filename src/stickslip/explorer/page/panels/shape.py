@@ -11,7 +11,7 @@ import numpy as np
 from bokeh.core.properties import value
 
 from stickslip.explorer.model.answer import Answer
-from stickslip.explorer.page.look import FONT, paint
+from stickslip.explorer.page.components import FONT, paint
 from stickslip.explorer.page.stage import Stage
 from stickslip.explorer.page.view import Key, Units, View, axis_label, round_step
 from stickslip.figures.style import unit_of

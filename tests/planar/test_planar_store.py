@@ -1,0 +1,314 @@
+"""Runs of planar slabs in a folder: streamed, stopped, killed and continued bit for bit; damaged ones are refused in one line."""
+
+from __future__ import annotations
+
+import math
+import os
+import shutil
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray
+import zarr
+from tests.planar.patches import patch
+
+import stickslip as ss
+from stickslip.foundation import netcdf_file, zarr_folder
+from stickslip.foundation.atomic_write import held
+from stickslip.io import planar_store
+from stickslip.run import run_loop
+from stickslip.run.planar_run import PlanarReport
+
+GRID = {"nodes": 32, "length": 2e4}
+DURATION = 12.0  # three round trips, of 5.71 s
+
+
+def stop_after(count: int) -> Callable[[PlanarReport], None]:
+    """A callback that interrupts the run at its report number `count`."""
+    left = iter(range(count - 1))
+
+    def report(_: PlanarReport) -> None:
+        if next(left, None) is None:
+            raise KeyboardInterrupt
+
+    return report
+
+
+def check_same(one: Any, other: Any) -> None:
+    assert one.status.name == other.status.name
+    assert len(one.times) == len(other.times)
+    check_fields(one, other)
+
+
+@pytest.fixture(scope="module")
+def whole() -> Any:
+    return ss.simulate(patch(**GRID), DURATION, frames=10)
+
+
+@pytest.fixture(scope="module")
+def stopped(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a run that was stopped in its second round trip."""
+    path = tmp_path_factory.mktemp("stopped") / "run.zarr"
+    ss.simulate(patch(**GRID), DURATION, frames=10, checkpoint=path, progress=stop_after(14))
+    return path
+
+
+@pytest.fixture
+def store(stopped: Path, tmp_path: Path) -> Path:
+    """A copy of it."""
+    return Path(shutil.copytree(stopped, tmp_path / "run.zarr"))
+
+
+@pytest.mark.parametrize("stops", [(3, 7), (10, 1)], ids=str)
+def test_a_run_that_was_stopped_twice_is_the_run_that_was_not(tmp_path: Path, whole: Any, stops: tuple[int, int]) -> None:
+    """After frame 10 a round trip ends."""
+    path = tmp_path / "run.zarr"
+    stopped = ss.simulate(patch(**GRID), DURATION, frames=10, checkpoint=path, progress=stop_after(stops[0]))
+    assert stopped.status.name == "interrupted"
+    assert len(stopped.times) == stops[0] + 1
+    ss.resume(path, progress=stop_after(stops[1]), checkpoint_every=0.0)
+    check_same(ss.resume(path), whole)
+    check_same(ss.open_solution(path), whole)
+
+
+@pytest.mark.parametrize("plane", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["line", "plane"])
+def test_a_run_with_states_that_is_alone_continues_bit_for_bit(tmp_path: Path, plane: bool) -> None:
+    slab = ss.ElasticSlab(2800.0, 3500.0, 1e3, 1e8)
+    law = ss.friction.RateAndState(reference=0.6, a=0.01, b=0.015, distance=1e-2)
+    problem = ss.Problem(slab, law, pull_rate=1e-3, initial_load=63e6, initial_state=1.2)
+    along = {"initial.slip": lambda y, *_: 1e-3 * (y < 0.0), "normal_stress": lambda y, *z: 1e8 + 1e6 * (sum(z, y) > 0.0)}
+    grid: dict[str, Any] = {"width": 1e3, "width_nodes": 12} if plane else {}
+    contact = ss.PlanarSlab(
+        problem, nodes=8, length=2e3, replicas=False, along=along, barrier=lambda y, *_: np.abs(y) > 900.0, **grid
+    )
+    whole = ss.simulate(contact, 0.8, frames=10)
+    ss.simulate(contact, 0.8, frames=10, checkpoint=tmp_path / "run.zarr", progress=stop_after(7))
+    check_same(ss.resume(tmp_path / "run.zarr"), whole)
+    with pytest.raises(ss.InputError, match="without replicas"):
+        ss.resume(tmp_path / "run.zarr", 0.9)
+
+
+class Killed(BaseException):
+    """In place of a signal that no process survives."""
+
+
+@pytest.mark.parametrize("place", ["sync", "write_variables", "consolidate", "_status"])
+def test_a_run_that_died_while_it_wrote_continues_bit_for_bit(tmp_path: Path, whole: Any, monkeypatch: Any, place: str) -> None:
+    """Half-way through the arrays, before the state, between the state and what readers see, and before the status."""
+    path, calls = tmp_path / "run.zarr", iter(range({"sync": 21, "_status": 4}.get(place, 3)))
+    module: Any = {"write_variables": netcdf_file, "consolidate": zarr_folder}.get(place, planar_store)
+    real = getattr(module, place)
+
+    def dies(*given: Any) -> Any:
+        if next(calls, None) is None:
+            raise Killed
+        return real(*given)
+
+    monkeypatch.setattr(run_loop, "SHARE", 1e9)  # a checkpoint at each frame
+    monkeypatch.setattr(module, place, dies)
+    with pytest.raises(Killed):
+        ss.simulate(patch(**GRID), DURATION, frames=10, checkpoint=path, checkpoint_every=0.0)
+    monkeypatch.undo()
+    found = ss.open_solution(path)
+    assert found.status.name == "under way"
+    assert np.array_equal(found.slip, whole.slip[: len(found.times)])
+    check_same(ss.resume(path), whole)
+
+
+RUN = """
+import os, signal
+import stickslip as ss
+from tests.planar.patches import patch
+
+def report(about):
+    if about.time > 9.0:
+        os.kill(os.getpid(), signal.SIGKILL)
+
+ss.simulate(patch(nodes=32, length=2e4), 12.0, frames=10, checkpoint="run.zarr", checkpoint_every=0.0, progress=report)
+"""
+
+
+def test_a_run_that_was_killed_continues_bit_for_bit(tmp_path: Path, whole: Any) -> None:
+    path = os.pathsep.join([str(Path(ss.__file__).parents[1]), str(Path(__file__).parents[2])])
+    done = subprocess.run([sys.executable, "-c", RUN], cwd=tmp_path, env=os.environ | {"PYTHONPATH": path}, check=False)
+    assert done.returncode == -signal.SIGKILL
+    assert ss.open_solution(tmp_path / "run.zarr").status.name == "under way"
+    check_same(ss.resume(tmp_path / "run.zarr"), whole)
+
+
+def test_a_longer_run_is_the_run_that_was_long_from_the_start(tmp_path: Path, whole: Any) -> None:
+    """Three round trips are prepared as four; the shorter run ends between two frames."""
+    path = tmp_path / "run.zarr"
+    ss.simulate(patch(**GRID), DURATION, frames=10, checkpoint=path)
+    longer = ss.resume(path, 20.0)
+    check_same(longer, ss.simulate(patch(**GRID), 20.0, frames=10))
+    assert np.array_equal(longer.slip[: len(whole.times) - 1], whole.slip[:-1])
+    with pytest.raises(ss.InputError, match=r"exponentials are made for 22.857"):
+        ss.resume(path, 23.0)
+    with pytest.raises(ss.InputError, match=r"has already reached 20"):
+        ss.resume(path, 19.0)
+
+
+ON_TWO = """
+import stickslip as ss
+print(len(__import__("jax").devices()), ss.resume("run.zarr").status.name)
+"""
+
+
+@pytest.mark.slow
+def test_two_devices_continue_what_one_device_began(store: Path, whole: Any) -> None:
+    """17 wavenumbers on one device are 18 on two, of which the last is nothing."""
+    env = os.environ | {"XLA_FLAGS": "--xla_force_host_platform_device_count=2", "JAX_PLATFORMS": "cpu"}
+    done = subprocess.run([sys.executable, "-c", ON_TWO], cwd=store.parent, env=env, capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["2", "finished"]
+    found = ss.open_solution(store)
+    assert np.abs(found.slip - whole.slip).max() < 1e-12 * whole.slip.max()
+
+
+def test_xarray_reads_a_folder_while_the_run_continues(tmp_path: Path, monkeypatch: Any) -> None:
+    monkeypatch.setattr(run_loop, "SHARE", 1e9)  # a checkpoint at each frame
+    seen = []
+
+    def look(_: PlanarReport) -> None:
+        with xarray.open_zarr(tmp_path / "run.zarr", chunks=None) as found:
+            assert np.isfinite(found.slip).all()
+            seen.append((found.sizes["time"], found.attrs["status"]))
+
+    run = ss.simulate(patch(**GRID), 3.0, frames=10, checkpoint=tmp_path / "run.zarr", checkpoint_every=0.0, progress=look)
+    assert [frames for frames, _ in seen] == list(range(2, len(run.times) + 1))
+    assert {status for _, status in seen} == {"under way"}
+    with xarray.open_zarr(tmp_path / "run.zarr", chunks=None) as found:
+        assert found.slip.dims == ("time", "y")
+        assert [found[name].attrs["units"] for name in ("time", "y", "slip_rate", "traction")] == ["s", "m", "m s-1", "Pa"]
+        assert found.attrs["status"] == "finished"
+        assert np.array_equal(found["along.load"], run.slab.along["load"])
+
+
+def test_a_folder_opens_with_all_observables(store: Path) -> None:
+    found = ss.open_solution(store)
+    assert found.pulses.shape == found.rupture_times.shape == (32,)
+    assert found.moment_rate.shape == found.times.shape
+    assert "interrupted" in repr(found)
+    assert str(found)
+    assert found.dataset().slip.shape == (15, 32)
+
+
+# ---- refused in one line ---------------------------------------------------------------------------------------------------------
+
+
+def refused(act: Callable[[], object], *words: str) -> None:
+    with pytest.raises(ss.InputError) as told:
+        act()
+    assert "\n" not in str(told.value)
+    assert all(word in str(told.value) for word in words), str(told.value)
+
+
+@pytest.mark.parametrize("flips", [1, pytest.param(20, marks=pytest.mark.slow)])
+def test_no_damaged_folder_is_read(store: Path, whole: Any, flips: int) -> None:
+    """Any bit of any file: what is opened or continued is refused, or is what was written."""
+    rng, told, copy = np.random.default_rng(2), [], store.with_name("damaged.zarr")
+    for file in sorted(path.relative_to(store) for path in store.rglob("*") if path.is_file()):
+        for _ in range(flips):
+            shutil.copytree(store, copy)
+            damaged = bytearray((copy / file).read_bytes())
+            damaged[int(rng.integers(len(damaged)))] ^= 1 << int(rng.integers(8))
+            (copy / file).write_bytes(damaged)
+            told += [
+                try_to(lambda: check_fields(ss.open_solution(copy), whole)),
+                try_to(lambda: check_fields(ss.resume(copy), whole)),
+            ]
+            shutil.rmtree(copy)
+    lines = [line for line in told if line]
+    assert len(lines) > 15 * flips
+    assert not any("\n" in line or len(line) > 600 for line in lines)
+
+
+def try_to(act: Callable[[], object]) -> str:
+    """Return the message of the InputError that a call raises, or an empty text."""
+    try:
+        act()
+    except ss.InputError as error:
+        return str(error)
+    return ""
+
+
+def check_fields(found: Any, whole: Any) -> None:
+    for name in ("times", "slip", "slip_rate", "traction", "heat"):
+        assert np.array_equal(getattr(found, name), getattr(whole, name)[: len(found.times)]), name
+
+
+def edited(path: Path, **changes: Any) -> None:
+    """Change attributes of a folder, and give it a checksum that fits: what only somebody who means it does."""
+    group = zarr.open_group(path, mode="r+")
+    group.attrs.update(changes)
+    group.attrs.update({"digest": planar_store._digest(group.attrs)})
+    state = netcdf_file.read(path / "state.nc")
+    netcdf_file.write(state.assign_attrs(digest=group.attrs["digest"]), path / "state.nc")
+
+
+@pytest.mark.parametrize(
+    ("changes", "word"),
+    [
+        ({"stickslip_planar": 2}, "format 1 expected, found 2"),
+        ({"scenario": "x = 1"}, "run.zarr"),
+        ({"scenario": 3}, "cannot be read"),
+        ({"grid": {"nodes": 16, "length": 2e4}}, "load must give (16,) values"),
+        ({"grid": [1]}, "run.zarr"),
+        ({"along": ["static"]}, "static"),
+        ({"modes": [2, 9]}, "waves/sent"),
+        ({"steps_per_round_trip": 0.5}, "steps_per_round_trip is 0.5"),
+        ({"duration": math.inf}, "duration is inf"),
+        ({"frames": "many"}, "frames is 'many'"),
+    ],
+    ids=str,
+)
+def test_a_folder_made_by_hand_is_refused(store: Path, changes: dict[str, Any], word: str) -> None:
+    edited(store, **changes)
+    refused(lambda: ss.resume(store), str(store), word)
+
+
+@pytest.mark.parametrize("file", ["state.nc", "slip/c.1.0", "barrier/c.0", "waves/sent/c.0.0.0", "waves/zarr.json"])
+def test_a_folder_without_one_of_its_files_is_refused(store: Path, file: str) -> None:
+    (store / file).unlink()
+    refused(lambda: ss.resume(store).slip, str(store))
+
+
+def test_what_is_no_planar_run_is_refused(store: Path, tmp_path: Path) -> None:
+    refused(lambda: ss.open_solution(tmp_path), "not the run of a planar slab: it is no folder of zarr")
+    zarr.create_group(tmp_path / "sweep.zarr", attributes={"stickslip_sweep": 1})
+    refused(lambda: ss.open_solution(tmp_path / "sweep.zarr"), "it is the store of a sweep")
+    refused(lambda: ss.resume(tmp_path / "missing.zarr"), "missing.zarr")
+    (tmp_path / "two.zarr").mkdir()
+    refused(lambda: ss.resume(tmp_path / "two.zarr"), "two.zarr")
+    refused(lambda: ss.sweep("fig6-slab", {"friction.alpha": [1.0]}, out=store), "not the store of a sweep")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"checkpoint": "run.nc"}, "the checkpoint of a PlanarSlab is a folder NAME.zarr, got 'run.nc'"),
+        ({"checkpoint": 3}, "checkpoint"),
+        ({"checkpoint": "run.zarr", "checkpoint_every": -1.0}, "checkpoint_every"),
+        ({"checkpoint": "missing/run.zarr"}, "missing"),
+        ({"max_pieces": 3}, "a PlanarSlab has no max_pieces"),
+    ],
+    ids=str,
+)
+def test_a_clumsy_checkpoint_is_refused(monkeypatch: Any, tmp_path: Path, arguments: dict[str, Any], words: str) -> None:
+    monkeypatch.chdir(tmp_path)
+    refused(lambda: ss.simulate(patch(**GRID), 3.0, **arguments), words)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_clumsy_resume_is_refused(store: Path) -> None:
+    refused(lambda: ss.simulate(patch(**GRID), 3.0, checkpoint=store), "exists: stickslip.resume continues the run in it")
+    refused(lambda: ss.resume(store, max_events=3), "without max_events")
+    refused(lambda: ss.resume(store, checkpoint="other.zarr"), "without checkpoint")
+    with held(store, "held"):
+        refused(lambda: ss.resume(store), "another run is writing into it")
