@@ -67,7 +67,7 @@ def explore(
     Exit code: 0 ended by Ctrl-C, 2 unusable input.
     """
     from stickslip.cli.overrides import load
-    from stickslip.explorer.extra import check_extra
+    from stickslip.explorer.notebook import check_extra
 
     check_extra("explore")
     if static is not None:

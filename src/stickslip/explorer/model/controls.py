@@ -172,7 +172,6 @@ class _Tables:
                 yield from self.of_law(f"{table}.{name}", PARTLESS)
 
     def of(self, table: str, kind: type, kinds: tuple[str, ...], title: str = "", states: tuple[StateVariable, ...] = ()) -> Group:
-        """Return the group of one table."""
         controls: list[Control] = []
         for name, (entry, default) in entries_in(table, kind, states).items():
             if not self.applies(f"{table}.{name}"):
@@ -186,7 +185,6 @@ class _Tables:
         return Group(table, title or TITLES[table.partition(".")[0]], own, kinds, tuple(controls))
 
     def of_run(self) -> Group:
-        """Return the group of the run: its numbers, the number of events, and the selection rule."""
         numbers = self.of("run", type(self.problem.body), ())
         rule = self.setting.value("run.selection") or SELECTION_RULES[0]
         meaning = "which slip rate the contact takes where several solve the contact equation"
@@ -213,7 +211,6 @@ class _Tables:
         return not isinstance(self.setting.value(path), Mapping) or "parameters" in path
 
     def control(self, path: str, entry: Field, default: Any) -> Control:
-        """Return the control of one entry of the schema."""
         label = path.rpartition(".")[2].replace("_", " ")
         value = self.setting.value(path)
         rare = path in RARE
@@ -230,7 +227,6 @@ class _Tables:
         return self.number(path, label, entry, default, rare)
 
     def number(self, path: str, label: str, entry: Quantity, default: Any, rare: bool) -> Control:
-        """Return the control of a number."""
         given = self.setting.value(path)
         if given == STEADY:
             given = self.problem.given_states[STATE_NAMES.index(path.partition(".")[2])]
