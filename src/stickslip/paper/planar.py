@@ -95,20 +95,10 @@ def process_zone(like: Problem) -> float:
 
 @dataclass(frozen=True)
 class Fault:
-    """A fault of finite length, locked outside, on which everything is loaded alike.
+    """A fault of finite length, locked outside, on which everything is loaded alike: a "line" (2D), "disc" or "square" (3D).
 
-    Parameters
-    ----------
-    problem
-        The problem of its nodes.
-    ratio
-        Its length, or its diameter or side in 3D, over the thickness of the slab.
-    shape
-        "line" (2D), "disc" or "square" (3D).
-    per_zone
-        Nodes in a process zone.
-    replicas
-        False for a fault that is alone, True for one that is repeated at 1.25 of its length.
+    `ratio` is its length, or its diameter or side, over the thickness of the slab. It is alone, or with `replicas` repeated at 1.25
+    of its length, and has `per_zone` nodes in a process zone.
     """
 
     problem: Problem

@@ -56,7 +56,6 @@ def cases_table(runs: Runs) -> pd.DataFrame:
 
 
 def _stacked(runs: Runs, table: str, units: Mapping[str, str]) -> pd.DataFrame:
-    """Return the events or shocks of all cases in one table, with the name of the case in the first column."""
     shown = {name: {"m s-1": "m/s", "load": "Pa or N"}.get(unit, unit) for name, unit in units.items() if unit not in ("", "1")}
     parts: dict[str, pd.DataFrame] = {name: getattr(runs.case(name), table) for name in READINGS}
     # Leave out cases without a row: they would make the types of the columns ambiguous.
