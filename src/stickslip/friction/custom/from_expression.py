@@ -293,8 +293,9 @@ class FromExpression(RemembersSlip):
         if self.evolution:
             return self._steady_variation()
         slip, rate = np.linspace(0.0, 10.0, 201)[:, None], np.append(0.0, np.geomspace(1e-9, 10.0, 200))
-        values = self.coefficient(slip, rate)
-        return max(float(np.ptp(values)), self.static_excess)
+        with np.errstate(all="ignore"):  # the formula may have a pole there
+            values = self.coefficient(slip, rate)
+        return max(float(np.ptp(values[np.isfinite(values)])), self.static_excess)
 
     def _steady_variation(self) -> float:
         """Return the change of friction between steady sliding at slip rates up to 10 m/s, and state 0 at rest; 0.1 if unknown."""
