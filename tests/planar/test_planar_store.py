@@ -21,7 +21,7 @@ from tests.planar.patches import patch
 import stickslip as ss
 from stickslip.foundation import netcdf_file, zarr_folder
 from stickslip.foundation.atomic_write import held
-from stickslip.io import planar_store
+from stickslip.io import planar_layout, planar_store
 from stickslip.run import run_loop
 from stickslip.run.planar_run import PlanarReport
 
@@ -72,7 +72,11 @@ def test_a_run_that_was_stopped_twice_is_the_run_that_was_not(tmp_path: Path, wh
     stopped = ss.simulate(patch(**GRID), DURATION, frames=10, checkpoint=path, progress=stop_after(stops[0]))
     assert stopped.status.name == "interrupted"
     assert len(stopped.times) == stops[0] + 1
-    ss.resume(path, progress=stop_after(stops[1]), checkpoint_every=0.0)
+    ctrl_c = iter([False] * stops[1] + [True])
+    again: Any = ss.resume(
+        path, progress=lambda _: next(ctrl_c, False) and signal.raise_signal(signal.SIGINT), checkpoint_every=0.0
+    )
+    assert len(again.times) == sum(stops) + 1
     check_same(ss.resume(path), whole)
     check_same(ss.open_solution(path), whole)
 
@@ -98,10 +102,10 @@ class Killed(BaseException):
     """In place of a signal that no process survives."""
 
 
-@pytest.mark.parametrize("place", ["sync", "write_variables", "consolidate", "_status"])
+@pytest.mark.parametrize("place", ["sync", "write_variables", "consolidate", "in_attributes"])
 def test_a_run_that_died_while_it_wrote_continues_bit_for_bit(tmp_path: Path, whole: Any, monkeypatch: Any, place: str) -> None:
     """Half-way through the arrays, before the state, between the state and what readers see, and before the status."""
-    path, calls = tmp_path / "run.zarr", iter(range({"sync": 21, "_status": 4}.get(place, 3)))
+    path, calls = tmp_path / "run.zarr", iter(range({"sync": 21, "in_attributes": 3}.get(place, 3)))
     module: Any = {"write_variables": netcdf_file, "consolidate": zarr_folder}.get(place, planar_store)
     real = getattr(module, place)
 
@@ -249,7 +253,7 @@ def edited(path: Path, **changes: Any) -> None:
     """Change attributes of a folder, and give it a checksum that fits: what only somebody who means it does."""
     group = zarr.open_group(path, mode="r+")
     group.attrs.update(changes)
-    group.attrs.update({"digest": planar_store._digest(group.attrs)})
+    group.attrs.update({"digest": planar_layout.digest_of(group.attrs)})
     state = netcdf_file.read(path / "state.nc")
     netcdf_file.write(state.assign_attrs(digest=group.attrs["digest"]), path / "state.nc")
 
