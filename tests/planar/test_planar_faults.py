@@ -71,7 +71,9 @@ def test_friction_that_would_drive_slip_ends_the_run(formula: str) -> None:
     "slab",
     [
         pytest.param(lambda: contact(ss.friction.VelocityStrengthening(0.6, 1e3)), marks=pytest.mark.slow),
-        lambda: contact(ss.friction.HyperbolicRate(0.8, 0.3, 0.9999 * SLAB.impedance / (0.5 * 1e8))),
+        pytest.param(
+            lambda: contact(ss.friction.HyperbolicRate(0.8, 0.3, 0.9999 * SLAB.impedance / (0.5 * 1e8))), marks=pytest.mark.slow
+        ),
         lambda: contact(LAW, {"initial.load": lambda y: np.where(y < 0.0, 1e50, -1e50)}, initial_load=1e50),
         pytest.param(
             lambda: contact(LAW, {"normal_stress": lambda y: np.where(np.abs(y) < 4e3, 1e3, 1e9)}, initial_load=1e6),

@@ -65,7 +65,7 @@ def store(stopped: Path, tmp_path: Path) -> Path:
     return Path(shutil.copytree(stopped, tmp_path / "run.zarr"))
 
 
-@pytest.mark.parametrize("stops", [(3, 7), (10, 1)], ids=str)
+@pytest.mark.parametrize("stops", [(3, 7), pytest.param((10, 1), marks=pytest.mark.slow)], ids=str)
 def test_a_run_that_was_stopped_twice_is_the_run_that_was_not(tmp_path: Path, whole: Any, stops: tuple[int, int]) -> None:
     """After frame 10 a round trip ends."""
     path = tmp_path / "run.zarr"
@@ -227,10 +227,9 @@ def test_no_damaged_folder_is_read(store: Path, whole: Any, flips: int) -> None:
             damaged = bytearray((copy / file).read_bytes())
             damaged[int(rng.integers(len(damaged)))] ^= 1 << int(rng.integers(8))
             (copy / file).write_bytes(damaged)
-            told += [
-                try_to(lambda: check_fields(ss.open_solution(copy), whole)),
-                try_to(lambda: check_fields(ss.resume(copy), whole)),
-            ]
+            told.append(try_to(lambda: check_fields(ss.open_solution(copy), whole)))
+            if flips > 1:
+                told.append(try_to(lambda: check_fields(ss.resume(copy), whole)))
             shutil.rmtree(copy)
     lines = [line for line in told if line]
     assert len(lines) > 8 * flips
