@@ -1,6 +1,7 @@
 """Count the pulses in the middle of faults of finite length, in 2D and 3D: an hour on one core, so that no test runs it.
 
-python docs/planar_pulses.py makes the rows that are missing in src/stickslip/paper/planar-pulses.csv, each with its commit.
+python docs/planar_pulses.py makes the rows that are missing in src/stickslip/paper/planar-pulses.csv, each with its commit, draws
+docs/figures/planar-pulses.png, and prints the table of the page.
 """
 
 from __future__ import annotations
@@ -10,13 +11,16 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 import stickslip as ss
-from stickslip.paper.planar import LARGE, STORED, Fault, middle_rate, peaks, problem_of, pulses_of
+from stickslip.paper.cases import Runs
+from stickslip.paper.planar import LARGE, STORED, Fault, data, draw, middle_rate, peaks, problem_of, pulses_of, table
 
+FIGURE = Path(__file__).with_name("figures") / "planar-pulses.png"
 CURVES = STORED.with_name("planar-middle.csv")
 """Slip rates in the middle against time, of the runs in SHOWN."""
 SHOWN = (("slip", LARGE, "line", 2.0, 8.0, False), ("slip", LARGE, "disc", 2.0, 5.0, False))
@@ -40,6 +44,8 @@ def wanted() -> Iterator[tuple[str, float, Fault, float]]:
     for ratio in RATIOS:  # a disc that is alone takes gigabytes after the echo
         yield one("slip", LARGE, ratio, "disc", 5.0)
         yield one("slip", LARGE, ratio, "disc", 7.0, trips=1.0)
+    yield from (one("slip", LARGE, 4.0, "disc", per_zone, trips=1.0) for per_zone in (5.0, 7.0))
+    yield one("slip", LARGE, 2.0, "disc", 4.0)
     for ratio in RATIOS:
         yield one("slip", LARGE, ratio, "disc", 7.0, True)
         yield one("slip", LARGE, ratio, "square", 7.0, True)
@@ -108,6 +114,9 @@ def main() -> None:
             writer.writeheader()
             writer.writerows(rows)
         print(*rows[-1].values(), sep="  ", file=sys.stderr, flush=True)
+    draw(data(Runs())).savefig(FIGURE, dpi=150)
+    for row in table():
+        print(f"| {' | '.join(row.values())} |")
 
 
 if __name__ == "__main__":

@@ -57,10 +57,9 @@ ROOMS = {
     "batch": (("kernels",), ("vectorised_problem",), ("long_member", "setups"), ("workspace",), ("run",)),
     "sweeps": (("design",), ("execution",), ("results",), ("sweep",), ("estimate", "refine")),
     "figures": (("names", "style"), ("sheet",), ("panels",), ("contact", "runs", "sweeps"), ("studies",)),
-    "explorer": (("extra", "model"), ("page",), ("server", "static"), ("notebook",)),
+    "explorer": (("model",), ("page",), ("server", "static"), ("notebook",)),
     "schemes": (
         ("contract",),
-        ("series",),
         ("finite_elements",),
         ("central_differences", "characteristics", "newmark", "sbp"),
         ("registry", "run"),

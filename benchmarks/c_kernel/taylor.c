@@ -193,7 +193,7 @@ static double rate_on_branch(Run *r, double load, double guess) {
         else if (error < 0.0) low = s;
         else return s;
         double step = slope > 0.0 ? s - error / slope : 0.5 * (low + high);
-        if (!(low < step && step < high)) step = 0.5 * (low + high);
+        if (!(low < step && step < high) && step != s) step = 0.5 * (low + high);
         if (fabs(step - s) <= 1e-16 * fabs(s) || step == low || step == high) return step;
         s = step;
     }

@@ -344,26 +344,11 @@ def test_texts_of_strangers_stay_texts_in_code(title: str) -> None:
 # ---- files that are opened, formulas ---------------------------------------------------------------------------------------
 
 
-def test_opened_scenario_takes_the_place_of_the_setting() -> None:
-    made = opened("C:\\data\\mine.toml", library.text("kolsky-slab").encode(), Setting.bundled("fig6-slab"))
-    assert made.name == "mine"
-    assert made.scenario() == ss.scenarios["kolsky-slab"]
-
-
 def test_opened_scenario_with_a_bundled_name_is_not_taken_for_the_bundled_one() -> None:
     made = opened("fig6-slab.toml", library.text("kolsky-slab").encode(), Setting.bundled("fig6-slab"))
     assert made.name == "fig6-slab (opened)"
     assert not made.is_changed
     assert setting_of(parameters_of(made)) == made
-
-
-def test_opened_points_become_the_law() -> None:
-    content = b"# mine\nslip_rate (mm/s),friction\n0,0.6\n10,0.5\n1000,0.4\n"
-    made = opened("points.csv", content, Setting.bundled("fig6-slab"))
-    law = made.scenario().problem.friction
-    assert (tuple(law.rate), tuple(law.friction)) == ((0.0, 0.01, 1.0), (0.6, 0.5, 0.4))
-    assert made.value("initial.excess") == 0.0
-    assert made.value("body.thickness") == "10 km"
 
 
 def test_formula_brings_its_parameters() -> None:

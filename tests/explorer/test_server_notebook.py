@@ -102,7 +102,7 @@ def test_a_wrong_problem_is_one_line(wrong: Any, message: str) -> None:
 
 def test_without_its_libraries_the_explorer_says_how_to_install_them(monkeypatch: pytest.MonkeyPatch) -> None:
     found = importlib.util.find_spec
-    monkeypatch.setattr("stickslip.explorer.extra.find_spec", lambda name: None if name == "panel" else found(name))
+    monkeypatch.setattr("stickslip.explorer.notebook.find_spec", lambda name: None if name == "panel" else found(name))
     message = 'explore: the explorer needs panel: install them with pip install "stickslip[explorer]"'
     with pytest.raises(InputError) as caught:
         ss.explore("fig6-slab")

@@ -25,8 +25,7 @@ from stickslip.run.progress import Report
 from stickslip.run.resume import PausedCatalogue
 from stickslip.run.run_loop import run_loop
 from stickslip.run.session import Session, split_time
-from tests.long_runs.problems import RUNS, bundled, differences
-from tests.long_runs.processes import killed
+from tests.long_runs.problems import RUNS, bundled, differences, killed
 
 NEEDS_PYARROW = pytest.mark.skipif(importlib.util.find_spec("pyarrow") is None, reason="needs pyarrow")
 SUFFIXES = ["csv", "nc", pytest.param("parquet", marks=NEEDS_PYARROW)]

@@ -27,7 +27,7 @@ from stickslip.trajectory.history import Epoch
 from stickslip.trajectory.status import UNDER_WAY
 from tests.engine.creep_truth import ROUND, printed
 from tests.long_runs.problems import differences as differences_of_runs
-from tests.long_runs.processes import killed
+from tests.long_runs.problems import killed
 from tests.problems import SLAB
 
 STABLE = ss.friction.ExponentialSlipWeakening(static=0.8, dynamic=0.3, distance=30.0)

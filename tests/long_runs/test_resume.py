@@ -20,8 +20,7 @@ from stickslip.run.progress import Report
 from stickslip.run.resume import resume_run
 from stickslip.run.session import Session
 from stickslip.trajectory.status import UNDER_WAY, Checkpoint
-from tests.long_runs.problems import RUNS, differences, differences_of_files
-from tests.long_runs.processes import killed
+from tests.long_runs.problems import RUNS, differences, differences_of_files, killed
 
 
 def steps_of(problem: ss.Problem, duration: float) -> int:

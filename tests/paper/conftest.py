@@ -20,5 +20,5 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("paper") / "deep" / "folder"
     steps: list[str] = []
     assert make(out, steps.append) == out / "report.html"
-    assert len(steps) == 7 + 20 + 2
+    assert len(steps) == 8 + 20 + 2
     return out

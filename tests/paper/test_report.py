@@ -20,12 +20,12 @@ from tests.html_page import Page, check_alone, check_form, check_links
 
 
 def test_every_file_is_there_and_nothing_else(folder: Path) -> None:
-    expected = {f"figure{n}.{kind}" for n in range(1, 8) for kind in ("png", "svg", "nc")}
-    expected |= {f"{name}.csv" for name in ("cases", "events", "shocks", "claims", "constants")} | {"report.html"}
+    expected = {f"figure{n}.{kind}" for n in range(1, 9) for kind in ("png", "svg", "nc")}
+    expected |= {f"{name}.csv" for name in ("cases", "events", "shocks", "claims", "constants", "planar")} | {"report.html"}
     assert {path.name for path in folder.iterdir()} == expected
 
 
-@pytest.mark.parametrize("number", range(1, 8))
+@pytest.mark.parametrize("number", range(1, 9))
 def test_data_reopen_with_units(number: int, folder: Path) -> None:
     dataset = xr.load_dataset(folder / f"figure{number}.nc", engine="h5netcdf")
     assert dataset.attrs["source"].startswith("stickslip ")
@@ -81,7 +81,7 @@ def page(folder: Path) -> Page:
 
 def test_the_page_has_the_form_of_a_report(page: Page) -> None:
     check_form(page)
-    assert sum("id" in attributes for _, attributes, _ in page.elements) > 7 + 20
+    assert sum("id" in attributes for _, attributes, _ in page.elements) > 8 + 20
 
 
 def test_the_table_of_verdicts_comes_first_then_figures_then_claims(page: Page) -> None:
@@ -108,7 +108,7 @@ def test_every_claim_is_in_the_table_and_folded_behind_its_verdict(page: Page) -
 
 def test_links_lead_to_places_on_the_page_or_to_files_beside_it(page: Page, folder: Path) -> None:
     inside = {link[1:] for link in check_links(page, folder) if link.startswith("#")}
-    assert inside >= {"verdicts", "figures", "claims", "constants", "cases"} | {f"claim-{n}" for n in STATEMENTS}
+    assert inside >= {"verdicts", "figures", "claims", "planar", "constants", "cases"} | {f"claim-{n}" for n in STATEMENTS}
 
 
 def test_the_report_needs_nothing_from_elsewhere(page: Page, folder: Path) -> None:
@@ -121,7 +121,7 @@ def test_pictures_are_described_and_are_those_of_the_folder(page: Page, folder: 
         assert len(attributes["alt"]) > 60
         code = attributes["src"].partition("base64,")[2]
         assert b64decode(code) == (folder / f"figure{n}.svg").read_bytes()
-    assert len(pictures) == 7
+    assert len(pictures) == 8
 
 
 def test_visible_numbers_have_meaningful_digits(page: Page, folder: Path) -> None:

@@ -119,3 +119,10 @@ def test_a_wrong_law_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_energies_outside_the_run_are_refused() -> None:
     with pytest.raises(ss.InputError, match="times must be from 0 to"):
         ss.simulate(patch(nodes=32, length=2e4), 1.0).energy([0.0, 2.0])
+
+
+def test_a_run_of_one_step_has_energies() -> None:
+    run = ss.simulate(patch(nodes=32, length=2e4), 1e-3)
+    assert len(run.times) == 2
+    assert float(run.energy().heat[-1]) > 0.0
+    assert "energy" not in str(run)

@@ -30,8 +30,8 @@ DURATION = 12.0  # three round trips, of 5.71 s
 
 
 def stop_after(count: int) -> Callable[[PlanarReport], None]:
-    """A callback that interrupts the run at its report number `count`."""
-    left = iter(range(count - 1))
+    """A callback that interrupts the run after `count` frames, and the report before the start."""
+    left = iter(range(count))
 
     def report(_: PlanarReport) -> None:
         if next(left, None) is None:
@@ -175,7 +175,9 @@ def test_xarray_reads_a_folder_while_the_run_continues(tmp_path: Path, monkeypat
     monkeypatch.setattr(run_loop, "SHARE", 1e9)  # a checkpoint at each frame
     seen = []
 
-    def look(_: PlanarReport) -> None:
+    def look(report: PlanarReport) -> None:
+        if report.time == 0.0:
+            return
         with xarray.open_zarr(tmp_path / "run.zarr", chunks=None) as found:
             assert np.isfinite(found.slip).all()
             seen.append((found.sizes["time"], found.attrs["status"]))
@@ -209,7 +211,7 @@ def refused(act: Callable[[], object], *words: str) -> None:
     assert all(word in str(told.value) for word in words), str(told.value)
 
 
-@pytest.mark.parametrize("flips", [1, pytest.param(20, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("flips", [1, pytest.param(3, marks=pytest.mark.slow)])
 def test_no_damaged_folder_is_read(store: Path, whole: Any, flips: int) -> None:
     """Any bit of any file: what is opened or continued is refused, or is what was written."""
     rng, told, copy = np.random.default_rng(2), [], store.with_name("damaged.zarr")

@@ -15,9 +15,9 @@ import stickslip as ss
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.netcdf_file import read
 from stickslip.io.series import read_series
+from stickslip.schemes.contract import Series
 from stickslip.schemes.registry import SCHEMES
 from stickslip.schemes.run import run_scheme
-from stickslip.schemes.series import Series
 from stickslip.studies.benchmarks import BENCHMARKS, benchmark_of, exact_series, judge_benchmark, write_benchmark
 from stickslip.studies.schemes import judge_series, schemes
 

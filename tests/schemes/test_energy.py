@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.schemes.contract import Sample
+from stickslip.schemes.contract import Sample, Series
 from stickslip.schemes.registry import SCHEMES
 from stickslip.schemes.run import run_scheme
-from stickslip.schemes.series import Series
 from stickslip.studies.schemes import schemes
 
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)

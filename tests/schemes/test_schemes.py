@@ -11,12 +11,11 @@ import pytest
 import stickslip as ss
 from stickslip.foundation.errors import InputError
 from stickslip.io.series import read_series
-from stickslip.schemes.contract import Meeting
+from stickslip.schemes.contract import Meeting, Series
 from stickslip.schemes.finite_elements import Elements
 from stickslip.schemes.registry import SCHEMES, scheme_of
 from stickslip.schemes.run import SEARCHES, GridContact, grid_of, run_scheme
 from stickslip.schemes.sbp import NORMS, difference
-from stickslip.schemes.series import Series
 from stickslip.studies.scheme_measures import arrest_in, pulses_in
 from stickslip.studies.schemes import judge_series, schemes
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.schemes.series import Series
+from stickslip.schemes.contract import Series
 from stickslip.studies.schemes import Schemes, judge_series, schemes
 from stickslip.studies.verdict import NONE, STRICT, UNTOLD
 

@@ -36,20 +36,11 @@ NO_START = "the run cannot start"
 class BatchResult(NamedTuple):
     """The results of the members of a batch, in the order of the values given.
 
-    Attributes
-    ----------
-    results : dict of str to array, shape (members,)
-        One number for each member, by the name of the quantity; NaN for a member whose parameters are invalid.
-    status : array of int, shape (members,)
-        What ended each run: codes of `stickslip.trajectory.status.STATUSES`.
-    reason : dict of int to str
-        Why the parameters of a member are invalid, in one line, by the index of the member.
-    seconds : float
-        Processor time of all members, s.
-    alone : dict of int to float
-        Processor time (s) of each member that ran by itself, because its history is long or because it creeps for long.
-    later : list of int
-        Members that must run by themselves and have been left for later (see `defer`); their status is INTERRUPTED.
+    `results` has one number for each member, by the name of the quantity; NaN for a member whose parameters are invalid, and
+    `reason` says in one line why, by its index. `status` says what ended each run, in codes of
+    `stickslip.trajectory.status.STATUSES`. `seconds` is the processor time of all members, and `alone` that of each member that ran
+    by itself, because its history is long or because it creeps for long (s). Members that must run by themselves and have been left
+    for `later` (see `defer`) have the status INTERRUPTED.
     """
 
     results: dict[str, Floats]
@@ -65,35 +56,14 @@ def run_members(
 ) -> BatchResult:
     """Run a scenario once for each set of parameters, in compiled code, and reduce each run to the given quantities.
 
-    Parameters
-    ----------
-    scenario : Scenario
-        The scenario whose parameters vary.
-    values : mapping of str to array, shape (members,)
-        Values (SI) by key, such as "friction.alpha", "body.thickness", "loading.pull_rate", "initial.excess" or "run.duration".
-    quantities : sequence of str
-        Names from `stickslip.batch.QUANTITIES`.
-    threads : int
-        Number of threads.
-    defer : bool
-        If true, do not run members that must run by themselves, and list them in `later`: each may take as long as thousands of
-        others. If false, they run after all others.
+    Values (SI) are arrays of shape (members,) by key, such as "friction.alpha", "body.thickness", "loading.pull_rate",
+    "initial.excess" or "run.duration"; quantities are names from `stickslip.batch.QUANTITIES`. The results depend neither on the
+    number of threads nor on which members run together. A member whose parameters are invalid gets the status BAD_PARAMETERS and a
+    reason; it does not affect the others.
 
-    Returns
-    -------
-    BatchResult
-        Quantities and status of each member. A member whose parameters are invalid gets the status BAD_PARAMETERS and a reason;
-        it does not affect the others.
-
-    Raises
-    ------
-    InputError
-        If `why_not` gives a reason against running this scenario in a batch, or if the values are not one-dimensional arrays of
-        the same length.
-
-    Notes
-    -----
-    The results depend neither on the number of threads nor on which members run together.
+    With `defer`, members that must run by themselves are not run but listed in `later`: each may take as long as thousands of
+    others. Without, they run after all others. Raises InputError if `why_not` gives a reason against running this scenario in a
+    batch, or if the values are not one-dimensional arrays of the same length.
     """
     reason = why_not(scenario, tuple(values), quantities)
     if reason:

@@ -196,22 +196,7 @@ def groups(scenario: Scenario, values: Values) -> Iterator[tuple[int, Places, di
 
 
 def why_not(scenario: Scenario, parameters: Sequence[str], quantities: Sequence[str]) -> str:
-    """Return in one line why a batch cannot run a scenario; "" if it can.
-
-    Parameters
-    ----------
-    scenario : Scenario
-        The scenario to be run.
-    parameters : sequence of str
-        Names of the parameters that vary, such as "friction.alpha".
-    quantities : sequence of str
-        Names of the quantities to be kept.
-
-    Returns
-    -------
-    str
-        The first reason found, or "".
-    """
+    """Return in one line why a batch cannot run a scenario with these parameters and quantities; "" if it can."""
     if UNCOMPILED:
         return "the engine runs uncompiled, and lanes are registers of a processor"
     for name in quantities:  # those that need a whole solution are unknown to a batch

@@ -10,8 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from stickslip.bodies.spring_block import SpringBlock
-from stickslip.foundation.arguments import CheckedArguments
-from stickslip.foundation.brief_repr import brief_repr
+from stickslip.foundation.brief_repr import Declared
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.conversion import Number, OptionalNumber
 from stickslip.foundation.errors import InputError
@@ -19,38 +18,15 @@ from stickslip.foundation.quantities import check_fields, quantity
 
 
 @dataclass(frozen=True)
-class ElasticSlab(CheckedArguments):
+class ElasticSlab(Declared):
     """A slab of given thickness in antiplane or in-plane shear: rho u_tt = G u_xx, friction at x = 0, a driver at x = h.
 
-    Parameters
-    ----------
-    density
-        Density rho (kg/m^3).
-    wave_speed
-        Shear wave speed c (m/s).
-    thickness
-        Thickness h (m).
-    normal_stress
-        Normal stress S on the contact (Pa), compression positive.
-    driver_impedance
-        Impedance Zd of the driver at x = h (Pa s/m): inf for a rigid driver, which prescribes the displacement; a finite value
-        for a half-space; 0 for a dead load.
-    contact_mass
-        Mass of the sliding face per unit area (kg/m^2). If it is positive the slip rate has no jumps (shocks).
-    p_wave_speed
-        Compressional wave speed (m/s). It is needed only for the normal strain, which is constant.
-
-    Raises
-    ------
-    InputError
-        If a number is out of range, or `p_wave_speed` does not exceed sqrt(4/3) `wave_speed`.
-
-    Notes
-    -----
-    Source: Campillo et al. 1996, eqs (7)-(13).
+    A driver of finite impedance is a half-space. With a contact mass the slip rate has no jumps (shocks). Raises InputError if a
+    number is out of range, or `p_wave_speed` does not exceed sqrt(4/3) `wave_speed`.
     """
 
     kind: ClassVar[str] = "elastic-slab"
+    source: ClassVar[str] = "Campillo et al. 1996, eqs (7)-(13)"
     load_unit: ClassVar[str] = "Pa"
     energy_unit: ClassVar[str] = "J m-2"
     has_waves: ClassVar[bool] = True
@@ -71,8 +47,6 @@ class ElasticSlab(CheckedArguments):
     p_wave_speed: OptionalNumber = quantity(
         "m/s", "compressional wave speed: only for the (constant) normal strain", above=0, default=None
     )
-
-    __repr__ = brief_repr
 
     def __post_init__(self) -> None:
         check_fields(self)

@@ -8,33 +8,17 @@ from typing import ClassVar
 
 import numpy as np
 
-from stickslip.foundation.arguments import CheckedArguments
-from stickslip.foundation.brief_repr import brief_repr
+from stickslip.foundation.brief_repr import Declared
 from stickslip.foundation.conversion import Number
 from stickslip.foundation.quantities import check_fields, quantity
 
 
 @dataclass(frozen=True)
-class SpringBlock(CheckedArguments):
-    """A rigid block pulled through a spring: m dv/dt + damping v + tau = K (D0 + V t - u). Loads and tractions are forces, in N.
-
-    Parameters
-    ----------
-    mass
-        Mass m (kg).
-    stiffness
-        Stiffness K of the spring (N/m).
-    normal_force
-        Normal force S on the contact (N), compression positive.
-    damping
-        Viscous resistance to slip (N s/m).
-
-    Notes
-    -----
-    Source: Campillo et al. 1996, eqs (4)-(6); the damping is an addition.
-    """
+class SpringBlock(Declared):
+    """A rigid block pulled through a spring: m dv/dt + damping v + tau = K (D0 + V t - u). Loads and tractions are forces, in N."""
 
     kind: ClassVar[str] = "spring-block"
+    source: ClassVar[str] = "Campillo et al. 1996, eqs (4)-(6); the damping is an addition"
     load_unit: ClassVar[str] = "N"
     energy_unit: ClassVar[str] = "J"
     has_waves: ClassVar[bool] = False
@@ -48,8 +32,6 @@ class SpringBlock(CheckedArguments):
     stiffness: Number = quantity("N/m", "stiffness K of the spring", above=0)
     normal_force: Number = quantity("N", "normal force S on the contact, compression positive", above=0)
     damping: Number = quantity("N s/m", "viscous resistance to slip", at_least=0, default=0.0)
-
-    __repr__ = brief_repr
 
     def __post_init__(self) -> None:
         check_fields(self)

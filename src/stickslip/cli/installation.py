@@ -32,15 +32,7 @@ AGREE = 1e-9
 
 @dataclass(frozen=True)
 class Finding:
-    """One row of `stickslip doctor`.
-
-    Parameters
-    ----------
-    name, value : str
-        What was looked at, and what it is.
-    fault : str
-        What is wrong and how to cure it, in one line; empty if all is well.
-    """
+    """One row of `stickslip doctor`: what was looked at, what it is, and in one line what is wrong, if anything, with its cure."""
 
     name: str
     value: str

@@ -143,32 +143,15 @@ def critical_normal_stress(g: Resistance) -> float | None:
 
 
 def critical_value(problem: Problem, name: str, law_slip: float | None = None) -> Critical:
-    """Find the values of one parameter at which the contact equation changes between one solution and several.
+    """Find the values of one parameter at which the contact equation changes between one solution and several, to rounding.
 
-    Parameters
-    ----------
-    problem : Problem
-        Problem whose body is a slab without contact mass.
-    name : str
-        Parameter to vary, such as "alpha", "rate.alpha", "body.normal_stress" or "initial.slip".
-    law_slip : float, optional
-        Slip (m) as the law counts it; the initial one by default.
+    The problem's body is a slab without contact mass. The name is such as "alpha", "rate.alpha", "body.normal_stress" or
+    "initial.slip"; `law_slip` (m) is the slip as the law counts it, the initial one by default. The search goes from the present
+    value by factors up to 1e9 both ways (from 1e-9 to 1e9 if it is 0), as far as the problem accepts them. Two changes within one
+    step, a factor of 10^(1/4), can hide each other.
 
-    Returns
-    -------
-    Critical
-        Critical values to rounding, the regimes between them, and what is proven of them.
-
-    Raises
-    ------
-    InputError
-        If the name is no parameter, if the parameter is a whole number, or if the body is a block or has a contact mass: inertia
-        then makes the slip rate a state, and the motion is unique whatever the parameters are.
-
-    Notes
-    -----
-    The search goes from the present value by factors up to 1e9 both ways (from 1e-9 to 1e9 if it is 0), as far as the problem
-    accepts them. Two changes within one step, a factor of 10^(1/4), can hide each other.
+    Raises InputError if the name is no parameter, if the parameter is a whole number, or if the body is a block or has a contact
+    mass: inertia then makes the slip rate a state, and the motion is unique whatever the parameters are.
     """
     check_problem("critical_value", problem)
     found = problem.parameters[name]

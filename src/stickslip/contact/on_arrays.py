@@ -91,27 +91,12 @@ class ContactOnArrays:
         return Friction(value, by_slip, by_rate, by_state[0] if len(by_state) == 1 else np.stack(by_state))
 
     def rate(self, load: ArrayLike, slip: ArrayLike, state: ArrayLike = 0.0) -> Floats:
-        """Solve the contact equation Z v + S mu(u, v) = load at each point (paper eqs 12-13).
+        """Return the slip rate v >= 0 (m/s) that solves Z v + S mu(u, v) = load at each point (paper eqs 12-13).
 
-        Parameters
-        ----------
-        load
-            Load along the direction of slip, Pa: what the traction would be if the contact could not slip.
-        slip
-            Slip as the law counts it, m.
-        state
-            State in the form that the formulas use, for a law that has one; a row for each of two states.
-
-        Returns
-        -------
-        array
-            The slip rate v >= 0, m/s, with the shape to which the arguments broadcast. It is 0 where the strength bears the load.
-
-        Raises
-        ------
-        InputError
-            If several slip rates solve the equation at a point. This is proven for friction that depends on the slip rate only;
-            under other laws the slopes of Z v + S mu at 21 slip rates tell.
+        `load` (Pa) is along the direction of slip: what the traction would be if the contact could not slip. `slip` (m) is as the
+        law counts it, and `state` in the form that the formulas use, for a law that has one; a row for each of two. The rate is 0
+        where the strength bears the load. Raises InputError if several slip rates solve the equation at a point. This is proven for
+        friction that depends on the slip rate only; under other laws the slopes of Z v + S mu at 21 slip rates tell.
         """
         if self._is_irregular:
             raise self._several()

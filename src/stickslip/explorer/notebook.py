@@ -3,15 +3,27 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from stickslip.explorer.extra import check_extra
 from stickslip.foundation.conversion import WithUnit
+from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 
 if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario
+
+LIBRARIES = ("panel", "bokeh")
+"""The libraries of the extra `explorer`."""
+
+
+def check_extra(who: str) -> None:
+    """Refuse to go on without the libraries of the explorer. Raises InputError, which begins with `who`."""
+    missing = [name for name in LIBRARIES if find_spec(name) is None]
+    if missing:
+        raise InputError(f'{who}: the explorer needs {" and ".join(missing)}: install them with pip install "stickslip[explorer]"')
+
 
 ROUND_TRIPS = 3.0
 """Round trips of a slab, or periods of a block, that are shown of a problem to which no duration is given."""

@@ -84,7 +84,6 @@ def write_atomically(path: Path, write: Callable[[Path], object], *, folder: boo
 
 
 def _remove(draft: Path) -> None:
-    """Remove a draft, if it is there."""
     if draft.is_dir():
         shutil.rmtree(draft, ignore_errors=True)
     else:

@@ -7,19 +7,35 @@ import math
 from collections.abc import Iterator, Mapping
 from numbers import Real
 from types import MappingProxyType
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
+from stickslip.foundation.arguments import CheckedArguments
 from stickslip.foundation.formatting import brief
 from stickslip.foundation.quantities import Choice, Field, NamedNumbers, Part, Quantity, Series, fields_of, in_units
 
 
-def document_fields(kind: type, source: str = "") -> None:
+class Declared(CheckedArguments):
+    """Base of the classes whose fields are declared: these describe themselves in the docstring, and when an object is shown."""
+
+    source: ClassVar[str] = ""
+    """Paper and equation from which the class is taken."""
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        _document_fields(cls, vars(cls).get("source", ""))
+        cls.__repr__ = cls.__repr__  # type: ignore[method-assign] # the decorator `dataclass` keeps one that the class itself has
+
+    def __repr__(self) -> str:
+        return brief_repr(self)
+
+
+def _document_fields(kind: type, source: str) -> None:
     """Append the declared fields, as the section Parameters, and the source to the docstring of a class that is being defined.
 
-    Call it in `__init_subclass__`, where the fields of the class itself are still plain attributes. A class without a docstring, or
-    with a section Parameters of its own, is left as it is.
+    The fields of the class itself are still plain attributes. A class without a docstring, or with a section Parameters of its own,
+    is left as it is.
     """
     text = kind.__doc__
     if not text or "Parameters\n" in text:

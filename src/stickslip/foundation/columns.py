@@ -265,7 +265,6 @@ def missing(header: Sequence[str], column: str) -> str:
 
 
 def _example(column: str) -> str:
-    """Return a heading for a column as users may write it, with its unit."""
     unit = COLUMNS.get(column, Column("1")).unit
     return column if unit == "1" else f"{column} ({unit})"
 
@@ -312,7 +311,6 @@ def _has_unit(heading: str) -> bool:
 
 
 def _bare(unit: str) -> str:
-    """Return a unit without the brackets around it."""
     return unit.strip(" ()[]")
 
 
@@ -327,7 +325,6 @@ def _header_line(lines: Sequence[str], wanted: Sequence[str]) -> int:
 
 
 def _named(line: str, known: set[str]) -> int:
-    """Return how many cells of a line are headings of known columns."""
     parts = (_HEADING.fullmatch(cell.strip().strip('"')) for cell in line.split(_separator(line)))
     return sum(_plain(part["name"]) in known for part in parts if part)
 
@@ -337,7 +334,6 @@ def _separator(header: str) -> str:
 
 
 def _plain(heading: str) -> str:
-    """Return a heading in the form in which headings are compared."""
     return " ".join(heading.casefold().replace("µ", "μ").replace("_", " ").replace("-", " ").split())
 
 

@@ -128,7 +128,6 @@ def _read_unit(unit: str, hint: str = "") -> tuple[Fraction, dict[str, Any]]:
 
 
 def _looked_up(unit: str, hint: str) -> tuple[Fraction, dict[str, Any]]:
-    """Return the same as `_read_unit`, from the library of units."""
     import pint
 
     registry = _registry()

@@ -13,8 +13,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.foundation.arguments import CheckedArguments
-from stickslip.foundation.brief_repr import brief_repr, document_fields
+from stickslip.foundation.brief_repr import Declared
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import check_fields
 from stickslip.friction.formula.expression import STATES
@@ -65,7 +64,7 @@ def states_in(declared: Any) -> tuple[StateVariable, ...]:
 
 
 @dataclass(frozen=True)
-class LawContract(CheckedArguments, ABC):
+class LawContract(Declared, ABC):
     """The statements of a friction law; subclass `stickslip.friction.FrictionLaw` to make one.
 
     A law declares its parameters as fields (`quantity` or `declare` of `foundation.quantities`), its formula once, and the class
@@ -78,8 +77,6 @@ class LawContract(CheckedArguments, ABC):
 
     kind: ClassVar[str]
     """Name of the law in scenario files and in `LAWS`."""
-    source: ClassVar[str] = ""
-    """Paper and equation from which the law is taken."""
     example: ClassVar[Mapping[str, Any]] = {}
     """Plausible values of the fields, in the form of a scenario file: `stickslip new` shows them and tests use them."""
     counts: ClassVar[Literal["net", "path"]] = "net"
@@ -209,12 +206,6 @@ class LawContract(CheckedArguments, ABC):
         return 0.0 if len(self.states) < 2 else np.zeros(len(self.states))
 
     # ---------------------------------------------------------------------------------------------------------------------------
-
-    def __init_subclass__(cls, **options: Any) -> None:
-        super().__init_subclass__(**options)
-        document_fields(cls, vars(cls).get("source", ""))
-        if "__repr__" not in vars(cls):  # the decorator `dataclass` keeps one that the class itself has
-            cls.__repr__ = brief_repr  # type: ignore[method-assign]
 
     def __post_init__(self) -> None:
         check_fields(self)

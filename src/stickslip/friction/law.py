@@ -32,7 +32,6 @@ def _trees(pieces: tuple[Formula, ...], parameters: tuple[str, ...], literals: L
 
 @lru_cache(maxsize=256)
 def _contain(trees: tuple[Expression, ...], variable: Expression) -> bool:
-    """Return True if one of the trees contains the variable."""
     return any(depends_on(tree, variable) for tree in dict.fromkeys(trees))
 
 

@@ -19,12 +19,10 @@ from stickslip.friction.noise import noise_in
 
 
 def _line(law: Any, step: Any) -> Any:
-    """Return a linear function of the way from the start of the piece."""
     return law.value + law.first * step
 
 
 def _cubic(law: Any, step: Any) -> Any:
-    """Return a cubic function of the way from the start of the piece."""
     return law.value + step * (law.first + step * (law.second + step * law.third))
 
 

@@ -63,7 +63,6 @@ def check_statements(law: FrictionLaw) -> None:
 
 
 def _number(value: Any) -> float:
-    """Return a statement as a number; NaN if it is none."""
     try:
         return float(value)
     except (TypeError, ValueError):
@@ -103,7 +102,6 @@ class _Samples:
 
     @classmethod
     def of(cls, law: FrictionLaw, slips: Floats, rate: Floats) -> _Samples:
-        """Sample a law at all pairs of some slips and slip rates, and at several states."""
         sampled = _states(law)
         slip = np.repeat(slips, len(sampled[0]) if sampled else 1)
         states = [np.tile(one, len(slips)) for one in sampled]
@@ -114,7 +112,6 @@ class _Samples:
         return cls(slip, states, rate, value, slope, law)
 
     def place(self, row: int, column: int) -> str:
-        """Return where a sample was taken, in words."""
         where = [f"slip {self.slip[row]:.4g} m"] if self.law.depends_on_slip else []
         where += [f"slip rate {self.rate[column]:.4g} m/s"] if len(self.rate) > 1 or not where else []
         where += [f"state {one[row]:.4g}" for one in self.states]

@@ -155,7 +155,6 @@ def _field(readings: Readings, t: NDArray[np.float64], x: NDArray[np.float64]) -
 
 
 def _curves(solution: Readings, t: NDArray[np.float64], values: Mapping[Curve, NDArray[np.float64]]) -> dict[str, Variable]:
-    """Return the time (s), and the values of curves at these times."""
     unit = units(solution)
     known = {
         name: Variable(("time",), value, {"units": unit[name], "long_name": LONG_NAMES[name]}) for name, value in values.items()
@@ -240,7 +239,6 @@ def _history(solution: Solution) -> dict[str, Variable]:
 
 
 def _checkpoint(checkpoint: Checkpoint) -> dict[str, Variable]:
-    """Return the state of the engine from which `resume` continues."""
     axes = {name: tuple(f"engine_{axis}" for axis in of) for name, of in zip(ARRAYS, AXES, strict=True)}
     return {f"engine_{name}": Variable(axes[name], getattr(checkpoint, name)) for name in ARRAYS}
 

@@ -25,6 +25,7 @@ from typing_extensions import override
 from zarr.storage import MemoryStore
 
 import stickslip
+from stickslip.engine.state.layout import Stop
 from stickslip.foundation import netcdf_file, zarr_folder
 from stickslip.foundation.atomic_write import held, read_bounded, sync, write_atomically
 from stickslip.foundation.errors import InputError, printable
@@ -35,7 +36,7 @@ from stickslip.planar.slab import PlanarSlab
 from stickslip.scenarios.contact import GRID, Contact
 from stickslip.scenarios.scenario import LARGEST_TEXT, Scenario, read_scenario
 from stickslip.solution.planar import FIELDS, Frames, PlanarSolution
-from stickslip.trajectory.status import STATUSES, UNDER_WAY, Status, engine
+from stickslip.trajectory.status import INTERRUPTED, STATUSES, UNDER_WAY, Status, engine
 
 if TYPE_CHECKING:
     from stickslip.planar.solver import Motion, PlanarSolver
@@ -48,7 +49,7 @@ KIND, STATE, SENT = "stickslip_planar", "state.nc", "waves/sent"
 CHUNK = 4_000_000
 """Bytes of a chunk of frames or waves, unless a single one is larger."""
 WHAT, BUSY = "the run of a planar slab", "another run is writing into it"
-CHANGES = ("duration", "status", "status_message", "status_ok", "digest")
+CHANGES = ("duration", "residual", "status", "status_message", "status_ok", "digest")
 """Attributes that may change, and the checksum of the others."""
 DECIDE = ("bodies", "friction", "loading", "planar", "problem")
 """Folders of the package whose code decides the result of a planar run."""
@@ -172,7 +173,20 @@ class PlanarStore(Frames):
         self.sent += len(rows)
 
     @override
-    def save(self, run: PlanarSolver, code: int = UNDER_WAY) -> None:
+    def save(self, run: PlanarSolver) -> None:
+        self._save(run)
+        self._show(UNDER_WAY)
+
+    @override
+    def end(self, run: PlanarSolver, code: int) -> None:
+        if code in (Stop.FINISHED, INTERRUPTED):
+            self._save(run)
+        else:  # the solver is in no state to continue from: that of the last checkpoint stays
+            self._write_frames()
+        self._show(code)
+
+    def _save(self, run: PlanarSolver) -> None:
+        """Write a checkpoint."""
         self._write_frames()
         self.end_round_trip(run)
         state = {
@@ -181,10 +195,15 @@ class PlanarStore(Frames):
         own = ("written", "sent", "largest_slip", "fastest")
         about = {name: getattr(self, name) for name in own} | {KIND: FORMAT, "engine": _engine(), "digest": self.digest}
         netcdf_file.write_variables(state, about, self.path / STATE)
+
+    def _show(self, code: int) -> None:
+        """Let readers see what has been written, with the status that belongs to a code."""
         with reading(self.path):
             zarr_folder.consolidate(self.path)
             # the group that knows the arrays keeps what it knows of them: the file changes at once
-            zarr.open_group(self.path, mode="r+").attrs.update(_status(STATUSES[code]) | {"duration": self.duration})
+            zarr.open_group(self.path, mode="r+").attrs.update(
+                _status(STATUSES[code]) | {"duration": self.duration, "residual": self.residual}
+            )
 
     @override
     def solution(self, code: int) -> PlanarSolution:
@@ -229,7 +248,7 @@ def attributes(slab: PlanarSlab, scenario: Scenario, frames: int, run: PlanarSol
         "steps_per_round_trip": run.steps,
         KIND: FORMAT,
     }
-    return about | {"digest": _digest(about), "duration": scenario.duration} | _status(STATUSES[UNDER_WAY])
+    return about | {"digest": _digest(about), "duration": scenario.duration, "residual": 0.0} | _status(STATUSES[UNDER_WAY])
 
 
 def _status(status: Status) -> dict[str, Any]:
@@ -306,7 +325,8 @@ def open_planar(path: Path) -> PlanarSolution:
             Status(name, why, bool(group.attrs["status_ok"])),
             whole_number(group.attrs, "steps_per_round_trip", path, 1),
         )
-        return PlanarSolution(slab, times, StoredFields(path, group, len(times)), steps, status)
+        residual = number(group.attrs, "residual", path)
+        return PlanarSolution(slab, times, StoredFields(path, group, len(times)), steps, status, residual)
 
 
 def scenario_in(path: Path) -> Scenario:

@@ -27,17 +27,10 @@ BLOCK = 1 << 17
 
 @dataclass(frozen=True)
 class SampledRun:
-    """A run at evenly spaced times.
+    """A run at `rate` samples per second, from a time `start` (s) on.
 
-    Attributes
-    ----------
-    start : float
-        Time of the first sample, s.
-    rate : float
-        Number of samples per second, Hz.
-    slip, slip_rate, traction : ndarray, shape (n,)
-        Slip since t = 0 of the run or window (m), slip rate (m/s) and traction (Pa; block: N). Away from the contact they are
-        displacement since then, velocity and shear stress.
+    `slip` (m) counts from t = 0 of the run or window; `slip_rate` is in m/s, `traction` in Pa (block: N). Away from the contact
+    they are displacement since then, velocity and shear stress.
     """
 
     start: float
@@ -69,34 +62,18 @@ def sample(
     antialias: bool = False,
     x: float = 0.0,
 ) -> SampledRun:
-    """Sample a run, or a window on it, at evenly spaced times.
+    """Sample a run, or a window on it in local time, at evenly spaced times, `sampling_rate` a second (Hz).
 
-    Without the filter, the values are the solution's at the times of the samples, right limits at shocks.
+    The interval from `start` to `end` (s) is by default that of a figure of the run; `x` is the distance from the contact (m),
+    other than 0 for a slab only. Without the filter, the values are the solution's at the times of the samples, right limits at
+    shocks.
 
-    Parameters
-    ----------
-    run : Readings
-        A solution, or a window on one slip event, which is sampled in local time.
-    sampling_rate : float
-        Number of samples per second, Hz.
-    start, end : float, optional
-        First and last time, s; by default the interval that a figure of the run shows.
-    antialias : bool
-        Low-pass the run to half the sampling rate, because a shock has no highest frequency. The run is averaged over an eighth of
-        the sampling interval, by Gauss's rule between breaking points, then filtered (linear phase, Kaiser window, no delay). This
-        spreads each shock over some samples before and after it. The filter needs scipy.
-    x : float
-        Distance from the contact, m; other than 0 for a slab only (see `Readings.field`).
+    With `antialias` the run is low-passed to half the sampling rate, because a shock has no highest frequency. It is averaged over
+    an eighth of the sampling interval, by Gauss's rule between breaking points, then filtered (linear phase, Kaiser window, no
+    delay). This spreads each shock over some samples before and after it. The filter needs scipy.
 
-    Returns
-    -------
-    Series
-        The samples.
-
-    Raises
-    ------
-    InputError
-        If the rate is not positive, a time lies outside the run, or there are more than 2e7 samples (with the filter 3.1e5).
+    Raises InputError if the rate is not positive, a time lies outside the run, or there are more than 2e7 samples (with the filter
+    3.1e5).
     """
     first, last = (own if given is None else given for own, given in zip(run.shown, (start, end), strict=True))
     if not (0.0 < sampling_rate < math.inf):

@@ -34,40 +34,15 @@ def write_scec(
     components: bool = False,
     **sampling: Unpack[Sampling],
 ) -> Path:
-    """Write time, slip, slip rate and shear stress of a run, or of a window on it, as text.
+    """Write time, slip, slip rate and shear stress of a run, or of a window on it, as text, and return the path.
 
-    Slip is counted from the start of the run or, in a window, of the event.
+    There are `sampling_rate` samples per second (Hz), and the other arguments of `sample`, `start`, `end` and `antialias`, may be
+    given. Slip is counted from the start of the run or, in a window, of the event. `problem` and `station` are texts of one line
+    for the header. With `components` there are the eight columns of the three-dimensional benchmarks: those that begin with h- hold
+    the slip of this model, those with v- are zero, and the last one is the normal stress. There tension is positive, as in TPV29 to
+    TPV37, so that the normal stress is negative. The forces of a block are written as stresses on an area of 1 m^2.
 
-    Parameters
-    ----------
-    run : Readings
-        A solution, or a window on one slip event.
-    path : str or Path
-        Name of the file.
-    sampling_rate : float
-        Number of samples per second, Hz.
-    problem, station : str
-        Texts of one line for the header.
-    components : bool
-        Write the eight columns of the three-dimensional benchmarks: those that begin with h- hold the slip of this model, those
-        with v- are zero, and the last one is the normal stress. There tension is positive, as in TPV29 to TPV37, so that the
-        normal stress is negative.
-    **sampling
-        The arguments `start`, `end` and `antialias` of `sample`.
-
-    Returns
-    -------
-    Path
-        The file.
-
-    Raises
-    ------
-    InputError
-        As from `sample`, and for a header text with line breaks or control characters.
-
-    Notes
-    -----
-    The forces of a block are written as stresses on an area of 1 m^2.
+    Raises InputError as `sample` does, and for a header text with line breaks or control characters.
     """
     for name, text in (("problem", problem), ("station", station)):
         if not text.isprintable():

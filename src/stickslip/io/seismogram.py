@@ -36,40 +36,18 @@ def write_seismogram(
     origin: str = "1970-01-01T00:00:00",
     **sampling: Unpack[Sampling],
 ) -> list[Path]:
-    """Write quantities of a run, or of a window on it, in SI as miniSEED or SAC.
+    """Write quantities of a run, or of a window on it, in SI as miniSEED or SAC, and return the paths.
+
+    The path is NAME.mseed for one file of 64-bit numbers, or NAME.sac for 32-bit numbers in one file for each quantity,
+    NAME.slip_rate.sac and so on; a single quantity goes to NAME.sac. Quantities are "slip", "slip_rate" and "traction", at a
+    distance `x` from the contact (m); inside the slab they are displacement, velocity and shear stress. There are `sampling_rate`
+    samples per second (Hz), and the other arguments of `sample` may be given.
 
     Channels are named by the letter of the band, X for computed data, and U, V or T for slip, slip rate and traction. Slip is
-    counted from the start of the run or, in a window, of the event.
+    counted from the start of the run or, in a window, of the event. `network` and `station` are codes for the header, and `origin`
+    is the date (ISO 8601, UTC) of t = 0, which in a window is the start of the event.
 
-    Parameters
-    ----------
-    run : Readings
-        A solution, or a window on one slip event.
-    path : str or Path
-        NAME.mseed for one file of 64-bit numbers, or NAME.sac for 32-bit numbers in one file for each quantity, NAME.slip_rate.sac
-        and so on; a single quantity goes to NAME.sac.
-    sampling_rate : float
-        Number of samples per second, Hz.
-    quantities : sequence of {"slip", "slip_rate", "traction"}
-        Quantities to write. Inside the slab they are displacement, velocity and shear stress.
-    x : float
-        Distance from the contact, m.
-    network, station : str
-        Codes for the header.
-    origin : str
-        Date (ISO 8601, UTC) of t = 0, which in a window is the start of the event.
-    **sampling
-        The arguments `start`, `end` and `antialias` of `sample`.
-
-    Returns
-    -------
-    list of Path
-        The files.
-
-    Raises
-    ------
-    InputError
-        As from `sample`; also if ObsPy is missing, or for an unknown suffix or quantity or an invalid date.
+    Raises InputError as `sample` does; also if ObsPy is missing, or for an unknown suffix or quantity or an invalid date.
     """
     path = Path(path)
     if path.suffix.lower() not in FORMATS:

@@ -10,7 +10,7 @@ import pandas as pd
 
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError
-from stickslip.schemes.series import Series
+from stickslip.schemes.contract import Series
 
 LARGEST_FILE = 200_000_000
 """Largest size of a file, bytes."""

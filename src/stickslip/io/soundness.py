@@ -180,7 +180,6 @@ def _shapes_of_checkpoint(checkpoint: Checkpoint) -> Iterator[Fault]:
 
 
 def _places(record: Record, *names: str) -> Any:
-    """Return some of a record's numbers as an array."""
     places = [record.places[name] for name in names]
     return record.numbers[[n for place in places for n in range(place.first, place.first + place.size)]]
 

@@ -13,8 +13,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.foundation.arguments import CheckedArguments
-from stickslip.foundation.brief_repr import brief_repr, document_fields
+from stickslip.foundation.brief_repr import Declared, brief_repr
 from stickslip.foundation.conversion import unit_among
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, Series, check_fields, fields_of
@@ -24,16 +23,9 @@ VARYING = "m/s or Pa"
 
 
 class Segment(NamedTuple):
-    """A straight part of a history, which lasts until the next segment or for ever.
+    """A straight part of a history from a time `start` (s) on: a value there (m/s or Pa), and its change per second.
 
-    Parameters
-    ----------
-    start
-        Time at which the segment begins (s since the start of the run).
-    value
-        Value at `start` (m/s or Pa).
-    slope
-        Change of the value per second (m/s^2 or Pa/s).
+    It lasts until the next segment or for ever.
     """
 
     start: float
@@ -46,17 +38,7 @@ class Segment(NamedTuple):
 
 
 class Tone(NamedTuple):
-    """A sinusoid amplitude sin(frequency t + phase) that is added to the segments.
-
-    Parameters
-    ----------
-    amplitude
-        Amplitude (m/s or Pa).
-    frequency
-        Angular frequency (rad/s), positive.
-    phase
-        Phase at the start of the run (rad).
-    """
+    """A sinusoid amplitude (m/s or Pa) sin(frequency t + phase), of an angular frequency (rad/s) > 0, beside the segments."""
 
     amplitude: float
     frequency: float
@@ -67,7 +49,7 @@ SILENT = Tone(0.0, 1.0, 0.0)
 """The tone of a history without oscillation; its frequency of 1 rad/s has no effect, but a frequency must be positive."""
 
 
-class LoadingHistory(CheckedArguments, ABC):
+class LoadingHistory(Declared, ABC):
     """A pull rate (m/s) or far stress (Pa) as a function of time (s) since the start of the run.
 
     Before the start of the run the value is the one at the start. A run meets the breaking points of the history exactly.
@@ -81,14 +63,6 @@ class LoadingHistory(CheckedArguments, ABC):
     """Name of the history in scenario files and in HISTORIES."""
     example: ClassVar[dict[str, Any]]
     """Plausible values of the fields, in the form of a scenario file."""
-    source: ClassVar[str] = ""
-    """Paper from which the history is taken, if there is one."""
-
-    def __init_subclass__(cls, **options: Any) -> None:
-        super().__init_subclass__(**options)
-        document_fields(cls, vars(cls).get("source", ""))
-        if "__repr__" not in vars(cls):  # the decorator `dataclass` keeps one that the class itself has
-            cls.__repr__ = LoadingHistory.__repr__  # type: ignore[method-assign]
 
     unit: str = VARYING
     """Unit of the values, "m/s" or "Pa", if they were given with one; plain numbers fit both."""
@@ -99,7 +73,6 @@ class LoadingHistory(CheckedArguments, ABC):
         check_fields(self, units={VARYING: self.unit})
 
     def _varying(self) -> Iterator[Any]:
-        """Yield the values as they were given, those of a series one by one."""
         for name, (declared, _) in fields_of(type(self)).items():
             item, value = declared.item if isinstance(declared, Series) else declared, getattr(self, name)
             if isinstance(item, Quantity) and item.unit == VARYING:

@@ -31,24 +31,12 @@ SAME = 1e-9
 
 
 def catalogue_statistics(table: pd.DataFrame) -> pd.DataFrame:
-    """Return statistics of the events of a catalogue, one row per quantity.
+    """Return statistics of the events of a catalogue, such as `Solution.events`, one row per quantity, in the unit of the quantity.
 
-    Parameters
-    ----------
-    table : pandas.DataFrame
-        A catalogue: `Solution.events`, or the result of `Solution.catalogue`.
-
-    Returns
-    -------
-    pandas.DataFrame
-        Each row is in the unit of its quantity. Columns: `count`; `mean`; `deviation`, the sample's standard deviation;
-        `variation`, which is deviation / mean (of the recurrence times: 0 periodic, 1 as random as a Poisson process, above 1
-        clustered); `smallest`, `median`, `largest`; and `next`, the correlation of a value with the value of the next event. Values
-        are NaN if there are too few events.
-
-    Notes
-    -----
-    An event that is cut off by the end of the run counts in the recurrence only.
+    Columns: `count`; `mean`; `deviation`, the sample's standard deviation; `variation`, which is deviation / mean (of the
+    recurrence times: 0 periodic, 1 as random as a Poisson process, above 1 clustered); `smallest`, `median`, `largest`; and `next`,
+    the correlation of a value with the value of the next event. Values are NaN if there are too few events. An event that is cut
+    off by the end of the run counts in the recurrence only.
     """
     import pandas as pd
 

@@ -203,7 +203,6 @@ class Waves:
         return trips * once + growth * trips * (trips - 1.0) / 2.0
 
     def _places(self, piece: NDArray[np.intp], low: Floats, high: Floats) -> tuple[Floats, Floats]:
-        """Return the places (xi) in pieces of two offsets (s)."""
         history, start, end = self.history, self.history.store.phase_from[piece], self.history.store.phase_to[piece]
         first, last = (history.xi(piece, np.maximum(offset - start, 0.0)) for offset in (low, high))
         return first, np.where(high >= end, 1.0, last)
@@ -232,7 +231,6 @@ class Waves:
         return left._replace(time=-left.time)
 
     def _coming(self, now: Epoch) -> Sampled:
-        """Return the waves on their way to the contact."""
         begun = self.begun(now)
         back = self._between(now, max(-self.round, -self.half - begun), -self.half)
         arriving = back._replace(wave=self.arriving(back.wave, begun + back.time), time=back.time + self.round)

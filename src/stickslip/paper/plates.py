@@ -1,4 +1,4 @@
-"""Figures 1 to 7 of the paper: the runs, data, drawing function and caption of each."""
+"""Figures 1 to 7 of the paper, and one on the question on which it closes: runs, data, drawing function and caption of each."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from stickslip.contact.uniqueness import uniqueness_of
 from stickslip.figures.contact import resistance, systems
 from stickslip.figures.runs import comparison
 from stickslip.friction import HyperbolicRate, SinusoidalSlip
+from stickslip.paper import planar
 from stickslip.paper.cases import Runs, problem, typed
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ SHOWN = 7.0
 
 @dataclass(frozen=True)
 class Plate:
-    """One figure of the paper: functions that make and draw its data, and the caption below it."""
+    """One figure: functions that make and draw its data, and the caption below it."""
 
     number: int
     title: str
@@ -113,5 +114,14 @@ PLATES = (
         _side_by_side("fig7-block-critical", "fig7-slab-critical", r"$\alpha_c$ + 10$^{-6}$ s/m"),
         comparison.draw,
     ),
+    Plate(
+        8,
+        "Beyond the paper: several pulses in 2D and 3D",
+        "Left: pulses in the middle of faults of length L until the echo returns at 2h/c (filled) and until 4h/c (open). "
+        "Right: slip rate in the middle for L = 2 h; the dotted line is the time at which waves from the ends arrive. "
+        "The curve in 3D and the points on the left are stored, that in 2D is computed now if JAX is there.",
+        planar.data,
+        planar.draw,
+    ),
 )
-"""All figures, in the order of the paper."""
+"""All figures, those of the paper first and in its order."""

@@ -10,6 +10,7 @@ import pandas as pd
 import stickslip as ss
 from stickslip.paper.cases import REFERENCE, Runs
 from stickslip.paper.claims import Outcome, Verdict
+from stickslip.paper.planar import ANSWER, BASIS, table
 from stickslip.paper.plates import PLATES
 from stickslip.paper.tables import cases_table, constants
 from stickslip.reports.page import DIGITS, number, picture, rendered, with_unit
@@ -34,6 +35,9 @@ def report(runs: Runs, images: Mapping[int, bytes], verdicts: Sequence[Verdict])
         constants=constants(),
         plates=PLATES,
         pictures={n: picture(svg) for n, svg in images.items()},
+        answer=ANSWER,
+        basis=BASIS,
+        study=table(),
         cases=_readable(cases),
         columns=[(str(name).partition(" [")[0].capitalize(), pd.api.types.is_numeric_dtype(cases[name])) for name in cases],
     )

@@ -18,6 +18,7 @@ from stickslip.friction import HyperbolicRate, SinusoidalSlip
 from stickslip.observables.event_table import EVENT_COLUMNS
 from stickslip.paper.cases import READINGS, Runs, problem, typed
 from stickslip.paper.claims import Verdict
+from stickslip.paper.planar import STORED
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.tables import SHOCK_COLUMNS
 
@@ -30,6 +31,7 @@ def all_tables(runs: Runs, verdicts: Sequence[Verdict]) -> dict[str, pd.DataFram
         "shocks": _stacked(runs, "shocks", SHOCK_COLUMNS),
         "claims": claims_table(verdicts),
         "constants": pd.DataFrame(constants()),
+        "planar": pd.read_csv(STORED, dtype=str, keep_default_na=False),
     }
 
 
@@ -54,7 +56,6 @@ def cases_table(runs: Runs) -> pd.DataFrame:
 
 
 def _stacked(runs: Runs, table: str, units: Mapping[str, str]) -> pd.DataFrame:
-    """Return the events or shocks of all cases in one table, with the name of the case in the first column."""
     shown = {name: {"m s-1": "m/s", "load": "Pa or N"}.get(unit, unit) for name, unit in units.items() if unit not in ("", "1")}
     parts: dict[str, pd.DataFrame] = {name: getattr(runs.case(name), table) for name in READINGS}
     # Leave out cases without a row: they would make the types of the columns ambiguous.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 from stickslip.foundation.errors import InputError, full_name
 from stickslip.foundation.quantities import Quantity, in_units, quantities_of
 from stickslip.friction import FrictionLaw
+from stickslip.friction.contract import one_argument
 from stickslip.problem.problem import LOAD, Problem
 
 Floats = NDArray[np.float64]
@@ -66,6 +68,28 @@ class NodeValues:
             fall, rise = max(fall, -float(slopes.min())), max(rise, float(slopes.max()))
         return fall, rise
 
+    def steepest_fall(self, reach: float, impedance: float) -> float:
+        """Return the steepest fall of strength with slip (Pa/m), at any node: see `slopes`.
+
+        Under a law with states it is the fall with the change of the states, in their initial values, at the slip rate (m/s) that
+        radiation alone would allow: the load over an impedance (Pa s/m).
+        """
+        fall = self.slopes(reach)[0]
+        for problem in (one for one in self.problems if one.friction.states):
+            law, slip, tiny = problem.friction, problem.law_slip, 1e-100
+            rate, states, numbers = (
+                abs(problem.strength + problem.excess) / impedance,
+                problem.states,
+                SimpleNamespace(**law.numbers(0)),
+            )
+            evolutions = law.state_rate if isinstance(law.state_rate, tuple) else (law.state_rate,)
+            along_slip = [
+                w + 1j * tiny * evolve(numbers, slip, rate, *states) / rate for w, evolve in zip(states, evolutions, strict=True)
+            ]
+            found = law.piece_coefficient(0, np.complex128(slip), np.complex128(rate), one_argument(along_slip))
+            fall = max(fall, -problem.normal * float(np.imag(found)) / tiny)
+        return fall
+
     def is_unique(self, impedance: float, slip: float, rate: float) -> bool:
         """Return False if Z v + S mu(u, v) falls with the slip rate at any node, within some slip (m) from the start.
 
@@ -119,7 +143,7 @@ def node_values(problem: Problem, along: Mapping[str, Floats], shape: tuple[int,
         found = np.asarray(values, float)[..., np.ravel(which)]
         return found.reshape(*found.shape[:-1], *shape)
 
-    pieces = range(len(laws[0].pieces))
+    numbers = [[law.numbers(i) for law in laws] for i in range(len(laws[0].pieces))]
     return NodeValues(
         problems=tuple(problems),
         normal=spread([one.normal for one in problems]),
@@ -130,7 +154,7 @@ def node_values(problem: Problem, along: Mapping[str, Floats], shape: tuple[int,
         states=spread(np.reshape([one.states for one in problems], (len(problems), -1)).T),
         static_excess=spread([law.static_excess for law in laws]),
         knots=spread(np.reshape([law.knots for law in laws], (len(laws), -1)).T),
-        numbers=tuple({name: spread([law.numbers(i)[name] for law in laws]) for name in laws[0].parameters()} for i in pieces),
+        numbers=tuple({name: spread([row[name] for row in rows]) for name in laws[0].parameters()} for rows in numbers),
     )
 
 

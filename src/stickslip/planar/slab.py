@@ -206,7 +206,7 @@ class PlanarSlab(CheckedArguments):
         reach
             Slip (m) from the start up to which strength is looked at.
         """
-        fall = self.values.slopes(reach)[0]
+        fall = self.values.steepest_fall(reach, self.body.impedance)
         return PROCESS_ZONE * self.body.shear_modulus / fall / max(self.spacing) if fall > 0.0 else math.nan
 
     @cached_property

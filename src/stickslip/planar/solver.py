@@ -47,6 +47,8 @@ class Motion(NamedTuple):
     """States in the form that the formulas use, one more axis in front."""
     heat: Any
     """Work of friction since the start, J/m^2."""
+    residual: Any
+    """Largest |Z v + tau - load| so far, as a share of the load: how well the contact equation has been solved."""
 
     def at(self, nodes: tuple[slice, ...]) -> Motion:
         """Return the motion of some of the nodes."""
@@ -152,7 +154,9 @@ class PlanarSolver:
         none, amplitudes = np.zeros(self.slab.shape), (2, *layout.modes)
         path = np.zeros((self.steps + 1, *amplitudes))
         memory = np.zeros((law_of_waves.decay.shape[0], *amplitudes), complex)
-        self.motion = self._put(Motion(values.slip, none, values.load, values.law_slip, values.states, none), self._spread_motion)
+        self.motion = self._put(
+            Motion(values.slip, none, values.load, values.law_slip, values.states, none, none), self._spread_motion
+        )
         self.waves = self._put(Waves(memory, *(path[0],) * 4, path, path), self._spread_waves)
         self.echo = self._put(silent(self.trips - 1, self.steps, amplitudes), self._spread_echo)
         self.spectra = layout.put(self._spectra(frequencies), layout.along_k(2 + 1 + len(layout.modes)))
@@ -175,7 +179,7 @@ class PlanarSolver:
     @property
     def _spread_motion(self) -> Motion:
         y, more = self.layout.along_y(len(self.slab.shape)), self.layout.along_y(1 + len(self.slab.shape))
-        return Motion(y, y, y, y, more, y)
+        return Motion(y, y, y, y, more, y, y)
 
     @property
     def _spread_waves(self) -> Waves:
@@ -219,7 +223,7 @@ class PlanarSolver:
             load = constants.initial_load + loading[0] + self.layout.field(waves.now + waves.arriving[0])
             rate = self.contact.rate(constants.nodes, load, motion.seen, motion.states, motion.rate)
             traction = self.contact.traction(constants.nodes, load, motion.seen, motion.states, rate)
-            motion = motion._replace(rate=rate, traction=traction)
+            motion = motion._replace(rate=rate, traction=traction, residual=self._residual(motion, load, rate, traction))
             waves = waves._replace(rate=self.layout.amplitudes(rate))
             return motion, waves._replace(sent=waves.sent.at[0].set(self._leaving(waves, waves.arriving[0])))
 
@@ -270,7 +274,12 @@ class PlanarSolver:
         if self.contact.law.memory == "since-arrest":
             seen = jnp.where(rate == 0.0, 0.0, seen)
         heat = motion.heat + 0.5 * self.dt * (motion.traction * motion.rate + traction * rate)
-        return Motion(slip, rate, traction, seen, states, heat), waves
+        return Motion(slip, rate, traction, seen, states, heat, self._residual(motion, load, rate, traction)), waves
+
+    def _residual(self, motion: Motion, load: Any, rate: Any, traction: Any) -> Any:
+        """Return `Motion.residual` after a step that ends in this load, slip rate and traction."""
+        missed = jnp.abs((self.body.impedance * rate + traction) / load - 1.0)
+        return jnp.maximum(motion.residual, jnp.where(rate == 0.0, 0.0, missed))
 
     def _counted(self, motion: Motion, mean: Any, guess: Motion, constants: Constants) -> tuple[Any, Any]:
         """Return slip as the law counts it, and the states, after a step at a mean slip rate."""

@@ -96,17 +96,9 @@ registered: dict[str, SelectionRule] = {}
 def register(name: str, rule: SelectionRule) -> None:
     """Register a selection rule under a name, for problems, scenarios and saved runs.
 
-    Parameters
-    ----------
-    name
-        A letter, then up to 59 letters, digits, - or _. A name that is already registered gets the new rule.
-    rule
-        A function (g, stable) that returns a `SelectionTable`.
-
-    Raises
-    ------
-    InputError
-        If the name is not allowed or belongs to a built-in rule, or the rule cannot be called.
+    The name is a letter, then up to 59 letters, digits, - or _; one that is already registered gets the new rule. The rule is a
+    function (g, stable) that returns a `SelectionTable`. Raises InputError if the name is not allowed or belongs to a built-in
+    rule, or the rule cannot be called.
     """
     if not isinstance(name, str) or not _NAME.fullmatch(name):
         raise InputError(f"selection.register: a name is made of up to 60 letters, digits, - and _, got {ascii(name)[:60]}")

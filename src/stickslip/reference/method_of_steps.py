@@ -67,35 +67,15 @@ class StepsSolution:
 
 
 def method_of_steps(problem: Problem, duration: float, rtol: float = 1e-10) -> StepsSolution:
-    """Integrate a problem from one breaking point to the next.
+    """Integrate a problem with the selection rule "perfect-delay" from one breaking point to the next, over a duration (s).
 
-    Parameters
-    ----------
-    problem : Problem
-        Problem with the selection rule "perfect-delay".
-    duration : float
-        Time to integrate over (s).
-    rtol : float
-        Relative tolerance of the integrator.
-
-    Returns
-    -------
-    StepsSolution
-        Slip, slip rate and load as functions of time (s), from 0 to `duration`.
-
-    Raises
-    ------
-    InputError
-        If scipy is not installed, if the selection rule is not perfect delay, if the law changes its formula at slip rates, or if
-        the contact has no mass and the law depends on the slip rate but is neither eq. (15) nor Coulomb's.
-    RuntimeError
-        If events accumulate at a point in time.
-
-    Notes
-    -----
     The integrator shares no code with the engine or with the analysis of the contact: scipy's DOP853 solves the motion between
-    breaking points (shocks, kinks of the law, echoes), and its dense output is the history from which echoes come. The time that
-    it takes grows with the square of the number of round trips: it suits seconds or minutes of sliding, not years.
+    breaking points (shocks, kinks of the law, echoes), and its dense output is the history from which echoes come. The time that it
+    takes grows with the square of the number of round trips: it suits seconds or minutes of sliding, not years.
+
+    Raises InputError if scipy is not installed, if the selection rule is not perfect delay, if the law changes its formula at slip
+    rates, or if the contact has no mass and the law depends on the slip rate but is neither eq. (15) nor Coulomb's; RuntimeError if
+    events accumulate at a point in time.
 
     Source: Campillo et al. 1996, eqs (4)-(6) for the block, (12)-(13) for the slab.
     """

@@ -65,7 +65,6 @@ def _title(study: Inference) -> str:
 
 
 def _figures(study: Inference, dataset: Any) -> Iterator[tuple[str, str, str, Any]]:
-    """Yield name, title, caption and drawing of each figure."""
     for name in study.model.sizes:
         title = f"{figures.NAMES[name][0].capitalize()}, record and best run"
         points = "what was measured of each event" if study.asked.get("by") == "features" else "the samples of the record"
@@ -138,7 +137,6 @@ def _numbers(study: Inference, *, own: bool) -> list[list[str]]:
 
 
 def _digits(value: float, uncertainty: float) -> int:
-    """Return the number of digits of a value that its uncertainty leaves, two of them uncertain."""
     size = max(abs(value), uncertainty, 1e-300) / max(uncertainty, 1e-300)
     return min(max(2 + math.floor(math.log10(size)), 3), 12)
 
@@ -161,7 +159,6 @@ def _power(text: str) -> str:
 
 
 def _fit(study: Inference) -> list[list[str]]:
-    """Return quantity, samples, noise, memory of the noise, and rms of the residual."""
     rows = []
     for name, row in study.fit.iterrows():
         unit = "" if row.unit == "1" else row.unit
@@ -176,7 +173,6 @@ def _short(cell: object) -> str:
 
 
 def _records(study: Inference) -> list[str]:
-    """Return a line for each part of the record: its name, samples, length, and what was measured."""
     found = []
     for part in study.parts:
         measured = ", ".join(name.replace("_", " ") for name in part.record.measured)

@@ -17,7 +17,7 @@ from stickslip.io.netcdf import CATALOGUE, FORMAT, origin, save_checkpoint
 from stickslip.observables.energy.balance import trapped_note
 from stickslip.observables.event_stream import EventStream, Look
 from stickslip.observables.predictability import attributes_of, is_followed, predictability_of_events
-from stickslip.observables.proof import proof_from
+from stickslip.observables.rule_influence import proof_from
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_event_rate
 from stickslip.run.monitor import run_to_end
@@ -251,7 +251,6 @@ class EventRows:
             self.told = Told(self.rows.size, replace(stream))
 
     def _about(self, run: Session, told: Told, rows: Rows) -> dict[str, Any]:
-        """Return the attributes of the checkpoint."""
         stream = told.stream
         return {
             CATALOGUE: FORMAT,

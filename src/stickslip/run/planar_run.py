@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -21,14 +22,20 @@ from stickslip.run.progress import Pace, how_far, how_fast
 from stickslip.run.run_loop import Interrupts, NowAndThen
 from stickslip.scenarios.scenario import Scenario
 from stickslip.solution.planar import Frames, PlanarSolution
-from stickslip.trajectory.status import INTERRUPTED
+from stickslip.trajectory.status import INTERRUPTED, UNSTABLE
 
 if TYPE_CHECKING:
     from stickslip.io.planar_store import PlanarStore
-    from stickslip.planar.solver import PlanarSolver
+    from stickslip.planar.solver import Motion, PlanarSolver
 
 FRAMES = 100
 """Frames in a two-way travel time, by default."""
+RESIDUAL = 1e-6
+"""Largest miss of the contact equation, as a share of the load, in a run that counts as a solution; rounding gives 1e-15."""
+UNHEARD_OF = 1e3
+"""Slip rate of an unstable run over the one that the largest load would drive against radiation alone; fronts come to some ten."""
+COMPILER = 6e7
+"""Memory that compiling a run takes, bytes."""
 MOST_MEMORY = 16e9
 """Largest memory of a run, bytes: echoes need most of it, and they are kept for all round trips to come."""
 
@@ -41,39 +48,48 @@ class PlanarReport(NamedTuple):
     duration: float
     """Simulated time at the end of the run, s."""
     fastest: float
-    """Largest slip rate on the contact now, m/s."""
+    """Largest slip rate on the contact now, m/s; NaN before the start."""
     pace: float
     """Simulated time per wall-clock time since the first report; NaN while it is not known."""
     left: float
     """Wall-clock time left at this pace, s; NaN while it is not known."""
+    memory: float
+    """Memory that the run needs, bytes: see `memory_of`."""
 
     def __str__(self) -> str:
         moving = f"slips at up to {number(self.fastest, 3)} m/s" if self.fastest > 0.0 else "rests"
-        return ", ".join([how_far(self.time, self.duration), moving, *how_fast(self.pace, self.left)])
+        needs = f"needs {number(self.memory / 1e9, 2)} GB"
+        doing = [needs] if math.isnan(self.fastest) else [moving, *how_fast(self.pace, self.left)]
+        return ", ".join([how_far(self.time, self.duration), *doing])
 
 
 PlanarProgress = Callable[[PlanarReport], object]
-"""A function that is called with a `PlanarReport` after each frame."""
+"""A function that is called with a `PlanarReport` before the start and after each frame."""
 
 
 def memory_of(slab: PlanarSlab, duration: float, frames: int = FRAMES) -> float:
-    """Return the memory (bytes) that a run of this duration (s) needs: exponentials, echoes and frames."""
-    body = slab.problem.body
+    """Return the memory (bytes) that a run of this duration (s) needs beside that of Python and its libraries.
+
+    These are the exponentials, the paths of waves in a round trip, the echoes of the round trips to come with what it takes to set
+    them up, and the frames, of which there are two copies at the end, or none (0) if they are streamed.
+    """
     round_trips, steps = slab.round_trips(duration), slab.steps_per_round_trip
     modes = float(np.prod(slab.shape[:-1])) * (slab.shape[-1] // 2 + 1)
     exponentials = 5.0 * (2.0 + np.log2(4.0 * round_trips * steps)) * 64.0 * modes
-    echoes = (round_trips - 1.0) * (steps + 1) * 96.0 * modes + 3.0 * (steps + 1) * 16.0 * modes
-    kept = min(frames, steps) * duration / body.round_trip_time * 32.0 * float(np.prod(slab.shape))
-    return float(exponentials + echoes + kept)
+    echoes = 76.0 + 110.0 * (round_trips - 1) if round_trips > 1 else 0.0
+    waves = (36.0 + echoes) * (steps + 1) * modes
+    kept = min(frames, steps) * duration / slab.body.round_trip_time * 64.0 * float(np.prod(slab.shape))
+    return float(COMPILER + exponentials + waves + kept)
 
 
-def check_memory(slab: PlanarSlab, duration: float, frames: int) -> None:
-    """Raise InputError if a run would need more than MOST_MEMORY."""
+def check_memory(slab: PlanarSlab, duration: float, frames: int) -> float:
+    """Return the memory of a run (see `memory_of`). Raises InputError if it is more than MOST_MEMORY."""
     if (needed := memory_of(slab, duration, frames)) > MOST_MEMORY:
         raise InputError(
             f"simulate: this PlanarSlab needs {needed / 1e9:.3g} GB for {duration:g} s, allowed are {MOST_MEMORY / 1e9:g} GB:"
             " take fewer nodes, a shorter duration, or fewer frames"
         )
+    return needed
 
 
 def simulate_planar(
@@ -97,7 +113,7 @@ def simulate_planar(
     frames
         Number of frames that are kept of each two-way travel time, as far as there are as many steps; 100 by default.
     progress
-        A function that is called with a `PlanarReport` after each frame.
+        A function that is called with a `PlanarReport` before the start and after each frame.
     checkpoint
         Folder (NAME.zarr) to which the frames are written while the run continues, and in which `resume_planar` continues it.
     checkpoint_every
@@ -124,7 +140,7 @@ def simulate_planar(
     path = None if checkpoint is None else as_path("simulate: checkpoint", checkpoint)
     if path is not None and path.suffix != ".zarr":
         raise InputError(f"simulate: the checkpoint of a PlanarSlab is a folder NAME.zarr, got {shown(str(path))}")
-    run, here = follow.solver(slab)
+    run, here = follow.solver(slab, streams=path is not None)
     if path is None:
         return follow.to_end(Frames(slab, run.steps), run, here)
     from stickslip.io.planar_store import PlanarStore  # with zarr, which takes half a second to load
@@ -151,7 +167,7 @@ def resume_planar(
         check_duration(store, before)
         every = CHECKPOINT_INTERVAL.check("resume", "checkpoint_every", checkpoint_every)
         follow = Follow(store.duration, store.frames, progress, every)
-        run, here = follow.solver(store.slab)
+        run, here = follow.solver(store.slab, streams=True, time=store.times[-1])
         store.restore(run)
         if run.step % follow.steps_of(run) and run.step < run.steps and run.steps_left:
             store.drop_last()  # it was made because the run ended there
@@ -177,30 +193,45 @@ def check_duration(store: PlanarStore, before: float) -> None:
     raise InputError(f"{store.path}: the duration of {before:.9g} s cannot become {wanted:.9g} s: {why}")
 
 
-@dataclass(frozen=True)
+@dataclass
 class Follow:
     """How a run is followed to its end.
 
-    `frames` is the number of frames in a two-way travel time, and `every` the wall-clock time (s) between two checkpoints.
+    `frames` is the number of frames in a two-way travel time, `every` the wall-clock time (s) between two checkpoints, and `memory`
+    what the run needs (bytes).
     """
 
     duration: float
     frames: int
     progress: PlanarProgress | None
     every: float
+    memory: float = 0.0
 
-    def solver(self, slab: PlanarSlab) -> tuple[PlanarSolver, tuple[slice, ...]]:
-        """Return the solver at t = 0, and where the nodes of the contact are in it.
+    def solver(self, slab: PlanarSlab, *, streams: bool, time: float = 0.0) -> tuple[PlanarSolver, tuple[slice, ...]]:
+        """Return the solver at t = 0, and where the nodes of the contact are in it, after a first report at a time (s).
 
         Raises InputError if the run needs too much memory, or if JAX is missing.
         """
         solved, here = slab.alone_for(self.duration)
-        check_memory(solved, self.duration, self.frames)
+        self.memory = check_memory(solved, self.duration, 0 if streams else self.frames)
+        if self.progress is not None:
+            self.progress(PlanarReport(time, self.duration, math.nan, math.nan, math.nan, self.memory))
         try:
             from stickslip.planar.solver import PlanarSolver
         except ImportError:
             raise InputError("simulate: a PlanarSlab needs the library JAX: pip install 'stickslip[planar]'") from None
         return PlanarSolver(solved, self.duration), here
+
+    def fault(self, run: PlanarSolver, motion: Motion) -> int | None:
+        """Return the code that ends the run at a motion that is no solution, or None."""
+        if not all(np.isfinite(one).all() for one in motion):
+            return Stop.FAILED
+        if motion.residual.max() > RESIDUAL:
+            return Stop.OFF_THE_LAW
+        largest = np.abs(run.slab.values.load).max() + np.abs(run.loading).max()
+        if np.abs(motion.rate).max() > UNHEARD_OF * largest / run.body.impedance:
+            return UNSTABLE
+        return Stop.NEGATIVE_FRICTION if (np.sign(motion.traction) * np.sign(motion.rate) < 0.0).any() else None
 
     def to_end(self, kept: Frames, run: PlanarSolver, here: tuple[slice, ...]) -> PlanarSolution:
         """Run to the end, or to a Ctrl-C, and return the frames."""
@@ -209,13 +240,13 @@ class Follow:
             kept.save(run)
         with Interrupts() as interrupts:
             code = self.follow(kept, run, here, interrupts)
-        kept.save(run, code)
         slab, slip = kept.slab, kept.largest_slip
         if not slab.values.is_unique(slab.body.impedance, slip, kept.fastest):
             raise InputError(
                 f"simulate: within the {slip:.3g} m that this PlanarSlab slips, friction falls with the slip rate by more than"
                 " radiation adds: several slip rates solve the contact equation, and no selection rule gives a solution in 2D or 3D"
             )
+        kept.end(run, code)
         return kept.solution(code)
 
     def steps_of(self, run: PlanarSolver) -> int:
@@ -224,19 +255,24 @@ class Follow:
 
     def follow(self, kept: Frames, run: PlanarSolver, here: tuple[slice, ...], interrupts: Interrupts) -> int:
         """Run frame by frame, and return the code of what ended the run."""
-        every, saving, pace = self.steps_of(run), NowAndThen.from_now(self.every), Pace()
+        every, saving, pace = self.steps_of(run), NowAndThen.from_now(self.every), None
         while run.steps_left and not interrupts.noted:
             if run.step == run.steps:
                 kept.end_round_trip(run)
             run.advance(every - run.step % every if run.step < run.steps else every)
-            now = run.now().at(here)
+            pace, motion = pace or Pace(), run.now()  # the clock starts when all has been compiled
+            if (code := self.fault(run, motion)) is not None:
+                kept.residual = float(motion.residual.max()) if code == Stop.OFF_THE_LAW else kept.residual
+                return code
+            now = motion.at(here)
             kept.add(run.time, now)
             if saving.is_due:
                 with saving.done():
                     kept.save(run)
             if self.progress is not None:
                 done = min(run.time / self.duration, 1.0)
-                report = PlanarReport(run.time, self.duration, float(np.abs(now.rate).max()), *pace.at(run.time, done))
+                fastest = float(np.abs(now.rate).max())
+                report = PlanarReport(run.time, self.duration, fastest, *pace.at(run.time, done), self.memory)
                 try:
                     self.progress(report)
                 except KeyboardInterrupt:

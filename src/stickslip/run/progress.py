@@ -103,22 +103,11 @@ LONG_RUN = 200_000
 class Report(NamedTuple):
     """The progress of a run; as a text it is one line for people.
 
-    Attributes
-    ----------
-    time, duration : float
-        Simulated time so far and at the end of the run, s.
-    events : int
-        Number of slip events that are over.
-    max_events : int or None
-        Number of slip events after which the run stops, if there is one.
-    pieces : int
-        Number of pieces of history computed so far, including those that have been discarded.
-    doing : {"stuck", "creeping", "slipping"}
-        Present motion of the contact; it creeps while |v| does not exceed the slip rate that defines events.
-    pace : float
-        Simulated time per wall-clock time since the run was started or resumed; NaN while it is not known.
-    left : float
-        Wall-clock time left at this pace, s; NaN while it is not known.
+    It holds the simulated time so far and at the end of the run (s); the number of slip events that are over, and that after which
+    the run stops, if there is one; the number of pieces of history computed so far, including those that have been discarded; and
+    the present motion of the contact, which creeps while |v| does not exceed the slip rate that defines events. `pace` is the
+    simulated time per wall-clock time since the run was started or resumed, and `left` the wall-clock time left at this pace (s);
+    both are NaN while they are not known.
     """
 
     time: float

@@ -19,8 +19,8 @@ def all_slips_alike(who: str, scenario: Scenario) -> Scenario:
     """Return a scenario if its contact is a single place, as it is for all but runs. Raises InputError, which begins with `who`."""
     if scenario.contact is not None:
         raise InputError(
-            f"{who}: {scenario.name} has a [contact] of many nodes (2D or 3D), which only `stickslip run`, `check` and `show` and"
-            " ss.simulate take: leave out [contact] for the problem in 1D that each node has"
+            f"{who}: {scenario.name} has a [contact] of many nodes, for which there are `stickslip run`, `check`, `show` and"
+            " (in 2D) `explore`, and ss.simulate: leave out [contact] for the problem in 1D that each node has"
         )
     return scenario
 

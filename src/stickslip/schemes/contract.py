@@ -1,4 +1,4 @@
-"""What a numerical scheme is: it moves the body by one step of time, and leaves the contact equation of the step to the contact.
+"""What a numerical scheme is, and its series: it moves the body by one step, and leaves the contact equation to the contact.
 
 A scheme that treats the contact implicitly, at one node, finds two numbers in each step: the load, which is the traction that the
 contact would have if its slip rate were 0, and an effective impedance. The contact then solves
@@ -16,6 +16,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.errors import InputError
 
 
 @dataclass(frozen=True)
@@ -183,3 +184,40 @@ def strain_energy(grid: Grid, displacement: Floats, later: Floats | None = None)
     strain = np.diff(displacement)
     other = strain if later is None else np.diff(later)
     return 0.5 * grid.shear_modulus / grid.dx * float(strain @ other)
+
+
+@dataclass(frozen=True, eq=False)
+class Series:
+    """A series at the contact: slip since t = 0 (m), slip rate (m/s) and traction (Pa) at ascending times (s).
+
+    `name` is that of the scheme or program, and `cells` the number of cells in the thickness, 0 if unknown. `energies` has a row of
+    `Energies` (J/m^2) for each time, or is None. Raises InputError if there are fewer than three times, if they do not ascend, or
+    if shapes differ or a number is not finite.
+    """
+
+    time: Floats
+    slip: Floats
+    rate: Floats
+    traction: Floats
+    name: str = "series"
+    cells: int = 0
+    energies: Floats | None = None
+
+    def __post_init__(self) -> None:
+        if self.time.size < 3:
+            raise InputError(f"{self.name}: a series needs three or more times, got {self.time.size}")
+        back = np.flatnonzero(np.diff(self.time) <= 0.0)
+        if back.size:
+            before, after = self.time[back[0] : back[0] + 2].tolist()
+            raise InputError(f"{self.name}: times must ascend, but {after:.12g} s (sample {back[0] + 2}) follows {before:.12g} s")
+        for name in ("time", "slip", "rate", "traction"):
+            values = getattr(self, name)
+            if values.shape != self.time.shape:
+                raise InputError(f"{self.name}: {name} must have as many numbers as there are times")
+            if not np.isfinite(values).all():
+                raise InputError(f"{self.name}: {name}: a number is not finite")
+
+    @property
+    def step(self) -> float:
+        """The median step of time, s."""
+        return float(np.median(np.diff(self.time)))

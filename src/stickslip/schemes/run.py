@@ -1,4 +1,8 @@
-"""Run a numerical scheme on a grid, with the friction of a problem at its contact node."""
+"""Run a numerical scheme on a grid, with the friction of a problem at its contact node.
+
+If friction falls fast enough with the slip rate, several slip rates solve the contact equation `impedance v + S mu(u, v) = load` of
+a step. A program then takes one of them, by the way in which it searches. `SEARCHES` has the usual ways.
+"""
 
 from __future__ import annotations
 
@@ -13,8 +17,7 @@ from stickslip.bodies import as_slab
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.problem.problem import Problem
-from stickslip.schemes.contract import Answer, Grid, Meeting, Sample, Scheme
-from stickslip.schemes.series import Series
+from stickslip.schemes.contract import Answer, Grid, Meeting, Sample, Scheme, Series
 
 SEARCHES = {
     "stick-first": "stick wherever the static strength holds, otherwise the smallest root",
@@ -202,32 +205,11 @@ def check_runs(
 def run_scheme(
     problem: Problem, duration: float, scheme: Scheme, cells: int, *, search: str = "stick-first", courant: float | None = None
 ) -> Series:
-    """Run a scheme from t = 0 to a duration (s) or just beyond it, and return the series at the contact.
+    """Run a scheme from t = 0 to a duration (s) or just beyond it, and return the series at the contact, with energies.
 
-    Parameters
-    ----------
-    problem : Problem
-        Problem with a slab without contact mass and a law without a state.
-    duration : float
-        Duration, s.
-    scheme : Scheme
-        Numerical scheme.
-    cells : int
-        Number of cells in the thickness.
-    search : str
-        How the contact looks for a root: see `stickslip.schemes.run.SEARCHES`.
-    courant : float, optional
-        Courant number c dt / dx, by default the scheme's own.
-
-    Returns
-    -------
-    Series
-        The series at the contact, with energies.
-
-    Raises
-    ------
-    InputError
-        If the problem does not suit, if cells, steps or the Courant number are out of range, or if the run becomes infinite.
+    The slab has so many `cells` in its thickness and no contact mass, and the law has no state. `search`, one of SEARCHES, says how
+    the contact looks for a root; the Courant number c dt / dx is by default the scheme's own. Raises InputError if the problem does
+    not suit, if cells, steps or the Courant number are out of range, or if the run becomes infinite.
     """
     grid, steps = _grid_and_steps(problem, duration, scheme, cells, courant)
     smoothing = getattr(scheme, "smoothing", 0.0) * problem.normal * problem.friction.variation / grid.impedance

@@ -268,28 +268,12 @@ class PlanarPlots:
         frames: int | None = None,
         progress: Callable[[int, int], object] | None = None,
     ) -> Path:
-        """Write an animation of slip rate and slip on the contact to a file: profiles along a line, maps of a plane.
+        """Write an animation of slip rate and slip on the contact to a .gif, .mp4 or .webm, and return the path.
 
-        Parameters
-        ----------
-        path : str or Path
-            File to write: .gif; .mp4 and .webm need ffmpeg.
-        start, end : float, optional
-            First and last time to show, s; by default those of the run.
-        frames : int, optional
-            Number of frames, shown at 20 per second: at most those that the run has kept. The default is 150.
-        progress : callable, optional
-            Function that is called with the number of finished frames and the number of all frames.
-
-        Returns
-        -------
-        Path
-            The file that was written.
-
-        Raises
-        ------
-        InputError
-            For fewer than two frames, and if the software that writes such a file is missing.
+        The last two need ffmpeg. The animation shows profiles along a line, or maps of a plane, from `start` to `end` (s; by
+        default those of the run) in 150 `frames`, unless another number is given, 20 per second and at most those that the run has
+        kept. `progress` is called with the number of finished frames and the number of all frames. Raises InputError for fewer than
+        two frames, and if the software that writes such a file is missing.
         """
         from stickslip.figures.runs import planar
 

@@ -48,24 +48,9 @@ def times_of(t: ArrayLike) -> Floats:
 class Readings:
     """Values of a run at given times.
 
-    Slip, slip rate, traction, load and state are methods of the same form.
-
-    Parameters
-    ----------
-    t : array_like
-        Times (s) since `history.epoch`, a scalar or an array of any shape.
-    side : {"right", "left"}
-        Limit to take at a shock.
-
-    Returns
-    -------
-    ndarray
-        Values of the shape of `t`.
-
-    Raises
-    ------
-    InputError
-        For times outside the run.
+    Slip, slip rate, traction, load and state are methods of the same form: they take times (s since `history.epoch`), a scalar or
+    an array of any shape, and the `side` of the limit at a shock, "right" or "left", and return an array of that shape. They raise
+    InputError for times outside the run.
     """
 
     problem: Problem
@@ -124,30 +109,10 @@ class Readings:
         return np.asarray(seen[number]).reshape(shape)
 
     def field(self, x: ArrayLike, t: ArrayLike, side: Side = "right") -> Field:
-        """Return displacement, velocity and shear stress inside the slab.
+        """Return displacement (m), velocity (m/s) and shear stress (Pa) in the slab, at distances from the contact and times.
 
-        Parameters
-        ----------
-        x : array_like
-            Distances from the contact, m.
-        t : array_like
-            Times, s. `x` and `t` are broadcast together: `field(x, t[:, None])` has one row per time.
-        side : {"right", "left"}
-            Limit in time to take at a wave front.
-
-        Returns
-        -------
-        Field
-            Displacement (m), velocity (m/s) and shear stress (Pa), each of the broadcast shape.
-
-        Raises
-        ------
-        InputError
-            For a block, and for `x` outside the slab.
-
-        See Also
-        --------
-        stickslip.observables.field
+        `x` (m) and `t` (s) are broadcast together: `field(x, t[:, None])` has one row per time. `side` is the limit in time to take
+        at a wave front. Raises InputError for a block, and for `x` outside the slab. See also `stickslip.observables.field`.
         """
         from stickslip.observables.field import field
 
@@ -173,28 +138,11 @@ class Readings:
         return (*CURVES, *STATE_NAMES[: len(self.problem.friction.states)])
 
     def curve(self, name: Curve, start: float | None = None, end: float | None = None, points: int = 2000) -> tuple[Floats, Floats]:
-        """Return times and values of one quantity for drawing.
+        """Return times (s, ascending) and values of one quantity, one of `curves`, for drawing.
 
-        Parameters
-        ----------
-        name : str
-            One of `curves`.
-        start, end : float, optional
-            First and last time, s. The defaults are those of `shown`.
-        points : int
-            Number of evenly spaced times. More are added at the breaks and between them, where the solution varies.
-
-        Returns
-        -------
-        time : ndarray
-            Times (s), in ascending order. A shock appears twice, with its left limit first.
-        values : ndarray
-            Values in the quantity's unit, of the shape of `time`.
-
-        Raises
-        ------
-        InputError
-            If `name` is not one of `curves`.
+        The interval is by default that of `shown`. To so many evenly spaced `points` more are added at the breaks and between them,
+        where the solution varies. A shock appears twice, with its left limit first. Raises InputError if the name is not one of
+        `curves`.
         """
         if name not in self.curves:
             raise InputError(f"curve: unknown quantity '{name}'; {nearest(name, self.curves)}")

@@ -12,16 +12,9 @@ if TYPE_CHECKING:
 class Place(TypedDict, total=False):
     """Where a figure is drawn, and how large.
 
-    Parameters
-    ----------
-    ax : matplotlib.axes.Axes
-        Axes to draw in, for figures of one panel. They get no title.
-    figure : matplotlib.figure.Figure or SubFigure
-        An empty figure to draw in. It keeps its size unless `size` is given.
-    size : (float, float) or str
-        Width and height in inches, a text with a unit ("16 x 10 cm"), "single column" or "double column".
-    dpi : float
-        Dots per inch, on the screen and in files.
+    Axes `ax`, for figures of one panel, get no title. An empty `figure` keeps its size unless `size` is given: width and height in
+    inches, a text with a unit ("16 x 10 cm"), "single column" or "double column". `dpi` are dots per inch, on the screen and in
+    files.
     """
 
     ax: Axes

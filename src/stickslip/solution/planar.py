@@ -19,7 +19,7 @@ from stickslip.observables.planar import pulses, rupture_speed, rupture_times
 from stickslip.planar.slab import ENOUGH_NODES, PlanarSlab
 from stickslip.solution.accessors import PlanarPlots
 from stickslip.trajectory.slip_events import default_event_rate
-from stickslip.trajectory.status import STATUSES, UNDER_WAY, Status
+from stickslip.trajectory.status import STATUSES, Status
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -31,6 +31,8 @@ FIELDS = {"slip": "m", "slip_rate": "m s-1", "traction": "Pa", "heat": "J m-2"}
 """Unit of each field of a frame."""
 MOTION = {"slip": "slip", "slip_rate": "rate", "traction": "traction", "heat": "heat"}
 """Name in the solver's `Motion` of each field of a frame."""
+LARGEST_MISS = 0.1
+"""Miss of the energy balance, as a share of the heat, from which a run is not called resolved."""
 FEWEST_STEPS, QUICK = 100.0, 2e8
 """Steps in a round trip in which energies are followed, at least; and `cost` up to which a summary has them: about two seconds."""
 
@@ -51,6 +53,8 @@ class PlanarSolution:
         Number of time steps in a two-way travel time.
     status
         What ended the run.
+    residual
+        Largest |Z v + tau - load| at any node and time step, as a share of the load: how well the contact equation is solved.
     """
 
     slab: PlanarSlab
@@ -58,13 +62,14 @@ class PlanarSolution:
     fields: Mapping[str, Floats]
     steps_per_round_trip: int
     status: Status
+    residual: float
 
     def __repr__(self) -> str:
         nodes = " x ".join(str(count) for count in self.slab.shape)
         return f"PlanarSolution({nodes} nodes, {len(self.times)} frames up to {self.times[-1]:.6g} s, {self.status.name})"
 
     def __str__(self) -> str:
-        return "\n".join(self.sentences)
+        return "\n".join(([] if self.status.ok else [f"{self.status}."]) + self.sentences)
 
     @cached_property
     def slip(self) -> Floats:
@@ -174,6 +179,8 @@ class PlanarSolution:
         import xarray
 
         times = self.times if t is None else np.atleast_1d(np.asarray(t, float))
+        if len(self.times) < 2:
+            raise InputError("energy: the run ended at its first frame")
         if times.min() < self.times[0] or times.max() > self.times[-1]:
             raise InputError(f"energy: times must be from {self.times[0]:g} to {self.times[-1]:g} s")
         unit, found = "J" if self.slab.is_plane else "J m-1", self._energies
@@ -188,8 +195,8 @@ class PlanarSolution:
             return ""
         found = self._energies
         heat, missed = float(found["heat"][-1]), float(np.abs(found["balance"]).max())
-        unit = "J" if self.slab.is_plane else "J per metre of z"
-        return f"Friction takes {brief(heat, unit)}; the energy balance misses up to {missed / heat:.1%} of that."
+        unit, lost = "J" if self.slab.is_plane else "J per metre of z", ": NOT resolved" if missed > LARGEST_MISS * heat else ""
+        return f"Friction takes {brief(heat, unit)}; the energy balance misses up to {missed / heat:.1%} of that{lost}."
 
     @property
     def nodes_per_process_zone(self) -> float:
@@ -235,6 +242,8 @@ class Frames:
     """Largest slip since the start, at any node and frame, m."""
     fastest: float = 0.0
     """Largest slip rate at any node and frame, m/s."""
+    residual: float = 0.0
+    """See `PlanarSolution`."""
 
     def add(self, time: float, motion: Motion) -> None:
         """Keep the motion at a time (s)."""
@@ -243,14 +252,18 @@ class Frames:
             self.waiting[name].append(np.array(getattr(motion, own)))
         self.largest_slip = max(self.largest_slip, float(np.abs(motion.slip - self.slab.values.slip).max()))
         self.fastest = max(self.fastest, float(np.abs(motion.rate).max()))
+        self.residual = float(motion.residual.max())
 
     def end_round_trip(self, run: PlanarSolver) -> None:
         """Take what the solver is about to forget."""
 
-    def save(self, run: PlanarSolver, code: int = UNDER_WAY) -> None:
-        """Make what is there so far outlast the process, with the status that belongs to a code."""
+    def save(self, run: PlanarSolver) -> None:
+        """Make what is there so far outlast the process."""
+
+    def end(self, run: PlanarSolver, code: int) -> None:
+        """Make the end of a run outlast the process, with the status that belongs to its code."""
 
     def solution(self, code: int) -> PlanarSolution:
         """Return the run, with the status that belongs to a code."""
         fields = {name: np.stack(frames) for name, frames in self.waiting.items()}
-        return PlanarSolution(self.slab, np.array(self.times), fields, self.steps_per_round_trip, STATUSES[code])
+        return PlanarSolution(self.slab, np.array(self.times), fields, self.steps_per_round_trip, STATUSES[code], self.residual)

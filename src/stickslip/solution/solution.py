@@ -14,7 +14,7 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief, html_table
 from stickslip.observables.event_table import events_table
-from stickslip.observables.proof import Proof, proof_of
+from stickslip.observables.rule_influence import Proof, proof_of
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_event_rate
 from stickslip.solution.accessors import Exports, SolutionPlots, to_netcdf
@@ -70,21 +70,11 @@ class Solution(Exports):
         return self.catalogue()
 
     def catalogue(self, event_rate: float | str | WithUnit | None = None, *, energy: bool = False) -> pd.DataFrame:
-        """Return the slip events as a table, one row each.
+        """Return the slip events as a table, one row each: a slip event is a maximal interval in which |v| exceeds `event_rate`.
 
-        Parameters
-        ----------
-        event_rate : float or str, optional
-            Slip rate (m/s, or a text with a unit) that defines an event: an event is a maximal interval in which |v| is larger. The
-            default is 1e-6 S (range of mu) / Z, for the block 1e-6 S (range of mu) / sqrt(K m); 0 takes every slip.
-        energy : bool
-            If true, add the energies of each event (J/m^2; block: J), which take longer to compute.
-
-        Returns
-        -------
-        pandas.DataFrame
-            Columns and units are those of EVENT_COLUMNS, and of ENERGY_COLUMNS with `energy`, in
-            `stickslip.observables.event_table`.
+        That is a slip rate in m/s, or a text with a unit; the default is 1e-6 S (range of mu) / Z, for the block 1e-6 S (range of
+        mu) / sqrt(K m); 0 takes every slip. With `energy` the table has the energies of each event (J/m^2; block: J), which take
+        longer to compute. Columns and units are those of EVENT_COLUMNS and ENERGY_COLUMNS in `stickslip.observables.event_table`.
         """
         return events_table(self.history, self._rate(event_rate), energy)
 
@@ -94,39 +84,20 @@ class Solution(Exports):
         return default_event_rate(self.problem) if given is None else given
 
     def energetics(self, event_rate: float | str | WithUnit | None = None) -> pd.DataFrame:
-        """Return the energy budget of the slip events as seismologists define it, one row per event.
+        """Return the energy budget of the slip events of `catalogue(event_rate)` as seismologists define it, one row per event.
 
         The columns are the parts of the energy (J/m^2; block: J), static and dynamic stress drop, overshoot, apparent stress and
-        efficiencies.
-
-        Parameters
-        ----------
-        event_rate : float or str, optional
-            Slip rate (m/s, or a text with a unit) that defines an event, as in `catalogue`.
-
-        Returns
-        -------
-        pandas.DataFrame
-            Rows as in `catalogue`; columns and units in `stickslip.observables.energy.energetics.ENERGETICS_COLUMNS`.
+        efficiencies; their units are in `stickslip.observables.energy.energetics.ENERGETICS_COLUMNS`.
         """
         from stickslip.observables.energy.energetics import energetics_table
 
         return energetics_table(self.history, self._rate(event_rate))
 
     def pulses(self, event_rate: float | str | WithUnit | None = None) -> pd.DataFrame:
-        """Return the pulses of the slip events, one row each.
+        """Return the pulses of the slip events of `catalogue(event_rate)`, one row each.
 
-        The columns are times, slip, largest slip rate, smallest traction and fracture energy.
-
-        Parameters
-        ----------
-        event_rate : float or str, optional
-            Slip rate (m/s, or a text with a unit) that defines an event, as in `catalogue`.
-
-        Returns
-        -------
-        pandas.DataFrame
-            Columns and units are those of `stickslip.observables.energy.pulses.PULSE_COLUMNS`.
+        The columns are times, slip, largest slip rate, smallest traction and fracture energy; their units are in
+        `stickslip.observables.energy.pulses.PULSE_COLUMNS`.
         """
         from stickslip.observables.energy.pulses import pulses_table
 
@@ -160,24 +131,10 @@ class Solution(Exports):
     ) -> Window:
         """Return the run around one slip event, in seconds since the event began.
 
-        Parameters
-        ----------
-        event : int or pandas.Series
-            Row number in `events` (negative ones count from the last), or a row of any `catalogue`.
-        before : float or str, optional
-            Time to show before the start of the event (s, or a text with a unit). The default is a tenth of its duration.
-        after : float or str, optional
-            Time to show after the start of the event (s, or a text with a unit). The default is 1.1 times its duration.
-
-        Returns
-        -------
-        Window
-            Its local times are exact to their own rounding, however late in the run the event is.
-
-        Raises
-        ------
-        InputError
-            If there is no such event, and if `before` or `after` is not a finite time of the right sign.
+        The event is a row number in `events` (negative ones count from the last), or a row of any `catalogue`. The window begins a
+        tenth of the event's duration before its start, and ends 1.1 times its duration after that, unless `before` and `after` give
+        other times (s, or texts with a unit). Local times are exact to their own rounding, however late in the run the event is.
+        Raises InputError if there is no such event, and if `before` or `after` is not a finite time of the right sign.
         """
         return window_around(self, self._row(event), before, after)
 
@@ -190,35 +147,16 @@ class Solution(Exports):
         return self.events.iloc[event]
 
     def energy(self, t: ArrayLike) -> xr.Dataset:
-        """Return the energies of the run as differences from its start.
+        """Return the energies of the run at times (s) as differences from its start.
 
-        Parameters
-        ----------
-        t : array_like
-            Times, s.
-
-        Returns
-        -------
-        xarray.Dataset
-            See `stickslip.observables.energy.balance.energy`.
+        See `stickslip.observables.energy.balance.energy`.
         """
         from stickslip.observables.energy.balance import energy
 
         return energy(self.history, t)
 
     def to_netcdf(self, path: str | Path) -> Path:
-        """Write the solution to a netCDF file.
-
-        Parameters
-        ----------
-        path : str or Path
-            File to write.
-
-        Returns
-        -------
-        Path
-            The file that was written. `stickslip.open_solution` restores this solution from it bit for bit.
-        """
+        """Write the solution to a netCDF file, and return the path; `stickslip.open_solution` restores it bit for bit."""
         return to_netcdf(self, path)
 
     @property

@@ -46,24 +46,13 @@ REFUSED, NO_EVENT = "refused", "no slip event"
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Analogy(Study):
-    """The result of `analogy`.
+    """The result of `analogy`: the runs of slab and block over two parameters of a problem, x and y.
 
-    Attributes
-    ----------
-    problem : Problem
-        Problem that was varied.
-    duration : float
-        Duration of each run (s).
-    x, y : Axis
-        The two parameters and their values.
-    within : float
-        Tolerance of the ratios in the column `stands`.
-    table : pandas.DataFrame
-        One row for each point, x varying fastest. Columns: the two parameters (SI); weakening_slip = -S (dmu/du) h/G at the start,
-        and weakening_rate = -S (dmu/dv)/Z at the slip rate at which it is largest; for the first slip event ``slip_`` (m),
-        ``peak_rate_`` (m/s), ``duration_`` (s), ``pulses_``, ``shocks_`` and ``status_``, each for slab and block; slip_ratio,
-        peak_rate_ratio and duration_ratio, slab over block; stands, True if the block represents the slab. Values are NaN if there
-        is no event, and the duration also if the event does not end in the run.
+    The `table` has one row for each point, x varying fastest. Columns: the two parameters (SI); weakening_slip = -S (dmu/du) h/G at
+    the start, and weakening_rate = -S (dmu/dv)/Z at the slip rate at which it is largest; for the first slip event ``slip_`` (m),
+    ``peak_rate_`` (m/s), ``duration_`` (s), ``pulses_``, ``shocks_`` and ``status_``, each for slab and block; slip_ratio,
+    peak_rate_ratio and duration_ratio, slab over block; stands, True if the block represents the slab, with ratios `within` their
+    tolerance. Values are NaN if there is no event, and the duration also if the event does not end in the run.
     """
 
     problem: Problem
@@ -138,11 +127,6 @@ def analogy(
     progress : bool or callable, optional
         True shows the progress in one line, on a terminal or in a notebook. A function is called with a line of text after each
         point.
-
-    Returns
-    -------
-    Analogy
-        The events at all points, and their ratios.
 
     Raises
     ------

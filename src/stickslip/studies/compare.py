@@ -118,7 +118,6 @@ class Comparison(Study):
         yield f"of {', '.join(self.runs)}"
 
     def _shown_table(self) -> pd.DataFrame:
-        """Return the table with one column for each run and with units."""
         units = {name: "Pa or N" if unit == "load" else unit for name, (unit, _) in COLUMNS.items()}
         with_units = {name: f"{name} ({unit})" for name, unit in units.items() if unit}
         return self.table.set_index("name").rename(columns=with_units).T.rename_axis(columns=None)
@@ -150,11 +149,6 @@ def compare(
     progress : bool or callable, optional
         True shows the progress in one line, on a terminal or in a notebook. A function is called with the name of each run as it
         begins.
-
-    Returns
-    -------
-    Comparison
-        The runs, with their table and figure.
 
     Raises
     ------
@@ -188,7 +182,6 @@ def distinct(names: Sequence[str]) -> list[str]:
 
 
 def _row(name: str, solution: Solution) -> dict[str, Any]:
-    """Return the row of the table for a run; columns that it lacks are NaN."""
     problem, events, shocks = solution.problem, solution.events, len(solution.shocks)
     row = {
         "name": name,

@@ -91,17 +91,10 @@ class Ensemble(RunsCompared):
     def table(self) -> pd.DataFrame:
         """A table with one row for each event of the undisturbed run.
 
-        Returns
-        -------
-        pandas.DataFrame
-            Columns: start, recurrence (s) and slip (m) of the event; members, the number of members that still have it;
-            start_spread, recurrence_spread (s) and slip_spread (m), the root mean square difference of these members from the
-            undisturbed run; amplification, the predicted one.
-
-        Notes
-        -----
-        A member has an event if it has all earlier ones and starts this one at the same time, to within a tenth of the time from
-        the undisturbed event to the nearer of its two neighbours.
+        Columns: start, recurrence (s) and slip (m) of the event; members, the number of members that still have it; start_spread,
+        recurrence_spread (s) and slip_spread (m), the root mean square difference of these members from the undisturbed run;
+        amplification, the predicted one. A member has an event if it has all earlier ones and starts this one at the same time, to
+        within a tenth of the time from the undisturbed event to the nearer of its two neighbours.
         """
         return self._shared[0]
 
@@ -128,14 +121,11 @@ class Ensemble(RunsCompared):
 
     @cached_property
     def growth(self) -> pd.DataFrame:
-        """The growth of the disturbances with time.
+        """The growth of the disturbances with time, one row for each interval of time.
 
-        Returns
-        -------
-        pandas.DataFrame
-            One row for each interval of time. Columns: time (s), its end; growth, least and most, the separation of a member's load
-            divided by its push: median, smallest and largest of the members; small, True until a separation first leaves the
-            range between rounding and saturation; predicted, the largest predicted growth so far (NaN if it is not known).
+        Columns: time (s), its end; growth, least and most, the separation of a member's load divided by its push: median, smallest
+        and largest of the members; small, True until a separation first leaves the range between rounding and saturation;
+        predicted, the largest predicted growth so far (NaN if it is not known).
         """
         times = self.separation.apart / np.abs(self.pushes)[:, None]
         columns = {"time": self.separation.time, "growth": np.median(times, axis=0), "least": times.min(axis=0)}
@@ -179,14 +169,11 @@ class Ensemble(RunsCompared):
     def statistics(self) -> pd.DataFrame:
         """The statistics of the undisturbed run, and how far the members differ.
 
-        Returns
-        -------
-        pandas.DataFrame
-            One row each for recurrence (s), slip (m) and peak_rate (m/s). Columns: count, mean and variation of the undisturbed run
-            (see `studies.catalogue_statistics`); mean_members, variation_members and mean_deviation, variation_deviation, the
-            mean and standard deviation over the members of their own mean and variation; chance, deviation / sqrt(count), the
-            standard deviation of the mean of as many independent events. Statistics are stable if mean_deviation is no larger
-            than chance.
+        There is one row each for recurrence (s), slip (m) and peak_rate (m/s). Columns: count, mean and variation of the
+        undisturbed run (see `studies.catalogue_statistics`); mean_members, variation_members and mean_deviation,
+        variation_deviation, the mean and standard deviation over the members of their own mean and variation; chance, deviation /
+        sqrt(count), the standard deviation of the mean of as many independent events. Statistics are stable if mean_deviation is no
+        larger than chance.
         """
         own, *others = self.catalogues
         return statistics_spread(own, others)

@@ -1,4 +1,10 @@
-"""Regularisations of the jumps of a run, and the distance of a regularised run from the exact one."""
+"""Regularisations: three ways to give a massless contact the physics that its selection rule replaces, each with a small time.
+
+This time, the *size* of a regularisation (s), is the time in which the slip rate settles. A contact mass of Z size and a lag of
+`size` obey the same equation, Z size dy/dt = load - g(y), with y the slip rate v for the mass, and the delayed rate w on which
+friction depends for the lag. Their sizes can therefore be compared, as can the slips of regularised and exact runs.
+Sources: Campillo et al. 1996, section 3; for the lag Hess & Soom 1990, J. Tribol. 112, 147.
+"""
 
 from __future__ import annotations
 

@@ -121,12 +121,9 @@ class Regularisation(RunsCompared):
     def jumps(self) -> pd.DataFrame:
         """The jumps in the exact solution of the target rule.
 
-        Returns
-        -------
-        pandas.DataFrame
-            Columns: time (s), cause, rate_before and rate_after (m/s); order, with which the delay of the regularised runs
-            decreases; expected, the order from theory: "2/3" at a fold, "1 (log)" for a jump out of rest under a ramp of load,
-            and "1" for a jump caused by a jump of the load.
+        Columns: time (s), cause, rate_before and rate_after (m/s); order, with which the delay of the regularised runs decreases;
+        expected, the order from theory: "2/3" at a fold, "1 (log)" for a jump out of rest under a ramp of load, and "1" for a jump
+        caused by a jump of the load.
         """
         shocks = self.shocks
         table = shocks[["time", "cause", "rate_before", "rate_after"]].copy()
@@ -160,12 +157,9 @@ class Regularisation(RunsCompared):
     def table(self) -> pd.DataFrame:
         """A table with one row for each size.
 
-        Returns
-        -------
-        pandas.DataFrame
-            Columns: size (s); the parameter of the kind of regularisation; for each rule ``mean_``, ``largest_`` and ``end_``,
-            the slip difference (m) from its exact solution, and ``order_``, between neighbouring sizes; change, the mean difference
-            (m) from the size before; ``delay_`` of each jump (s); pieces of history; seconds of computing time; status.
+        Columns: size (s); the parameter of the kind of regularisation; for each rule ``mean_``, ``largest_`` and ``end_``, the slip
+        difference (m) from its exact solution, and ``order_``, between neighbouring sizes; change, the mean difference (m) from the
+        size before; ``delay_`` of each jump (s); pieces of history; seconds of computing time; status.
         """
         kind = kind_of(self.by)
         columns: dict[str, object] = {"size": self.sizes}
@@ -230,11 +224,6 @@ def regularise(
         begins.
     max_pieces : int
         Largest number of pieces of history of one run. A run that needs more ends early, and all runs are compared up to that time.
-
-    Returns
-    -------
-    Regularisation
-        The runs, their differences, and the rule to which they converge.
 
     Raises
     ------

@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
-from stickslip.schemes.contract import Energies
-from stickslip.schemes.series import Series
+from stickslip.schemes.contract import Energies, Series
 from stickslip.solution.solution import Solution
 from stickslip.studies.scheme_shocks import Shock, shadow, shocks_of
 from stickslip.trajectory.slip_events import default_event_rate

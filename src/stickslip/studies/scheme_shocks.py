@@ -10,7 +10,7 @@ import numpy as np
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
-from stickslip.schemes.series import Series
+from stickslip.schemes.contract import Series
 from stickslip.solution.solution import Solution
 from stickslip.studies.verdict import cell_time
 

@@ -23,10 +23,9 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.netcdf_file import write
 from stickslip.problem.problem import Problem
 from stickslip.scenarios.source import read_duration_and_problem, read_source
-from stickslip.schemes.contract import Scheme
+from stickslip.schemes.contract import Scheme, Series
 from stickslip.schemes.registry import scheme_of
 from stickslip.schemes.run import check_runs, check_suitable, run_scheme
-from stickslip.schemes.series import Series
 from stickslip.solution.solution import Solution
 from stickslip.studies.scheme_measures import COLUMNS, Measured
 from stickslip.studies.scheme_shocks import SHOCK_COLUMNS, check_length, check_units

@@ -76,7 +76,6 @@ class Study:
         return figure_of_study(self)
 
     def _shown_table(self) -> pd.DataFrame:
-        """Return the table that a notebook shows."""
         return self.table  # type: ignore[no-any-return]
 
     def _lines(self) -> Iterable[str]:

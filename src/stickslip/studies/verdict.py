@@ -20,7 +20,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SELECTION_RULES
 from stickslip.run.simulate import simulate
-from stickslip.schemes.series import Series
+from stickslip.schemes.contract import Series
 from stickslip.solution.solution import Solution
 from stickslip.studies.study import TextProgress, uninterrupted
 

@@ -143,7 +143,6 @@ class _Search:
         return self.there(place)
 
     def round(self, points: Integers, out: Path | None, run: Runner, progress: ProgressCallback | None) -> Floats:
-        """Run the members at the given points and return the quantity of each."""
         found = carry_out(self.plan(self.members(points)), out, run, self.beyond(progress))
         level = xr.Variable(MEMBER, self.spec.lattice.levels(points), {"long_name": "how often the coarse grid was halved"})
         self.rounds.append(found.assign_coords({LEVEL: level}).load())
@@ -152,7 +151,6 @@ class _Search:
         return _answers(found[self.spec.quantity], self.spec.factor)
 
     def members(self, points: Integers) -> Design:
-        """Return the members at the given points as a design of the kind "list"."""
         return Design(LIST, self.parameters, self.spec.values(points))
 
     def beyond(self, tell: ProgressCallback | None) -> ProgressCallback | None:
@@ -164,7 +162,6 @@ class _Search:
         return lambda now: tell(now._replace(done=now.done + done, failed=now.failed + failed, members=now.members + done))
 
     def together(self, complete: bool) -> xr.Dataset:
-        """Return the members of all rounds in one dataset."""
         return xr.concat(self.rounds, MEMBER).assign_attrs(self.attributes, **{COMPLETE: int(complete)})
 
     @property

@@ -81,6 +81,8 @@ UNDER_WAY = -5
 """The solution comes from a checkpoint of a run that continued afterwards."""
 BAD_PARAMETERS = -6
 """The parameters of a member of a batch make no valid problem."""
+UNSTABLE = -7
+"""Slip rates of a planar slab have grown beyond what its loads can drive."""
 
 STATUSES = {
     Stop.FINISHED: Status("finished", "the run reached its duration", True),
@@ -115,6 +117,12 @@ STATUSES = {
         False,
     ),
     INTERRUPTED: Status("interrupted", "stopped by the user: the results are valid up to this time", False),
+    UNSTABLE: Status(
+        "unstable",
+        "slip rates grow beyond all that the loads can drive, so that the nodes or the time steps do not resolve the law: take more"
+        " nodes, or a smaller courant",
+        False,
+    ),
     BAD_PARAMETERS: Status("bad parameters", "the parameters of this batch member make no valid problem", False),
     UNDER_WAY: Status("under way", "a checkpoint of a run that continued: the results are valid up to this time", False),
 }

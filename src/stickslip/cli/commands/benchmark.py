@@ -65,7 +65,7 @@ def _list() -> None:
 
 
 def _judge(file: Path, name: str | None, out: Path | None, picture: tuple[Path | None, Look]) -> None:
-    from stickslip.cli.output.schemes import show_schemes, tables_of
+    from stickslip.cli.output.studies import show_schemes, tables_of
     from stickslip.run.progress import progress_line
     from stickslip.studies.benchmarks import benchmark_of, judge_benchmark
 

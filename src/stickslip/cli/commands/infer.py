@@ -85,7 +85,7 @@ def infer(
 
     Exit code: 0 done, 2 unusable input, 130 interrupted.
     """
-    from stickslip.cli.output.inference import show_inference, show_ranking
+    from stickslip.cli.output.studies import show_inference, show_ranking
     from stickslip.cli.overrides import load
 
     look = Look(dpi, size)

@@ -48,7 +48,7 @@ def schemes(
 
     Exit code: 0 done, 2 unusable input, 130 interrupted.
     """
-    from stickslip.cli.output.schemes import show_schemes, tables_of
+    from stickslip.cli.output.studies import show_schemes, tables_of
     from stickslip.cli.overrides import load_with
 
     look = Look(dpi, size)

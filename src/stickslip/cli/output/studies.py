@@ -1,12 +1,13 @@
-"""Show the results of studies: comparisons, maps of block against slab, ensembles, and regularised contacts."""
+"""Show the results of studies: comparisons, block against slab, ensembles, regularised contacts, schemes, inferences."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Mapping
+from collections.abc import Callable, Hashable, Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from stickslip.cli.output.show import console, print_numbers, print_sentences, say, titled
+from stickslip.cli.output.show import console, print_numbers, print_sentences, print_words, say, titled
 from stickslip.foundation.formatting import clean, number, with_unit
 from stickslip.studies.regularisations import kind_of
 
@@ -17,7 +18,9 @@ if TYPE_CHECKING:
     from stickslip.studies.analogy import Analogy
     from stickslip.studies.compare import Comparison
     from stickslip.studies.ensemble import Ensemble
+    from stickslip.studies.inference.inference import Inference
     from stickslip.studies.regularise import Regularisation
+    from stickslip.studies.schemes import Schemes
 
 FIRST = 12
 """Number of events of an ensemble that are shown: the first ones, or those around the first event at which members differ."""
@@ -136,3 +139,82 @@ def _show_jumps(screen: Console, study: Regularisation) -> None:
 
 def _order(value: float) -> str:
     return "-" if math.isnan(value) else f"{value:.2f}"
+
+
+def show_inference(scenario: Scenario, found: Inference) -> None:
+    """Print the numbers with their intervals, and what the record does not determine."""
+    screen = titled(scenario)
+    say(screen, clean(f"{found.headline}\n"))
+    print_words(screen, ("", "value", "unit and interval"), found.rows)
+    screen.print()
+    print_sentences(screen, *(clean(note) for note in found.notes))
+
+
+def show_ranking(*found: Inference) -> None:
+    """Print a table of laws, the best prediction first."""
+    from stickslip.studies.inference.infer import ranking
+
+    screen = console()
+    say(screen, "\nerrors in units of the noise: of the part that was fitted, and of the part that was left out\n")
+    rows = [
+        [str(row["law"]), str(row["free"]), number(row["fit"], 3), number(row["prediction"], 3), number(row["bic"], 8)]
+        for row in ranking(*found).to_dict("records")
+    ]
+    print_numbers(screen, ("law", "free", "fit", "prediction", "BIC"), rows, text=1)
+
+
+def tables_of(study: Schemes, out: Path | None) -> list[tuple[Path | None, Callable[[Path], object]]]:
+    """Return the files of a study with what writes each: all in one for .nc; a table and a table of shocks beside it for .csv."""
+    if out is None or out.suffix.lower() == ".nc":
+        return [(out, study.to_netcdf)]
+    return [(out, study.to_csv), (out.with_name(f"{out.stem}-shocks{out.suffix}"), study.shocks_to_csv)]
+
+
+def show_schemes(scenario: Scenario, study: Schemes) -> None:
+    """Print errors, orders, pulses and the rule that each run follows on standard output."""
+    screen = titled(scenario)
+    own = study.own
+    slip = float(own.slip(study.until)) - study.problem.initial_slip
+    say(screen, f"exact, {study.problem.rule}: slip {number(slip, 6)} m after {number(study.until, 6)} s\n")
+    headings: tuple[str, ...] = ("\nscheme", "\ncells", "mean slip\nerror m", "\norder", "rate error\nm/s", "\npulses", "arrest\ns")
+    headings = (*headings, "final slip\nm", "own\nshocks", "heat\nerror", "damped,\nof heat", "oscil-\nlation", "follows\nthe rule")
+    rows = []
+    for row in study.table.to_dict("records"):
+        errors = [number(row["slip_error"], 3), _short(row["slip_order"]), number(row["rate_error"], 3)]
+        results = [str(row["pulses"]), number(row["arrest"], 6), number(row["final_slip"], 6), str(row["own_shocks"])]
+        damped = row["damped"] / row["heat"] if row["heat"] else math.nan
+        shares = [number(row["heat_error"], 2), number(damped, 2), number(row["oscillation"], 2), str(row["rule"])]
+        rows.append([clean(row["scheme"]), str(row["cells"] or "-"), *errors, *results, *shares])
+    print_numbers(screen, headings, rows, text=1)
+    screen.print()
+    _show_shocks(screen, study)
+    if study.interrupted:
+        print_sentences(screen, "Interrupted: these are the runs that were finished")
+    if len(study.paths.groups()) == 1:
+        print_sentences(screen, "all selection rules have the same solution here")
+        return
+    for verdict in dict.fromkeys(study.verdicts.values()):
+        names = [clean(scheme) for scheme, found in study.verdicts.items() if found == verdict]
+        print_sentences(screen, f"rule {verdict}: {', '.join(names)}")
+
+
+def _short(value: float) -> str:
+    return "-" if math.isnan(value) else f"{value:.2f}"
+
+
+def _show_shocks(screen: Console, study: Schemes) -> None:
+    """Print the exact shocks beside those of each scheme's finest mesh; shocks of its own are counted in the table before."""
+    finest = study.table.loc[study.table.groupby("scheme", sort=False).step.idxmin(), ["scheme", "cells"]]
+    table = finest.merge(study.shocks, on=["scheme", "cells"])
+    table = table[table.exact_time.notna()]
+    if table.empty:
+        return
+    headings = ("\nshocks of", "\ncells", "exact\ntime s", "\ntime s", "\ndelay s", "exact\nm/s", "\nm/s", "\nsize")
+    rows = []
+    for row in table.to_dict("records"):
+        times = [number(row["exact_time"], 6), number(row["time"], 6), number(row["delay"], 2)]
+        jumps = [f"{number(row[f'{whose}before'], 3)} to {number(row[f'{whose}after'], 3)}" for whose in ("exact_", "")]
+        jumps[1] = jumps[1] if math.isfinite(row["time"]) else "-"
+        rows.append([clean(row["scheme"]), str(row["cells"] or "-"), *times, *jumps, number(row["size"], 3)])
+    print_numbers(screen, headings, rows, text=1)
+    screen.print()

@@ -147,7 +147,7 @@ def rate_on_branch(run: Run, load: float, guess: float) -> float:
             return s
         slope = run.params.damping + run.friction.by_rate
         step = s - error / slope if slope > 0.0 else 0.5 * (low + high)
-        if not low < step < high:
+        if not low < step < high and step != s:  # where Newton has converged, s itself bounds the interval
             step = 0.5 * (low + high)
         if abs(step - s) <= 1e-16 * abs(s) or step in (low, high):
             return step

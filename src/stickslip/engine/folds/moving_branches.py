@@ -134,7 +134,7 @@ def rate_at(contact: Contact, load: float, low: float, high: float) -> float:
         else:
             break
         step = s - error / contact.run.friction.by_rate if contact.run.friction.by_rate > 0.0 else 0.5 * (low + high)
-        if not low < step < high:
+        if not low < step < high and step != s:  # where Newton has converged, s itself bounds the interval
             step = 0.5 * (low + high)
         if abs(step - s) <= 1e-16 * s or step in (low, high):
             break

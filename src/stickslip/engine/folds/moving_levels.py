@@ -195,7 +195,7 @@ def equal_areas(contact: Contact, slow: int, fast: int, low: float, high: float)
         else:
             break
         step = load - value / slope
-        if not low < step < high:
+        if not low < step < high and step != load:
             step = 0.5 * (low + high)
         if abs(step - load) <= EXACT * contact.run.params.normal or step in (low, high):
             load = step

@@ -64,7 +64,7 @@ def rate_at_load(run: Run, load: float, guess: float) -> float:
         else:
             low = s
         step = s - error / (damping + normal * run.value.by_rate)
-        if not low < step < high:
+        if not low < step < high and step != s:  # where Newton has converged, s itself bounds the interval
             step = math.sqrt(low * high) if low > 0.0 else 1e-3 * high
         if abs(step - s) <= 1e-15 * abs(s) or high <= low:
             return step

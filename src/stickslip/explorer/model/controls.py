@@ -172,7 +172,6 @@ class _Tables:
                 yield from self.of_law(f"{table}.{name}", PARTLESS)
 
     def of(self, table: str, kind: type, kinds: tuple[str, ...], title: str = "", states: tuple[StateVariable, ...] = ()) -> Group:
-        """Return the group of one table."""
         controls: list[Control] = []
         for name, (entry, default) in entries_in(table, kind, states).items():
             if not self.applies(f"{table}.{name}"):
@@ -186,7 +185,6 @@ class _Tables:
         return Group(table, title or TITLES[table.partition(".")[0]], own, kinds, tuple(controls))
 
     def of_run(self) -> Group:
-        """Return the group of the run: its numbers, the number of events, and the selection rule."""
         numbers = self.of("run", type(self.problem.body), ())
         rule = self.setting.value("run.selection") or SELECTION_RULES[0]
         meaning = "which slip rate the contact takes where several solve the contact equation"
@@ -213,7 +211,6 @@ class _Tables:
         return not isinstance(self.setting.value(path), Mapping) or "parameters" in path
 
     def control(self, path: str, entry: Field, default: Any) -> Control:
-        """Return the control of one entry of the schema."""
         label = path.rpartition(".")[2].replace("_", " ")
         value = self.setting.value(path)
         rare = path in RARE
@@ -223,19 +220,18 @@ class _Tables:
             return Control(path, label, entry.meaning, "text", value or "", declared=entry)
         if isinstance(entry, Series):
             empty = "" if default is MISSING else "none"
-            unit, size = _unit_of(next((one for one in value or () if isinstance(one, str)), None), 0.0, entry.item.unit)
+            unit, size = unit_of(next((one for one in value or () if isinstance(one, str)), None), 0.0, entry.item.unit)
             points = None if value is None else tuple(entry.item.check(label, "it", one) for one in value)
             return Control(path, label, describe(entry), "points", points, unit, size, empty=empty, declared=entry)
         assert isinstance(entry, Quantity)
         return self.number(path, label, entry, default, rare)
 
     def number(self, path: str, label: str, entry: Quantity, default: Any, rare: bool) -> Control:
-        """Return the control of a number."""
         given = self.setting.value(path)
         if given == STEADY:
             given = self.problem.given_states[STATE_NAMES.index(path.partition(".")[2])]
         value = default if given is None and default is not MISSING else None if given is None else entry.check(label, "it", given)
-        unit, size = _unit_of(given, value, entry.unit)
+        unit, size = unit_of(given, value, entry.unit)
         empty = "" if default is MISSING or path in ("initial.load", "initial.excess") else self._empty(path, default, entry)
         kind: ControlKind = "whole" if entry.whole else "number"
         slider = self._slider(path, entry, value, default)
@@ -252,7 +248,7 @@ class _Tables:
         """Return the control of a number of the user's formula, whose name and unit users choose."""
         given = self.setting.value(path)
         one = self.problem.parameters[path]
-        unit, size = _unit_of(given, one.value, one.unit)
+        unit, size = unit_of(given, one.value, one.unit)
         slider = self._slider(path, one.declared, one.value, MISSING)
         return Control(path, name, "number of the formula", "number", one.value, unit, size, slider, declared=one.declared)
 
@@ -267,7 +263,7 @@ class _Tables:
         return None if found is None else found.holding(value)
 
 
-def _unit_of(given: Any, value: float | None, si: str) -> tuple[str, float]:
+def unit_of(given: Any, value: float | None, si: str) -> tuple[str, float]:
     """Return the unit in which a number is shown, and its size in SI: that in which it was given, or a readable one."""
     if si == "1":
         return "", 1.0

@@ -93,7 +93,6 @@ def _of_run(scenario: Scenario) -> Arguments:
 
 
 def _made(owner: Any, module: str, depth: int) -> str:
-    """Return the call that makes a body, a law or a loading history."""
     arguments = []
     for name, (entry, default) in fields_of(type(owner)).items():
         value = getattr(owner, name)
@@ -135,7 +134,6 @@ def _comment(value: Any, unit: str) -> str:
 
 
 def _call(function: str, arguments: Arguments, depth: int) -> str:
-    """Return a call with one argument a line."""
     inner, outer = "    " * (depth + 1), "    " * depth
     lines = [f"{inner}{name}={value},{f'  # {comment}' * bool(comment)}" for name, value, comment in arguments]
     return "\n".join([f"{function}(", *lines, f"{outer})"])

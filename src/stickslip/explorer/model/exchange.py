@@ -66,7 +66,6 @@ def _law_table(setting: Setting, table: str, kind: str) -> dict[str, Any]:
 
 
 def _example(law: type[FrictionLaw]) -> dict[str, Any]:
-    """Return the plausible values of a law by their keys in a scenario."""
     return {key_of(name, entry): deepcopy(law.example[name]) for name, (entry, _) in fields_of(law).items() if name in law.example}
 
 
@@ -125,7 +124,6 @@ def _with_body(setting: Setting, kind: str) -> Setting:
 
 
 def _with_start(setting: Setting, kind: str) -> Setting:
-    """Return a setting that gives the same initial load in another way."""
     problem = setting.scenario().problem
     if problem.has_initial_rate and kind in STARTS_IN_MOTION:
         return _with_start_in_motion(setting, kind, problem)
@@ -146,7 +144,6 @@ def _with_start_in_motion(setting: Setting, kind: str, problem: Problem) -> Sett
 
 
 def _with_pull(setting: Setting, kind: str) -> Setting:
-    """Return a setting with a constant pull rate, or one that varies in another way."""
     pull = setting.scenario().problem.pull_rate
     first = pull if isinstance(pull, float) else pull.first
     if kind == CONSTANT:

@@ -212,7 +212,6 @@ def _jump(shock: Any) -> str:
 
 
 def _rule(influence: RuleInfluence) -> str:
-    """Return what rests on the selection rule."""
     rule = RULES.get(influence.rule, f"the rule {influence.rule}")
     if influence.regime == "regular":
         return ""

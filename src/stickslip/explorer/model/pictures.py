@@ -233,7 +233,6 @@ def _of_block(shown: Shown, time: Floats) -> dict[str, Floats]:
 
 
 def _nodes(history: History) -> int:
-    """Return the number of nodes on each piece."""
     return FEW_NODES if len(history) > LONG_HISTORY else FULL
 
 

@@ -1,4 +1,10 @@
-"""The setting of the controls, a scenario document and what was changed in it, and the link that reproduces it."""
+"""The setting of the controls, a scenario document and what was changed in it, and the link that reproduces it.
+
+    scenario=fig6-slab&friction.alpha=0.7 s/m&v=1
+
+Only the changes of a bundled scenario are written, as a person would. A document that is not bundled, or is changed in very much,
+is compressed. Links come from strangers: their size is limited before and after they are unpacked, and nothing is evaluated.
+"""
 
 from __future__ import annotations
 
@@ -183,7 +189,6 @@ def _written(value: Any) -> str:
 
 
 def _read(text: str) -> Any:
-    """Return the entry that was written as a text."""
     if text[:1] in ("[", '"', "{") or text in ("true", "false", "null"):
         try:
             return json.loads(text)

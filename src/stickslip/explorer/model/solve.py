@@ -105,7 +105,6 @@ def solve(scenario: Scenario, told: Told = silent, behind: Backdrop | None = Non
 
 
 def _with_record(answer: Answer, behind: Backdrop) -> Answer:
-    """Return an answer with a record behind its run, whose misfit is among its words and numbers."""
     found = behind.behind(answer.solution)
     return replace(
         answer, measured=found, sentence=f"{answer.sentence} {found.sentence}", numbers=(*answer.numbers, *found.misfits)

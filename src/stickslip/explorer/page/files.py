@@ -62,7 +62,6 @@ def plain_name(name: str) -> str:
 
 
 def _with_table(name: str, content: bytes, present: Setting) -> Setting:
-    """Return the present setting with the points of a file as its friction law."""
     with gathered() as notes:
         along, places, friction = table_in_text(text_of(content, name), name)
     if len(friction) > MOST_ROWS:

@@ -121,5 +121,4 @@ def build_for_notebook(explorer: Explorer) -> Any:
 
 
 def _card(heading: Any, plot: Any, height: int) -> Any:
-    """Return a panel with its heading."""
     return pn.Column(heading, plot, height=height, sizing_mode="stretch_width", margin=2)

@@ -150,7 +150,6 @@ class StripView:
             self._tell(str(error))
 
     def _entered(self, name: str, data: dict[str, Any]) -> StripRange:
-        """Return the range that was typed. Raises InputError if it is none."""
         found = numeric(self._explorer.setting.scenario(), name)
         size = self._unit_of(usual_range(self._explorer.setting.scenario(), name))[1]
         low, high = (_read(str(data.get(end))[:100], found, size) for end in ("low", "high"))
@@ -191,7 +190,6 @@ class StripView:
         self._explorer.told("")
 
     def _mark(self) -> None:
-        """Mark the present value of the parameter."""
         assert self.strip is not None
         scenario = self._explorer.setting.scenario()
         here = float(place_of(self.strip, present(scenario, numeric(scenario, self.strip.parameter)), self._unit[1]))
@@ -199,7 +197,6 @@ class StripView:
             self._stage.named[f"here:strip_{name}"].location = here
 
     def _tapped(self, event: Any) -> None:
-        """Go to the run at the place of a click."""
         if self.strip is None or event.x is None:
             return
         value = (10.0**event.x if self.strip.log else event.x) * self._unit[1]

@@ -133,11 +133,9 @@ class _Replies(RequestHandler):
     """Sends a `Reply`, whatever the method of the request."""
 
     def initialize(self, reply: Reply) -> None:
-        """Take the reply."""
         self._reply = reply
 
     def prepare(self) -> None:
-        """Send the reply."""
         reply = self._reply
         if reply.cookie is not None:
             self.set_cookie(*reply.cookie, httponly=True, samesite="Lax", path="/")
@@ -158,7 +156,6 @@ class _WithHeaders(OutputTransform):
     def transform_first_chunk(
         self, status_code: int, headers: HTTPHeaders, chunk: bytes, finishing: bool
     ) -> tuple[int, HTTPHeaders, bytes]:
-        """Add the headers."""
         for name, value in HEADERS.items():
             headers[name] = value
         return status_code, headers, chunk

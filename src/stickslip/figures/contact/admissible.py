@@ -215,7 +215,6 @@ def _draw_sets(axes: Axes, dataset: xr.Dataset, sign: int, scales: _Scales) -> N
 
 
 def _colours(dataset: xr.Dataset) -> ScalarMappable:
-    """Return the colours of slips, in m."""
     slips = dataset["set_slip"].values
     return ScalarMappable(Normalize(slips[0], slips[-1]), "viridis_r")
 

@@ -29,27 +29,12 @@ SHADES = ("#F8D9C4", "#F0A879")
 
 
 def plot_fit(result: Fit | Smooth, path: str | Path | None = None, **place: Unpack[Place]) -> Figure:
-    """Draw measured points, the law through them and its band, and save the figure if a file is named.
+    """Draw measured points, the law through them and its band, and save the figure if a file is named, whole or not at all.
 
-    Parameters
-    ----------
-    result : Fit or Smooth
-        The result of `stickslip.friction.fit` or `smooth`.
-    path : str or Path, optional
-        File to be written, either whole or not at all.
-    **place
-        Where to draw, and how large: `figure`, `size` and `dpi`, as for `solution.plot`.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        The figure: points, law and the bands of one and two standard errors of the law above, the differences of the points from
-        the law below. For a law of slip and slip rate the measured friction is drawn against that of the law.
-
-    Raises
-    ------
-    InputError
-        If the argument is no such result.
+    The result is that of `stickslip.friction.fit` or `smooth`; `figure`, `size` and `dpi` say where to draw, and how large, as for
+    `solution.plot`. The figure shows points, law and the bands of one and two standard errors of the law above, the differences of
+    the points from the law below. For a law of slip and slip rate the measured friction is drawn against that of the law. Raises
+    InputError if the argument is no such result.
     """
     if not isinstance(result, Fit | Smooth):
         raise InputError(f"plot_fit: result must come from fit or smooth, got {type(result).__name__}")

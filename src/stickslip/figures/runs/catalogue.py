@@ -232,7 +232,6 @@ def _draw_zooms(panels: Mapping[str, Axes], dataset: xr.Dataset) -> None:
 
 
 def _draw_distribution(axes: Axes, slip: Floats) -> None:
-    """Draw the number of events whose slip is at least x, against x."""
     many, wide = len(slip) > WIDE, spans_decades(slip)
     unit, size = unit_of("m", slip, log=wide)
     ordered = np.sort(slip) / size
@@ -271,7 +270,6 @@ def _draw_recurrence(axes: Axes, times: Floats, unit: str, *, narrow: bool) -> N
 
 
 def _draw_return_map(axes: Axes, times: Floats, unit: str) -> None:
-    """Draw each recurrence time, given in `unit`, against the one before it."""
     axes.plot(times[:-1], times[1:], "o", color=INK, markersize=2.5, alpha=0.7)
     wide = spans_decades(times)
     limits = (0.5 * times.min(), 2.0 * times.max()) if wide else (0.0, 1.15 * (times.max() or 1.0))

@@ -101,7 +101,6 @@ def draw_space_time(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
 
 
 def _draw_image(panel: Any, dataset: xr.Dataset, values: Floats, text: str, **colours: Any) -> None:
-    """Draw values over time and x, with a scale of colours and the characteristics."""
     scales, time = Scales(dataset), dataset.time.values
     half, thickness = 0.5 * (time[1] - time[0]), dataset.attrs["thickness"]
     edges = (time[0] - half) / scales.time, (time[-1] + half) / scales.time, 0.0, thickness / scales.place

@@ -137,7 +137,6 @@ def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
 
 
 def _draw_row(axes: Axes, dataset: xr.Dataset, row: str, size: float) -> None:
-    """Draw one curve of every run, against time in units of `size` (s)."""
     drawn = [dataset[f"run{k}_{row}"] for k in range(np.size(dataset.attrs["runs"]))]
     about = drawn[0].attrs
     flat = row == "traction" and nearly_flat(*(values.values[np.isfinite(values.values)] for values in drawn))

@@ -125,7 +125,6 @@ def _layout(*, C: bool, D: bool) -> Any:
 
 
 def _marks(dataset: xr.Dataset, *, C: bool, D: bool) -> list[Artist]:
-    """Return the entries of the key for what is drawn."""
     panels = [name for name, there in (("a", C), ("d" if C else "c", D)) if there]
     where = f"({panels[-1]})" if D else ""
     shared = "events of all members" if (dataset["same"] == 1).all() else "events shared with member 0"
@@ -193,7 +192,6 @@ def _draw_horizons(axes: Axes, dataset: xr.Dataset, size: float) -> None:
 
 
 def _draw_slips(axes: Axes, dataset: xr.Dataset) -> None:
-    """Draw, for each run, the number of events whose slip is at least x, against x."""
     slip, member = dataset["slip"].values, dataset["of_member"].values
     wide = slip.max() > WIDE * slip[slip > 0.0].min(initial=slip.max())
     unit, size = unit_of("m", slip, log=bool(wide))

@@ -159,7 +159,6 @@ def _runs(dataset: xr.Dataset) -> list[tuple[str, str, float]]:
 
 
 def _run_marks(dataset: xr.Dataset, unit: tuple[str, float]) -> list[Artist]:
-    """Return the entries of the key for the runs, whose sizes are given in a unit (name, size in s)."""
     sizes = dataset["size"].values[np.atleast_1d(dataset.attrs["drawn"]).astype(int)] / unit[1]
     texts = [*(f"(b, c) size $L$ = {size:.3g} {unit[0]}" for size in sizes), f"(b, c) exact: {dataset.attrs['target']}"]
     runs = zip(_runs(dataset), texts, strict=True)

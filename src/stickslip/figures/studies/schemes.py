@@ -120,7 +120,6 @@ def _styles(dataset: xr.Dataset) -> list[tuple[str, str, Any, float]]:
 
 
 def _run_marks(dataset: xr.Dataset) -> list[Line2D]:
-    """Return the entries of the key for the curves."""
     runs, rules = (np.atleast_1d(dataset.attrs[name]).tolist() for name in ("runs", "rules"))
     return [
         Line2D([], [], color=colour, linestyle=style, linewidth=width, label=f"(b, c) {text}")

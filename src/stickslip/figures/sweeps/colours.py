@@ -84,7 +84,6 @@ def _key(different: Floats, texts: Sequence[str]) -> Colours:
 
 
 def _steps(low: int, high: int) -> Colours:
-    """Return a scale with a step for each whole number from `low` to `high`."""
     count = high - low + 1
     cmap = ListedColormap(mpl.colormaps["viridis"](np.linspace(0.0, 1.0, count)))
     return Colours(cmap, BoundaryNorm(np.arange(low, high + 2) - 0.5, count), ())

@@ -188,7 +188,6 @@ def axes_of(dataset: xr.Dataset) -> dict[str, Scaled]:
 
 
 def _draw_points(axes: Axes, quantity: Shown, x: Scaled, y: Scaled, *, own: bool) -> None:
-    """Draw a point for each member in the colour of its number, and explain the colours."""
     colours, values, state = colours_of(quantity), quantity.values.values, quantity.state.values
     for which, colour, marker in ((1, PALE, "o"), (2, GREY, "x")):
         axes.scatter(x.values[state == which], y.values[state == which], s=SIZE, color=colour, marker=marker, rasterized=True)

@@ -30,25 +30,12 @@ AT_LIMIT = 1e-9
 class Fit:
     """The result of `fit`: the law that fits best, and how well the points determine it.
 
-    Attributes
-    ----------
-    law : FrictionLaw
-        The law with the best parameters.
-    points : Points
-        The points, with the variables on which the law depends.
-    residual : float
-        Standard deviation of the points about the law (no unit), with the number of fitted parameters taken into account.
-    values : dict
-        Each parameter in SI, by its name in scenario files.
-    uncertainty : dict
-        Standard uncertainty of each fitted parameter in SI, infinite where the points do not determine it.
-    correlation : ndarray
-        Correlations of the fitted parameters, in the order of `uncertainty`.
-    bic : float
-        Bayesian information criterion (Schwarz 1978): of several laws for the same points, the law with the smallest value fits
-        best for its number of parameters; a difference above 10 is decisive.
-    notes : list of str
-        Sentences on what the points do not determine, and on trends that the law misses.
+    `points` have the variables on which the law depends, and `residual` is their standard deviation about the law (no unit), with
+    the number of fitted parameters taken into account. `values` are the parameters in SI by their names in scenario files,
+    `uncertainty` their standard uncertainties, infinite where the points do not determine one, and `correlation` is in the order of
+    these. `bic` is the Bayesian information criterion (Schwarz 1978): of several laws for the same points, the law with the
+    smallest value fits best for its number of parameters; a difference above 10 is decisive. `notes` are sentences on what the
+    points do not determine, and on trends that the law misses.
     """
 
     law: FrictionLaw
@@ -109,11 +96,6 @@ def fit(points: Any, law: Any, *, start: Mapping[str, Any] | None = None, fixed:
         Values of parameters at which the search begins, in SI or as text with a unit. By default they follow from the points.
     fixed : mapping, optional
         Values of known parameters, which are not fitted.
-
-    Returns
-    -------
-    Fit
-        The law, the parameters with their standard uncertainties, the residual, and what was noticed.
 
     Raises
     ------

@@ -46,15 +46,12 @@ class _Model:
         self.bounds = self.searched([low for low, _ in ends]), self.searched([high for _, high in ends])
 
     def searched(self, natural: Sequence[float]) -> Floats:
-        """Return the searched numbers from the parameters."""
         return np.log(natural, where=self.logarithmic, out=np.array(natural, float))
 
     def natural(self, searched: Floats) -> Floats:
-        """Return the parameters from the searched numbers."""
         return np.exp(searched, where=self.logarithmic, out=searched.copy())
 
     def at(self, searched: Floats) -> FrictionLaw:
-        """Return the law, unchecked, at searched numbers."""
         return rebuilt(self.law, dict(zip(self.free, self.natural(searched).tolist(), strict=True)), checked=False)
 
     def differences(self, searched: Floats) -> Floats:
@@ -67,7 +64,6 @@ class _Model:
         return np.nan_to_num(plain) * np.where(self.logarithmic, self.natural(searched), 1.0)
 
     def solved(self, start: Floats, **options: Any) -> Any:
-        """Return scipy's result of the least-squares problem from a start."""
         from scipy.optimize import least_squares
 
         return least_squares(self.differences, start, self.jacobian, self.bounds, x_scale="jac", **options)

@@ -172,7 +172,6 @@ class FromExpression(RemembersSlip):
 
     @cached_property
     def _equations(self) -> dict[str, str]:
-        """The texts of the rates of change of the states, by the states' names."""
         try:
             return read_evolution(self.evolution, self.parameters()) if self.evolution else {}
         except InputError as error:
@@ -180,7 +179,6 @@ class FromExpression(RemembersSlip):
 
     @property
     def _changes(self) -> tuple[Expression, ...]:
-        """The rates of change of the states as expression trees."""
         try:
             return tuple(parse(text, self.parameters(), tuple(self._equations)) for text in self._equations.values())
         except InputError as error:
@@ -295,8 +293,9 @@ class FromExpression(RemembersSlip):
         if self.evolution:
             return self._steady_variation()
         slip, rate = np.linspace(0.0, 10.0, 201)[:, None], np.append(0.0, np.geomspace(1e-9, 10.0, 200))
-        values = self.coefficient(slip, rate)
-        return max(float(np.ptp(values)), self.static_excess)
+        with np.errstate(all="ignore"):  # the formula may have a pole there
+            values = self.coefficient(slip, rate)
+        return max(float(np.ptp(values[np.isfinite(values)])), self.static_excess)
 
     def _steady_variation(self) -> float:
         """Return the change of friction between steady sliding at slip rates up to 10 m/s, and state 0 at rest; 0.1 if unknown."""

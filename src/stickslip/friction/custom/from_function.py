@@ -119,7 +119,6 @@ def FromFunction(function: Callable[..., Any] | None = None, /, **given: Any) ->
 
 
 def _signature(function: Callable[..., Any]) -> inspect.Signature:
-    """Return the signature of a function of u, of v or of both. Raises InputError for anything else."""
     if isinstance(function, type):
         raise InputError(f"it is a class: a law is made with its parameters, {function.__name__}(...)")
     if isinstance(function, str):
@@ -137,7 +136,6 @@ def _signature(function: Callable[..., Any]) -> inspect.Signature:
 
 
 def _states(signature: inspect.Signature, given: dict[str, Any]) -> tuple[str, ...]:
-    """Return the names of the arguments that are states of the law."""
     if "state" in signature.parameters:
         return ()
     named = given.get("state", "")

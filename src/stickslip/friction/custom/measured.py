@@ -34,20 +34,10 @@ WANTED = (*ALONG, "friction", *STRESSES)
 
 @dataclass(frozen=True, eq=False)
 class Points:
-    """Measured friction coefficients, with the slip or the slip rate of each point, or both.
+    """Measured friction coefficients (no unit), with the slip (m) or the slip rate (m/s, not negative) of each point, or both.
 
-    Make one with `Points.read`. Points may be in any order and may repeat a slip or a slip rate.
-
-    Parameters
-    ----------
-    friction
-        Friction coefficients (no unit), shape (n,).
-    slip
-        Slips of the points (m), shape (n,), or None.
-    slip_rate
-        Slip rates of the points (m/s), shape (n,), not negative, or None.
-    name
-        Name for messages and figures.
+    Make one with `Points.read`. Points may be in any order and may repeat a slip or a slip rate. `name` is for messages and
+    figures.
     """
 
     friction: Floats
@@ -57,25 +47,13 @@ class Points:
 
     @classmethod
     def read(cls, source: Any) -> Points:
-        """Read points.
+        """Read points from a CSV file, or from columns of numbers by their headings, in the order of the source.
 
-        Parameters
-        ----------
-        source : str, Path, DataFrame or mapping
-            A CSV file, or columns of numbers by their headings: `friction` with `slip`, `slip_rate` or both. `shear_stress` and
-            `normal_stress` may take the place of friction. A heading may carry a unit, as in "v (mm/s)"; without one numbers are in
-            SI. `u`, `v`, `mu`, `tau`, `sigma` and some full names are understood, and other columns are ignored. Notes before the
-            headings are skipped. Points, and a law given by points, are taken as they are.
-
-        Returns
-        -------
-        Points
-            The points in SI, in the order of the source.
-
-        Raises
-        ------
-        InputError
-            If the file or the columns cannot be used; the message is one line with the place and the cure.
+        The columns are `friction` with `slip`, `slip_rate` or both. `shear_stress` and `normal_stress` may take the place of
+        friction. A heading may carry a unit, as in "v (mm/s)"; without one numbers are in SI. `u`, `v`, `mu`, `tau`, `sigma` and
+        some full names are understood, and other columns are ignored. Notes before the headings are skipped. Points, and a law
+        given by points, are taken as they are. Raises InputError if the file or the columns cannot be used; the message is one line
+        with the place and the cure.
         """
         if isinstance(source, Points):
             return source

@@ -36,26 +36,12 @@ FOLLOWS = 0.01
 
 @dataclass(frozen=True, eq=False)
 class Smooth:
-    """The result of `smooth`: a law through the smooth curve, and what was smoothed away.
+    """The result of `smooth`: a law through the smooth curve, constant outside the range of the points, and what was smoothed away.
 
-    Attributes
-    ----------
-    points : Points
-        The points, with slip or slip rate alone.
-    law : FromTable
-        The law, constant outside the range of the points.
-    residual : float
-        Standard deviation of the points about the curve (no unit), with the degrees of freedom taken into account.
-    strength : float
-        Strength of smoothing, chosen by cross-validation or given.
-    freedom : float
-        Effective number of degrees of freedom of the curve.
-    scale : {"linear", "log"}
-        Scale of slip or slip rate in which the curve is smooth.
-    monotone : bool
-        True if the curve was made to rise or to fall throughout.
-    reversals : tuple of int
-        How often friction turns from rise to fall or back: through the points exactly, and in the law.
+    `residual` is the standard deviation of the points about the curve (no unit), with the degrees of freedom taken into account;
+    their effective number is `freedom`. `strength` was chosen by cross-validation or given, and the curve is smooth in slip or slip
+    rate on the `scale` "linear" or "log". `monotone` is True if it was made to rise or to fall throughout. `reversals` say how
+    often friction turns from rise to fall or back: through the points exactly, and in the law.
     """
 
     points: Points
@@ -70,18 +56,10 @@ class Smooth:
     _axis: _Axis
 
     def band(self, u: ArrayLike = 0.0, v: ArrayLike = 0.0) -> tuple[Floats, Floats]:
-        """Return the friction coefficient and its standard error.
+        """Return friction of the law (no unit) at slips (m) and slip rates (m/s), which broadcast, and its standard error.
 
-        Parameters
-        ----------
-        u, v : array_like
-            Slips (m) and slip rates (m/s); they broadcast, and the one that the points do not have is ignored.
-
-        Returns
-        -------
-        tuple of ndarray
-            The law, and the standard error of the smooth curve (no unit). Two standard errors on either side hold the true curve at
-            95 % of the places, if the noise of neighbouring points is independent.
+        The variable that the points do not have is ignored. Two standard errors on either side of the smooth curve hold the true
+        curve at 95 % of the places, if the noise of neighbouring points is independent.
         """
         slip, rate = np.broadcast_arrays(np.asarray(u, float), np.asarray(v, float))
         at = self._axis.forward(slip if self.points.has == ("slip",) else rate)
@@ -180,11 +158,6 @@ def smooth(
     scale : {"auto", "linear", "log"}
         Scale along which the curve is smooth: slip or slip rate x itself, or ln(1 + x / smallest x above 0). By default the scale
         on which the curve predicts left-out points better.
-
-    Returns
-    -------
-    Smooth
-        The law, the residual, and what was noticed.
 
     Raises
     ------

@@ -177,7 +177,6 @@ class _Reader:
         return result
 
     def part(self, node: ast.expr) -> str:
-        """Return the part of the text that a message is about."""
         return _shown(ast.get_source_segment(self.text, node) or self.text)
 
 

@@ -23,7 +23,6 @@ def quoted(node: Expression) -> str:
 
 
 def _written(node: Expression) -> tuple[str, int]:
-    """Return the text of a node and its precedence."""
     if node.operation not in _SIGNS:
         if node.arguments:
             return f"{node.operation}({to_text(node.arguments[0])})", _ATOM

@@ -1,6 +1,5 @@
 """Define rate-and-state friction that falls sharply at the slip rates of earthquakes, by flash heating of asperities."""
 
-import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -9,16 +8,14 @@ from numpy.typing import ArrayLike, NDArray
 from typing_extensions import override
 
 from stickslip.foundation.conversion import Number
-from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import quantity
 from stickslip.friction.contract import Formula, StateVariable
 from stickslip.friction.formula.expression import arcsinh, exp, expm1, log, sqrt
-from stickslip.friction.law import FrictionLaw
-from stickslip.friction.laws.rate_and_state import FARTHEST_STATE, LARGEST_EXPONENT, SLOWEST
+from stickslip.friction.laws.rate_and_state import SLOWEST, DirectEffect
 
 
 @dataclass(frozen=True)
-class FlashHeating(FrictionLaw):
+class FlashHeating(DirectEffect):
     """mu(v, psi) = a arcsinh(v / (2 rate) exp(psi / a)), with dpsi/dt = -(v / distance) (psi - psi_ss(v)).
 
     psi_ss = a ln(2 rate / v sinh(mu_ss / a)) is the state of steady sliding, whose friction is
@@ -36,7 +33,6 @@ class FlashHeating(FrictionLaw):
         "101, 2296; SCEC/USGS rupture code verification, TPV103 and TPV104 (this form)"
     )
     state = StateVariable("psi", "1", "state psi, a friction coefficient")
-    sticks = False
     start: ClassVar = {"coefficient": 0.6, "state": 0.6}
     example: ClassVar = {
         **{"reference": 0.6, "a": 0.01, "b": 0.014, "distance": "0.4 m", "rate": "1e-6 m/s"},
@@ -44,19 +40,11 @@ class FlashHeating(FrictionLaw):
     }
 
     reference: float = quantity("1", "friction coefficient of steady sliding at `rate`, far below the weakening rate", above=0)
-    a: float = quantity("1", "direct effect a: immediate increase of friction per factor e of slip rate", above=0)
     b: float = quantity("1", "evolution effect b: decrease of friction as slip renews the contact, per factor e", at_least=0)
     distance: Number = quantity("m", "slip over which the state renews itself (L)", above=0)
     weakened: float = quantity("1", "friction coefficient of steady sliding far above the weakening rate", above=0)
     weakening_rate: Number = quantity("m/s", "slip rate above which asperities melt", above=0)
     rate: Number = quantity("m/s", "reference slip rate", above=0, default=1e-6)
-
-    @override
-    def check(self) -> None:
-        largest = (self.reference + FARTHEST_STATE * self.b) / self.a
-        if largest > LARGEST_EXPONENT:
-            least = (self.reference + FARTHEST_STATE * self.b) / LARGEST_EXPONENT
-            raise InputError(f"FlashHeating: a must be at least {least:.3g} with this reference and b, got {self.a:g}")
 
     @property
     @override
@@ -67,15 +55,6 @@ class FlashHeating(FrictionLaw):
     @override
     def state_rate(self) -> Formula:
         return _renewal
-
-    @override
-    def range(self) -> tuple[float, float]:
-        return 0.0, math.inf
-
-    @property
-    def variation(self) -> float:
-        """The direct effect a: the change of friction at once when the slip rate changes by a factor e (no unit)."""
-        return self.a
 
     def steady_coefficient(self, v: ArrayLike) -> NDArray[np.float64]:
         """Return the friction coefficient mu_ss (no unit) of steady sliding at slip rates v > 0 (m/s)."""

@@ -24,7 +24,36 @@ SLOWEST = 1e-24
 
 
 @dataclass(frozen=True)
-class RateAndState(FrictionLaw):
+class DirectEffect(FrictionLaw):
+    """A law whose friction grows at once by `a` if the slip rate grows by a factor e; the contact never sticks."""
+
+    sticks = False
+    effects: ClassVar[tuple[str, ...]] = ("b",)
+    """Fields with the changes of friction by the states, which must not make an exponential overflow."""
+
+    reference: float = quantity("1", "friction coefficient of steady sliding at `rate`", above=0)
+    a: float = quantity("1", "direct effect a: immediate increase of friction per factor e of slip rate", above=0)
+
+    @override
+    def check(self) -> None:
+        largest = self.reference + FARTHEST_STATE * sum(abs(getattr(self, name)) for name in self.effects)
+        if largest / self.a > LARGEST_EXPONENT:
+            known = " and ".join(", ".join(("reference", *self.effects)).rsplit(", ", 1))
+            least = largest / LARGEST_EXPONENT
+            raise InputError(f"{type(self).__name__}: a must be at least {least:.3g} with this {known}, got {self.a:g}")
+
+    @override
+    def range(self) -> tuple[float, float]:
+        return 0.0, math.inf
+
+    @property
+    def variation(self) -> float:
+        """The direct effect a: the change of friction at once when the slip rate changes by a factor e (no unit)."""
+        return self.a
+
+
+@dataclass(frozen=True)
+class RateAndState(DirectEffect):
     """mu(v, theta) = a arcsinh(v / (2 rate) exp((reference + b ln(rate theta / distance)) / a)), theta by `evolution`.
 
     With y = v theta / distance, d theta/dt is 1 - y for the ageing law, -y ln y for the slip law and 1 - (y/2)^2 for the PRZ law.
@@ -39,23 +68,13 @@ class RateAndState(FrictionLaw):
         "1995, J. Mech. Phys. Solids 43, 1461 (PRZ); Rice & Ben-Zion 1996, Proc. Natl. Acad. Sci. 93, 3811 (arcsinh)"
     )
     state = StateVariable("theta", "s", "state theta (distance / v in steady sliding)", scale=1.0)
-    sticks = False
     start: ClassVar = {"coefficient": 0.65, "state": "1 year"}
     example: ClassVar = {"reference": 0.6, "a": 0.01, "b": 0.015, "distance": "1 mm", "rate": "1e-6 m/s"}
 
-    reference: float = quantity("1", "friction coefficient of steady sliding at `rate`", above=0)
-    a: float = quantity("1", "direct effect a: immediate increase of friction per factor e of slip rate", above=0)
     b: float = quantity("1", "evolution effect b: decrease of friction as the state falls by a factor e", at_least=0)
     distance: Number = quantity("m", "slip over which the state renews itself (Dc)", above=0)
     rate: Number = quantity("m/s", "reference slip rate", above=0, default=1e-6)
     evolution: str = declare(Choice("how the state changes", ("ageing", "slip", "prz")), "ageing")
-
-    @override
-    def check(self) -> None:
-        largest = (self.reference + FARTHEST_STATE * self.b) / self.a
-        if largest > LARGEST_EXPONENT:
-            least = (self.reference + FARTHEST_STATE * self.b) / LARGEST_EXPONENT
-            raise InputError(f"RateAndState: a must be at least {least:.3g} with this reference and b, got {self.a:g}")
 
     @property
     @override
@@ -74,15 +93,6 @@ class RateAndState(FrictionLaw):
     @override
     def outer_state(self, w: NDArray[np.float64]) -> NDArray[np.float64]:
         return self.distance / self.rate * np.exp(w)
-
-    @override
-    def range(self) -> tuple[float, float]:
-        return 0.0, math.inf
-
-    @property
-    def variation(self) -> float:
-        """The direct effect a: the change of friction at once when the slip rate changes by a factor e (no unit)."""
-        return self.a
 
     @override
     def steady_state(self, v: ArrayLike) -> NDArray[np.float64]:

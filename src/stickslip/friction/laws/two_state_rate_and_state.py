@@ -1,6 +1,5 @@
 """Define rate-and-state friction with two states, which renew themselves over a short and over a long slip."""
 
-import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -9,16 +8,14 @@ from numpy.typing import ArrayLike, NDArray
 from typing_extensions import override
 
 from stickslip.foundation.conversion import Number
-from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Choice, declare, quantity
 from stickslip.friction.contract import Formula, StateVariable
 from stickslip.friction.formula.expression import arcsinh, exp, log
-from stickslip.friction.law import FrictionLaw
-from stickslip.friction.laws.rate_and_state import FARTHEST_STATE, LARGEST_EXPONENT, SLOWEST
+from stickslip.friction.laws.rate_and_state import SLOWEST, DirectEffect
 
 
 @dataclass(frozen=True)
-class TwoStateRateAndState(FrictionLaw):
+class TwoStateRateAndState(DirectEffect):
     """mu(v, theta_1, theta_2) = a arcsinh(v / (2 rate) exp((reference + b w_1 + second_b w_2) / a)), w_i = ln(rate theta_i / L_i).
 
     L_1 is `distance` and L_2 is `second_distance`. With y = v theta_i / L_i, d theta_i/dt is 1 - y for the ageing law and -y ln y
@@ -29,6 +26,7 @@ class TwoStateRateAndState(FrictionLaw):
     """
 
     kind = "two-state-rate-and-state"
+    effects = ("b", "second_b")
     source = (
         "Ruina 1983, J. Geophys. Res. 88, 10359 (two states); Gu, Rice, Ruina & Tse 1984, J. Mech. Phys. Solids 32, 167; "
         "Rice & Ben-Zion 1996, Proc. Natl. Acad. Sci. 93, 3811 (arcsinh)"
@@ -37,30 +35,18 @@ class TwoStateRateAndState(FrictionLaw):
         StateVariable("theta_1", "s", "state theta_1 (distance / v in steady sliding)", scale=1.0),
         StateVariable("theta_2", "s", "state theta_2 (second_distance / v in steady sliding)", scale=1.0),
     )
-    sticks = False
     start: ClassVar = {"coefficient": 0.65, "state": "1 year", "second_state": "1 year"}
     example: ClassVar = {
         **{"reference": 0.6, "a": 0.01, "b": 0.01, "distance": "1 mm"},
         **{"second_b": 0.006, "second_distance": "2 cm", "rate": "1e-6 m/s"},
     }
 
-    reference: float = quantity("1", "friction coefficient of steady sliding at `rate`", above=0)
-    a: float = quantity("1", "direct effect a: immediate increase of friction per factor e of slip rate", above=0)
     b: float = quantity("1", "decrease of friction as the first state falls by a factor e", at_least=0)
     distance: Number = quantity("m", "slip over which the first state renews itself (L_1)", above=0)
     second_b: float = quantity("1", "decrease of friction as the second state falls by a factor e; may be negative")
     second_distance: Number = quantity("m", "slip over which the second state renews itself (L_2)", above=0)
     rate: Number = quantity("m/s", "reference slip rate", above=0, default=1e-6)
     evolution: str = declare(Choice("how the states change", ("ageing", "slip")), "ageing")
-
-    @override
-    def check(self) -> None:
-        farthest = self.reference + FARTHEST_STATE * (self.b + abs(self.second_b))
-        if farthest / self.a > LARGEST_EXPONENT:
-            least = farthest / LARGEST_EXPONENT
-            raise InputError(
-                f"TwoStateRateAndState: a must be at least {least:.3g} with this reference, b and second_b, got {self.a:g}"
-            )
 
     @property
     @override
@@ -83,15 +69,6 @@ class TwoStateRateAndState(FrictionLaw):
     def _renewal(self, axes: int) -> NDArray[np.float64]:
         """Return the times L_i / rate (s) as an array of so many axes, the first of which counts the states."""
         return np.reshape([self.distance / self.rate, self.second_distance / self.rate], (2,) + (1,) * (axes - 1))
-
-    @override
-    def range(self) -> tuple[float, float]:
-        return 0.0, math.inf
-
-    @property
-    def variation(self) -> float:
-        """The direct effect a: the change of friction at once when the slip rate changes by a factor e (no unit)."""
-        return self.a
 
     @override
     def steady_state(self, v: ArrayLike) -> NDArray[np.float64]:

@@ -45,34 +45,15 @@ SHARES = 6.0 * NODES * (1.0 - NODES) * WEIGHTS
 
 
 def energy(history: History, t: ArrayLike, origin: float | None = None) -> xr.Dataset:
-    """Return the energies of a run as differences from their values at an origin.
+    """Return the energies of a run at times (s) since the history's epoch, as differences from their values at an origin (s).
 
-    Parameters
-    ----------
-    history : History
-        History of a run.
-    t : array_like
-        Times since the history's epoch, s.
-    origin : float, optional
-        Time at which the differences are zero, s. The default is the start of the run.
+    The origin is by default the start of the run. The dataset holds work, stored (elastic + kinetic), elastic, kinetic, heat,
+    damped, radiated, balance; and trapped, which is no difference (slab: J/m^2, block: J). Work is what the driver puts in, net of
+    radiated, which is what leaves through a driver of finite impedance. Balance is work - stored - heat - damped, zero for an exact
+    solution. Trapped is the part of the stored energy that travels to and fro in waves.
 
-    Returns
-    -------
-    xarray.Dataset
-        work, stored (elastic + kinetic), elastic, kinetic, heat, damped, radiated, balance; and trapped, which is no
-        difference (slab: J/m^2, block: J).
-
-    Raises
-    ------
-    InputError
-        For times outside the run, and for times in a leap over creep or within a round trip after it: the waves that left the
-        contact there are not known.
-
-    Notes
-    -----
-    Work is what the driver puts in, net of radiated, which is what leaves through a driver of finite impedance. Balance is
-    work - stored - heat - damped, zero for an exact solution. Trapped is the part of the stored energy that travels to and fro in
-    waves.
+    Raises InputError for times outside the run, and for times in a leap over creep or within a round trip after it: the waves that
+    left the contact there are not known.
     """
     import xarray as xr  # here, because it takes a quarter of a second to import
 

@@ -117,7 +117,9 @@ def _uneven_motion(slab: PlanarSlab, slips: Iterator[Floats], here: tuple[slice,
         whole[here] = slip
         run.move(whole - whole.mean())
         found.append(run.energies())  # half a step ago
-    halves = np.array([*found, 2.0 * np.array(found[-1]) - np.array(found[-2])])
+    halves = np.array([*found, found[-1]])
+    if len(found) > 1:
+        halves[-1] += halves[-2] - halves[-3]
     return np.asarray(0.5 * (halves[1:] + halves[:-1]).T)
 
 

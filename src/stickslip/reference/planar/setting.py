@@ -89,22 +89,10 @@ class LawAtNodes:
 class PlanarCase:
     """A slab with friction that varies along a periodic contact.
 
-    Parameters
-    ----------
-    density, wave_speed, thickness
-        rho (kg/m^3), c (m/s) and h (m).
-    length
-        Period of the contact along each of its directions (m): one number in 2D, two in 3D.
-    initial_load
-        Shear load on the contact at t = 0 (Pa), an array with one or two axes. Its shape gives the numbers of nodes.
-    friction
-        Friction at the nodes, such as `SlipWeakeningAtNodes`, `LawAtNodes`, or a function of one's own.
-    driver_impedance
-        Zd (Pa s/m) of the half-space beyond x = h; infinite for a rigid driver, 0 for a dead load.
-    locked
-        True where the contact is a barrier, which never slips; an array like `initial_load`, or None.
-    pull_rate
-        Rate at which a rigid driver moves (m/s); the slab starts with the velocity pull_rate x / h.
+    `length` is the period along each direction (m): one number in 2D, two in 3D; the shape of `initial_load` (Pa) gives the numbers
+    of nodes. `friction` is `SlipWeakeningAtNodes`, `LawAtNodes`, or a function of one's own. `driver_impedance` (Pa s/m) is that of
+    the half-space beyond x = h; infinite for a rigid driver, 0 for a dead load. `locked` is True where the contact is a barrier,
+    which never slips. A rigid driver moves at `pull_rate` (m/s), and the slab starts with the velocity pull_rate x / h.
     """
 
     density: float

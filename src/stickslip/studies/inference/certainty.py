@@ -87,7 +87,6 @@ def certainty_of(found: Estimate) -> Certainty:
 def _words(
     model: Model, values: Floats, found: tuple[Floats, Floats, Floats, Floats], inner: NDArray[np.intp], factor: float
 ) -> list[str]:
-    """Return sentences on sets of numbers of which a record determines combinations only, or much better than each."""
     slopes, moves, covariance, correlation = found
     slopes, correlation = slopes[:, inner], correlation[np.ix_(inner, inner)].copy()
     labels, free = [model.free[i].label for i in inner], [model.free[i] for i in inner]

@@ -108,7 +108,6 @@ def _keeps_minimum(model: Model, new: Model) -> bool:
 
 
 def _noise(model: Model, searched: Floats, by: Floats, loss: str) -> Model:
-    """Return the model with the noise that its residuals show."""
     rests = [model.part_residual(searched, i) for i in range(len(model.parts))]
     begins = np.append(0, np.cumsum([len(one) for one in rests]))
     sizes, memory = dict(model.sizes), {}

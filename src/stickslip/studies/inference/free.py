@@ -147,7 +147,6 @@ def _by_name(given: Mapping[str, Any] | None, chosen: Sequence[str], what: str) 
 
 
 def _one(name: str, known: tuple[Quantity, float], limits: Any, prior: Prior | None, start: Any) -> Free:
-    """Return a free number with its limits. Raises InputError if they leave nothing."""
     declared, value = known
     if start is not None:
         value = declared.check("infer", f"start: {name}", start)

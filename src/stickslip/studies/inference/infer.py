@@ -234,7 +234,6 @@ def _records(source: Any, begin: float | None, end: float | None) -> list[Record
 
 
 def _model(problem: Problem, parts: list[Part], names: Sequence[str] | str, wishes: Wishes) -> Model:
-    """Return the model that is fitted. Raises InputError if there is too little to fit it to."""
     chosen = read_free(
         problem, names, hints_of(problem, parts[0]), bounds=wishes.bounds, priors=wishes.priors, start=wishes.begin_at
     )
@@ -279,24 +278,12 @@ def _idle_as_given(found: Estimate, sure: Certainty) -> Estimate:
 
 
 def ranking(*found: Inference) -> pd.DataFrame:
-    """Compare inferences from one record by what they predict of the part that was left out, best first.
+    """Compare inferences from one record, each with `held_out`, by what they predict of the part that was left out, best first.
 
-    Parameters
-    ----------
-    *found : Inference
-        Results of `infer` for the same record, each with `held_out`.
-
-    Returns
-    -------
-    pandas.DataFrame
-        One row for each. Columns: law, free (number of free numbers), fit and prediction (root mean square residual of the part
-        that was fitted and of the part that was left out, in standard deviations of the least noise that any of them found), and
-        bic (Schwarz's criterion of the fitted part, smaller is better).
-
-    Raises
-    ------
-    InputError
-        If no part was left out, or if the records differ.
+    There is one row for each. Columns: law, free (number of free numbers), fit and prediction (root mean square residual of the
+    part that was fitted and of the part that was left out, in standard deviations of the least noise that any of them found), and
+    bic (Schwarz's criterion of the fitted part, smaller is better). Raises InputError if no part was left out, or if the records
+    differ.
     """
     if len({(one.model.samples, tuple(len(part.record) for part in one.parts)) for one in found}) > 1:
         raise InputError("ranking: the inferences are of different records or leave out different parts")

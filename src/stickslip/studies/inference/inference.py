@@ -33,7 +33,6 @@ from stickslip.studies.study import Study
 
 
 def _near(value: float, uncertainty: float) -> str:
-    """Return a number with the digits that its uncertainty leaves."""
     size = abs(value) / uncertainty if 0.0 < uncertainty < math.inf else 1.0
     return f"{value:.{min(max(2 + math.ceil(math.log10(max(size, 1e-3))), 3), 12)}g}"
 
@@ -73,14 +72,10 @@ class Inference(Study):
 
     @cached_property
     def table(self) -> pd.DataFrame:
-        """A table with one row for each free number.
+        """A table with one row for each free number, by its name.
 
-        Returns
-        -------
-        pandas.DataFrame
-            Index: names. Columns: value, uncertainty (standard, infinite where the record does not determine it, NaN on a bound),
-            low and high (interval of 95 %), all in SI; unit; start, where the search began; source of the interval: curvature,
-            profile or samples.
+        Columns: value, uncertainty (standard, infinite where the record does not determine it, NaN on a bound), low and high
+        (interval of 95 %), all in SI; unit; start, where the search began; source of the interval: curvature, profile or samples.
         """
         rows = [self._row(i, one) for i, one in enumerate(self.free)]
         columns = ["value", "uncertainty", "low", "high", "unit", "start", "source"]
@@ -157,11 +152,8 @@ class Inference(Study):
     def curves(self) -> pd.DataFrame:
         """Data, model and residual at each sample.
 
-        Returns
-        -------
-        pandas.DataFrame
-            Columns: part; time (s since the first sample of the part); quantity; data, model and residual (data minus model, SI);
-            fitted, False for what was left out.
+        Columns: part; time (s since the first sample of the part); quantity; data, model and residual (data minus model, SI);
+        fitted, False for what was left out.
         """
         pieces = []
         for i, run in enumerate(self.runs):

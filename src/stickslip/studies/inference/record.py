@@ -43,27 +43,12 @@ HIGHEST, LOWEST = 3.0, 1e-2
 
 @dataclass(frozen=True, eq=False)
 class Record:
-    """A laboratory record in SI. Make one with `Record.read`.
+    """A laboratory record in SI, at ascending times (s). Make one with `Record.read`.
 
-    Parameters
-    ----------
-    time
-        Times of the samples (s), ascending, shape (n,).
-    measured
-        Measured quantities by name: friction (1), shear_stress (Pa), shear_force (N), slip (m), slip_rate (m/s), each of shape
-        (n,), NaN where nothing was measured.
-    deviations
-        Standard deviations of measured quantities, where they are given, in the same units.
-    load_point
-        Displacement of the load point (m), shape (n,), or None.
-    load_rate
-        Rate of the load point (m/s), shape (n,), or None.
-    name
-        Name for messages and figures.
-    notes
-        What was done with the record, one sentence each.
-    relative
-        Noise of each sample relative to the usual one, where some are means of more samples than others, or None.
+    `measured` holds friction (1), shear_stress (Pa), shear_force (N), slip (m) and slip_rate (m/s), NaN where nothing was measured,
+    and `deviations` their standard deviations, where they are given. `load_point` (m) and `load_rate` (m/s) are those of the load
+    point, or None. `notes` say what was done with the record, one sentence each. `relative` is the noise of each sample relative to
+    the usual one, where some are means of more samples than others, or None.
     """
 
     time: Floats
@@ -87,11 +72,6 @@ class Record:
             `normal_stress`, and shear force with `normal_force`, give friction. Headings may carry units, as in "tau (MPa)".
         begin, end : float, optional
             Times (s, as in the record) between which the record is taken.
-
-        Returns
-        -------
-        Record
-            The record in SI, sorted by time.
 
         Raises
         ------

@@ -179,7 +179,6 @@ def refine_cells(
 
 
 def _halved(lattice: Lattice, cells: Cells) -> Cells:
-    """Divide every cell into 2^axes equal cells."""
     half = (2 ** (lattice.depth - cells.level - 1))[:, np.newaxis]
     parts = [cells.corner + half * np.array(shift) for shift in product((0, 1), repeat=len(lattice.coarse))]
     return Cells.new(np.concatenate(parts), np.tile(cells.level + 1, len(parts)))

@@ -63,7 +63,6 @@ def lay_out(plan: Plan, place: Any) -> None:
 
 
 def _coordinate(group: zarr.Group, name: str, values: np.ndarray[Any, Any], dims: tuple[str, ...], about: dict[str, Any]) -> None:
-    """Create a coordinate, which is a single chunk, and store its values."""
     kind = WORDS if values.dtype.kind == "T" else NUMBERS
     _array(group, name, kind, about, shape=values.shape, chunks=values.shape, dimension_names=dims)[...] = values
 

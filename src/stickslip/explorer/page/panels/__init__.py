@@ -47,7 +47,6 @@ def add_pinned(view: View, kept: Answer | None, answer: Answer, units: Units) ->
 
 
 def _widen(view: View, axis: str, values: object) -> None:
-    """Let an axis hold further values."""
     (low, high), (least, most) = view.limits[axis], limits(values)
     view.limits[axis] = min(low, least), max(high, most)
 
