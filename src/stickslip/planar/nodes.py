@@ -112,21 +112,9 @@ class NodeValues:
 
 
 def node_values(problem: Problem, along: Mapping[str, Floats], shape: tuple[int, ...]) -> NodeValues:
-    """Return the numbers of the nodes of a contact.
+    """Return the numbers of the nodes of a contact: those of its problem, and values (SI) that vary `along` it, by name.
 
-    Parameters
-    ----------
-    problem
-        The problem of every node.
-    along
-        Values (SI) of the parameters that vary, by name, each with the shape `shape`.
-    shape
-        The number of nodes along each axis.
-
-    Raises
-    ------
-    InputError
-        If a name is unknown, or a node would have a number that its problem does not allow.
+    Raises InputError if a name is unknown, or a node would have a number that its problem does not allow.
     """
     names = full_names(problem, along, "PlanarSlab: along")
     if not along:
