@@ -165,8 +165,9 @@ BASIS = (
     " wavenumber is such that the pulses of 1D come at the times of the paper's. Two grids agree in every number of pulses"
     " before the echo, and in their times to 0.03 s. The paper's own constants, in 2D on faults that repeat at 1.25 L, give the"
     " same numbers before the echo. Linear slip weakening, which has one pulse in 1D, has one before the echo on faults of every"
-    " length, and further ones after it. Slip that begins at a point, and friction that varies along the fault, were not"
-    " studied."
+    " length, and further ones after it. The length that counts is that over which slip begins at once: where it travels out of"
+    " a nucleus of 0.8 h along a fault of 4 h, in 2D, every node sees one pulse until 4h/c, and the middle of a nucleus of 2 h"
+    " sees two before the echo. Friction that varies along the fault was not studied."
 )
 """What the answer rests on."""
 
