@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 from benchmarks.problems import Case, Floats
 
-
 LONG = 1e-3
 """Wall time (s) from which a run is likely to be interrupted on a busy machine; shorter ones are right in the median."""
 
