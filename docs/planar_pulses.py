@@ -53,6 +53,10 @@ def wanted() -> Iterator[tuple[str, float, Fault, float]]:
     yield one("slip", LARGE, 1.0, "disc", 7.0)
     yield one("weakening", LARGE, 1.0, "disc", 5.0)
     yield from (one("slip", 0.0, ratio, "line", 8.0, True, trips=1.0) for ratio in (1.0, 2.0))
+    yield from (one("slip", 0.3, ratio, "disc", per_zone) for ratio in (1.0, 2.0) for per_zone in (5.0, 8.0))
+    yield one("slip", 0.3, 4.0, "disc", 5.0)
+    yield from (one("slip", LARGE, ratio, "square", 5.0) for ratio in (1.0, 2.0))
+    yield from (one("slip", LARGE, ratio, "disc", per_zone) for ratio, per_zone in ((4.0, 4.0), (4.0, 5.0), (2.0, 7.0)))
 
 
 def key_of(law: str, excess: float, fault: Fault, trips: float) -> dict[str, str]:

@@ -72,7 +72,7 @@ def test_results_do_not_depend_on_what_a_workspace_held_before(name: str, monkey
         work = new_workspace()
         for table in (work.table, work.store.pieces, work.echoes, work.turns, work.events):
             table.view(np.float64)[:] = math.nan
-        work.ways[:] = 1
+        work.known[:] = 1
         return work
 
     monkeypatch.setattr(run, "new_workspace", soiled)

@@ -21,7 +21,6 @@ IN_1D = {
     "analogy": ("--map", "friction.static=0.6..0.8:3", "--map", "friction.dynamic=0.4..0.5:3", "planar-patch"),
     "compare": ("planar-patch", "fig6-slab"),
     "ensemble": ("planar-patch",),
-    "explore": ("planar-patch", "--no-browser"),
     "export": ("planar-patch", "out.txt"),
     "infer": ("planar-patch", "record.csv", "--free", "friction.static=0.6..0.8"),
     "regularise": ("planar-patch",),
@@ -30,7 +29,7 @@ IN_1D = {
 }
 """Arguments for each command that is for a contact of one place."""
 WITHOUT_SCENARIO = {"benchmark", "doctor", "fit", "new", "paper"}
-WITH_CONTACT = {"run", "check", "show"}
+WITH_CONTACT = {"run", "check", "show", "explore"}
 
 
 def test_run_says_how_large_it_is_and_what_happened(command: Command, tmp_path: Path) -> None:
@@ -79,7 +78,7 @@ def test_what_is_for_one_place_is_refused_in_one_line(command: Command, name: st
     shown = command(name, *IN_1D[name])
     assert shown.code == 2
     assert shown.err.startswith(
-        f"stickslip: {name}: planar-patch has a [contact] of many nodes (2D or 3D), which only `stickslip run`"
+        f"stickslip: {name}: planar-patch has a [contact] of many nodes, for which there are `stickslip run`"
     )
     assert shown.err.count("\n") == 1
     assert not shown.out
@@ -115,6 +114,13 @@ def test_options_that_it_does_not_have_are_refused_in_one_line(command: Command,
     assert (shown.code, shown.out) == (2, "")
     assert said in shown.err
     assert shown.err.count("\n") == 1
+
+
+@pytest.mark.parametrize("more", [("planar-plane",), ("planar-patch", "--record", "a.csv")])
+def test_the_explorer_is_for_a_line_without_a_record(command: Command, more: tuple[str, ...]) -> None:
+    shown = command("explore", *more, "--no-browser")
+    assert (shown.code, shown.err.count("\n")) == (2, 1)
+    assert "explore: a fault in 3D and a record behind a fault are not shown" in shown.err
 
 
 def test_check_refuses_figures_of_a_single_place(command: Command) -> None:

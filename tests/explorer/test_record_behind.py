@@ -15,34 +15,26 @@ from stickslip.explorer.model.solve import solve
 from stickslip.explorer.model.strip import StripRange
 from stickslip.explorer.page.explorer import Explorer
 from stickslip.explorer.page.panels import view_of
-from stickslip.foundation.errors import InputError
 from stickslip.scenarios.scenario import Scenario
 from stickslip.studies.inference.record import Record
+from tests.explorer.desk_at_once import DeskAtOnce
 from tests.studies.laboratory import RateAndStateBlock, load_point
 
 SLAB = Setting.bundled("fig6-slab")
 
 
-class HeldDesk:
+class HeldDesk(DeskAtOnce):
     """A desk that keeps what it is asked, until it is told to do it."""
 
     def __init__(self) -> None:
+        super().__init__()
         self.tasks: list[tuple[Callable[..., Any], Callable[[Any], None], Callable[[Exception], None]]] = []
 
     def ask(self, work: Callable[..., Any], done: Callable[[Any], None], failed: Callable[[Exception], None]) -> None:
         self.tasks.append((work, done, failed))
 
-    def stop(self) -> None:
-        pass
-
     def do_next(self) -> None:
-        work, done, failed = self.tasks.pop(0)
-        try:
-            result = work(lambda text: None)
-        except InputError as error:
-            failed(error)
-        else:
-            done(result)
+        super().ask(*self.tasks.pop(0))
 
 
 @pytest.fixture

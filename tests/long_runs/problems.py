@@ -17,10 +17,22 @@ from tests.engine.moving_folds import KINKED, MATCHED, hardening
 from tests.engine.moving_folds import SLAB as THIN
 from tests.problems import SLAB
 
+WITH_MANY_CHECKPOINTS = """
+import math, signal, time
+import stickslip as ss
+from stickslip.run import run_loop
+signal.signal(signal.SIGINT, signal.default_int_handler)  # which background jobs of a shell ignore
+run_loop.FIRST_BUDGET = run_loop.LARGEST_BUDGET = 200
+run_loop.SHARE = math.inf  # a checkpoint after every call of the solver, however busy the machine is
+"""
+"""What code to be killed begins with."""
+
 
 def killed(code: str, folder: Path, file: str, with_signal: signal.Signals, times: int = 1) -> subprocess.CompletedProcess[str]:
     """Run code in a process of its own, and send a signal once its checkpoint has been renewed so often."""
-    process = subprocess.Popen([sys.executable, "-c", code], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        [sys.executable, "-c", WITH_MANY_CHECKPOINTS + code], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
     seen: set[int] = set()
     for _ in range(6000):
         if (folder / file).exists():

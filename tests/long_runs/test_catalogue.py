@@ -155,12 +155,6 @@ def test_progress_counts_what_was_forgotten(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 LONG = """
-import math, signal, time
-import stickslip as ss
-from stickslip.run import run_loop
-signal.signal(signal.SIGINT, signal.default_int_handler)  # which background jobs of a shell ignore
-run_loop.FIRST_BUDGET = run_loop.LARGEST_BUDGET = 200
-run_loop.SHARE = math.inf  # a checkpoint after every call of the solver, however busy the machine is
 problem = ss.load_scenario("cycles-slab").problem
 ss.catalogue(problem, 1e9, "events.{suffix}", checkpoint_every=0.0, progress=lambda _: time.sleep(0.01))
 """

@@ -154,12 +154,6 @@ def test_a_catalogue_is_the_table_of_the_whole_run(name: str, tmp_path: Path, mo
 
 
 CREEPING = """
-import math, signal, time
-import stickslip as ss
-from stickslip.run import run_loop
-signal.signal(signal.SIGINT, signal.default_int_handler)  # which background jobs of a shell ignore
-run_loop.FIRST_BUDGET = run_loop.LARGEST_BUDGET = 200
-run_loop.SHARE = math.inf  # a checkpoint after every call of the solver, however busy the machine is
 problem = ss.load_scenario("fig5-slab-printed").problem
 ss.simulate(problem, 200 * ss.YEAR, creep_rtol=1e-5, checkpoint="run.nc", checkpoint_every=0.0, progress=lambda _: time.sleep(0.01))
 """

@@ -183,12 +183,6 @@ def test_bad_arguments_are_refused(
 
 
 LONG = """
-import math, signal, time
-import stickslip as ss
-from stickslip.run import run_loop
-signal.signal(signal.SIGINT, signal.default_int_handler)  # which background jobs of a shell ignore
-run_loop.FIRST_BUDGET = run_loop.LARGEST_BUDGET = 200
-run_loop.SHARE = math.inf  # a checkpoint after every call of the solver, however busy the machine is
 problem = ss.load_scenario("rate-and-state-block").problem
 ss.simulate(problem, 1e5 * ss.YEAR, checkpoint="run.nc", checkpoint_every=0.0, progress=lambda _: time.sleep(0.01))
 """

@@ -108,6 +108,29 @@ def test_the_volume_method_sees_the_pulses_after_the_echo_too() -> None:
     assert peaks(*np.transpose(rates)) == pytest.approx(wanted[wanted < 2.0 * TRIP], abs=0.03)
 
 
+@pytest.mark.parametrize(("nucleus", "wanted"), [(0.8, 1), (2.0, 2)])
+def test_the_length_that_counts_is_that_over_which_slip_begins_at_once(nucleus: float, wanted: int) -> None:
+    """A fault of 4 h in 2D, loaded by 1 % of the amplitude less than it bears: pulses before the echo in the middle of a nucleus.
+
+    Where slip travels out of a nucleus of 0.8 h, there is one pulse at every node until 4h/c.
+    """
+    like, length, height = pulsing(LARGE), 4e4, 1e4
+    wavenumber = like.parameters["wavenumber"].value
+    count = 2 * round(0.625 * length * 8.0 / process_zone(like))
+    contact = ss.PlanarSlab(
+        ss.Problem(like.body, like.friction, initial_slip=0.5 * np.pi / wavenumber, initial_load=149.5e6),
+        count,
+        1.25 * length,
+        along={"initial.load": lambda y: np.where(np.abs(y) < 0.5 * nucleus * height, 155e6, 149.5e6)},
+        barrier=lambda y: np.abs(y) > 0.5 * length,
+        replicas=False,
+    )
+    run = ss.simulate(contact, 2.0 * TRIP, frames=300)
+    assert pulses_of(run.slip_rate[run.times < TRIP])[count // 2] == wanted
+    if nucleus < 1.0:
+        assert set(pulses_of(run.slip_rate)[np.abs(contact.y) < 1.7 * height]) == {1}
+
+
 def test_without_the_library_the_chapter_shows_the_stored_run_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     now, origin = curve_in_2d()
     assert origin == "computed with this report"

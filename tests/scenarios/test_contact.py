@@ -281,7 +281,7 @@ REFUSING = {
 
 @pytest.mark.parametrize("what", REFUSING)
 def test_what_is_for_problems_in_1d_says_so_in_one_line(what: str) -> None:
-    with pytest.raises(ss.InputError, match=rf"^{what}: planar-patch has a \[contact\] of many nodes .* leave out \[contact\]"):
+    with pytest.raises(ss.InputError, match=rf"^{what}: planar-patch has a \[contact\] of many nodes, .* leave out \[contact\]"):
         REFUSING[what]("planar-patch")
 
 

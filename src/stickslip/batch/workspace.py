@@ -18,7 +18,7 @@ from stickslip.engine.state.layout import Counts, EchoNode, Floats, Integers, Pa
 from stickslip.engine.state.workspace import ADDRESSES, RUN_SIZE, Run, lend
 from stickslip.engine_input.prepare import NOT_VARYING
 from stickslip.trajectory.slip_events import EventTurns
-from stickslip.trajectory.turning_points import Spare, Turn
+from stickslip.trajectory.turning_points import Known, Spare, Turn
 
 FIRST_CAPACITY, LARGEST_CAPACITY = 512, 32_768
 """Numbers of pieces of history for which a lane has room at first, and at most; a member that needs more is run by itself."""
@@ -33,7 +33,7 @@ class Workspace(NamedTuple):
 
     store: Store
     echoes: Integers
-    ways: Integers  # (WIDTH, capacity): see `trajectory.turning_points.Search`
+    known: Integers  # tables of `trajectory.turning_points.Known`
     turns: Integers  # table of `trajectory.turning_points.Turn`
     events: Integers  # table of `trajectory.slip_events.EventTurns`
     spare: Floats  # a `trajectory.turning_points.Spare`
@@ -60,11 +60,14 @@ class Workspace(NamedTuple):
     def larger(self) -> Workspace:
         """Return a workspace with room for four times as many pieces, up to LARGEST_CAPACITY, which keeps the histories so far."""
         capacity = min(4 * self.capacity, LARGEST_CAPACITY)
-        store, echoes = in_lanes(at.new_store(WIDTH * capacity)), EchoNode.table(WIDTH, capacity)
-        ways = np.zeros((WIDTH, capacity), np.int64)
-        for old, new in zip((*self.store, self.echoes, self.ways), (*store, echoes, ways), strict=True):
+        store, echoes, known = (
+            in_lanes(at.new_store(WIDTH * capacity)),
+            EchoNode.table(WIDTH, capacity),
+            Known.table(WIDTH, capacity),
+        )
+        for old, new in zip((*self.store, self.echoes, self.known), (*store, echoes, known), strict=True):
             new[:, : old.shape[1]] = old
-        return self._replace(store=store, echoes=echoes, ways=ways).with_turns(TURNS_PER_PIECE * capacity)
+        return self._replace(store=store, echoes=echoes, known=known).with_turns(TURNS_PER_PIECE * capacity)
 
     def with_turns(self, room: int) -> Workspace:
         """Return a workspace with room for a number of points of the slip rate."""
@@ -100,7 +103,7 @@ def new_workspace() -> Workspace:
     return Workspace(
         in_lanes(at.new_store(WIDTH * FIRST_CAPACITY)),
         EchoNode.table(WIDTH, FIRST_CAPACITY),
-        np.zeros((WIDTH, FIRST_CAPACITY), np.int64),
+        Known.table(WIDTH, FIRST_CAPACITY),
         Turn.table(TURNS_PER_PIECE * FIRST_CAPACITY),
         EventTurns.table(TURNS_PER_PIECE * FIRST_CAPACITY),
         Spare.table(1),

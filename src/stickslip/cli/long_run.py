@@ -176,7 +176,7 @@ def solve_contact(request: Request) -> PlanarSolution:
     if request.resume is not None:
         return _resume_contact(request, request.resume)
     chosen = request.chosen
-    announce_run(chosen)
+    announce_run(chosen, streamed=request.out is not None)
     with progress_line(f"{chosen.name}:") as report:
         from stickslip.run.planar_run import simulate_planar
 
@@ -196,7 +196,7 @@ def _resume_contact(request: Request, folder: Path) -> PlanarSolution:
     check_same(request, stopped.slab.problem)
     if request.scenario is not None and Contact.of(request.chosen.planar_slab) != Contact.of(stopped.slab):
         raise InputError(f"{folder}: is a run of another problem than {request.scenario}: its [contact] differs")
-    announce_run(began if request.duration is None else replace(began, duration=request.duration))
+    announce_run(began if request.duration is None else replace(began, duration=request.duration), streamed=True)
     with progress_line(f"{folder.stem}:") as report:
         return resume_planar(folder, request.duration, progress=report)
 

@@ -10,7 +10,7 @@ import dataclasses
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import pairwise
 from types import MappingProxyType
 from typing import Any, NamedTuple, TypeVar
@@ -284,18 +284,28 @@ def quantity(
     return declare(Quantity(unit, meaning, above=above, at_least=at_least, infinite=infinite, word=word, whole=whole), default)
 
 
-def fields_of(kind: type) -> dict[str, tuple[Field, Any]]:
+def fields_of(kind: type) -> Mapping[str, tuple[Field, Any]]:
     """Return the declaration and the default of each declared field of a class, by name.
 
     Fields without a default (MISSING) come first and choices come last.
     """
+    return _fields_of(kind)
+
+
+@cache
+def _fields_of(kind: type) -> dict[str, tuple[Field, Any]]:
     found = [(f.name, f.metadata["declared"], f.default) for f in dataclasses.fields(kind) if "declared" in f.metadata]
     found.sort(key=lambda one: (one[2] is not dataclasses.MISSING, isinstance(one[1], Choice)))
     return {name: (declared, default) for name, declared, default in found}
 
 
-def quantities_of(kind: type) -> dict[str, Quantity]:
+def quantities_of(kind: type) -> Mapping[str, Quantity]:
     """Return the declared quantities of a class by field name, in the order of its fields."""
+    return _quantities_of(kind)
+
+
+@cache
+def _quantities_of(kind: type) -> dict[str, Quantity]:
     found = {f.name: f.metadata.get("declared") for f in dataclasses.fields(kind)}
     return {name: declared for name, declared in found.items() if isinstance(declared, Quantity)}
 

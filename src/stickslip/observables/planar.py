@@ -10,22 +10,10 @@ Integers = NDArray[np.int64]
 
 
 def rupture_times(times: Floats, rate: Floats, threshold: float) -> Floats:
-    """Return the time (s) at which each node first slips faster than a threshold.
+    """Return the time (s) at which each node first slips faster than a threshold (m/s); the slip rate (m/s) has time first.
 
-    Parameters
-    ----------
-    times
-        Times of the frames (s).
-    rate
-        Slip rate (m/s), time first.
-    threshold
-        Slip rate (m/s).
-
-    Returns
-    -------
-    array
-        Time of the first frame above the threshold, or between the frames where |rate| passes it if it is linear in time there;
-        NaN where that never happens.
+    It is that of the first frame above the threshold, or between the frames where |rate| passes it if it is linear in time there;
+    NaN where that never happens.
     """
     fast = np.abs(rate) > threshold
     first = fast.argmax(axis=0)
@@ -39,20 +27,10 @@ def rupture_times(times: Floats, rate: Floats, threshold: float) -> Floats:
 
 
 def pulses(rate: Floats, threshold: float) -> Integers:
-    """Return the number of slip pulses that have passed each node.
+    """Return the number of slip pulses that have passed each node; the slip rate (m/s) has time first.
 
-    Parameters
-    ----------
-    rate
-        Slip rate (m/s), time first.
-    threshold
-        Slip rate (m/s) below which a maximum is no pulse.
-
-    Returns
-    -------
-    array
-        Number of maxima of |rate| above the threshold, separated by minima below half the lower one: as `pulses` of slip events.
-        A maximum counts from the moment at which the rate has fallen to half of it, and at the end if it is still the largest.
+    They are maxima of |rate| above the threshold (m/s), separated by minima below half the lower one: as `pulses` of slip events. A
+    maximum counts from the moment at which the rate has fallen to half of it, and at the end if it is still the largest.
     """
     size = np.abs(rate)
     count, high, low = np.zeros(size.shape[1:], np.int64), size[0].copy(), size[0].copy()

@@ -13,25 +13,11 @@ Floats = NDArray[np.float64]
 
 
 def locked_load(problem: Problem, steps: int, round_trips: int) -> Floats:
-    """Return the load of a contact that never slips, minus the initial load.
+    """Return the load (Pa) of a contact that never slips, minus the initial load, of shape (round_trips, steps + 1).
 
-    Parameters
-    ----------
-    problem
-        The problem in 1D.
-    steps
-        Number of time steps in a two-way travel time.
-    round_trips
-        Number of round trips.
+    It is that at the beginning and at the end of each step. Where the load jumps at the end of a round trip, that row has the value
+    before the jump and the next row the value after it.
 
-    Returns
-    -------
-    array
-        Load (Pa) of shape (round_trips, steps + 1): at the beginning and at the end of each step. Where the load jumps at the end
-        of a round trip, that row has the value before the jump and the next row the value after it.
-
-    Notes
-    -----
     Source: paper eqs (12)-(13), with v = 0, and a driver of finite impedance: beta(t) = -r beta(t - R) + what enters at the driver.
     """
     body = problem.body

@@ -33,23 +33,9 @@ class Weights(NamedTuple):
 
 
 def echo_weights(frequencies: Floats, steps_per_round_trip: int, two_way_time: float, steps: int) -> Weights:
-    """Return the weights of the integral for the last `steps` steps before t - R.
+    """Return the weights (no unit) of the integral for the last `steps` steps before t - R, for w = |k| c (rad/s) and R (s).
 
-    Parameters
-    ----------
-    frequencies
-        w = |k| c (rad/s), one-dimensional.
-    steps_per_round_trip
-        Number of time steps in R.
-    two_way_time
-        R (s).
-    steps
-        Number of steps.
-
-    Returns
-    -------
-    Weights
-        Without unit, each of shape (steps, len(frequencies)).
+    Each has the shape (steps, len(frequencies)).
     """
     step = two_way_time / steps_per_round_trip
     passed = np.arange(steps + 1)
@@ -76,19 +62,8 @@ def echo_weights(frequencies: Floats, steps_per_round_trip: int, two_way_time: f
 def kernel_spectra(weights: Weights, steps_per_round_trip: int, unique: NDArray[np.intp]) -> NDArray[np.complex128]:
     """Return Fourier transforms of the weights, in segments of two round trips of which each overlaps the next by one.
 
-    Parameters
-    ----------
-    weights
-        Weights for a whole number of round trips.
-    steps_per_round_trip
-        Number of time steps in R.
-    unique
-        For each wavenumber of the contact the column of the weights that belongs to it, of any shape.
-
-    Returns
-    -------
-    array
-        Shape (round trips, 2, steps_per_round_trip + 1, *unique.shape): late and early.
+    The weights are those of a whole number of round trips. `unique` has for each wavenumber of the contact the column of the
+    weights that belongs to it. The result has the shape (round trips, 2, steps_per_round_trip + 1, *unique.shape): late and early.
     """
     n = steps_per_round_trip
     both = np.stack(weights)
@@ -119,23 +94,10 @@ def silent(round_trips: int, steps: int, shape: tuple[int, ...]) -> Echo:
 
 
 def echo_of(sent: Any, echo: Echo, spectra: Any, reflection: float) -> tuple[Any, Echo]:
-    """Return the echo P of the coming round trip, and what has been sent until then.
+    """Return the echo P (Pa) of the coming round trip, with the shape of `sent`, and what has been sent until then.
 
-    Parameters
-    ----------
-    sent
-        W of the round trip that ends, at its steps + 1 moments (Pa): (steps + 1, 2, wavenumbers).
-    echo
-        What was sent before.
-    spectra
-        See `kernel_spectra`.
-    reflection
-        r.
-
-    Returns
-    -------
-    tuple
-        P (Pa), with the shape of `sent`, and the next `Echo`.
+    `sent` is W of the round trip that ends, at its steps + 1 moments (Pa): (steps + 1, 2, wavenumbers); `echo` is what was sent
+    before, `reflection` is r.
     """
     put = jax.lax.dynamic_update_index_in_dim
     steps, count = sent.shape[0] - 1, echo.count

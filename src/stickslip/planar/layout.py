@@ -25,14 +25,7 @@ AXIS = "contact"
 class Layout:
     """The contact on a number of devices: all that the process sees, as far as their number divides the nodes along y.
 
-    Parameters
-    ----------
-    shape
-        Number of nodes along y, and along z for a plane.
-    spacing
-        Distance between nodes along y, and along z (m).
-    devices
-        Number of devices; None for as many as possible.
+    `shape` has the number of nodes, and `spacing` their distance (m), along y, and along z for a plane.
     """
 
     shape: tuple[int, ...]

@@ -70,18 +70,9 @@ class Recurrence(NamedTuple):
 
 
 def recurrence(frequencies: Floats, impedance: float, step: float, duration: float) -> Recurrence:
-    """Return the recurrence of the memory for slip that is linear in time in each step.
+    """Return the recurrence of the memory for slip that is linear in time in each `step` (s), for w = |k| c (rad/s) of any shape.
 
-    Parameters
-    ----------
-    frequencies
-        w = |k| c of each wavenumber (rad/s), of any shape.
-    impedance
-        Z (Pa s/m).
-    step
-        Length of a time step (s).
-    duration
-        Time (s) for which the memory is used.
+    The memory is used for a `duration` (s).
     """
     poles, weights = exponentials(float(frequencies.max(initial=0.0)) * duration)
     rates = poles[(slice(None),) + (None,) * frequencies.ndim] * (frequencies * step)

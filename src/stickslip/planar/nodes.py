@@ -112,21 +112,9 @@ class NodeValues:
 
 
 def node_values(problem: Problem, along: Mapping[str, Floats], shape: tuple[int, ...]) -> NodeValues:
-    """Return the numbers of the nodes of a contact.
+    """Return the numbers of the nodes of a contact: those of its problem, and values (SI) that vary `along` it, by name.
 
-    Parameters
-    ----------
-    problem
-        The problem of every node.
-    along
-        Values (SI) of the parameters that vary, by name, each with the shape `shape`.
-    shape
-        The number of nodes along each axis.
-
-    Raises
-    ------
-    InputError
-        If a name is unknown, or a node would have a number that its problem does not allow.
+    Raises InputError if a name is unknown, or a node would have a number that its problem does not allow.
     """
     names = full_names(problem, along, "PlanarSlab: along")
     if not along:
@@ -143,7 +131,7 @@ def node_values(problem: Problem, along: Mapping[str, Floats], shape: tuple[int,
         found = np.asarray(values, float)[..., np.ravel(which)]
         return found.reshape(*found.shape[:-1], *shape)
 
-    pieces = range(len(laws[0].pieces))
+    numbers = [[law.numbers(i) for law in laws] for i in range(len(laws[0].pieces))]
     return NodeValues(
         problems=tuple(problems),
         normal=spread([one.normal for one in problems]),
@@ -154,7 +142,7 @@ def node_values(problem: Problem, along: Mapping[str, Floats], shape: tuple[int,
         states=spread(np.reshape([one.states for one in problems], (len(problems), -1)).T),
         static_excess=spread([law.static_excess for law in laws]),
         knots=spread(np.reshape([law.knots for law in laws], (len(laws), -1)).T),
-        numbers=tuple({name: spread([law.numbers(i)[name] for law in laws]) for name in laws[0].parameters()} for i in pieces),
+        numbers=tuple({name: spread([row[name] for row in rows]) for name in laws[0].parameters()} for rows in numbers),
     )
 
 

@@ -86,18 +86,9 @@ class Constants(NamedTuple):
 
 @dataclass(eq=False)
 class PlanarSolver:
-    """A run of a planar slab in progress.
+    """A run of a planar slab in progress, which may go up to a duration (s), on a number of devices (None for all).
 
-    Parameters
-    ----------
-    slab
-        What is solved.
-    duration
-        Time (s) up to which the run may go.
-    steps_per_round_trip
-        Number of time steps in a two-way travel time, or None for the smallest that keeps to the slab's `courant`.
-    devices
-        Number of devices over which the contact is spread, or None for all.
+    The number of time steps in a two-way travel time is the smallest that keeps to the slab's `courant` if it is None.
     """
 
     slab: PlanarSlab
@@ -335,16 +326,10 @@ class PlanarSolver:
         return waves | {f"motion_{name}": one for name, one in self.now()._asdict().items()}
 
     def restore(self, state: Mapping[str, Floats], trip: int, step: int, sent: Callable[[int], Floats]) -> None:
-        """Go to an earlier state of a run: of this number of devices, or of another.
+        """Go to an earlier state of a run, of this number of devices or of another: what `state` returned.
 
-        Parameters
-        ----------
-        state
-            What `state` returned.
-        trip, step
-            Number of whole round trips then, and of steps since.
-        sent
-            W at the steps of a round trip, the present one up to the present step, as `sent` returned it.
+        It was after `trip` whole round trips and `step` steps. `sent` is W at the steps of a round trip, the present one up to the
+        present step, as `sent` returned it.
         """
         more = self.layout.modes[-1] - self.layout.half
 

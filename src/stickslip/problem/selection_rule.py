@@ -31,21 +31,10 @@ _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,59}")
 
 @dataclass(frozen=True)
 class SelectionTable:
-    """The loads at which a contact leaves stick, and between which it stays on each branch.
+    """The loads at which a contact leaves stick, and between which it stays on each branch: excesses over the static strength (Pa).
 
-    Parameters
-    ----------
-    stick_to
-        Largest excess of the load over the static strength (Pa) at which a stuck contact stays stuck.
-    keep_from
-        Smallest excess (Pa) at which each branch is kept; one number for each branch, slowest first.
-    keep_to
-        Largest excess (Pa) at which each branch is kept. A branch that is never taken has keep_from > keep_to.
-
-    Notes
-    -----
-    A stuck contact stays stuck while excess <= stick_to; otherwise it takes the first branch i that is ever taken with
-    excess <= keep_to[i].
+    A stuck contact stays stuck while excess <= stick_to; otherwise it takes the first branch i, slowest first, that is ever taken
+    with excess <= keep_to[i]. A branch that is never taken has keep_from > keep_to.
 
     A contact on branch i stays there while keep_from[i] <= excess <= keep_to[i]. Above that range it takes the first branch j > i
     that is ever taken with excess <= keep_to[j]. Below that range it takes the last branch j < i that is ever taken with

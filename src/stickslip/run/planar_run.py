@@ -102,34 +102,13 @@ def simulate_planar(
     checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
     scenario: Scenario | None = None,
 ) -> PlanarSolution:
-    """Run a planar slab from t = 0.
+    """Run a planar slab from t = 0: see `stickslip.simulate`. The run ends with the step that reaches the duration.
 
-    Parameters
-    ----------
-    slab
-        What is solved.
-    duration
-        End of the run (s, or a text with a unit). The run ends with the step that reaches it.
-    frames
-        Number of frames that are kept of each two-way travel time, as far as there are as many steps; 100 by default.
-    progress
-        A function that is called with a `PlanarReport` before the start and after each frame.
-    checkpoint
-        Folder (NAME.zarr) to which the frames are written while the run continues, and in which `resume_planar` continues it.
-    checkpoint_every
-        Interval between two checkpoints, s of wall clock.
-    scenario
-        The scenario of the slab, if it has one, which goes into the folder.
-
-    Returns
-    -------
-    PlanarSolution
-        The frames. Ctrl-C ends the run with those that are done.
-
-    Raises
-    ------
-    InputError
-        If an argument is out of range, or the library JAX is missing (`pip install 'stickslip[planar]'`).
+    It keeps so many `frames` of each two-way travel time, as far as there are as many steps; 100 by default. `progress` is called
+    with a `PlanarReport` before the start and after each frame. Frames are written to the folder `checkpoint` (NAME.zarr) while the
+    run continues, with the scenario of the slab, if it has one, and `resume_planar` continues it. Ctrl-C ends the run with the
+    frames that are done. Raises InputError if an argument is out of range, or the library JAX is missing (`pip install
+    'stickslip[planar]'`).
     """
     if duration is None:
         raise InputError("simulate: a PlanarSlab needs a duration, in s or with a unit")

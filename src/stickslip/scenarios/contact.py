@@ -39,18 +39,9 @@ class Points(NamedTuple):
 class Patch:
     """Part of a contact with values of its own: an interval of y, on a plane a box or an ellipse; or all the rest.
 
-    Attributes
-    ----------
-    values
-        Names of what varies, and its values (SI) on the patch: true or false for `LOCKED`.
-    y, z
-        Intervals (m); None for everywhere.
-    shape
-        "box" or "ellipse".
-    taper
-        Distance (m) beyond the box, or by which both half axes of the ellipse grow, in which the share of the patch falls to 0.
-    outside
-        True if the patch is everything but what the intervals describe.
+    `values` are those that vary (SI; true or false for `LOCKED`) by their names; y and z are intervals (m), None for everywhere.
+    Over the distance `taper` (m) beyond the box, or by which both half axes of the ellipse grow, the share of the patch falls to 0.
+    With `outside` the patch is everything but what the intervals describe.
     """
 
     values: tuple[tuple[str, float], ...]
@@ -83,18 +74,10 @@ Profile = Points | tuple[Any, ...]
 
 @dataclass(frozen=True)
 class Contact:
-    """A grid along the contact of a slab, and what varies along it.
+    """A grid along the contact of a slab, with the fields of `stickslip.PlanarSlab`, and what varies along it.
 
-    Attributes
-    ----------
-    nodes, length, width, width_nodes, replicas, courant
-        As in `stickslip.PlanarSlab`.
-    frames
-        Number of frames that a run keeps of each two-way travel time; None for the default of `stickslip.simulate`.
-    along
-        What varies, by name: a profile for each.
-    patches
-        Patches, later ones on top of earlier ones and of `along`.
+    A run keeps so many `frames` of each two-way travel time; None stands for the default of `stickslip.simulate`. `along` has a
+    profile for the name of what varies. Later `patches` are on top of earlier ones and of `along`.
     """
 
     nodes: int = declare(*_DECLARED["nodes"])

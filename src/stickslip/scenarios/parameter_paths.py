@@ -101,6 +101,15 @@ def with_values(scenario: Scenario, values: Mapping[str, Any], where: str) -> Sc
     return replace(scenario_of(document, Source(where)), name=scenario.name, title=title, description="")
 
 
+def values_in(scenario: Scenario) -> Iterator[tuple[ParameterPath, Any]]:
+    """Yield every parameter that has a value in the file of a scenario, with the value (SI)."""
+    document = tomllib.loads(scenario.to_toml())
+    for one in parameter_paths(scenario):
+        owner, key = _place_of(one.name, document)
+        if isinstance(key, int) or key in owner:
+            yield one, owner[key]
+
+
 def parameter_paths(scenario: Scenario) -> Iterator[ParameterPath]:
     """Yield every parameter, in the order of the scenario file."""
     problem = scenario.problem

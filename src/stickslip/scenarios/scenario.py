@@ -49,30 +49,12 @@ _LONG_KEY = re.compile(rf"""(?<![\w-])(?:(?:[\w-]+|"[^"\n]*"|'[^'\n]*')[ \t]*\.[
 
 @dataclass(frozen=True)
 class Scenario:
-    """A problem, and how long and how accurately to run it.
+    """A problem, and how long (s, or a text with a unit) and how accurately to run it.
 
-    Two scenarios are equal if they differ in `name` and `source` only.
-
-    Attributes
-    ----------
-    problem : Problem
-        The body, its friction law, its loading and its initial state.
-    duration : float
-        Latest end of the run, s; a text with a unit is converted.
-    rtol : float
-        Relative tolerance.
-    title, description : str
-        Texts for users.
-    max_events : int or None
-        Number of slip events after which the run stops.
-    creep_rtol, shortest_event : float or None
-        Options of `stickslip.simulate` (shortest_event in s); None stands for automatic.
-    contact : Contact or None
-        The grid along the contact, and what varies along it; None for a contact all of which slips alike. `planar_slab` is the two.
-    name : str
-        Name for messages and figures.
-    source : str
-        The TOML text from which the scenario was read.
+    Two scenarios are equal if they differ in `name` and `source`, the TOML text from which it was read, only. After `max_events`
+    slip events the run stops. `creep_rtol` and `shortest_event` (s) are options of `stickslip.simulate`; None stands for automatic.
+    `contact` is the grid along the contact, and what varies along it; None for a contact all of which slips alike. `planar_slab` is
+    the two.
     """
 
     problem: Problem
@@ -128,24 +110,11 @@ class Scenario:
         )
 
     def with_values(self, values: Mapping[str, Any]) -> Scenario:
-        """Return a scenario in which some parameters have other values.
+        """Return a scenario in which some parameters have other values, such as {"friction.alpha": 2.0, "body.thickness": "5 km"}.
 
-        Parameters
-        ----------
-        values : mapping of str to float or str
-            Values by the names of parameters, such as {"friction.alpha": 2.0, "body.thickness": "5 km"}: numbers in SI, texts with
-            a unit, or words. Names are as in `stickslip.sweep`.
-
-        Returns
-        -------
-        Scenario
-            A new scenario; this one stays as it is. Its title says what was changed; the description, which may no longer be true,
-            is left out. An initial load replaces an initial excess, and an excess a load.
-
-        Raises
-        ------
-        InputError
-            If there is no such parameter, or if it cannot have the value.
+        Values are numbers in SI, texts with a unit, or words; names are as in `stickslip.sweep`. The title says what was changed;
+        the description, which may no longer be true, is left out. An initial load replaces an initial excess, and an excess a load.
+        Raises InputError if there is no such parameter, or if it cannot have the value.
         """
         from stickslip.scenarios.parameter_paths import with_values
 
@@ -185,23 +154,10 @@ def doubts(problem: Problem) -> list[str]:
 
 
 def load_scenario(path_or_name: str | Path) -> Scenario:
-    """Read a scenario file, or a bundled scenario by its name.
+    """Read a scenario file (TOML), or a bundled scenario by its name.
 
-    Parameters
-    ----------
-    path_or_name : str or Path
-        Path of a TOML file, or the name of a bundled scenario.
-
-    Returns
-    -------
-    Scenario
-        The scenario.
-
-    Raises
-    ------
-    InputError
-        If the scenario cannot be read or is not valid. The message is one line with the file, the place in it, what was found and
-        what is allowed.
+    Raises InputError if the scenario cannot be read or is not valid. The message is one line with the file, the place in it, what
+    was found and what is allowed.
     """
     if isinstance(path_or_name, str) and path_or_name in library.names():
         return read_scenario(library.text(path_or_name), path_or_name)

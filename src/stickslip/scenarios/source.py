@@ -19,8 +19,8 @@ def all_slips_alike(who: str, scenario: Scenario) -> Scenario:
     """Return a scenario if its contact is a single place, as it is for all but runs. Raises InputError, which begins with `who`."""
     if scenario.contact is not None:
         raise InputError(
-            f"{who}: {scenario.name} has a [contact] of many nodes (2D or 3D), which only `stickslip run`, `check` and `show` and"
-            " ss.simulate take: leave out [contact] for the problem in 1D that each node has"
+            f"{who}: {scenario.name} has a [contact] of many nodes, for which there are `stickslip run`, `check`, `show` and"
+            " (in 2D) `explore`, and ss.simulate: leave out [contact] for the problem in 1D that each node has"
         )
     return scenario
 
@@ -57,28 +57,13 @@ def read_duration_and_problem(
 def uniqueness(problem: Problem | Scenario | str | Path, law_slip: float | str | WithUnit | None = None) -> Uniqueness:
     """Determine whether the load fixes the slip rate of a contact, and otherwise what the selection rule does.
 
-    Parameters
-    ----------
-    problem : Problem, Scenario, str or Path
-        Problem to examine, its scenario, the name of a bundled scenario, or a scenario file. For a block, a contact with mass and a
-        law with a state, the answer is "regular".
-    law_slip : float or str, optional
-        Slip (m, or a text with a unit) as the law counts it; the initial slip by default.
+    The problem may also be given by its scenario, the name of a bundled scenario, or a scenario file. For a block, a contact with
+    mass and a law with a state, the answer is "regular". `law_slip` (m, or a text with a unit) is the slip as the law counts it;
+    the initial slip by default. The contact is regular if g(v) = Z v + S mu(v) increases, otherwise irregular (Campillo et al.
+    1996, section 3).
 
-    Returns
-    -------
-    Uniqueness
-        Regime, critical value, folds, jumps of the rule, and what is proven of the folds.
-
-    Raises
-    ------
-    InputError
-        If friction falls at least as fast as Z v rises even at the fastest rate of the search, or if the table of the selection
-        rule cannot be followed; for a scenario also as `stickslip.load_scenario` does.
-
-    Notes
-    -----
-    Campillo et al. 1996, section 3: the contact is regular if g(v) = Z v + S mu(v) increases, otherwise irregular.
+    Raises InputError if friction falls at least as fast as Z v rises even at the fastest rate of the search, or if the table of the
+    selection rule cannot be followed; for a scenario also as `stickslip.load_scenario` does.
     """
     found = read_source("uniqueness", problem)
     return uniqueness_of(found if isinstance(found, Problem) else found.problem, law_slip)

@@ -41,20 +41,9 @@ FEWEST_STEPS, QUICK = 100.0, 2e8
 class PlanarSolution:
     """The motion of the contact of a planar slab. Arrays have time first, then the axes of the contact.
 
-    Parameters
-    ----------
-    slab
-        What was solved.
-    times
-        Times of the frames (s).
-    fields
-        The arrays by the names in `FIELDS`, each read when it is first used.
-    steps_per_round_trip
-        Number of time steps in a two-way travel time.
-    status
-        What ended the run.
-    residual
-        Largest |Z v + tau - load| at any node and time step, as a share of the load: how well the contact equation is solved.
+    `times` are those of the frames (s), `fields` the arrays by the names in `FIELDS`, each read when it is first used. `status`
+    says what ended the run, and `residual` how well the contact equation is solved: the largest |Z v + tau - load| at any node and
+    time step, as a share of the load.
     """
 
     slab: PlanarSlab

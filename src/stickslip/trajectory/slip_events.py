@@ -14,7 +14,7 @@ from stickslip.engine.state.layout import Floats, Integers
 from stickslip.engine.state.workspace import pieces_in
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.history import History, Positions
-from stickslip.trajectory.turning_points import FULL, Spare, Turn, search_history, turns_in
+from stickslip.trajectory.turning_points import FULL, Known, Spare, Turn, search_history, turns_in
 
 NOT_YET = -1
 """Marks an event whose aftermath is not known within the history."""
@@ -83,10 +83,10 @@ def find_aftermath(table: Integers, piece: Integers, xi: Floats, by: Integers) -
 
 def walk(history: History, threshold: float, begin: int = 0) -> Integers:
     """Return a table of `Turn`: the points of |slip rate| (m/s) from piece `begin` on; events begin and end at rest if they can."""
-    ways, spare, room = np.zeros(len(history), np.int64), Spare.table(1), 8 * (len(history) - begin) + 4 * MOST_CROSSINGS
+    known, spare, room = Known.table(len(history)), Spare.table(1), 8 * (len(history) - begin) + 4 * MOST_CROSSINGS
     while True:
         turns = Turn.table(room)
-        found = search_history(history.store.pieces, (turns, ways, spare), begin, threshold, history.problem.friction.sticks)
+        found = search_history(history.store.pieces, (turns, known, spare), begin, threshold, history.problem.friction.sticks)
         if found != FULL:
             return turns[:found]
         room *= 2

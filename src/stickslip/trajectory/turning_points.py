@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from stickslip.engine.codegen.compiler import inlined, kernel, pointer_to
+from stickslip.engine.codegen.compiler import inlined, kernel
 from stickslip.engine.codegen.records import Record, floats_inside, record_at
 from stickslip.engine.series.polynomial import MOST_CROSSINGS, bound_below, crossings, evaluate, total
 from stickslip.engine.state.layout import TERMS, Floats, HistoryPiece, Integers
@@ -32,6 +32,13 @@ class Turn(Record):
     kind: int  # +1 if the rate rises above the threshold there, -1 if it falls to it, 0 above it
 
 
+class Known(Record):
+    """Hold what is known of a piece of the history, because lanes of a batch have made it."""
+
+    way: int  # +1 or -1 if |slip rate| is proven to rise or to fall in it, from the piece before on; else 0
+    grown: float  # m: slip in it, or NaN
+
+
 class Spare(Record):
     """Hold room for the polynomials of one piece."""
 
@@ -41,6 +48,8 @@ class Spare(Record):
     found: Floats = floats_inside(MOST_CROSSINGS)  # places in the piece
 
 
+known_in = record_at(Known)
+"""Function for compiled code that returns what is known of the first piece, in memory or at an address."""
 turns_in = record_at(Turn)
 """Function for compiled code that returns the first of the points in memory."""
 spare_in = record_at(Spare)
@@ -51,7 +60,7 @@ class Search(NamedTuple):
     """Say where points are looked for, and where they go, as pointers."""
 
     pieces: HistoryPiece  # the history (`Store.pieces`)
-    ways: Integers  # for each piece +1 or -1 if |slip rate| is proven to rise or fall in it, from the piece before on; else 0
+    known: Known  # what is known of each piece
     turns: Turn  # the points
     room: int  # number of points for which there is room
     spare: Spare
@@ -59,9 +68,9 @@ class Search(NamedTuple):
 
 @kernel
 def search_history(table: Integers, memory: tuple[Integers, Integers, Floats], begin: int, threshold: float, sticks: bool) -> int:
-    """Do what `find_turns` does for the table of a history; `memory` holds the arrays of a `Search`: points, ways and room."""
-    turns, ways, spare = memory
-    search = Search(pieces_in(table), pointer_to(ways), turns_in(turns), len(turns), spare_in(spare))
+    """Do what `find_turns` does for the table of a history; `memory` holds the arrays of a `Search`: points, known and room."""
+    turns, known, spare = memory
+    search = Search(pieces_in(table), known_in(known), turns_in(turns), len(turns), spare_in(spare))
     return find_turns(search, (begin, len(table)), threshold, sticks)
 
 
@@ -90,8 +99,8 @@ def turning_points(search: Search, span: tuple[int, int], threshold: float) -> i
     for n in range(span[0], span[1]):
         if found + 3 * MOST_CROSSINGS > search.room:
             return FULL
-        way = search.ways[n]
-        if way < 0 and (n == last or search.ways[n + 1] == 0 or abs(pieces[n + 1].rate[0]) <= 2.0 * threshold):
+        way = search.known[n].way
+        if way < 0 and (n == last or search.known[n + 1].way == 0 or abs(pieces[n + 1].rate[0]) <= 2.0 * threshold):
             way = 0  # it may fall to the threshold
         if above and way != 0:
             if heading == -way:

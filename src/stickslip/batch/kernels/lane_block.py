@@ -50,6 +50,7 @@ class Block(Record):
     limit: float  # length of the way to the target, in guesses
     last_step: float  # s: length that the error allows the step to have
     grown: float  # m: slip in the step
+    in_piece: float  # m: the same with its sign, from what the step leaves in the history
     rate_end: float  # m/s: slip rate at its end
     at_end: Floats = floats_inside(2)  # m, m/s: slip of the law and slip rate there
     to: float  # 1: place xi at which it ends

@@ -58,7 +58,7 @@ from stickslip.engine.series.polynomial import NONE, bound_below, moment, multip
 from stickslip.engine.series.step_size import FAR_FROM_GUESS, length_at, usable_length
 from stickslip.engine.state.layout import TERMS, HistoryPiece, Integers, State
 from stickslip.engine.state.workspace import RUN_SIZE, Run, borrow
-from stickslip.trajectory.turning_points import SAME
+from stickslip.trajectory.turning_points import SAME, Known
 
 PARTS = 3
 """Number of functions of a formula that work on lanes."""
@@ -91,7 +91,8 @@ class Side(NamedTuple):
     waits: Integers  # what each lane waits for
     jets: Integers  # addresses of the formulas' series, radii and values, in turn for each piece of the law
     block: int  # address of the numbers in lanes
-    ways: int  # address of what is known of the slip rate in each piece (`turning_points.Search`), or 0 if nobody wants it
+    known: Known  # what is known of each piece of the first lane's history
+    inspects: bool  # True if pieces are to be inspected for that
 
 
 class Step(NamedTuple):
@@ -128,7 +129,7 @@ def step_under(formula: Integers, side: Side) -> None:
 
     `formula` points to the addresses of its series, of its radii and of its values.
     """
-    table, waits, jets, block, ways = side
+    table, waits, jets, block, known, inspects = side
     rows, lane_0, taking, fresh, degree = block_in_all_lanes(block), block_in_one_lane(block), 0, 0, 1
     targets, moves, is_block = integers(block + 8 * WIDTH * TARGETS), False, False
     for lane in range(WIDTH):
@@ -152,14 +153,16 @@ def step_under(formula: Integers, side: Side) -> None:
         if is_simple(run_in(table, lane), lane_0[lane]):
             kept |= 1 << lane
     keep(rows, kept)
-    rising, falling = ways_of(rows) if ways != 0 else (0, 0)
+    rising, falling = inspect(rows) if inspects else (0, 0)
     while taking != 0:
         lane, taking = first_of(taking), taking & (taking - 1)
         run, own = run_in(table, lane), lane_0[lane]
         if kept >> lane & 1:
-            if ways != 0:  # where a piece of load begins the slip rate may jump
-                way = 0 if fresh >> lane & 1 else (rising >> lane & 1) - (falling >> lane & 1)
-                integers(ways)[lane * run.capacity + run.counts.length] = way
+            if inspects:
+                piece = known[lane * run.capacity + run.counts.length]
+                piece.grown, piece.way = own.in_piece, (rising >> lane & 1) - (falling >> lane & 1)
+                if fresh >> lane & 1:
+                    piece.way = 0  # where a piece of load begins the slip rate may jump
             waits[lane] = append(run, own, fresh >> lane & 1 == 1)
         else:
             run.counts.disc, run.counts.breach, waits[lane] = int(own.disc), 0, Waits.ALONE
@@ -356,8 +359,13 @@ def keep(rows: Block, kept: int) -> None:
 
 
 @inlined
-def ways_of(rows: Block) -> tuple[int, int]:
-    """Return the lanes in which the slip rate is proven to rise throughout the step, and those in which it is proven to fall."""
+def inspect(rows: Block) -> tuple[int, int]:
+    """Return the lanes in which the slip rate is proven to rise throughout the step, and those in which it is proven to fall.
+
+    Calculates the slip in the step from what it leaves in the history, as `reduction.grown` does.
+    """
+    row = rows.row
+    rows.in_piece = chosen(row.bend == 0.0, row.speed * moment(row.rate, 1), math.nan)
     rate, slope, rises = rows.rate, rows.slope, rows.rate[1] > 0.0
     way = chosen(rises, 1.0, -1.0)
     for n in range(TERMS - 1):

@@ -18,7 +18,7 @@ from stickslip.engine.state.layout import Floats, HistoryPiece, Integers, Stop
 from stickslip.engine.state.workspace import Run, pieces_in
 from stickslip.trajectory.history import OFFSET_ROUNDING
 from stickslip.trajectory.slip_events import EventTurns, rises_over
-from stickslip.trajectory.turning_points import Turn, starts_from_rest
+from stickslip.trajectory.turning_points import Known, Turn, starts_from_rest
 
 
 class Reduced(Record):
@@ -60,6 +60,7 @@ class Found(NamedTuple):
     turns: Turn
     events: EventTurns
     number: int
+    known: Known  # what is known of each piece
 
 
 # ---- places in a history ----------------------------------------------------------------------------------------------------
@@ -124,12 +125,12 @@ def slipped(history: HistoryPiece, length: int, round_trip_time: float, end: flo
 
 
 @kernel
-def slipped_between(history: HistoryPiece, piece: int, xi: float, later: int, later_xi: float) -> float:
-    """Return the slip (m) from one place to a later one, as in `History.slipped_within`."""
+def slipped_between(history: HistoryPiece, known: Known, place: tuple[int, float], later: tuple[int, float]) -> float:
+    """Return the slip (m) from one place (piece, xi) to a later one, as in `History.slipped_within`."""
     whole = 0.0
-    for n in range(piece, later):
-        whole += grown(history, n, 1.0)
-    return whole + (grown(history, later, later_xi) - grown(history, piece, xi))
+    for n in range(place[0], later[0]):
+        whole += grown(history, n, 1.0) if math.isnan(known[n].grown) else known[n].grown
+    return whole + (grown(history, later[0], later[1]) - grown(history, place[0], place[1]))
 
 
 # ---- friction ---------------------------------------------------------------------------------------------------------------
@@ -235,7 +236,7 @@ def friction_after(run: Run, piece: int, xi: float) -> float:
 @kernel
 def fold_events(run: Run, found: Found, out: Reduced) -> None:
     """Write the numbers that describe all slip events, and their recurrence, into `out`; columns without a value become NaN."""
-    (turns, events, count), history, round_trip_time = found, run.history, run.params.round_trip_time
+    (turns, events, count, _), history, round_trip_time = found, run.history, run.params.round_trip_time
     out.events, out.pulses = count, 0.0
     for column in range(FIRST_OF_EVENTS, LAST_OF_EVENTS + 1):
         numbers_of(out)[column] = math.nan
@@ -258,7 +259,7 @@ def fold_recurrence(history: HistoryPiece, round_trip_time: float, found: Found,
 
     The latter is the sample standard deviation over the mean; it stays NaN for two events, which have one recurrence time.
     """
-    turns, events, count = found
+    turns, events, count, _ = found
     mean = spread = 0.0
     for n in range(1, count):
         a, b = turns[events[n - 1].begin], turns[events[n].begin]
@@ -284,7 +285,7 @@ def fold_first(run: Run, found: Found, excess: float, out: Reduced) -> None:
     if end.kind == -1:
         out.first_end = time_at(history, round_trip_time, last, last_xi)
         out.first_duration = time_between(history, round_trip_time, (piece, xi), (last, last_xi))
-    out.first_slip = abs(slipped_between(history, piece, xi, last, last_xi))
+    out.first_slip = abs(slipped_between(history, found.known, (piece, xi), (last, last_xi)))
     out.first_traction_drop = friction_before(run, piece, xi, excess) - friction_after(run, last, last_xi)
 
 

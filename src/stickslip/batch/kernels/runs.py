@@ -8,6 +8,7 @@ arrays are counted only when a run has ended.
 
 from __future__ import annotations
 
+import math
 from enum import IntEnum
 from functools import cache
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -25,7 +26,7 @@ from stickslip.engine.state.layout import Counts, Floats, Integers, Params, Stat
 from stickslip.engine.state.workspace import ADDRESSES, RUN_SIZE, Run, borrow
 from stickslip.trajectory.slip_events import EventTurns, events_in, group_turns
 from stickslip.trajectory.status import BAD_PARAMETERS
-from stickslip.trajectory.turning_points import FULL, Search, Spare, Turn, find_turns, spare_in, turns_in
+from stickslip.trajectory.turning_points import FULL, Known, Search, Spare, Turn, find_turns, known_in, spare_in, turns_in
 
 if TYPE_CHECKING:
     from stickslip.batch.setups import Setups
@@ -61,7 +62,7 @@ class Lane(NamedTuple):
     waits: Integers  # what the lane waits for, see `kernels.lanes`
     member: Integers  # index of the member in the lane
     code: Integers  # what the engine returned last
-    ways: Integers  # what is known of the slip rate in each piece, see `turning_points.Search`
+    known: Known  # what is known of each piece
 
 
 class Group(NamedTuple):
@@ -154,8 +155,8 @@ def run_group(group: Group, base: Integers, stride: Integers, work: Workspace) -
     PAUSED) that it should be run alone. Called again, it continues from there.
     """
     first, members = first_lane(work, base, stride), members_of(group, work)
-    ways, lanes = work.ways.ctypes.data if group.wants_events else 0, len(work.stage)  # no constant: no copy for each
-    side = Side(first.table, first.waits, integers(group.setups.jets.ctypes.data), work.block[0], ways)
+    lanes = len(work.stage)  # no constant: no copy for each
+    side = Side(first.table, first.waits, integers(group.setups.jets.ctypes.data), work.block[0], first.known, group.wants_events)
     for n in range(lanes):
         if nth(first, n).stage[0] != Stage.FREE:
             point_at(nth(first, n), members, first.member[n])
@@ -217,7 +218,7 @@ def first_lane(work: Workspace, base: Integers, stride: Integers) -> Lane:
     flags = integers(work.stage.ctypes.data), integers(work.waits.ctypes.data)
     member, code = integers(work.member.ctypes.data), integers(work.code.ctypes.data)
     table, origin = integers(work.table.ctypes.data), integers(base.ctypes.data)
-    return Lane(table, origin, integers(stride.ctypes.data), flags[0], flags[1], member, code, integers(work.ways.ctypes.data))
+    return Lane(table, origin, integers(stride.ctypes.data), flags[0], flags[1], member, code, known_in(work.known))
 
 
 @kernel
@@ -225,8 +226,8 @@ def nth(lane: Lane, n: int) -> Lane:
     """Return the lane n places after the given one."""
     table, base = ahead(lane.table, n * RUN_SIZE), ahead(lane.base, n * ADDRESSES)
     stage, waits, member, code = ahead(lane.stage, n), ahead(lane.waits, n), ahead(lane.member, n), ahead(lane.code, n)
-    ways = ahead(lane.ways, n * borrow(lane.table).capacity)
-    return Lane(table, base, lane.stride, stage, waits, member, code, ways)
+    known = lane.known[n * borrow(lane.table).capacity]
+    return Lane(table, base, lane.stride, stage, waits, member, code, known)
 
 
 @kernel
@@ -268,7 +269,7 @@ def advance_member(members: Members, lane: Lane) -> None:
     while code == Stop.NONE and members.stop[0] == 0:
         code = run_until_at(members.engine, table, last_trip, last_phase, BUDGET)
     for k in range(first, borrow(lane.table).counts.length):
-        lane.ways[k] = 0  # nothing is known
+        lane.known[k].way, lane.known[k].grown = 0, math.nan
     lane.code[0] = code
     lane.waits[0] = Waits.FRESH if code == Stop.SLIPS else Waits.NONE
     asks = code == Stop.SLIPS or code == Stop.FULL or code == Stop.PAUSED or code == Stop.NEED_PART
@@ -312,11 +313,11 @@ def fold_events_of(lane: Lane, members: Members) -> bool:
     run, n = borrow(lane.table), lane.member[0]
     if run.counts.length == 0:
         return True
-    search, out = Search(run.history, lane.ways, members.turns, members.room, members.spare), reduced_of(lane, members)
+    search, out = Search(run.history, lane.known, members.turns, members.room, members.spare), reduced_of(lane, members)
     turns = find_turns(search, (0, run.counts.length), members.threshold[n], run.counts.sticks == 1)
     if turns == FULL:
         return False
-    found = Found(members.turns, members.events, group_turns(members.turns, turns, members.events))
+    found = Found(members.turns, members.events, group_turns(members.turns, turns, members.events), lane.known)
     fold_events(run, found, out)
     if found.number > 0:
         fold_first(run, found, members.excess[n], out)

@@ -73,17 +73,26 @@ def explore(
     if static is not None:
         _write(static, scenario, changes, record)
         return
-    loaded = load(scenario or FIRST, "explore", changes)
+    loaded = load(scenario or FIRST, "explore", changes, contact=True)
+    if loaded.contact is not None and (loaded.planar_slab.is_plane or record is not None):
+        raise InputError("explore: a fault in 3D and a record behind a fault are not shown: `stickslip run --figure` draws the run")
     from stickslip.explorer.model.setting import Setting
     from stickslip.explorer.server.serve import Endpoint
     from stickslip.explorer.server.start import start
 
+    setting: Setting | FaultSetting
+    if loaded.contact is None:
+        setting = Setting.of(loaded)
+    else:
+        from stickslip.explorer.page.fault import FaultSetting
+
+        setting = FaultSetting(loaded)
     for name in allow_origin or ():
         if not _HOST.fullmatch(name):
             raise InputError(f"explore: --allow-origin must be NAME or NAME:PORT, got {name[:60]!a}")
     endpoint = Endpoint(address=address, port=port, origins=tuple(allow_origin or ()), sessions=sessions)
     behind = None if record is None else _behind(record, begin, end, sensor, loaded.problem)
-    start(Setting.of(loaded), endpoint, browser=not no_browser, say=typer.echo, behind=behind)
+    start(setting, endpoint, browser=not no_browser, say=typer.echo, behind=behind)
 
 
 def _behind(record: Path, begin: str | None, end: str | None, sensor: str, problem: Problem) -> Backdrop:

@@ -162,7 +162,7 @@ class StoredContact(Stored):
         """Print the summary on standard output."""
         from stickslip.cli.output.contact import announce_run, show_run
 
-        announce_run(self.own)
+        announce_run(self.own, streamed=True)
         show_run(self.solution)
         self.print_origin()
 

@@ -15,19 +15,20 @@ if TYPE_CHECKING:
     from stickslip.solution.planar import PlanarSolution
 
 
-def size_of(scenario: Scenario) -> str:
-    """Return the memory that a run of a scenario needs, in words."""
+def size_of(scenario: Scenario, *, streamed: bool = False) -> str:
+    """Return the memory that a run of a scenario needs, in words; less of it if its frames are `streamed` to a folder."""
     from stickslip.run.planar_run import FRAMES, memory_of
 
     assert scenario.contact is not None
     solved, _ = scenario.planar_slab.alone_for(scenario.duration)
     beyond = "" if solved.shape == scenario.planar_slab.shape else f", with {_shape(solved.shape)} nodes against replicas"
-    return f"{file_size(memory_of(solved, scenario.duration, scenario.contact.frames or FRAMES))}{beyond}"
+    frames = 0 if streamed else scenario.contact.frames or FRAMES
+    return f"{file_size(memory_of(solved, scenario.duration, frames))}{beyond}"
 
 
-def announce_run(scenario: Scenario) -> None:
-    """Print on standard output what is about to be run."""
-    slab, size = scenario.planar_slab, size_of(scenario)
+def announce_run(scenario: Scenario, *, streamed: bool) -> None:
+    """Print on standard output what is about to be run, with its frames `streamed` to a folder or kept in memory."""
+    slab, size = scenario.planar_slab, size_of(scenario, streamed=streamed)
     step = slab.body.two_way_time / slab.steps_per_round_trip
     apart = " and ".join(brief(one, "m") for one in slab.spacing)
     steps = f"{math.ceil(scenario.duration / step - 1e-9)} steps up to {brief(scenario.duration, 's')}"

@@ -182,16 +182,6 @@ def integers(typingctx: Any, address: Any) -> Any:
     return INTEGERS(types.int64), _cast
 
 
-@intrinsic
-def pointer_to(typingctx: Any, array: Any) -> Any:
-    """Return a pointer to the first number of an array; the caller keeps the array alive."""
-
-    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        return context.make_array(signature.args[0])(context, builder, args[0]).data
-
-    return types.CPointer(array.dtype)(array), codegen
-
-
 def _cast(context: Any, builder: Any, signature: Any, args: Any) -> Any:
     """Write the conversion of an address to a pointer."""
     return builder.inttoptr(args[0], context.get_value_type(signature.return_type))
@@ -245,10 +235,6 @@ if UNCOMPILED:
     def float_of(bits: int) -> np.float64:
         """Return the float with the given 64 bits."""
         return np.int64(bits).view(np.float64)
-
-    def pointer_to(array: Any) -> Pointer:
-        """Return the pointer to the first number of an array."""
-        return Pointer(array)
 
     def ahead(pointer: Pointer, n: int) -> Pointer:
         """Return the pointer to the number n places after the one that `pointer` points to."""

@@ -220,7 +220,7 @@ class _Tables:
             return Control(path, label, entry.meaning, "text", value or "", declared=entry)
         if isinstance(entry, Series):
             empty = "" if default is MISSING else "none"
-            unit, size = _unit_of(next((one for one in value or () if isinstance(one, str)), None), 0.0, entry.item.unit)
+            unit, size = unit_of(next((one for one in value or () if isinstance(one, str)), None), 0.0, entry.item.unit)
             points = None if value is None else tuple(entry.item.check(label, "it", one) for one in value)
             return Control(path, label, describe(entry), "points", points, unit, size, empty=empty, declared=entry)
         assert isinstance(entry, Quantity)
@@ -231,7 +231,7 @@ class _Tables:
         if given == STEADY:
             given = self.problem.given_states[STATE_NAMES.index(path.partition(".")[2])]
         value = default if given is None and default is not MISSING else None if given is None else entry.check(label, "it", given)
-        unit, size = _unit_of(given, value, entry.unit)
+        unit, size = unit_of(given, value, entry.unit)
         empty = "" if default is MISSING or path in ("initial.load", "initial.excess") else self._empty(path, default, entry)
         kind: ControlKind = "whole" if entry.whole else "number"
         slider = self._slider(path, entry, value, default)
@@ -248,7 +248,7 @@ class _Tables:
         """Return the control of a number of the user's formula, whose name and unit users choose."""
         given = self.setting.value(path)
         one = self.problem.parameters[path]
-        unit, size = _unit_of(given, one.value, one.unit)
+        unit, size = unit_of(given, one.value, one.unit)
         slider = self._slider(path, one.declared, one.value, MISSING)
         return Control(path, name, "number of the formula", "number", one.value, unit, size, slider, declared=one.declared)
 
@@ -263,7 +263,7 @@ class _Tables:
         return None if found is None else found.holding(value)
 
 
-def _unit_of(given: Any, value: float | None, si: str) -> tuple[str, float]:
+def unit_of(given: Any, value: float | None, si: str) -> tuple[str, float]:
     """Return the unit in which a number is shown, and its size in SI: that in which it was given, or a readable one."""
     if si == "1":
         return "", 1.0

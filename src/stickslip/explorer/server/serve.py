@@ -107,11 +107,11 @@ class ExplorerServer:
     """A server that is bound to its port, and answers once its event loop runs.
 
     `make` makes the explorer of a new page, given its desk and that on which files are written; `build` builds the page of an
-    explorer.
+    explorer. With `warms` the compiler is warmed before the first answer needs it.
     """
 
-    def __init__(self, endpoint: Endpoint, make: MakeExplorer, build: Build) -> None:
-        self.endpoint, self._make, self._build = endpoint, make, build
+    def __init__(self, endpoint: Endpoint, make: MakeExplorer, build: Build, *, warms: bool = True) -> None:
+        self.endpoint, self._make, self._build, self._warms = endpoint, make, build, warms
         self.warming = Warming()
         self.sessions = Sessions(endpoint.sessions)
         names = frozenset((*LOOPBACK, endpoint.address)) if endpoint.is_loopback else None
@@ -138,7 +138,8 @@ class ExplorerServer:
         """Begin to answer, and to warm the compiler."""
         self._bokeh.start()
         self._looking.start()
-        self.warming.begin()
+        if self._warms:
+            self.warming.begin()
 
     def run(self) -> None:
         """Answer until Ctrl-C or the signal SIGTERM."""

@@ -27,7 +27,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.scenarios.scenario import Scenario
 
 if TYPE_CHECKING:
-    pass
+    from stickslip.explorer.page.fault import FaultSetting
 
 WARNING = (
     "warning: listening on {address}: whoever reaches this computer over a network, and has the address with the token, can use "
@@ -44,15 +44,28 @@ LEADS_ON = """<!DOCTYPE html>
 
 
 def start(
-    setting: Setting, endpoint: Endpoint, *, browser: bool, say: Callable[[str], object], behind: Backdrop | None = None
+    setting: Setting | FaultSetting,
+    endpoint: Endpoint,
+    *,
+    browser: bool,
+    say: Callable[[str], object],
+    behind: Backdrop | None = None,
 ) -> None:
     """Serve the explorer until Ctrl-C, with a setting that is shown first; `say` shows a line to the user.
 
     Raises InputError if the port is taken.
     """
-    from stickslip.explorer.page.page import build
+    if isinstance(setting, Setting):
+        from stickslip.explorer.page.page import build
 
-    server = ExplorerServer(endpoint, partial(explorer_of, setting, behind=behind), build)
+        server = ExplorerServer(endpoint, partial(explorer_of, setting, behind=behind), build)
+    else:
+        from stickslip.explorer.page.fault import build_fault, solve_fault
+
+        of_fault: Any = (setting, solve_fault)
+        server = ExplorerServer(
+            endpoint, lambda desk, files: Explorer(of_fault[0], desk, of_fault[1], files), build_fault, warms=False
+        )
     if not endpoint.is_loopback:
         say(WARNING.format(address=endpoint.address))
     say(f"explorer: {server.url}")

@@ -33,23 +33,10 @@ def cost(slab: PlanarSlab, duration: float, steps: int) -> float:
 
 
 def energies(slab: PlanarSlab, times: Floats, *, slip: Floats, slip_rate: Floats, heat: Floats, steps: int) -> dict[str, Floats]:
-    """Return the energies of a run at equal steps of time: J, or J per metre of z for a line.
+    """Return the energies of a run at equal steps of time (s), by "time" and NAMES: J, or J per metre of z for a line.
 
-    Parameters
-    ----------
-    slab
-        What was solved.
-    times
-        Times of the frames (s).
-    slip, slip_rate, heat
-        Slip (m), slip rate (m/s) and work of friction (J/m^2) at the frames, time first.
-    steps
-        Even number of time steps in a two-way travel time in which waves inside the slab are followed.
-
-    Returns
-    -------
-    dict
-        "time" (s), and the energies by NAMES.
+    Slip (m), slip rate (m/s) and work of friction (J/m^2) are those of the frames, time first. In an even number of `steps` in a
+    two-way travel time waves inside the slab are followed.
     """
     large, here = slab.alone_for(float(times[-1]))
     mean = slip_rate.reshape(len(times), -1).sum(axis=1) * (slab.node_area / math.prod(large.extent))

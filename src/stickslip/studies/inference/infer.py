@@ -188,7 +188,7 @@ def infer(
     wishes.check()
     source = read_source("infer", problem)
     given = source if isinstance(source, Problem) else source.problem
-    records = _records(record, _time(begin, "begin"), _time(end, "end"))
+    records = _records(record, begin=begin, end=end)
     observed = wishes.observe if by == "samples" else None
     whole, notes = parts_of(given, records, observed, wishes.start, wishes.sensor)
     if wishes.parts == "rests":
@@ -222,14 +222,11 @@ def _resampled(parts: list[Part], notes: list[str]) -> tuple[list[Part], list[st
     return found, notes
 
 
-def _time(value: Any, name: str) -> float | None:
-    return None if value is None else TIME.check("infer", name, value)
-
-
-def _records(source: Any, begin: float | None, end: float | None) -> list[Record]:
+def _records(source: Any, **times: Any) -> list[Record]:
     sources = source if isinstance(source, list | tuple) else [source]
     if not sources:
         raise InputError("infer: record must be at least one record, got none")
+    begin, end = (None if value is None else TIME.check("infer", name, value) for name, value in times.items())
     return [Record.read(one, begin, end) for one in sources]
 
 

@@ -3,7 +3,7 @@
 The store is laid out before the first member is run. After that, only chunks are added, each file under a temporary name that is
 changed when the file is complete. The status of a chunk is written after its results: a chunk without a status is not done, and is
 run again. Nothing in the store depends on when, in which order or by which process chunks were done. Each file has a checksum (see
-`.checksums`). The checksums of a chunk are written after its status, and a chunk without them is not done either.
+below). The checksums of a chunk are written after its status, and a chunk without them is not done either.
 
 A store has a folder `.checksums` with one list for the files that exist from the start (all metadata and coordinates), and one
 list for each chunk of members that is done. A list has one line for each file, with its SHA-256 and its name. The SHA-256 is `-`
