@@ -20,3 +20,10 @@ def patch(**grid: Any) -> ss.PlanarSlab:
 
     problem = ss.Problem(SLAB, LAW, initial_load=60e6)
     return ss.PlanarSlab(problem, along={"load": load}, barrier=lambda y, *_: np.abs(y) > 9e3, **grid)
+
+
+def state_patch(distance: float = 1e-2) -> ss.PlanarSlab:
+    """A contact of 20 km under rate-and-state friction with a nucleus of 8 km."""
+    law = ss.friction.RateAndState(reference=0.6, a=0.01, b=0.015, distance=distance)
+    problem = ss.Problem(SLAB, law, pull_rate=1e-3, initial_load=63e6, initial_state=1.0)
+    return ss.PlanarSlab(problem, nodes=32, length=2e4, along={"load": lambda y: np.where(np.abs(y) < 4e3, 70e6, 60e6)})

@@ -148,21 +148,24 @@ def test_any_law_on_a_uniform_contact_is_the_slab_in_1d(name: str) -> None:
 
 @pytest.mark.parametrize(("kh", "rate"), [(0.0, 1.287839), (0.5, 1.186815), (1.0, 0.811499)])
 def test_a_disturbance_of_a_wavenumber_grows_as_the_closed_form_says(kh: float, rate: float) -> None:
-    """q coth(q h) = alpha_w, lambda = c sqrt(q^2 - k^2), to 1 % of the rate while echoes of the start fade."""
+    """q coth(q h) = alpha_w, lambda = c sqrt(q^2 - k^2), to 1e-4 of the rate, which the time steps leave: half as long, 2e-5.
+
+    Echoes of the start fade first. Slip begins small, so that by then friction still weakens.
+    """
     length = 2.0 * math.pi * THICKNESS / (kh or 1.0)
-    problem = ss.Problem(SLAB, weakening_law(), initial_excess=1.0)
+    problem = ss.Problem(SLAB, weakening_law(), initial_excess=1e-3)
     mode = int(kh > 0.0)
     contact = ss.PlanarSlab(
-        problem, nodes=32, length=length, along={"excess": lambda y: 1.0 + 0.5 * mode * np.cos(2.0 * np.pi * y / length)}
+        problem, nodes=8, length=length, along={"excess": lambda y: 1e-3 + 5e-4 * mode * np.cos(2.0 * np.pi * y / length)}
     )
-    run = PlanarSolver(contact, 30.0, steps_per_round_trip=200)
+    run = PlanarSolver(contact, 60.0, steps_per_round_trip=200)
     times, size = [], []
     while run.advance(20):
         times.append(run.time)
         size.append(abs(np.fft.rfft(run.now().slip)[mode]))
-    late = np.array(times) > 15.0
+    late = np.array(times) > 45.0
     grows = np.polyfit(np.array(times)[late], np.log(np.array(size)[late]), 1)[0]
-    assert grows * THICKNESS / SPEED == pytest.approx(rate, rel=1e-2, abs=0.0)
+    assert grows * THICKNESS / SPEED == pytest.approx(rate, rel=1e-4, abs=0.0)
 
 
 def test_a_disturbance_on_a_half_space_grows_as_the_closed_form_says() -> None:
@@ -179,6 +182,19 @@ def test_a_disturbance_on_a_half_space_grows_as_the_closed_form_says() -> None:
     late = np.array(times) > 15.0
     grows = np.polyfit(np.array(times)[late], np.log(np.array(size)[late]), 1)[0]
     assert grows == pytest.approx(SPEED * math.sqrt(WEAKENING**2 - wavenumber**2), rel=1e-4, abs=0.0)
+
+
+@pytest.mark.parametrize(("phase", "stable"), [(2.5, True), (3.2, False)])
+def test_steps_are_stable_up_to_a_phase_of_the_shortest_wave(phase: float, stable: bool) -> None:
+    """The largest w dt is 2.5: there a disturbance from node to node fades, and at 3.2 it grows. Friction is constant."""
+    problem = ss.Problem(SLAB, ss.friction.FromFunction(lambda u, v: 0.6 + 0.0 * u), initial_load=61e6)
+    wavy = {"initial.load": 61e6 + 1e3 * (-1.0) ** np.arange(16)}
+    steps = math.ceil(math.pi / 500.0 * SPEED * SLAB.two_way_time / phase)
+    run = PlanarSolver(ss.PlanarSlab(problem, nodes=16, length=8e3, along=wavy), SLAB.two_way_time, steps_per_round_trip=steps)
+    run.advance(steps - 1)
+    size = np.abs(np.fft.rfft(run.now().rate)[-1]) / 16.0
+    begun = 1e3 / SLAB.impedance
+    assert size < 1e-3 * begun if stable else size > begun
 
 
 def test_a_plane_on_which_nothing_varies_with_z_is_a_line() -> None:

@@ -16,12 +16,12 @@ import numpy as np
 import pytest
 import xarray
 import zarr
-from tests.planar.patches import patch
+from tests.planar.patches import patch, state_patch
 
 import stickslip as ss
 from stickslip.foundation import netcdf_file, zarr_folder
 from stickslip.foundation.atomic_write import held
-from stickslip.io import planar_store
+from stickslip.io import planar_layout, planar_store
 from stickslip.run import run_loop
 from stickslip.run.planar_run import PlanarReport
 
@@ -65,43 +65,49 @@ def store(stopped: Path, tmp_path: Path) -> Path:
     return Path(shutil.copytree(stopped, tmp_path / "run.zarr"))
 
 
-@pytest.mark.parametrize("stops", [(3, 7), (10, 1)], ids=str)
+@pytest.mark.parametrize("stops", [(3, 7), pytest.param((10, 1), marks=pytest.mark.slow)], ids=str)
 def test_a_run_that_was_stopped_twice_is_the_run_that_was_not(tmp_path: Path, whole: Any, stops: tuple[int, int]) -> None:
     """After frame 10 a round trip ends."""
     path = tmp_path / "run.zarr"
     stopped = ss.simulate(patch(**GRID), DURATION, frames=10, checkpoint=path, progress=stop_after(stops[0]))
     assert stopped.status.name == "interrupted"
     assert len(stopped.times) == stops[0] + 1
-    ss.resume(path, progress=stop_after(stops[1]), checkpoint_every=0.0)
+    ctrl_c = iter([False] * stops[1] + [True])
+    again: Any = ss.resume(
+        path, progress=lambda _: next(ctrl_c, False) and signal.raise_signal(signal.SIGINT), checkpoint_every=0.0
+    )
+    assert len(again.times) == sum(stops) + 1
     check_same(ss.resume(path), whole)
     check_same(ss.open_solution(path), whole)
 
 
-@pytest.mark.parametrize("plane", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["line", "plane"])
-def test_a_run_with_states_that_is_alone_continues_bit_for_bit(tmp_path: Path, plane: bool) -> None:
-    slab = ss.ElasticSlab(2800.0, 3500.0, 1e3, 1e8)
-    law = ss.friction.RateAndState(reference=0.6, a=0.01, b=0.015, distance=1e-2)
-    problem = ss.Problem(slab, law, pull_rate=1e-3, initial_load=63e6, initial_state=1.2)
-    along = {"initial.slip": lambda y, *_: 1e-3 * (y < 0.0), "normal_stress": lambda y, *z: 1e8 + 1e6 * (sum(z, y) > 0.0)}
-    grid: dict[str, Any] = {"width": 1e3, "width_nodes": 12} if plane else {}
-    contact = ss.PlanarSlab(
-        problem, nodes=8, length=2e3, replicas=False, along=along, barrier=lambda y, *_: np.abs(y) > 900.0, **grid
-    )
-    whole = ss.simulate(contact, 0.8, frames=10)
-    ss.simulate(contact, 0.8, frames=10, checkpoint=tmp_path / "run.zarr", progress=stop_after(7))
-    check_same(ss.resume(tmp_path / "run.zarr"), whole)
+def test_a_run_with_states_continues_bit_for_bit(tmp_path: Path) -> None:
+    path = tmp_path / "run.zarr"
+    ss.simulate(state_patch(), 3.0, frames=16, checkpoint=path, progress=stop_after(5))
+    check_same(ss.resume(path), ss.simulate(state_patch(), 3.0, frames=16))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("plane", [False, True], ids=["line", "plane"])
+def test_a_run_that_is_alone_continues_bit_for_bit(tmp_path: Path, plane: bool) -> None:
+    path = tmp_path / "run.zarr"
+    contact = patch(**GRID, **({"width": 1e4, "width_nodes": 16} if plane else {}), replicas=False)
+    ss.simulate(contact, 7.0, frames=10, checkpoint=path, progress=stop_after(7))
+    check_same(ss.resume(path), ss.simulate(contact, 7.0, frames=10))
     with pytest.raises(ss.InputError, match="without replicas"):
-        ss.resume(tmp_path / "run.zarr", 0.9)
+        ss.resume(path, 7.5)
 
 
 class Killed(BaseException):
     """In place of a signal that no process survives."""
 
 
-@pytest.mark.parametrize("place", ["sync", "write_variables", "consolidate", "_status"])
+@pytest.mark.parametrize(
+    "place", ["sync", "write_variables", *(pytest.param(one, marks=pytest.mark.slow) for one in ("consolidate", "in_attributes"))]
+)
 def test_a_run_that_died_while_it_wrote_continues_bit_for_bit(tmp_path: Path, whole: Any, monkeypatch: Any, place: str) -> None:
     """Half-way through the arrays, before the state, between the state and what readers see, and before the status."""
-    path, calls = tmp_path / "run.zarr", iter(range({"sync": 21, "_status": 4}.get(place, 3)))
+    path, calls = tmp_path / "run.zarr", iter(range({"sync": 21, "in_attributes": 3}.get(place, 3)))
     module: Any = {"write_variables": netcdf_file, "consolidate": zarr_folder}.get(place, planar_store)
     real = getattr(module, place)
 
@@ -124,7 +130,7 @@ def test_a_run_that_died_while_it_wrote_continues_bit_for_bit(tmp_path: Path, wh
 RUN = """
 import os, signal
 import stickslip as ss
-from tests.planar.patches import patch
+from tests.planar.patches import patch, state_patch
 
 def report(about):
     if about.time > 9.0:
@@ -221,13 +227,12 @@ def test_no_damaged_folder_is_read(store: Path, whole: Any, flips: int) -> None:
             damaged = bytearray((copy / file).read_bytes())
             damaged[int(rng.integers(len(damaged)))] ^= 1 << int(rng.integers(8))
             (copy / file).write_bytes(damaged)
-            told += [
-                try_to(lambda: check_fields(ss.open_solution(copy), whole)),
-                try_to(lambda: check_fields(ss.resume(copy), whole)),
-            ]
+            told.append(try_to(lambda: check_fields(ss.open_solution(copy), whole)))
+            if flips > 1:
+                told.append(try_to(lambda: check_fields(ss.resume(copy), whole)))
             shutil.rmtree(copy)
     lines = [line for line in told if line]
-    assert len(lines) > 15 * flips
+    assert len(lines) > 8 * flips
     assert not any("\n" in line or len(line) > 600 for line in lines)
 
 
@@ -249,7 +254,7 @@ def edited(path: Path, **changes: Any) -> None:
     """Change attributes of a folder, and give it a checksum that fits: what only somebody who means it does."""
     group = zarr.open_group(path, mode="r+")
     group.attrs.update(changes)
-    group.attrs.update({"digest": planar_store._digest(group.attrs)})
+    group.attrs.update({"digest": planar_layout.digest_of(group.attrs)})
     state = netcdf_file.read(path / "state.nc")
     netcdf_file.write(state.assign_attrs(digest=group.attrs["digest"]), path / "state.nc")
 

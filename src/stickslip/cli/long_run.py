@@ -186,7 +186,7 @@ def solve_contact(request: Request) -> PlanarSolution:
 
 
 def _resume_contact(request: Request, folder: Path) -> PlanarSolution:
-    from stickslip.io.planar_store import open_planar, scenario_in
+    from stickslip.io.planar_layout import open_planar, scenario_in
     from stickslip.run.planar_run import resume_planar
     from stickslip.scenarios.contact import Contact
 

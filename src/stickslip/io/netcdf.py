@@ -281,7 +281,7 @@ def open_solution(path: str | Path) -> Solution | PlanarSolution:
     """
     file = as_path("open_solution: path", path)
     if file.is_dir():
-        from stickslip.io.planar_store import open_planar  # with zarr, which takes half a second to load
+        from stickslip.io.planar_layout import open_planar  # with zarr, which takes half a second to load
 
         return open_planar(file)
     return read_solution(file)

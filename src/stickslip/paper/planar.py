@@ -150,9 +150,9 @@ def peaks(times: Floats, rate: Floats) -> Floats:
 # ---- the chapter of the report -------------------------------------------------------------------------------------------------
 
 ANSWER = (
-    "Yes, on a fault that is long enough: before the echo of the driver returns at 2h/c, the middle of a fault of length L sees"
-    " the pulses that the slab has in 1D until waves from the ends of the fault arrive, at L/(2c), and soon after it rests: in"
-    " 2D and, on discs and squares, in 3D alike.",
+    "Yes, where slip begins at once on a fault that is long enough: before the echo of the driver returns at 2h/c, the middle"
+    " of a fault of length L sees the pulses that the slab has in 1D until waves from the ends of the fault arrive, at L/(2c),"
+    " and soon after it rests: in 2D and, on discs and squares, in 3D alike.",
     "Two pulses need a fault longer than 1.6 h, and three pulses one longer than 3.1 h: 16 and 31 km with the paper's numbers.",
     "The arrest at 2h/c is final only in 1D: after the echo the middle of every fault with L = 2 h or more slipped again, and"
     " that of some shorter ones, in one to four pulses until 4h/c, in 2D and in 3D.",

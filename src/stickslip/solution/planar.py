@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief
 from stickslip.observables.energy.balance import LONG_NAMES
-from stickslip.observables.energy.planar import NAMES, cost, energies
 from stickslip.observables.planar import pulses, rupture_speed, rupture_times
 from stickslip.planar.slab import ENOUGH_NODES, PlanarSlab
 from stickslip.solution.accessors import PlanarPlots
@@ -145,6 +144,8 @@ class PlanarSolution:
 
     @cached_property
     def _energies(self) -> dict[str, Floats]:
+        from stickslip.observables.energy.planar import energies  # with scipy, which no other run needs
+
         fields = {"slip": self.slip, "slip_rate": self.slip_rate, "heat": self.heat}
         return energies(self.slab, self.times, **fields, steps=self._steps_of_energies)
 
@@ -167,6 +168,8 @@ class PlanarSolution:
         """
         import xarray
 
+        from stickslip.observables.energy.planar import NAMES
+
         times = self.times if t is None else np.atleast_1d(np.asarray(t, float))
         if len(self.times) < 2:
             raise InputError("energy: the run ended at its first frame")
@@ -180,6 +183,8 @@ class PlanarSolution:
     @property
     def _energy_sentence(self) -> str:
         """How well energy is balanced, or nothing if it would take long to know."""
+        from stickslip.observables.energy.planar import cost
+
         if len(self.times) < 3 or cost(self.slab, self.times[-1], self._steps_of_energies) > QUICK:
             return ""
         found = self._energies

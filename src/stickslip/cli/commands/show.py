@@ -235,7 +235,7 @@ def stored(path: Path, quantity: str | None = None) -> Stored:
     if quantity is not None and (is_planar or not path.is_dir()):
         raise InputError(f"show: --quantity chooses what is drawn of a sweep, and {path} is not a sweep")
     if is_planar:
-        from stickslip.io.planar_store import open_planar, opened, scenario_in
+        from stickslip.io.planar_layout import open_planar, opened, scenario_in
 
         return StoredContact(path, opened(path).attrs, open_planar(path), scenario_in(path))
     if path.is_dir():
@@ -256,7 +256,7 @@ def stored(path: Path, quantity: str | None = None) -> Stored:
 
 
 def _is_planar(path: Path) -> bool:
-    from stickslip.io.planar_store import is_planar
+    from stickslip.io.planar_layout import is_planar
 
     return is_planar(path)
 
