@@ -13,9 +13,9 @@ import pytest
 
 import stickslip as ss
 from tests.adversarial.cases import Case
+from tests.adversarial.checks import CLAIM, errors, off_the_law
 from tests.adversarial.features import Feature, Recipe
 from tests.adversarial.truth import truth_of
-from tests.adversarial.walk import CLAIM, errors, off_the_law
 
 F = ss.friction
 SLAB = ss.ElasticSlab(2800, 3500, 1e4, 1e8)

@@ -8,8 +8,8 @@ import pytest
 
 import stickslip as ss
 from tests.adversarial.cases import TEMPLATES, Case, draw
+from tests.adversarial.checks import CLAIM, decided_truth, errors
 from tests.adversarial.truth import truth_of
-from tests.adversarial.walk import CLAIM, decided_truth, errors
 
 SAMPLE = (
     "bump(u)",

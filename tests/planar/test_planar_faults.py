@@ -148,3 +148,9 @@ def test_the_memory_that_is_stated_is_needed(grid: dict[str, Any], round_trips: 
     given = [sys.executable, "-c", MEASURE, repr(grid), str(round_trips)]
     found = subprocess.run(given, capture_output=True, text=True, check=True)
     assert 1.0 / 1.5 < float(found.stdout) < 1.5
+
+
+@pytest.mark.slow
+def test_friction_that_falls_to_zero_is_not_negative() -> None:
+    """Rounding takes it to -2e-37 Pa."""
+    assert ss.simulate(contact(ss.friction.ExponentialSlipWeakening(0.7, 0.0, 0.4), {}), 12.0, frames=16).status.ok

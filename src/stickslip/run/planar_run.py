@@ -32,6 +32,8 @@ FRAMES = 100
 """Frames in a two-way travel time, by default."""
 RESIDUAL = 1e-6
 """Largest miss of the contact equation, as a share of the load, in a run that counts as a solution; rounding gives 1e-15."""
+ROUNDING = 1e-12
+"""Share of the normal stress by which rounding may carry friction below zero."""
 UNHEARD_OF = 1e3
 """Slip rate of an unstable run over the one that the largest load would drive against radiation alone; fronts come to some ten."""
 COMPILER = 6e7
@@ -210,7 +212,8 @@ class Follow:
         largest = np.abs(run.slab.values.load).max() + np.abs(run.loading).max()
         if np.abs(motion.rate).max() > UNHEARD_OF * largest / run.body.impedance:
             return UNSTABLE
-        return Stop.NEGATIVE_FRICTION if (np.sign(motion.traction) * np.sign(motion.rate) < 0.0).any() else None
+        driven = motion.traction * np.sign(motion.rate) < -ROUNDING * run.slab.values.normal
+        return Stop.NEGATIVE_FRICTION if driven.any() else None
 
     def to_end(self, kept: Frames, run: PlanarSolver, here: tuple[slice, ...]) -> PlanarSolution:
         """Run to the end, or to a Ctrl-C, and return the frames."""
