@@ -13,7 +13,6 @@ from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import cumulative_trapezoid
 
 from stickslip.planar.driving import locked_load
 from stickslip.planar.slab import PlanarSlab
@@ -58,6 +57,8 @@ def energies(slab: PlanarSlab, times: Floats, *, slip: Floats, slip_rate: Floats
 
 def _mean_motion(slab: PlanarSlab, rate: Floats, at: Floats, steps: int) -> dict[str, Floats]:
     """Return the energies of wavenumber 0: of a slab in 1D that slips at the mean rate (m/s) of the contact."""
+    from scipy.integrate import cumulative_trapezoid  # takes a tenth of a second to load, which other runs do not need
+
     body, problem, half, last = slab.body, slab.problem, steps // 2, len(at) - 1
     impedance, step, area = body.impedance, body.two_way_time / steps, math.prod(slab.extent)
     load = float(slab.values.load.mean())
