@@ -106,7 +106,7 @@ def test_a_wrong_echo_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_wrong_law_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Slip rates under friction that is 1 % higher than the law says do not fulfil the contact equation, which every step checks."""
+    """Slip rates under friction that is 1 % higher than that of the law miss the contact equation, which every step checks."""
     right = Contact.rate
 
     def wrong(self: Contact, nodes: Any, load: Any, *others: Any) -> Any:
