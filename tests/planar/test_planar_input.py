@@ -37,8 +37,8 @@ def problem_with(**changes: Any) -> ss.Problem:
         ({"barrier": np.ones((3, 3), bool)}, r"barrier must give \(32,\) values"),
         ({"problem": SLAB}, "problem must be a Problem"),
         ({"problem": problem_with(contact_mass=10.0)}, "contact_mass must be 0"),
-        ({"problem": ss.scenarios["fig6-slab"].problem}, "no selection rule gives a solution"),
-        ({"problem": ss.Problem(SLAB, ss.friction.Coulomb(0.8, 0.3), initial_excess=1.0)}, "no selection rule gives a solution"),
+        ({"problem": ss.scenarios["fig6-slab"].problem}, "no selection rule is known to"),
+        ({"problem": ss.Problem(SLAB, ss.friction.Coulomb(0.8, 0.3), initial_excess=1.0)}, "no selection rule is known to"),
         ({"problem": ss.scenarios["fig5-block-printed"].problem}, "body must be an ElasticSlab"),
     ],
 )
@@ -69,7 +69,7 @@ def test_a_law_that_slip_makes_ill_posed_is_refused() -> None:
     """At the initial slip it has one slip rate at every load; after some slip it has several."""
     law = ss.friction.FromFunction(lambda u, v: 0.6 - 0.1 * np.tanh(u / 0.5) - 0.2 * np.tanh(u / 0.5) * v / (v + 0.2))
     contact = ss.PlanarSlab(ss.Problem(SLAB, law, initial_excess=1e6), nodes=16, length=2e4)
-    with pytest.raises(ss.InputError, match="no selection rule gives a solution"):
+    with pytest.raises(ss.InputError, match="no selection rule is known to help"):
         ss.simulate(contact, 5.0, frames=20)
 
 

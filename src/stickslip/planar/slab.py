@@ -144,7 +144,7 @@ class PlanarSlab(CheckedArguments):
                 raise InputError(
                     "PlanarSlab: friction falls with the slip rate by more than radiation adds (the contact equation of this"
                     f" {type(law).__name__} is {regime}): the shorter a disturbance along the contact, the faster it grows, without"
-                    " bound, so that no selection rule gives a solution; take slip weakening, a state, or a smaller fall"
+                    " bound, and no selection rule is known to give a solution; take slip weakening, a state, or a smaller fall"
                 )
 
     @property

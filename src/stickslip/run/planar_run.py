@@ -227,7 +227,7 @@ class Follow:
         if not slab.values.is_unique(slab.body.impedance, slip, kept.fastest):
             raise InputError(
                 f"simulate: within the {slip:.3g} m that this PlanarSlab slips, friction falls with the slip rate by more than"
-                " radiation adds: several slip rates solve the contact equation, and no selection rule gives a solution in 2D or 3D"
+                " radiation adds: several slip rates solve the contact equation, and no selection rule is known to help in 2D or 3D"
             )
         kept.end(run, code)
         return kept.solution(code)
