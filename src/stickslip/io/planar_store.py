@@ -44,7 +44,8 @@ from stickslip.solution.planar import FIELDS, Frames, PlanarSolution
 from stickslip.trajectory.status import INTERRUPTED, STATUSES, UNDER_WAY, engine
 
 if TYPE_CHECKING:
-    from stickslip.planar.solver import Motion, PlanarSolver
+    from stickslip.planar.solver import PlanarSolver
+    from stickslip.planar.step import Motion
 
 Floats = NDArray[np.float64]
 STATE = "state.nc"

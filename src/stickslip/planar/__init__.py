@@ -1,6 +1,6 @@
 """A slab whose slip varies along the contact: a line of contact (2D) or a plane of it (3D), in JAX.
 
 `slab.py` says what is solved, `nodes.py` what each node is, `memory.py` and `echo.py` how waves come back along the half-space and
-from the driver, `friction.py` what the contact answers, `layout.py` how fields and modes are spread over devices, and `solver.py`
-puts these together.
+from the driver, `friction.py` what the contact answers, `layout.py` how fields and modes are spread over devices. `step.py` takes a
+step of time with these, and `solver.py` a run.
 """

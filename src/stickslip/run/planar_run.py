@@ -26,7 +26,8 @@ from stickslip.trajectory.status import INTERRUPTED, UNSTABLE
 
 if TYPE_CHECKING:
     from stickslip.io.planar_store import PlanarStore
-    from stickslip.planar.solver import Motion, PlanarSolver
+    from stickslip.planar.solver import PlanarSolver
+    from stickslip.planar.step import Motion
 
 FRAMES = 100
 """Frames in a two-way travel time, by default."""

@@ -23,7 +23,8 @@ from stickslip.trajectory.status import STATUSES, Status
 if TYPE_CHECKING:
     import xarray as xr
 
-    from stickslip.planar.solver import Motion, PlanarSolver
+    from stickslip.planar.solver import PlanarSolver
+    from stickslip.planar.step import Motion
 
 Floats = NDArray[np.float64]
 FIELDS = {"slip": "m", "slip_rate": "m s-1", "traction": "Pa", "heat": "J m-2"}

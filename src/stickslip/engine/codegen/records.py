@@ -300,9 +300,13 @@ def whole_numbers_of(typingctx: Any, record: Any) -> Any:
 
 
 def record_at(record: type[Record]) -> Any:
-    """Return a function with which kernels turn memory (an array or a pointer to it) into the first record there."""
+    """Return a function with which kernels turn memory (an array, or a pointer to it) or a record into the first record there."""
     if UNCOMPILED:
-        return lambda memory: record(Pointer(memory.reshape(-1)) if getattr(memory, "ndim", 1) > 1 else memory)
+        return lambda memory: (
+            memory
+            if isinstance(memory, record)
+            else record(Pointer(memory.reshape(-1)) if getattr(memory, "ndim", 1) > 1 else memory)
+        )
     kind, pointer = RecordPointer(record), ir.IntType(64).as_pointer()
 
     @intrinsic
