@@ -11,7 +11,7 @@ import pytest
 from stickslip.cli.options import complete_fitted, complete_table
 from stickslip.scenarios import library
 from stickslip.scenarios.scenario import load_scenario
-from stickslip.scenarios.templates import template_names, with_law
+from stickslip.scenarios.templates import STARTERS, with_law
 from tests.problems import RATE_LAW, measured
 
 
@@ -61,7 +61,7 @@ def test_the_scenario_is_checked_and_run_as_it_is(command, points, how):
     assert Path("mine.toml").read_text().startswith("# data.csv: ")
 
 
-@pytest.mark.parametrize("name", template_names())
+@pytest.mark.parametrize("name", [*STARTERS, *library.in_1d()])
 def test_every_body_takes_the_law_and_keeps_all_else(name):
     scenario = load_scenario_text(with_law(name, RATE_LAW, ["a\x1b title", "more"]))
     assert scenario.problem.friction == RATE_LAW
@@ -120,6 +120,7 @@ CASES = [
     (["fit", "data.csv", "--out", "no/mine.toml"], "--out no/mine.toml: there is no folder no"),
     (["fit", "data.csv", "--figure", "fit.txt"], "--figure fit.txt: the name must end in .png"),
     (["fit", "data.csv", "--out", "mine.toml", "--body", "slap"], "no scenario 'slap'; did you mean 'slab'?"),
+    (["fit", "data.csv", "--out", "mine.toml", "--body", "planar-patch"], "planar-patch has a [contact] of many nodes"),
 ]  # fmt: skip
 
 

@@ -29,6 +29,8 @@ _HEADER = """\
 #
 #     stickslip check FILE     show what it means, and what to know before trusting a run
 #     stickslip run FILE       run it
+#
+# Many nodes along the contact, a fault in 2D or 3D, have a table [contact]: `stickslip new planar-patch` explains it.
 """
 _ABOUT = {
     "body": "The body that slides.",
@@ -60,13 +62,20 @@ def template(name: str, friction: str | None = None, pull: str | None = None) ->
     return library.text(name)
 
 
+def check_takes_law(name: str) -> None:
+    """Raise InputError unless `with_law` knows the name."""
+    if name not in template_names():
+        raise InputError(f"no scenario '{name}'; {nearest(name, template_names())}")
+    if name not in (*STARTERS, *library.in_1d()):
+        raise InputError(f"{name} has a [contact] of many nodes, which takes no other law: name another scenario")
+
+
 def with_law(name: str, law: FrictionLaw, about: Sequence[str]) -> str:
     """Return a starter or a bundled scenario with another friction law without a state, as commented TOML text to the last digit.
 
     `about` are lines of comments for the head of the text; the first one becomes the title. Raises InputError for an unknown name.
     """
-    if name not in template_names():
-        raise InputError(f"no scenario '{name}'; {nearest(name, template_names())}")
+    check_takes_law(name)
     example = tomllib.loads(library.text(STARTERS.get(name, name)))
     former = kind_of("friction", example["friction"], name)
     if former.state is not None:  # type: ignore[attr-defined] # registered

@@ -75,9 +75,9 @@ def fit(
     look.check(figure)
     _check_options(law, smooth, monotone, along, {"--fix": fix, "--start": start})
     if out is not None:
-        from stickslip.scenarios.templates import template
+        from stickslip.scenarios.templates import check_takes_law
 
-        template(body)  # refuses an unknown name before the work
+        check_takes_law(body)  # before the work
     points = Points.read(data)
     if law is not None:
         known = typed_values(fix or (), "fit: --fix", "static=0.6")
