@@ -7,6 +7,8 @@ from collections.abc import Iterator
 import jax
 import pytest
 
+from stickslip.planar.compiled import functions_of
+
 
 @pytest.fixture(scope="session", autouse=True)
 def compiled_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
@@ -21,3 +23,14 @@ def compiled_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     yield
     for name, value in before.items():
         jax.config.update(name, value)
+
+
+@pytest.fixture(autouse=True)
+def patched_functions_are_compiled_anew(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Let what a test puts in place of a function of the solver come into its compiled code, and stay in no other test's."""
+    patches = "monkeypatch" in request.fixturenames
+    if patches:
+        functions_of.cache_clear()
+    yield
+    if patches:
+        functions_of.cache_clear()

@@ -14,6 +14,7 @@ import pytest
 from tests.planar.patches import LAW, SLAB, patch, state_patch
 
 import stickslip as ss
+from stickslip.planar.compiled import functions_of
 from stickslip.run import progress
 from stickslip.run.planar_run import PlanarReport
 
@@ -47,6 +48,7 @@ def test_a_search_that_does_not_find_the_slip_rate_is_noticed(monkeypatch: pytes
     assert found.status.ok
     assert found.residual < 1e-13
     monkeypatch.setattr("stickslip.planar.friction.ITERATIONS", 2)
+    functions_of.cache_clear()
     missed = ss.simulate(slab, 3.0, frames=16)
     check_end(missed, "off the law")
     assert missed.residual > 1e-6

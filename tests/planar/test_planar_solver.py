@@ -76,7 +76,7 @@ def test_slip_rates_that_are_found_stay_while_others_are_sought(monkeypatch: pyt
     law, impedance = ss.friction.RateAndState(reference=0.6, a=0.01, b=0.015, distance=0.1), SLAB.impedance
     problem = ss.Problem(SLAB, law, initial_load=60e6, initial_state=1.0)
     slab = ss.PlanarSlab(problem, nodes=64, length=2e4)
-    nodes, contact = Nodes.of(slab.values, slab.locked), Contact(law, impedance)
+    nodes, contact = Nodes.of(slab.values, slab.locked, impedance), Contact.of(law)
     rates, slip, states = np.geomspace(1e-9, 10.0, 64), np.zeros(64), slab.values.states
     with in_double_precision():
         load = impedance * rates + 1e8 * contact.coefficient(nodes, slip, rates, states)
@@ -238,7 +238,7 @@ for grid in ({"nodes": 32, "length": 2e4}, {"nodes": 32, "length": 2e4, "width":
         pass
     found.append(run.now().slip.ravel().tolist())
 with in_double_precision():
-    step = run._march.lower(run.motion, run.waves, run.constants, run.loading[0], np.array([0, 1])).compile().as_text()
+    step = run.functions.march.lower(run.motion, run.waves, run.constants, run.loading[0], np.array([0, 1])).compile().as_text()
 print(json.dumps([len(jax.devices()), found, sorted(set(re.findall("all-[a-z-]+[a-z]", step)))]))
 """
 

@@ -57,27 +57,40 @@ class Nodes(NamedTuple):
     """For each parameter an array with the pieces of the law in front."""
     free: Any
     """False at nodes that are locked."""
+    impedance: Any
+    """Z of the waves that slip sends away, Pa s/m: one number."""
 
     @classmethod
-    def of(cls, values: NodeValues, locked: Any) -> Nodes:
+    def of(cls, values: NodeValues, locked: Any, impedance: float) -> Nodes:
         """Return the arrays of the nodes, in numpy."""
         numbers = {name: np.stack([piece[name] for piece in values.numbers]) for name in values.numbers[0]}
-        return cls(values.normal, values.static_excess, values.knots, numbers, ~locked)
+        return cls(values.normal, values.static_excess, values.knots, numbers, ~locked, np.float64(impedance))
 
 
 @dataclass(frozen=True)
 class Contact:
-    """A law on a contact whose slip sends waves of an impedance (Pa s/m) away."""
+    """The formulas of a law at all nodes, without its numbers: laws that differ in numbers only are compiled once."""
 
-    law: FrictionLaw
-    impedance: float
+    trees: tuple[Expression, ...]
+    state_trees: tuple[Expression, ...]
+    knot_variable: str
+    depends_on_rate: bool
+    """True also for a law with states."""
+    memory: str
+    counts: str
+
+    @classmethod
+    def of(cls, law: FrictionLaw) -> Contact:
+        """Return the formulas of a law."""
+        of_rate = law.depends_on_rate or bool(law.states)
+        return cls(law.trees(), law.state_trees(), law.knot_variable, of_rate, law.memory, law.counts)
 
     def coefficient(self, nodes: Nodes, slip: Any, rate: Any, states: Any) -> Any:
         """Return mu at slip (m) as the law counts it and slip rate (m/s), not negative, in given states."""
-        trees = self.law.trees()
+        trees = self.trees
         if len(trees) == 1:
             return evaluated(trees[0], {name: value[0] for name, value in nodes.numbers.items()}, (slip, rate, *states))
-        variable = slip if self.law.knot_variable == "slip" else rate
+        variable = slip if self.knot_variable == "slip" else rate
         piece = jnp.sum(jnp.broadcast_to(variable, slip.shape) >= nodes.knots, axis=0)
         numbers = {name: jnp.take_along_axis(value, piece[None], axis=0)[0] for name, value in nodes.numbers.items()}
         found = jnp.zeros(slip.shape)
@@ -111,10 +124,10 @@ class Contact:
         size = jnp.abs(load)
         at_rest = nodes.normal * self.coefficient(nodes, slip, jnp.zeros_like(slip), states)
         slips = nodes.free & (size > at_rest + nodes.normal * nodes.static_excess)
-        if self.law.depends_on_rate or self.law.states:
+        if self.depends_on_rate:
             found = self._root(nodes, size, (slip, states, at_rest), jnp.abs(guess))
         else:
-            found = (size - at_rest) / self.impedance
+            found = (size - at_rest) / nodes.impedance
         return jnp.where(slips, jnp.sign(load) * found, 0.0)
 
     def traction(self, nodes: Nodes, load: Any, slip: Any, states: Any, rate: Any) -> Any:
@@ -128,7 +141,7 @@ class Contact:
 
         def missing(rate: Any) -> tuple[Any, Any]:
             def of_rate(v: Any) -> Any:
-                return self.impedance * v + nodes.normal * self.coefficient(nodes, slip, v, states) - size
+                return nodes.impedance * v + nodes.normal * self.coefficient(nodes, slip, v, states) - size
 
             value, slope = jax.jvp(of_rate, (rate,), (jnp.ones_like(rate),))
             return value, slope
@@ -151,7 +164,7 @@ class Contact:
             return low, high, following, done, count + 1
 
         tiny = jnp.finfo(jnp.float64).tiny
-        high = jnp.maximum((size - at_rest) / self.impedance, tiny)
+        high = jnp.maximum((size - at_rest) / nodes.impedance, tiny)
         high, _ = jax.lax.while_loop(lambda bracket: jnp.any(bracket[1]), widened, (high, jnp.ones(high.shape, bool)))
         start = jnp.where((guess > 0.0) & (guess < high), guess, 0.5 * high)
         search = (jnp.zeros_like(high), high, start, jnp.zeros(high.shape, bool), 0)
@@ -175,7 +188,7 @@ class Contact:
         begin, about = states
         found = []
         numbers = {name: value[0] for name, value in nodes.numbers.items()}
-        for i, tree in enumerate(self.law.state_trees()):
+        for i, tree in enumerate(self.state_trees):
 
             def of_state(w: Any, i: int = i, tree: Expression = tree) -> Any:
                 return evaluated(tree, numbers, (*motion, *(w if j == i else about[j] for j in range(len(about)))))

@@ -25,11 +25,10 @@ AXIS = "contact"
 class Layout:
     """The contact on a number of devices: all that the process sees, as far as their number divides the nodes along y.
 
-    `shape` has the number of nodes, and `spacing` their distance (m), along y, and along z for a plane.
+    `shape` has the number of nodes along y, and along z for a plane.
     """
 
     shape: tuple[int, ...]
-    spacing: tuple[float, ...]
     devices: int | None = None
 
     @cached_property
@@ -54,14 +53,13 @@ class Layout:
         """The shape of the wavenumbers, filled up so that the last axis can be spread over the devices."""
         return (*self.shape[:-1], -(-self.half // self.count) * self.count)
 
-    @cached_property
-    def wavenumbers(self) -> NDArray[np.float64]:
-        """|k| (rad/m), of shape `modes`; 0 where wavenumbers are only filled up."""
+    def wavenumbers(self, spacing: tuple[float, ...]) -> NDArray[np.float64]:
+        """Return |k| (rad/m) of nodes at these distances (m), of shape `modes`; 0 where wavenumbers are only filled up."""
         last = np.zeros(self.modes[-1])
-        last[: self.half] = 2.0 * np.pi * np.fft.rfftfreq(self.shape[-1], self.spacing[-1])
+        last[: self.half] = 2.0 * np.pi * np.fft.rfftfreq(self.shape[-1], spacing[-1])
         if len(self.shape) == 1:
             return last
-        first = 2.0 * np.pi * np.fft.fftfreq(self.shape[0], self.spacing[0])
+        first = 2.0 * np.pi * np.fft.fftfreq(self.shape[0], spacing[0])
         return np.where(np.arange(last.size) < self.half, np.hypot(first[:, None], last), 0.0)
 
     def amplitudes(self, field: Any) -> Any:

@@ -18,16 +18,16 @@ from typing import Any
 
 import jax
 import numpy as np
-from jax.sharding import PartitionSpec
 from numpy.typing import NDArray
 
+from stickslip.planar.compiled import Spread, functions_of
 from stickslip.planar.driving import locked_load
-from stickslip.planar.echo import Echo, echo_of, echo_weights, kernel_spectra, silent
+from stickslip.planar.echo import Echo, echo_weights, kernel_spectra, silent
 from stickslip.planar.friction import Contact, Nodes
 from stickslip.planar.layout import Layout, whole
 from stickslip.planar.memory import horizon, recurrence
 from stickslip.planar.slab import PlanarSlab
-from stickslip.planar.step import Constants, Motion, Step, Waves
+from stickslip.planar.step import Constants, Motion, Waves
 
 Floats = NDArray[np.float64]
 
@@ -56,8 +56,9 @@ class PlanarSolver:
         self.body = body = self.slab.body
         self.dt = body.two_way_time / self.steps
         self.trips = self.slab.round_trips(self.duration)
-        self.layout = Layout(self.slab.shape, self.slab.spacing, self.devices)
-        self.step_of_time = Step(Contact(self.slab.values.law, body.impedance), self.layout, self.dt)
+        self.layout, parameters = Layout(self.slab.shape, self.devices), tuple(self.slab.values.numbers[0])
+        self.spread = Spread.of(self.layout, parameters)
+        self.functions = functions_of(Contact.of(self.slab.values.law), self.layout, parameters)
         with in_double_precision():
             self._begin()
 
@@ -85,20 +86,20 @@ class PlanarSolver:
 
     def _begin(self) -> None:
         layout, values = self.layout, self.slab.values
-        frequencies = layout.wavenumbers * self.body.wave_speed
+        frequencies = layout.wavenumbers(self.slab.spacing) * self.body.wave_speed
         law_of_waves = recurrence(frequencies, self.body.impedance, self.dt, horizon(self.trips) * self.body.two_way_time)
-        nodes = Nodes.of(values, self.slab.locked)
+        nodes = Nodes.of(values, self.slab.locked, self.body.impedance)
         decay, gain, now = law_of_waves.decay[:, None], law_of_waves.gain[:, None], law_of_waves.now
-        self.constants = self._put(Constants(nodes, values.load, decay, gain, now), self._spread_constants)
+        self.constants = self._put(Constants(nodes, values.load, decay, gain, now, np.float64(self.dt)), self.spread.constants)
         none, amplitudes = np.zeros(self.slab.shape), (2, *layout.modes)
         path = np.zeros((self.steps + 1, *amplitudes))
         memory = np.zeros((law_of_waves.decay.shape[0], *amplitudes), complex)
         self.motion = self._put(
-            Motion(values.slip, none, values.load, values.law_slip, values.states, none, none), self._spread_motion
+            Motion(values.slip, none, values.load, values.law_slip, values.states, none, none), self.spread.motion
         )
-        self.waves = self._put(Waves(memory, *(path[0],) * 4, path, path), self._spread_waves)
-        self.echo = self._put(silent(self.trips - 1, self.steps, amplitudes), self._spread_echo)
-        self.spectra = layout.put(self._spectra(frequencies), layout.along_k(2 + 1 + len(layout.modes)))
+        self.waves = self._put(Waves(memory, *(path[0],) * 4, path, path), self.spread.waves)
+        self.echo = self._put(silent(self.trips - 1, self.steps, amplitudes), self.spread.echo)
+        self.spectra = layout.put(self._spectra(frequencies), self.spread.spectra)
         self._open_round_trip()
 
     def _spectra(self, frequencies: Floats) -> NDArray[np.complex128]:
@@ -111,68 +112,7 @@ class PlanarSolver:
         return kernel_spectra(weights, self.steps, np.reshape(which, frequencies.shape))
 
     def _put(self, arrays: Any, specs: Any) -> Any:
-        return jax.tree.map(self.layout.put, arrays, specs, is_leaf=lambda one: isinstance(one, np.ndarray))
-
-    # ---- how arrays are spread over devices --------------------------------------------------------------------------------------
-
-    @property
-    def _spread_motion(self) -> Motion:
-        y, more = self.layout.along_y(len(self.slab.shape)), self.layout.along_y(1 + len(self.slab.shape))
-        return Motion(y, y, y, y, more, y, y)
-
-    @property
-    def _spread_waves(self) -> Waves:
-        rank = 1 + len(self.slab.shape)
-        k, more = self.layout.along_k(rank), self.layout.along_k(rank + 1)
-        return Waves(more, *(k,) * 4, more, more)
-
-    @property
-    def _spread_echo(self) -> Echo:
-        rank = 1 + len(self.slab.shape)
-        ends = self.layout.along_k(rank + 1)
-        return Echo(self.layout.along_k(rank + 2), ends, ends, PartitionSpec(), self.layout.along_k(rank))
-
-    @property
-    def _spread_constants(self) -> Constants:
-        rank = len(self.slab.shape)
-        y, more = self.layout.along_y(rank), self.layout.along_y(rank + 1)
-        numbers = dict.fromkeys(self.slab.values.numbers[0], more)
-        return Constants(Nodes(y, y, more, numbers, y), y, *(self.layout.along_k(rank + 2),) * 2, self.layout.along_k(rank))
-
-    # ---- compiled functions ------------------------------------------------------------------------------------------------------
-
-    @cached_property
-    def _march(self) -> Any:
-        """Take a number of steps: compiled once, for any number."""
-
-        def march(motion: Motion, waves: Waves, constants: Constants, loading: Any, between: Any) -> Any:
-            def one(step: Any, now: tuple[Motion, Waves]) -> tuple[Motion, Waves]:
-                return self.step_of_time.taken(now, constants, loading[step + 1], step + 1)
-
-            return jax.lax.fori_loop(between[0], between[1], one, (motion, waves))
-
-        alike, spread = PartitionSpec(), (self._spread_motion, self._spread_waves)
-        return self.layout.on_devices(march, (*spread, self._spread_constants, alike, alike), spread, donate=(0, 1))
-
-    @cached_property
-    def _open(self) -> Any:
-        """Find the motion just after a round trip has begun, when its echo has arrived."""
-        spread = (self._spread_motion, self._spread_waves)
-        return self.layout.on_devices(
-            self.step_of_time.opened, (*spread, self._spread_constants, PartitionSpec()), spread, donate=(0, 1)
-        )
-
-    @cached_property
-    def _turn(self) -> Any:
-        """Turn what was sent in a round trip into what arrives in the next."""
-
-        def turn(sent: Any, echo: Echo, spectra: Any) -> tuple[Any, Echo]:
-            return echo_of(sent, echo, spectra, self.body.reflection)
-
-        rank = 1 + len(self.slab.shape)
-        path = self.layout.along_k(rank + 1)
-        given = (path, self._spread_echo, self.layout.along_k(rank + 2))
-        return self.layout.on_devices(turn, given, (path, self._spread_echo), donate=(1,))
+        return jax.tree.map(self.layout.put, arrays, specs, is_leaf=lambda one: isinstance(one, np.ndarray | np.generic))
 
     # ---- the run -----------------------------------------------------------------------------------------------------------------
 
@@ -185,18 +125,22 @@ class PlanarSolver:
                 self._begin_next_round_trip()
             taken = min(count, self.steps - self.step, self.steps_left)
             loading, between = self.loading[self.trip], np.array([self.step, self.step + taken])
-            self.motion, self.waves = self._march(self.motion, self.waves, self.constants, loading, between)
+            self.motion, self.waves = self.functions.march(self.motion, self.waves, self.constants, loading, between)
             self.step += taken
             return taken
 
     def _begin_next_round_trip(self) -> None:
-        arriving, self.echo = self._turn(self.waves.sent, self.echo, self.spectra)
-        self.waves = self.waves._replace(arriving=arriving)
+        self.waves = self.waves._replace(arriving=self._turn(self.waves.sent))
         self.trip, self.step = self.trip + 1, 0
         self._open_round_trip()
 
+    def _turn(self, sent: Any) -> Any:
+        """Return what arrives in the next round trip, of what was sent in this one, and keep the echoes of those after it."""
+        arriving, self.echo = self.functions.turn(sent, self.echo, self.spectra, self.body.reflection)
+        return arriving
+
     def _open_round_trip(self) -> None:
-        self.motion, self.waves = self._open(self.motion, self.waves, self.constants, self.loading[self.trip])
+        self.motion, self.waves = self.functions.open(self.motion, self.waves, self.constants, self.loading[self.trip])
 
     def now(self) -> Motion:
         """Return the motion at the present moment as numpy arrays."""
@@ -229,16 +173,16 @@ class PlanarSolver:
             return np.pad(amplitudes, [(0, 0)] * (amplitudes.ndim - 1) + [(0, more)])
 
         with in_double_precision():
-            where, arriving = self._spread_waves, self.waves.arriving
+            where, arriving = self.spread.waves, self.waves.arriving
             for n in range(trip):  # the echoes follow from what was sent
-                arriving, self.echo = self._turn(self.layout.put(filled(sent(n)), where.sent), self.echo, self.spectra)
+                arriving = self._turn(self.layout.put(filled(sent(n)), where.sent))
             kept = {name: filled(state[f"waves_{name}"]) for name in KEPT}
             kept["memory"] = kept["memory"][0] + 1j * kept["memory"][1]
             path = np.zeros((self.steps + 1, *self.waves.now.shape))
             path[: step + 1] = filled(sent(trip))
             put = {name: self.layout.put(value, getattr(where, name)) for name, value in (kept | {"sent": path}).items()}
             self.waves = Waves(arriving=arriving, **put)
-            self.motion = self._put(Motion(*(state[f"motion_{name}"] for name in Motion._fields)), self._spread_motion)
+            self.motion = self._put(Motion(*(state[f"motion_{name}"] for name in Motion._fields)), self.spread.motion)
             self.trip, self.step = trip, step
 
 

@@ -63,24 +63,25 @@ class Constants(NamedTuple):
     decay: Any
     gain: Any
     now: Any
+    length: Any
+    """Length of a step of time, s."""
 
 
 @dataclass(frozen=True)
 class Step:
-    """A step of a length (s) of a contact whose fields and wavenumbers are spread as a layout says."""
+    """A step of a contact whose fields and wavenumbers are spread as a layout says: what is compiled, without numbers."""
 
     contact: Contact
     layout: Layout
-    length: float
 
     def opened(self, motion: Motion, waves: Waves, constants: Constants, loading: Any) -> tuple[Motion, Waves]:
         """Return motion and waves just after a round trip has begun, when its echo has arrived."""
         load = constants.initial_load + loading[0] + self.layout.field(waves.now + waves.arriving[0])
         rate = self.contact.rate(constants.nodes, load, motion.seen, motion.states, motion.rate)
         traction = self.contact.traction(constants.nodes, load, motion.seen, motion.states, rate)
-        motion = motion._replace(rate=rate, traction=traction, residual=self._residual(motion, load, rate, traction))
+        motion = motion._replace(rate=rate, traction=traction, residual=_residual(motion, constants, load, (rate, traction)))
         waves = waves._replace(rate=self.layout.amplitudes(rate))
-        return motion, waves._replace(sent=waves.sent.at[0].set(self._leaving(waves, waves.arriving[0])))
+        return motion, waves._replace(sent=waves.sent.at[0].set(_leaving(waves, constants, waves.arriving[0])))
 
     def taken(self, now: tuple[Motion, Waves], constants: Constants, loading: Any, step: Any) -> tuple[Motion, Waves]:
         """Return motion and waves after the step with a number in its round trip: a predictor, then a corrector."""
@@ -91,7 +92,7 @@ class Step:
         found, waves = self._moved(now, (guess, self.layout.amplitudes(guess.rate)), constants, loads)
         memory, inherited = advanced(waves.memory, constants.decay, constants.gain, waves.slip)
         waves = waves._replace(memory=memory, inherited=inherited, rate=self.layout.amplitudes(found.rate))
-        sent = jax.lax.dynamic_update_index_in_dim(waves.sent, self._leaving(waves, arriving), step, 0)
+        sent = jax.lax.dynamic_update_index_in_dim(waves.sent, _leaving(waves, constants, arriving), step, 0)
         return found, waves._replace(sent=sent)
 
     def _moved(self, now: tuple[Motion, Waves], guess: tuple[Motion, Any], constants: Constants, loads: Any) -> Any:
@@ -102,32 +103,36 @@ class Step:
         motion, waves = now
         late, amplitudes = guess
         mean = 0.5 * (motion.rate + late.rate)
-        slip = motion.slip + self.length * mean
+        length = constants.length
+        slip = motion.slip + length * mean
         seen, states = self._counted(motion, mean, late, constants)
-        slipped = waves.slip + 0.5 * self.length * (waves.rate + amplitudes)
+        slipped = waves.slip + 0.5 * length * (waves.rate + amplitudes)
         waves = waves._replace(slip=slipped, now=waves.inherited + constants.now * slipped)
         load = loads[0] + self.layout.field(waves.now + loads[1])
         rate = self.contact.rate(constants.nodes, load, seen, states, late.rate)
         traction = self.contact.traction(constants.nodes, load, seen, states, rate)
-        if self.contact.law.memory == "since-arrest":
+        if self.contact.memory == "since-arrest":
             seen = jnp.where(rate == 0.0, 0.0, seen)
-        heat = motion.heat + 0.5 * self.length * (motion.traction * motion.rate + traction * rate)
-        return Motion(slip, rate, traction, seen, states, heat, self._residual(motion, load, rate, traction)), waves
-
-    def _residual(self, motion: Motion, load: Any, rate: Any, traction: Any) -> Any:
-        """Return `Motion.residual` after a step that ends in this load, slip rate and traction."""
-        missed = jnp.abs((self.contact.impedance * rate + traction) / load - 1.0)
-        return jnp.maximum(motion.residual, jnp.where(rate == 0.0, 0.0, missed))
+        heat = motion.heat + 0.5 * length * (motion.traction * motion.rate + traction * rate)
+        return Motion(slip, rate, traction, seen, states, heat, _residual(motion, constants, load, (rate, traction))), waves
 
     def _counted(self, motion: Motion, mean: Any, guess: Motion, constants: Constants) -> tuple[Any, Any]:
         """Return slip as the law counts it, and the states, after a step at a mean slip rate."""
-        path = jnp.abs(mean) if self.contact.law.counts == "path" else mean
-        seen = motion.seen + self.length * path
-        if not self.contact.law.states:
+        path = jnp.abs(mean) if self.contact.counts == "path" else mean
+        seen = motion.seen + constants.length * path
+        if not self.contact.state_trees:
             return seen, motion.states
         about = 0.5 * (motion.states + guess.states)
         middle = (0.5 * (motion.seen + seen), jnp.abs(mean))
-        return seen, self.contact.advanced_states(constants.nodes, middle, (motion.states, about), self.length)
+        return seen, self.contact.advanced_states(constants.nodes, middle, (motion.states, about), constants.length)
 
-    def _leaving(self, waves: Waves, arriving: Any) -> Any:
-        return 2.0 * self.contact.impedance * waves.rate - 2.0 * waves.now - arriving
+
+def _residual(motion: Motion, constants: Constants, load: Any, found: tuple[Any, Any]) -> Any:
+    """Return `Motion.residual` after a step that ends in this load, and in a slip rate and traction that were found."""
+    rate, traction = found
+    missed = jnp.abs((constants.nodes.impedance * rate + traction) / load - 1.0)
+    return jnp.maximum(motion.residual, jnp.where(rate == 0.0, 0.0, missed))
+
+
+def _leaving(waves: Waves, constants: Constants, arriving: Any) -> Any:
+    return 2.0 * constants.nodes.impedance * waves.rate - 2.0 * waves.now - arriving
