@@ -116,6 +116,11 @@ def test_forty_digits_give_the_pulses() -> None:
     assert np.abs(exact.slip_rate_m_per_s.to_numpy() - rate).max() <= 2e-11 * rate.max()
 
 
+def value(coefficients: list[mpf], x: mpf) -> mpf:
+    """Return a polynomial at x, from its coefficients with the lowest order first."""
+    return mp.fsum(c * x**k for k, c in enumerate(coefficients))
+
+
 def pulses(times: list[mpf], order: int = 40) -> Iterator[tuple[mpf, mpf]]:
     """Yield slip and slip rate of the slab of Fig. 5, from Z u' = initial load + G V t / h - S mu(u), by Taylor's series."""
     problem = SCRIPT["scenario_of"]("fig5-slab-reconstructed").problem
@@ -135,9 +140,9 @@ def pulses(times: list[mpf], order: int = 40) -> Iterator[tuple[mpf, mpf]]:
             cosine.append(-sum(w[j] * sine[k - j] for j in range(k + 1)) / (k + 1))
         step = (mpf("1e-30") * abs(u[1] / u[order])) ** (mpf(1) / (order - 1))
         while n < len(times) and times[n] <= now + step:
-            yield mp.polyval(u[::-1], times[n] - now), mp.polyval([k * u[k] for k in range(order, 0, -1)], times[n] - now)
+            yield value(u, times[n] - now), value([k * u[k] for k in range(1, order + 1)], times[n] - now)
             n += 1
-        now, slip = now + step, mp.polyval(u[::-1], step)
+        now, slip = now + step, value(u, step)
 
 
 def test_slip_and_traction_of_linear_weakening_have_their_closed_form() -> None:

@@ -176,7 +176,7 @@ def is_planar(path: Path) -> bool:
     """Return True if a folder says that it holds the run of a planar slab."""
     try:
         return KIND in json.loads(read_bounded(path / "zarr.json", LARGEST_TEXT))["attributes"]
-    except (InputError, OSError, ValueError, KeyError, TypeError):
+    except (InputError, OSError, ValueError, KeyError, TypeError, RecursionError):
         return False
 
 
