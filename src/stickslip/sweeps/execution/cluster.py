@@ -9,6 +9,7 @@ a local cluster therefore share a key that is made for it and kept in memory; a 
 
 from __future__ import annotations
 
+import gc
 import json
 import logging
 from collections.abc import Callable, Iterable, Iterator
@@ -117,9 +118,12 @@ def _connected(scheduler: str) -> Client:
         address = str(json.loads(read_bounded(path, LARGEST_FILE))["address"]) if path.is_file() else scheduler
         return Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError, KeyError, TypeError) as error:  # TypeError means tls:// without a key in dask's configuration
-        raise InputError(
-            f"sweep: no dask scheduler answers at {scheduler} ({error}); it needs HOST:PORT as `dask scheduler` prints it"
-        ) from None
+        missed = str(error)
+    # A client that failed stops its loop when it is thrown away. In the thread of the next client it would wait for itself.
+    gc.collect()
+    raise InputError(
+        f"sweep: no dask scheduler answers at {scheduler} ({missed}); it needs HOST:PORT as `dask scheduler` prints it"
+    )
 
 
 def on_cluster(client: Client) -> Runner:
