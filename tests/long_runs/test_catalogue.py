@@ -23,7 +23,7 @@ from stickslip.run.monitor import Monitor
 from stickslip.run.options import RunOptions
 from stickslip.run.progress import Report
 from stickslip.run.resume import PausedCatalogue
-from stickslip.run.run_loop import run_loop
+from stickslip.run.run_loop import Interrupts, run_loop
 from stickslip.run.session import Session, split_time
 from tests.long_runs.problems import RUNS, bundled, differences, killed
 
@@ -128,7 +128,7 @@ def test_memory_does_not_grow_with_the_number_of_events(monkeypatch: pytest.Monk
     capacities = {len(run.store.pieces)}
     for share in (0.01, 0.1, 1.0):
         run.last = split_time(share * duration, problem.round_trip_time)
-        run_loop(run, monitor)
+        run_loop(run, monitor, Interrupts())
         run.count.to_the_end, run.before_end = 0, None
         capacities.add(len(run.store.pieces))
     assert stream.told > 9_000

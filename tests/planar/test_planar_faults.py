@@ -156,3 +156,21 @@ def test_the_memory_that_is_stated_is_needed(grid: dict[str, Any], round_trips: 
 def test_friction_that_falls_to_zero_is_not_negative() -> None:
     """Rounding takes it to -2e-37 Pa."""
     assert ss.simulate(contact(ss.friction.ExponentialSlipWeakening(0.7, 0.0, 0.4), {}), 12.0, frames=16).status.ok
+
+
+@pytest.mark.parametrize("law", [LAW, ss.friction.HyperbolicRate(0.8, 0.3, 0.1)], ids=["of slip", "of rate"])
+def test_a_fault_on_which_nothing_slips_has_an_answer(law: Any, tmp_path: Path) -> None:
+    """The strength is 80 MPa or 70 MPa (LAW), the largest load nine tenths of it."""
+    strength = float(law.static_coefficient(0.0)) * 1e8
+    run = ss.simulate(
+        contact(law, {"initial.load": lambda y: strength * np.where(np.abs(y) < 4e3, 0.9, 0.5)}, initial_load=1e6), 3.0
+    )
+    assert run.status.name == "finished"
+    assert not run.slip.any()
+    assert str(run) == "\n".join([
+        f"No node slips faster than {run.threshold * 1e6:.6g} um/s up to {run.times[-1]:.6g} s.",
+        "The node that is closest to slip bears up to 90.000% of its strength.",
+    ])  # fmt: skip
+    assert np.abs(run.energy().balance).max() < 1.0  # J per metre of z: nothing but rounding, of a load that stores 1e10
+    run.plot().savefig(tmp_path / "run.png")
+    assert np.isnan(run.rupture_speed).all()

@@ -7,6 +7,7 @@ import sys
 from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ import stickslip as ss
 from stickslip.foundation.netcdf_file import read
 from stickslip.studies.inference.inference import Inference
 from stickslip.studies.inference.loading import loading_of
+from stickslip.studies.inference.sampling import sample
 from tests.studies.laboratory import CoulombBlock, WeakeningSlab, correlated, load_point
 from tests.studies.velocity_steps import CLEAN, CLOCK, GUESS, RATES, STEPS, TIMES, TRUE, TRUTH, inferred, record
 
@@ -252,6 +254,36 @@ def test_posterior_samples_have_the_intervals_of_the_curvature() -> None:
     assert set(study.table.source) == {"samples"}
     assert "800 samples" in study.about_samples[0]
     assert len(study.plot().axes) == 4
+
+
+def drawn_until(call: int, count: int) -> Any:
+    """Samples of one number with a normal distribution, where Ctrl-C comes in the call of the model with this number."""
+    calls = iter(range(call))
+
+    def residual(x: np.ndarray) -> np.ndarray:
+        if next(calls, None) is None:
+            raise KeyboardInterrupt
+        return np.array([x[0]])
+
+    model = SimpleNamespace(limits=(np.array([-9.0]), np.array([9.0])), residual=residual)
+    found: Any = SimpleNamespace(model=model, searched=np.zeros(1), loss="linear")
+    sure: Any = SimpleNamespace(widths=np.ones(1), covariance=np.eye(1))
+    return sample(found, sure, count, 1, lambda _: None)
+
+
+def test_samples_that_were_drawn_before_ctrl_c_are_kept(capfd: pytest.CaptureFixture[str]) -> None:
+    """16 walkers take 375 steps, and 113 before these; half of the walkers move at a time, so that 16 calls are a step."""
+    pytest.importorskip("emcee")
+    whole, (note,) = drawn_until(100_000, 6000)
+    assert note.startswith("6000 samples")
+    for call in (16 * 200, 16 * 200 + 3, 16 * 200 + 11):
+        some, notes = drawn_until(call, 6000)
+        assert notes[0] == f"sampling was stopped: {len(some)} of 6000 samples were drawn"
+        assert abs(len(some) - 16 * (200 - 113)) <= 32
+        assert np.array_equal(some, whole[: len(some)])
+    with pytest.raises(KeyboardInterrupt):
+        drawn_until(16 * 50, 6000)
+    assert capfd.readouterr() == ("", "")
 
 
 def test_samples_without_emcee_are_refused_with_the_way_to_install_it(monkeypatch: pytest.MonkeyPatch) -> None:

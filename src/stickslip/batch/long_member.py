@@ -15,7 +15,7 @@ from stickslip.batch.kernels.reduction import Reduced, fold_end
 from stickslip.engine.state.layout import Floats, Integers, Store
 from stickslip.observables.event_stream import EventStream
 from stickslip.run.options import RunOptions
-from stickslip.run.run_loop import run_loop
+from stickslip.run.run_loop import Interrupts, run_loop
 from stickslip.run.session import Session
 from stickslip.scenarios.scenario import Scenario
 from stickslip.trajectory.status import INTERRUPTED
@@ -119,8 +119,9 @@ def run_alone(scenario: Scenario, capacity: int, stop: Integers, out: Floats) ->
     reduced = Reduced(out)
     reduced.events = reduced.pulses = reduced.shocks = 0.0
     watch = Folding(stream, stop, reduced)
-    code = run_loop(run, watch)
-    watch.count_shocks(run.store, run.length)
-    watch.add(stream.look(run.history()).table(unknown=True))
-    fold_end(run.store.pieces[: run.length], problem.round_trip_time, scenario.duration, code, out)
-    return code
+    with Interrupts() as interrupts:
+        code = run_loop(run, watch, interrupts)
+        watch.count_shocks(run.store, run.length)
+        watch.add(stream.look(run.history()).table(unknown=True))
+        fold_end(run.store.pieces[: run.length], problem.round_trip_time, scenario.duration, code, out)
+        return code

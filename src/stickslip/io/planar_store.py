@@ -134,10 +134,11 @@ class PlanarStore(Frames):
     # ---- while the run continues -------------------------------------------------------------------------------------------------
 
     @override
-    def add(self, time: float, motion: Motion) -> None:
-        super().add(time, motion)
+    def add(self, time: float, motion: Motion) -> float:
+        fastest = super().add(time, motion)
         if len(self.times) % self._arrays["slip"].chunks[0] == 0:
             self._write_frames()
+        return fastest
 
     def drop_last(self) -> None:
         """Forget the last frame, which a longer run would not have."""

@@ -93,12 +93,15 @@ class NodeValues:
     def is_unique(self, impedance: float, slip: float, rate: float) -> bool:
         """Return False if Z v + S mu(u, v) falls with the slip rate at any node, within some slip (m) from the start.
 
-        It is evaluated at 60 slips and 200 slip rates up to 4 times `rate` (m/s), under laws of slip and slip rate only.
+        It is evaluated at 60 slips and 200 slip rates up to 4 times `rate` (m/s), under laws of slip and slip rate only. A contact
+        that has not slipped is unique.
         """
+        if rate == 0.0:
+            return True
         rates = np.union1d(np.linspace(0.0, 4.0 * rate, 100), np.geomspace(1e-9 * rate, 4.0 * rate, 100))
         for problem in self.problems:
             law = problem.friction
-            if law.states or not (law.depends_on_slip and law.depends_on_rate) or rate == 0.0:
+            if law.states or not (law.depends_on_slip and law.depends_on_rate):
                 continue
             slips = problem.law_slip + np.linspace(0.0, slip, 60)[:, None]
             if (np.diff(impedance * rates + problem.normal * law.coefficient(slips, rates), axis=1) < 0.0).any():

@@ -77,6 +77,11 @@ class PlanarSolver:
         """The number of steps up to the end of the run."""
         return max(0, self.last_step - self.trip * self.steps - self.step)
 
+    @property
+    def is_shared(self) -> bool:
+        """True if several processes share the run: all of them must then ask for the same steps, whatever time these take."""
+        return int(jax.process_count()) > 1
+
     @cached_property
     def loading(self) -> Floats:
         """Load of a contact that never slips, minus the initial load, at the steps of each round trip (Pa)."""
@@ -117,7 +122,10 @@ class PlanarSolver:
     # ---- the run -----------------------------------------------------------------------------------------------------------------
 
     def advance(self, count: int) -> int:
-        """Take at most `count` steps, no further than the end of the round trip or of the run; return how many were taken."""
+        """Take at most `count` steps, no further than the end of the round trip or of the run; return how many were taken.
+
+        Returns when they have been computed.
+        """
         if not self.steps_left:
             return 0
         with in_double_precision():
@@ -125,7 +133,9 @@ class PlanarSolver:
                 self._begin_next_round_trip()
             taken = min(count, self.steps - self.step, self.steps_left)
             loading, between = self.loading[self.trip], np.array([self.step, self.step + taken])
-            self.motion, self.waves = self.functions.march(self.motion, self.waves, self.constants, loading, between)
+            self.motion, self.waves = jax.block_until_ready(
+                self.functions.march(self.motion, self.waves, self.constants, loading, between)
+            )
             self.step += taken
             return taken
 

@@ -12,7 +12,7 @@ from typing import Any, Protocol, Self, TypeVar
 from stickslip.foundation.errors import InputError
 from stickslip.run.options import RunOptions
 from stickslip.run.progress import Reporter
-from stickslip.run.run_loop import NowAndThen, repeat, run_loop
+from stickslip.run.run_loop import Interrupts, NowAndThen, repeat, run_loop
 from stickslip.run.solver import Events, NewEvents, Solver
 from stickslip.trajectory.status import ENOUGH_EVENTS, INTERRUPTED, STATUSES
 
@@ -46,17 +46,18 @@ class Sink(Protocol[Result_co]):
 def run_to_end(run: Solver[Any], sink: Sink[Result_co], stream: Events | None = None) -> Result_co:
     """Run a solver to the end and return the result of the sink; a stream that is given has already reported the earlier events.
 
-    Raises InputError if the run ends where it starts, and KeyboardInterrupt if Ctrl-C stopped it there.
+    Raises InputError if the run ends where it starts, and KeyboardInterrupt if Ctrl-C stopped it there or came too late to stop it.
     """
     monitor = Monitor.of(run, sink, stream)
-    code = run_loop(run, monitor)
-    if run.length == 0:
-        if code == INTERRUPTED:
-            raise KeyboardInterrupt
-        raise InputError(f"{sink.who}: the run ends where it starts: {STATUSES[code].message}")
-    if sink.wants_events and code != ENOUGH_EVENTS:
-        monitor.count(run)
-    return sink.finish(run, monitor.stream, code)
+    with Interrupts() as interrupts:
+        code = run_loop(run, monitor, interrupts)
+        if run.length == 0:
+            if code == INTERRUPTED:
+                raise KeyboardInterrupt
+            raise InputError(f"{sink.who}: the run ends where it starts: {STATUSES[code].message}")
+        if sink.wants_events and code != ENOUGH_EVENTS:
+            monitor.count(run)
+        return sink.finish(run, monitor.stream, code)
 
 
 @dataclass(kw_only=True)

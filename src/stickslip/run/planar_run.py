@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
+from time import perf_counter
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -19,10 +20,10 @@ from stickslip.planar.slab import PlanarSlab
 from stickslip.problem.run_quantities import CHECKPOINT_INTERVAL, DURATION
 from stickslip.run.options import CHECKPOINT_EVERY
 from stickslip.run.progress import Pace, how_far, how_fast
-from stickslip.run.run_loop import Interrupts, NowAndThen
+from stickslip.run.run_loop import Interrupts, NowAndThen, next_budget
 from stickslip.scenarios.scenario import Scenario
 from stickslip.solution.planar import Frames, PlanarSolution
-from stickslip.trajectory.status import INTERRUPTED, UNSTABLE
+from stickslip.trajectory.status import UNSTABLE
 
 if TYPE_CHECKING:
     from stickslip.io.planar_store import PlanarStore
@@ -37,6 +38,8 @@ ROUNDING = 1e-12
 """Share of the normal stress by which rounding may carry friction below zero."""
 UNHEARD_OF = 1e3
 """Slip rate of an unstable run over the one that the largest load would drive against radiation alone; fronts come to some ten."""
+NODES_AT_ONCE = 1_000_000
+"""Nodes times steps in the first call of the solver, which are computed in less than a second."""
 COMPILER = 6e7
 """Memory that compiling a run takes, bytes."""
 MOST_MEMORY = 16e9
@@ -67,7 +70,7 @@ class PlanarReport(NamedTuple):
 
 
 PlanarProgress = Callable[[PlanarReport], object]
-"""A function that is called with a `PlanarReport` before the start and after each frame."""
+"""A function that is called with a `PlanarReport` before the start, after each frame, and ten times a second between two frames."""
 
 
 def memory_of(slab: PlanarSlab, duration: float, frames: int = FRAMES) -> float:
@@ -108,10 +111,10 @@ def simulate_planar(
     """Run a planar slab from t = 0: see `stickslip.simulate`. The run ends with the step that reaches the duration.
 
     It keeps so many `frames` of each two-way travel time, as far as there are as many steps; 100 by default. `progress` is called
-    with a `PlanarReport` before the start and after each frame. Frames are written to the folder `checkpoint` (NAME.zarr) while the
-    run continues, with the scenario of the slab, if it has one, and `resume_planar` continues it. Ctrl-C ends the run with the
-    frames that are done. Raises InputError if an argument is out of range, or the library JAX is missing (`pip install
-    'stickslip[planar]'`).
+    with a `PlanarReport` before the start, after each frame, and ten times a second between two frames. Frames are written to the
+    folder `checkpoint` (NAME.zarr) while the run continues, with the scenario of the slab, if it has one, and `resume_planar`
+    continues it. Ctrl-C ends the run with the frames that are done, and one for where it ended. Raises InputError if an argument is
+    out of range, or the library JAX is missing (`pip install 'stickslip[planar]'`).
     """
     if duration is None:
         raise InputError("simulate: a PlanarSlab needs a duration, in s or with a unit")
@@ -223,41 +226,56 @@ class Follow:
             kept.save(run)
         with Interrupts() as interrupts:
             code = self.follow(kept, run, here, interrupts)
-        slab, slip = kept.slab, kept.largest_slip
-        if not slab.values.is_unique(slab.body.impedance, slip, kept.fastest):
-            raise InputError(
-                f"simulate: within the {slip:.3g} m that this PlanarSlab slips, friction falls with the slip rate by more than"
-                " radiation adds: several slip rates solve the contact equation, and no selection rule is known to help in 2D or 3D"
-            )
-        kept.end(run, code)
-        return kept.solution(code)
+            slab, slip = kept.slab, kept.largest_slip
+            if not slab.values.is_unique(slab.body.impedance, slip, kept.fastest):
+                raise InputError(
+                    f"simulate: within the {slip:.3g} m that this PlanarSlab slips, friction falls with the slip rate by more than"
+                    " radiation adds: several slip rates solve the contact equation, and no selection rule is known to help in 2D"
+                    " or 3D"
+                )
+            kept.end(run, code)
+            return kept.solution(code)
 
     def steps_of(self, run: PlanarSolver) -> int:
         """Return the number of steps from frame to frame; the end of a round trip is a frame, too."""
         return max(1, run.steps // self.frames)
 
     def follow(self, kept: Frames, run: PlanarSolver, here: tuple[slice, ...], interrupts: Interrupts) -> int:
-        """Run frame by frame, and return the code of what ended the run."""
+        """Run frame by frame, and return the code of what ended the run.
+
+        The steps from frame to frame are taken in calls of about a tenth of a second, between which Ctrl-C is heard.
+        """
         every, saving, pace = self.steps_of(run), NowAndThen.from_now(self.every), None
-        while run.steps_left and not interrupts.noted:
+        budget, fastest = max(1, NODES_AT_ONCE // math.prod(run.slab.shape)), kept.fastest
+        while run.steps_left:
             if run.step == run.steps:
                 kept.end_round_trip(run)
-            run.advance(every - run.step % every if run.step < run.steps else every)
-            pace, motion = pace or Pace(), run.now()  # the clock starts when all has been compiled
-            if (code := self.fault(run, motion)) is not None:
-                kept.residual = float(motion.residual.max()) if code == Stop.OFF_THE_LAW else kept.residual
-                return code
-            now = motion.at(here)
-            kept.add(run.time, now)
-            if saving.is_due:
-                with saving.done():
-                    kept.save(run)
-            if self.progress is not None:
-                done = min(run.time / self.duration, 1.0)
-                fastest = float(np.abs(now.rate).max())
-                report = PlanarReport(run.time, self.duration, fastest, *pace.at(run.time, done), self.memory)
-                try:
-                    self.progress(report)
-                except KeyboardInterrupt:
-                    return INTERRUPTED
-        return INTERRUPTED if run.steps_left else Stop.FINISHED
+            missing = every - run.step % every if run.step < run.steps else every
+            start = perf_counter()
+            taken = run.advance(missing if run.is_shared else min(missing, budget))
+            budget, pace = next_budget(budget, perf_counter() - start, 1), pace or Pace()  # from when all has been compiled
+            is_frame = taken == missing or run.step == run.steps or not run.steps_left
+            if is_frame:
+                if (code := self.fault(run, motion := run.now())) is not None:
+                    kept.residual = float(motion.residual.max()) if code == Stop.OFF_THE_LAW else kept.residual
+                    return code
+                fastest = kept.add(run.time, motion.at(here))
+                if saving.is_due:
+                    with saving.done():
+                        kept.save(run)
+            goes_on = self.tell(run, fastest, pace)
+            if not goes_on or (interrupts.noted and run.steps_left):
+                if not is_frame:
+                    kept.add(run.time, run.now().at(here))
+                return interrupts.answer()
+        return Stop.FINISHED
+
+    def tell(self, run: PlanarSolver, fastest: float, pace: Pace) -> bool:
+        """Report the progress of a run whose largest slip rate (m/s) is known. Returns False if that raised KeyboardInterrupt."""
+        if self.progress is not None:
+            done = min(run.time / self.duration, 1.0)
+            try:
+                self.progress(PlanarReport(run.time, self.duration, fastest, *pace.at(run.time, done), self.memory))
+            except KeyboardInterrupt:
+                return False
+        return True

@@ -63,25 +63,24 @@ class Watch(Protocol):
         """Make room in a full history. Returns False if that is not allowed."""
 
 
-def run_loop(run: Solver[Any], watch: Watch) -> int:
-    """Run to the end. Returns the code of what ended the run (see `trajectory.status`)."""
+def run_loop(run: Solver[Any], watch: Watch, interrupts: Interrupts) -> int:
+    """Run to the end, or until Ctrl-C has been noted. Returns the code of what ended the run (see `trajectory.status`)."""
     budget = FIRST_BUDGET
-    with Interrupts() as interrupts:
-        try:
-            while True:
-                start = time.perf_counter()
-                code = run.advance(budget)
-                if code == Stop.NONE:
-                    budget = next_budget(budget, time.perf_counter() - start)
-                end = after_call(run, code, watch)
-                if end is not None:
-                    return end
-                if interrupts.noted:
-                    return INTERRUPTED
-        except KeyboardInterrupt:  # from a callback in `look`, from a handler that is not ours, or from a second Ctrl-C
+    try:
+        while True:
+            start = time.perf_counter()
+            code = run.advance(budget)
+            if code == Stop.NONE:
+                budget = next_budget(budget, time.perf_counter() - start)
+            end = after_call(run, code, watch)
+            if end is not None:
+                return end
             if interrupts.noted:
-                raise
-            return INTERRUPTED
+                return interrupts.answer()
+    except KeyboardInterrupt:  # from a callback in `look`, from a handler that is not ours, or from a second Ctrl-C
+        if interrupts.noted:
+            raise
+        return INTERRUPTED
 
 
 def after_call(run: Solver[Any], code: int, watch: Watch) -> int | None:
@@ -101,21 +100,25 @@ def repeat(run: Solver[Any], since: Any, length: int) -> None:
         run.advance(1)
 
 
-def next_budget(budget: int, took: float) -> int:
+def next_budget(budget: int, took: float, smallest: int = SMALLEST_BUDGET) -> int:
     """Return the number of steps for the next call from the number in the last one and the time (s) that they took."""
     wanted = budget * min(MOMENT / max(took, 1e-9), 4.0)
-    return int(min(max(wanted, SMALLEST_BUDGET), LARGEST_BUDGET))
+    return int(min(max(wanted, smallest), LARGEST_BUDGET))
 
 
 class Interrupts:
-    """Note the first Ctrl-C instead of raising KeyboardInterrupt, so that the run ends between two calls of the engine.
+    """Note the first Ctrl-C instead of raising KeyboardInterrupt, so that a run ends between two calls of the engine.
+
+    A run that ends early because of it says so by its status (`answer`). If the run came to another end before it saw the signal,
+    or failed, KeyboardInterrupt is raised at the end of the `with` block, when results are safe: whoever does one run after the
+    other would otherwise begin the next one.
 
     A second Ctrl-C raises KeyboardInterrupt at once. A handler that is not Python's default stays in place; so does every handler
     outside the main thread, where none can be set.
     """
 
     def __init__(self) -> None:
-        self.noted = False
+        self.noted = self._is_answered = False
         in_main = threading.current_thread() is threading.main_thread()
         self.ours = in_main and _signal.getsignal(SIGINT) is default_int_handler
 
@@ -124,9 +127,17 @@ class Interrupts:
             _signal.signal(SIGINT, self.note)
         return self
 
-    def __exit__(self, *_: object) -> None:
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: object) -> None:
         if self.ours:
             _signal.signal(SIGINT, default_int_handler)
+        is_lost = kind is None or issubclass(kind, Exception)
+        if self.noted and not self._is_answered and is_lost:
+            raise KeyboardInterrupt from error
+
+    def answer(self) -> int:
+        """Return the code of a run that ends because of the signal; it is then not raised."""
+        self._is_answered = True
+        return INTERRUPTED
 
     def note(self, _: int, __: FrameType | None) -> None:
         """Note a Ctrl-C; this is the handler."""

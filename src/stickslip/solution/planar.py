@@ -84,7 +84,8 @@ class PlanarSolution:
     def sentences(self) -> list[str]:
         """What happened on the contact, and how far it is resolved, in sentences."""
         if not self.has_slipped.any():
-            return [f"No node slips faster than {brief(self.threshold, 'm/s')} up to {brief(self.times[-1], 's')}."]
+            found = f"No node slips faster than {brief(self.threshold, 'm/s')} up to {brief(self.times[-1], 's')}."
+            return [found, *self._how_close]
         counts, share = self.pulses, float(self.has_slipped.mean())
         first, middle = float(np.nanmin(self.rupture_times)), int(self.middle(counts))
         lines = [
@@ -101,6 +102,15 @@ class PlanarSolution:
                 " come close to the wave speed."
             )
         return lines
+
+    @property
+    def _how_close(self) -> list[str]:
+        """How close a contact without slip has come to it, as far as its strength at rest is that at the start."""
+        values, free = self.slab.values, ~self.slab.locked
+        if values.law.states or not values.law.sticks or not free.any():
+            return []
+        share = np.abs(self.traction).max(axis=0)[free] / (values.load - values.excess)[free]
+        return [f"The node that is closest to slip bears up to {share.max():.3%} of its strength."]
 
     @property
     def threshold(self) -> float:
@@ -240,14 +250,16 @@ class Frames:
     residual: float = 0.0
     """See `PlanarSolution`."""
 
-    def add(self, time: float, motion: Motion) -> None:
-        """Keep the motion at a time (s)."""
+    def add(self, time: float, motion: Motion) -> float:
+        """Keep the motion at a time (s), and return the largest slip rate in it (m/s)."""
         self.times.append(time)
         for name, own in MOTION.items():
             self.waiting[name].append(np.array(getattr(motion, own)))
         self.largest_slip = max(self.largest_slip, float(np.abs(motion.slip - self.slab.values.slip).max()))
-        self.fastest = max(self.fastest, float(np.abs(motion.rate).max()))
+        fastest = float(np.abs(motion.rate).max())
+        self.fastest = max(self.fastest, fastest)
         self.residual = float(motion.residual.max())
+        return fastest
 
     def end_round_trip(self, run: PlanarSolver) -> None:
         """Take what the solver is about to forget."""

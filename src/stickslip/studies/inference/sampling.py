@@ -27,39 +27,66 @@ FEW_TIMES = 20.0
 def sample(found: Estimate, sure: Certainty, count: int, seed: int, tell: Tell) -> tuple[Floats, tuple[str, ...]]:
     """Return samples of the searched numbers, shape (count, number of free ones), and sentences on how good they are.
 
-    Numbers on a bound may leave it, and those that are not determined are drawn within their limits. Raises InputError if emcee is
-    not installed.
+    Numbers on a bound may leave it, and those that are not determined are drawn within their limits. Ctrl-C ends the drawing with
+    the samples of the steps that are done; there are fewer then. Raises InputError if emcee is not installed, and KeyboardInterrupt
+    if Ctrl-C comes before the walkers have forgotten where they began.
     """
     try:
         import emcee
     except ImportError:
         raise InputError("infer: samples need emcee: pip install 'stickslip[infer]'") from None
-    model, low_high, dimensions = found.model, found.model.limits, len(found.searched)
-    low, high = low_high
+    dimensions = len(found.searched)
     walkers = max(16, WALKERS * dimensions)
     walkers += walkers % 2
     steps = -(-count // walkers)
     forget = max(20, math.ceil(FORGET * steps))
 
-    def posterior(x: Floats) -> float:
-        if np.any(x < low) or np.any(x > high):
-            return -math.inf
-        rest = model.residual(np.asarray(x, float))
-        return -math.inf if np.all(np.abs(rest) >= FAILED) else -0.5 * cost_of(rest, found.loss)
-
     random = np.random.default_rng(seed)
     begin = _begun(found, sure, walkers, random)
+    posterior = _Posterior(found)
     sampler: Any = emcee.EnsembleSampler(walkers, dimensions, posterior)
     sampler.random_state = np.random.RandomState(seed).get_state()
-    for i, _ in enumerate(sampler.sample(begin, iterations=forget + steps)):
-        if i % 10 == 0:
-            tell(f"sampling: step {i + 1} of {forget + steps}, {walkers} runs each")
-    chain = sampler.get_chain(discard=forget, flat=True)[:count]
-    worst = max(_memory(sampler.get_chain(discard=forget)[:, :, i], emcee.autocorr.function_1d) for i in range(dimensions))
-    note = f"{len(chain)} samples, about {len(chain) / max(worst, 1.0):.0f} of them independent"
-    if steps < FEW_TIMES * worst:
+    done = 0
+    try:
+        for _ in sampler.sample(begin, iterations=forget + steps):
+            if posterior.stopped:  # in the middle of this step
+                break
+            if done % 10 == 0:
+                tell(f"sampling: step {done + 1} of {forget + steps}, {walkers} runs each")
+            done += 1
+    except KeyboardInterrupt:  # between two runs
+        posterior.stopped = True
+    if posterior.stopped and done <= forget:
+        raise KeyboardInterrupt
+    chain = sampler.get_chain()[forget:done]
+    worst = max(_memory(chain[:, :, i], emcee.autocorr.function_1d) for i in range(dimensions))
+    drawn = chain.reshape(-1, dimensions)[:count]
+    note = f"{len(drawn)} samples, about {len(drawn) / max(worst, 1.0):.0f} of them independent"
+    if len(chain) < FEW_TIMES * worst:
         note += "; the walkers need longer to forget each other: ask for more samples"
-    return np.asarray(chain), (note,)
+    stop = f"sampling was stopped: {len(drawn)} of {count} samples were drawn"
+    return np.asarray(drawn), ((stop,) if posterior.stopped else ()) + (note,)
+
+
+class _Posterior:
+    """The logarithm of the posterior density; after Ctrl-C it is `stopped` and runs nothing more.
+
+    emcee would print an exception as a fault of this function.
+    """
+
+    def __init__(self, found: Estimate) -> None:
+        self._found, self.stopped = found, False
+
+    def __call__(self, x: Floats) -> float:
+        model, (low, high) = self._found.model, self._found.model.limits
+        try:
+            if self.stopped or np.any(x < low) or np.any(x > high):
+                return -math.inf
+            rest = model.residual(np.asarray(x, float))
+            return -math.inf if np.all(np.abs(rest) >= FAILED) else -0.5 * cost_of(rest, self._found.loss)
+        except KeyboardInterrupt:
+            self.stopped = True
+            return -math.inf
 
 
 def _memory(chain: Floats, correlation: Callable[[Floats], Floats]) -> float:
