@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -22,7 +23,7 @@ from stickslip.scenarios.scenario import read_scenario
 from stickslip.scenarios.templates import template
 from tests.friction.drawn import laws
 
-from .laws import ALPHA_C, S, Z, hyperbolic, slab_problem
+from .laws import ALPHA_C, SLAB, S, Z, hyperbolic, slab_problem
 
 mpmath = pytest.importorskip("mpmath")
 
@@ -49,6 +50,15 @@ def slope_of(problem: ss.Problem, rates: np.ndarray) -> np.ndarray:
     law, step = problem.friction, 1e-100
     values = law.piece_coefficient(0, np.complex128(problem.law_slip), rates + 1j * step)
     return Z + S * np.imag(values) / step
+
+
+@pytest.mark.parametrize("text", ["0.3 + 0.2*exp(-v/v1)", "0.3 + 0.2/(1 + v/v1)"])
+def test_a_fold_is_enclosed_to_rounding_wherever_cells_are_cut(text):
+    """A cell is cut at its geometric middle, so that a cut may take off little of it: the search must go on nevertheless."""
+    for rate in np.geomspace(0.01, 1.0, 30):
+        problem = replace(slab_problem(FromExpression(text, {"v1": rate})), body=replace(SLAB, normal_stress=20.0 * Z * rate))
+        (fold,) = uniqueness_of(problem).folds
+        assert fold.enclosure[1] - fold.enclosure[0] < 1e-13 * fold.rate
 
 
 @pytest.mark.parametrize("width", WIDTHS)

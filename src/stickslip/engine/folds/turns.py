@@ -375,7 +375,7 @@ def narrowed(g: Resistance, piece: int, low: float, high: float, before: int) ->
             least, most = min(least, most), max(least, most)
             low = max(low, below(middle - most / (gentle if most > 0.0 else steep)))
             high = min(high, above(middle - least / (steep if least > 0.0 else gentle)))
-        if not high - low < 0.75 * width:
+        if sign == 0 and not high - low < 0.75 * width:
             break
     return low, high
 
