@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -157,8 +158,9 @@ class Resistance:
         """The characteristic slip rates (m/s) of the contact: S (variation of mu)/Z and those of the law.
 
         Scales of the law that exceed the first by the factor `_FASTEST` are left out: g rises there whatever the law does.
+        Without damping there is no such first scale.
         """
-        own = self.normal * self.law.variation / self.damping
+        own = self.normal * self.law.variation / self.damping if self.damping else math.inf
         found = (own, *(scale for scale in self.law.rate_scales if scale <= _FASTEST * own))
         return tuple(scale for scale in found if scale > 0.0 and np.isfinite(scale)) or (1.0,)
 

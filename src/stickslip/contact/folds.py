@@ -106,7 +106,7 @@ def bounds_of(g: Resistance) -> turns.Resistance:
 def certificate(g: Resistance, budget: int = turns.MOST_EVALUATIONS) -> Certificate:
     """Prove where g' changes its sign, with at most so many evaluations.
 
-    Raises InputError if friction falls at least as fast as Z v rises even at the fastest rate of the search.
+    Raises InputError if friction falls at least as fast as Z v rises even at the fastest rate of the search, unless Z is 0.
     """
     bounds, room = bounds_of(g), 64
     while True:
@@ -115,7 +115,7 @@ def certificate(g: Resistance, budget: int = turns.MOST_EVALUATIONS) -> Certific
         if found.intervals >= 0:
             break
         room *= 8
-    if found.at_end < 0:
+    if found.at_end < 0 and g.damping:
         raise InputError(f"{type(g.law).__name__}: friction still falls at least as fast as Z v rises at {FASTEST:.3g} m/s")
     intervals = zip(*(column[: found.intervals].tolist() for column in (table.low, table.high, table.proven)), strict=True)
     sure: list[Interval] = []

@@ -1,0 +1,140 @@
+"""What is found about steady sliding: each steady motion, where its stability changes, and all of it in sentences."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from stickslip.foundation.brief_repr import brief_repr
+from stickslip.foundation.formatting import brief
+
+RATES = np.geomspace(1e-18, 1e3, 85)
+"""Slip rates (m/s) at which the stability of a law with states is examined, four a decade; changes are then found to rounding."""
+
+
+@dataclass(frozen=True)
+class Sliding:
+    """One steady sliding motion: slip rate (m/s) and traction (Pa or N) with their signs, and what a small disturbance does."""
+
+    rate: float
+    traction: float
+    states: tuple[float, ...]
+    """The states of the law, as users see them, in the direction of slip."""
+    stable: bool | None
+    """True if every small disturbance fades, False if one grows, None if one keeps its size."""
+    growth: float
+    """Growth rate (1/s) of the disturbance that grows fastest or fades most slowly.
+
+    It is inf if the contact has no mass and friction falls with the slip rate faster than waves carry away: nothing stays at
+    such a rate. It is 0 if disturbances keep their size, or fade ever more slowly at ever higher frequencies.
+    """
+    period: float
+    """Period (s) with which that disturbance swings, inf if it does not."""
+
+    units: ClassVar = {"rate": "m/s", "traction": "Pa or N", "growth": "1/s", "period": "s"}
+    __repr__ = brief_repr
+
+    @property
+    def verdict(self) -> str:
+        """The word for `stable`: stable, unstable or neutral."""
+        return "neutral" if self.stable is None else "stable" if self.stable else "unstable"
+
+    def __str__(self) -> str:
+        if self.growth == math.inf:
+            return "unstable at once: friction falls faster with the slip rate than waves carry away"
+        if self.stable is None:
+            return "neutral: a small disturbance neither grows nor fades"
+        swings = f", with a period of {self.period:.6g} s" if 0.0 < self.period < math.inf else ""
+        if self.growth == 0.0:
+            return "stable: every small disturbance fades, but the faster it swings, the more slowly"
+        does = "grows" if self.growth > 0.0 else "fades"
+        size = "at once" if math.isinf(self.growth) else f"at {abs(self.growth):.6g} /s"
+        return f"{self.verdict}: a small disturbance {does} {size}{swings}"
+
+
+@dataclass(frozen=True)
+class StabilityChange:
+    """A slip rate (m/s) at which steady sliding gains or loses its stability, and the pull rate (m/s) that leads to it."""
+
+    rate: float
+    pull_rate: float | None
+    """None under a dead load, which does not feel the pull rate."""
+    stable_above: bool
+    """True if sliding a little faster is stable."""
+    enclosure: tuple[float, float] | None = None
+    """Slip rates (m/s) between which the change is proven to lie; None if that is not proven."""
+
+    units: ClassVar = {"rate": "m/s", "pull_rate": "m/s", "enclosure": "m/s"}
+    __repr__ = brief_repr
+
+
+@dataclass(frozen=True)
+class SteadySlidings:
+    """All steady sliding motions of a problem at its pull rate, and the rates at which their stability changes."""
+
+    pull_rate: float
+    """The (first) pull rate V (m/s)."""
+    far_stress: float | None
+    """The stress far beyond a driver of finite impedance (Pa), None for a driver that does not give way."""
+    slidings: tuple[Sliding, ...]
+    """Slowest first; at most one if the driver does not give way."""
+    changes: tuple[StabilityChange, ...]
+    """Slowest first."""
+    can_rest: bool
+    """True if a driver of finite impedance does not pull hard enough to free a contact that rests."""
+    proven: bool
+    """True if interval arithmetic shows that there are no other changes."""
+    why_none: str = ""
+    """Why nothing slides steadily; "" if something does."""
+    unit: str = "Pa"
+    """Unit of tractions."""
+
+    @property
+    def settled(self) -> Sliding | None:
+        """The stable steady sliding, if there is exactly one, and rest is not possible: what every slow motion ends in."""
+        stable = [one for one in self.slidings if one.stable]
+        return stable[0] if len(stable) == 1 and not self.can_rest else None
+
+    def __str__(self) -> str:
+        return " ".join(f"{line[0].upper()}{line[1:]}." for line in self.lines())
+
+    def lines(self) -> list[str]:
+        """Return sentences for users, without a capital and without a full stop."""
+        if self.why_none:
+            return [f"none: {self.why_none}"]
+        found = [f"at {brief(one.rate, 'm/s')}, traction {brief(one.traction, self.unit)}: {one}" for one in self.slidings]
+        found += [self._given_way(), "at rest: the driver does not pull hard enough to free a contact that sticks" * self.can_rest]
+        return [line for line in [*found, self._changes()] if line]
+
+    def _given_way(self) -> str:
+        """Return a sentence on a contact that does not slide at the pull rate, because the driver gives way."""
+        others = [one for one in self.slidings if not math.isclose(one.rate, self.pull_rate, rel_tol=1e-9, abs_tol=0.0)]
+        if self.far_stress is None or not others:
+            return ""
+        far = brief(self.far_stress, "Pa")
+        return (
+            f"not at the pull rate of {brief(self.pull_rate, 'm/s')}, because the driver gives way: the far stress, which is the"
+            f" initial load unless given, is {far}, and friction is {brief(others[0].traction, 'Pa')}"
+        )
+
+    def _changes(self) -> str:
+        """Return a sentence on the critical rates, and on what is proven of them."""
+        if not self.changes and self.proven and self.slidings:
+            return f"{self.slidings[0].verdict} at any other slip rate, too (proven)" * (len(self.slidings) == 1)
+        if not self.changes:
+            return ""
+        texts = [f"{'unstable' if self.changes[0].stable_above else 'stable'} below"]
+        texts += [f"{_place(one)}, {'stable' if one.stable_above else 'unstable'} above" for one in self.changes]
+        how = "proven by interval arithmetic" if self.proven else f"found between {RATES[0]:g} and {RATES[-1]:g} m/s, not proven"
+        return f"{' '.join(texts)} ({how})"
+
+
+def _place(change: StabilityChange) -> str:
+    if change.pull_rate is None:
+        return f"a slip rate of {change.rate:.9g} m/s"
+    if change.pull_rate == change.rate:
+        return f"a pull rate of {change.rate:.9g} m/s"
+    return f"a slip rate of {change.rate:.9g} m/s, at a pull rate of {change.pull_rate:.9g} m/s"

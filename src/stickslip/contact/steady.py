@@ -1,0 +1,265 @@
+"""Steady sliding: the slip rates at which a contact can slide steadily, whether they are stable, and where stability changes.
+
+A contact that slides at a constant rate v, at the traction S mu(v) of its steady states, balances a driver of impedance Zd and
+far stress s if
+
+    Zd v + S mu(v) = s + Zd V
+
+so it slides at the pull rate V if the driver is rigid, or moves a block's spring, and in general at another rate if the driver
+gives way. Without states a disturbance fades if and only if friction falls with the slip rate by less than the body takes away,
+S mu'(v) > -D: D is the damping of a block, 0 under a rigid driver, and min(Zd, Z^2/Zd) of any other driver under a contact without
+mass. The critical rates are then the turns of D v + S mu(v), all of which are found, with proof.
+
+Source: Rice & Ruina 1983, J. Appl. Mech. 50, 343; Campillo et al. 1996, eqs (7)-(13), for the slab.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import Any
+
+import numpy as np
+
+from stickslip.contact.disturbance import Disturbed, Response
+from stickslip.contact.equation import Resistance
+from stickslip.contact.folds import Certificate, certificate
+from stickslip.contact.roots import sign_change
+from stickslip.contact.sliding import RATES, Sliding, StabilityChange, SteadySlidings
+from stickslip.friction.contract import one_argument
+from stickslip.friction.formula.differences import value_and_slopes
+from stickslip.loading import LoadingHistory
+from stickslip.problem.problem import Problem
+
+FAR = (0.0, 0.37, 1e3)
+"""Distances (m) over which friction must not change with slip if the contact is to slide steadily."""
+
+
+@lru_cache(maxsize=64)
+def steady_slidings(problem: Problem) -> SteadySlidings:
+    """Find how a contact can slide steadily under the loading of a problem, at the start if it varies, and what is stable."""
+    return _Steady(problem).found()
+
+
+@dataclass(frozen=True)
+class _Steady:
+    """The search for steady sliding of one problem; slip rates in it are magnitudes, in the direction of the drive."""
+
+    problem: Problem
+
+    @cached_property
+    def is_soft(self) -> bool:
+        """True if the driver gives way."""
+        return not self.problem.body.is_driven_rigidly
+
+    @cached_property
+    def far_stress(self) -> float | None:
+        """The stress far beyond the driver (Pa); None if the driver is rigid, or if the contact starts in steady sliding."""
+        far, problem = self.problem.far_stress, self.problem
+        if not self.is_soft or (far is None and self._starts_steadily):
+            return None
+        if far is None:
+            return problem.stress
+        return far.first if isinstance(far, LoadingHistory) else far
+
+    @property
+    def _starts_steadily(self) -> bool:
+        return self.problem.initial_load is None and self.problem.initial_excess is None
+
+    @cached_property
+    def drive(self) -> float:
+        """The load that steady sliding balances, with its sign: s + Zd V (Pa), or V (m/s) if the contact slides at that rate."""
+        pull = self.problem.first_pull_rate
+        return pull if self.far_stress is None else self.far_stress + self.problem.body.driver_impedance * pull
+
+    @cached_property
+    def gives_way(self) -> float:
+        """The growth of the driver's resistance with the slip rate (Pa s/m)."""
+        body = self.problem.body
+        return body.driver_impedance + body.damping - body.impedance
+
+    def found(self) -> SteadySlidings:
+        problem, why = self.problem, self.why_none()
+        rates = [] if why else self.rates()
+        if not (why or rates):
+            why = "the driver does not pull hard enough to keep the contact sliding"
+        slidings = tuple(self.sliding(rate) for rate in rates)
+        changes, proven = ((), False) if why else self.changes()
+        far = self.far_stress
+        if self.is_soft and far is None and slidings:
+            far = slidings[0].traction
+        strength = problem.strength if problem.friction.sticks else 0.0
+        rests = self.far_stress is not None and abs(self.drive) <= strength
+        return SteadySlidings(problem.first_pull_rate, far, slidings, changes, rests and not why, proven, why, problem.load_unit)
+
+    def why_none(self) -> str:
+        """Return why nothing slides steadily, "" if something may."""
+        problem, law = self.problem, self.problem.friction
+        first = " at first" if problem.varies else ""
+        if problem.far_stress_rate:
+            return "the far stress keeps changing"
+        if self.drive == 0.0:
+            return f"nothing pulls{first}"
+        if law.states and law.steady_state(1.0) is None:
+            return f"{type(law).__name__} does not say in which state it slides steadily"
+        return "friction keeps changing with slip" if self._changes_with_slip() else ""
+
+    def _changes_with_slip(self) -> bool:
+        law, states = self.problem.friction, self.states(1.0)[1]
+        slips = self.slip + math.copysign(1.0, self.drive) * np.array(FAR)
+        formulas = [(law.trees()[i], law.numbers(i)) for i in self.pieces]
+        formulas += [(tree, law.numbers(self.pieces[0])) for tree in law.state_trees()]
+        return any(value_and_slopes(tree, numbers, slips, 1.0, *states)[1][0].any() for tree, numbers in formulas)
+
+    # ---- the law --------------------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def pieces(self) -> tuple[int, ...]:
+        """The pieces of the law that steady sliding may be on: after a long way, a law of slip is on its last one."""
+        law = self.problem.friction
+        if law.knot_variable == "rate" or not law.knots:
+            return tuple(range(len(law.pieces)))
+        return (0,) if self.drive < 0.0 and law.counts == "net" else (len(law.pieces) - 1,)
+
+    @cached_property
+    def slip(self) -> float:
+        """A slip (m) of the law at which steady sliding is on its piece."""
+        law = self.problem.friction
+        if law.knot_variable == "rate" or not law.knots:
+            return self.problem.law_slip
+        return law.knots[-1] if self.pieces[0] else float(np.nextafter(law.knots[0], -math.inf))
+
+    def states(self, rate: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Return the states of steady sliding at a slip rate (m/s): as users see them, and as formulas use them."""
+        law = self.problem.friction
+        seen = tuple(np.ravel(law.steady_state(rate)).tolist()) if law.states else ()
+        return seen, law.inner_states(seen)
+
+    def traction(self, rate: float) -> float:
+        """Return the traction (Pa or N) of steady sliding at a slip rate (m/s)."""
+        mu = self.problem.friction.coefficient(self.slip, rate, one_argument(self.states(rate)[1]))
+        return self.problem.normal * float(mu)
+
+    def response(self, rate: float) -> Response:
+        """Return how friction responds to a disturbance of steady sliding at a slip rate (m/s).
+
+        With w' = f(v, w) it is Phi = mu_v + mu_w (s - f_w)^-1 f_v.
+        """
+        law, states = self.problem.friction, self.states(rate)[1]
+        piece = int(law.piece_at(self.slip, rate))
+        numbers, at, many = law.numbers(piece), (self.slip, rate, *states), len(states)
+        slopes = value_and_slopes(law.trees()[piece], numbers, *at)[1]
+        if not many:
+            return Response(slopes[1:2], np.ones(1))
+        evolve = np.array([value_and_slopes(tree, numbers, *at)[1] for tree in law.state_trees()])
+        matrix, forced, felt = evolve[:, 2:], evolve[:, 1], slopes[2:]
+        below = np.real(np.poly(matrix))[::-1]
+        above = np.zeros(many)
+        above[-1] = felt @ forced
+        if many == 2:  # the adjugate of s - f_w is s + f_w - trace
+            above[0] = felt @ (matrix - np.trace(matrix) * np.eye(2)) @ forced
+        return Response(np.append(above, 0.0) + slopes[1] * below, below)
+
+    def disturbed(self, rate: float) -> Disturbed:
+        return Disturbed(self.problem.body, self.problem.normal, self.response(rate))
+
+    def sliding(self, rate: float) -> Sliding:
+        """Return steady sliding at a slip rate (m/s), with its stability."""
+        disturbed, sign = self.disturbed(rate), math.copysign(1.0, self.drive)
+        growth = disturbed.growth()
+        period = 2.0 * math.pi / growth.frequency if growth.frequency else math.inf
+        return Sliding(sign * rate, sign * self.traction(rate), self.states(rate)[0], disturbed.is_stable(), growth.rate, period)
+
+    # ---- the rates ------------------------------------------------------------------------------------------------------------
+
+    def rates(self) -> list[float]:
+        """Return the slip rates (m/s) of steady sliding, ascending."""
+        if self.far_stress is None:
+            return [abs(self.drive)]
+        load, slope = abs(self.drive), self.gives_way
+        fastest = min(2.0 * load / slope, RATES[-1]) if slope > 0.0 else RATES[-1]
+        turns = self.turns(slope).rates if not self.problem.friction.states else RATES.tolist()
+        places = [RATES[0] * 1e-6, *(rate for rate in turns if rate < fastest), fastest]
+        miss = lambda rate: slope * rate + self.traction(rate) - load  # noqa: E731 - read beside its uses
+        misses = [miss(place) for place in places]
+        ends = zip(places[:-1], places[1:], misses[:-1], misses[1:], strict=True)
+        return [sign_change(miss, low, high) for low, high, one, other in ends if (one < 0.0) != (other < 0.0)]
+
+    # ---- stability ------------------------------------------------------------------------------------------------------------
+
+    def turns(self, damping: float) -> Certificate:
+        """Return where `damping` v + S mu(v) turns, for a law without states."""
+        return certificate(self.resistance(damping))
+
+    def resistance(self, damping: float) -> Resistance:
+        return Resistance(self.problem.friction, damping, self.problem.normal, self.slip)
+
+    def changes(self) -> tuple[tuple[StabilityChange, ...], bool]:
+        """Return where stability changes along the slip rate, and whether it is proven that it changes nowhere else."""
+        law = self.problem.friction
+        if law.states:
+            return tuple(self._change(rate, above, None) for rate, above in self._searched()), False
+        taken = self.taken_away()
+        if not law.depends_on_rate or not math.isfinite(taken):
+            return (), True
+        proof, g = self.turns(taken), self.resistance(taken)
+        found, rates = [], proof.rates
+        for k, rate in enumerate(rates):
+            beyond = 0.5 * (rate + rates[k + 1]) if k + 1 < len(rates) else 2.0 * rate
+            found.append(self._change(rate, bool(g.slope(beyond) > 0.0), proof.enclosure(rate)))
+        return tuple(found), proof.verdict == "proven"
+
+    def taken_away(self) -> float:
+        """Return how steeply friction may fall with the slip rate before steady sliding is unstable (Pa s/m or N s/m)."""
+        body = self.problem.body
+        if not body.has_waves:
+            return body.damping
+        if not self.is_soft:
+            return body.damping - body.impedance
+        driver, own = body.driver_impedance, body.impedance
+        if not body.has_inertia:
+            return body.damping - own + min(driver, own * own / driver if driver else 0.0)
+        return _largest(lambda fall: self._withstands(fall), driver + body.damping - own)
+
+    def _withstands(self, fall: float) -> bool:
+        """Return True if sliding is stable where friction falls with the slip rate by `fall` (Pa s/m)."""
+        response = Response(np.array([-fall / self.problem.normal]), np.ones(1))
+        return Disturbed(self.problem.body, self.problem.normal, response).is_stable() is True
+
+    def _searched(self) -> list[tuple[float, bool]]:
+        """Return the slip rates (m/s) at which stability changes under a law with states, and whether it is stable above each."""
+        stable = [self._is_stable(rate) for rate in RATES.tolist()]
+        ends = zip(RATES[:-1].tolist(), RATES[1:].tolist(), stable[:-1], stable[1:], strict=True)
+        return [
+            (sign_change(lambda rate, after=after: 1.0 if self._is_stable(rate) == after else -1.0, low, high), after)  # type: ignore[misc]
+            for low, high, before, after in ends
+            if before != after
+        ]
+
+    def _is_stable(self, rate: float) -> bool:
+        return self.disturbed(rate).is_stable() is True
+
+    def _change(self, rate: float, stable_above: bool, enclosure: Any) -> StabilityChange:
+        return StabilityChange(rate, self._pull_rate(rate), stable_above, enclosure)
+
+    def _pull_rate(self, rate: float) -> float | None:
+        """Return the pull rate (m/s) at which the contact slides steadily at a slip rate, None if there is none."""
+        if self.far_stress is None:
+            return rate
+        driver = self.problem.body.driver_impedance
+        if driver == 0.0:
+            return None
+        sign = math.copysign(1.0, self.drive)
+        return (sign * (self.gives_way * rate + self.traction(rate)) - self.far_stress) / driver
+
+
+def _largest(holds: Callable[[float], bool], high: float) -> float:
+    """Return the largest number between 0 and `high` up to which something holds, by bisection."""
+    low = 0.0
+    while True:
+        middle = 0.5 * (low + high)
+        if not low < middle < high:
+            return low
+        low, high = (middle, high) if holds(middle) else (low, middle)
