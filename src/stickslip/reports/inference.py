@@ -65,11 +65,13 @@ def _title(study: Inference) -> str:
 
 
 def _figures(study: Inference, dataset: Any) -> Iterator[tuple[str, str, str, Any]]:
-    for name in study.model.sizes:
+    if study.features is not None:
+        caption = "What was measured of each slip event, the mean with its interval of 95 %, and the run with the best numbers."
+        yield "figure-features", "Features of slip events, record and best run", caption, figures.draw_features(dataset)
+    for name in study.model.sizes if study.features is None else ():
         title = f"{figures.NAMES[name][0].capitalize()}, record and best run"
-        points = "what was measured of each event" if study.asked.get("by") == "features" else "the samples of the record"
         caption = (
-            f"Above: {points}, and the run with the best numbers. Middle: what is left, which should look like "
+            "Above: the samples of the record, and the run with the best numbers. Middle: what is left, which should look like "
             "noise; a pattern is what the model lacks. Below: the slip rate of that run."
         )
         yield f"figure-{name.replace('_', '-')}", title, caption, figures.draw_curves(dataset, name)

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+import string
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
@@ -24,8 +26,8 @@ from stickslip.solution.place import Place
 if TYPE_CHECKING:
     from stickslip.studies.inference.inference import Inference
 
-MANY = 200
-"""Number of points from which they are drawn small."""
+MANY, FEW = 200, 50
+"""Number of points from which they are drawn small, and of events up to which they are drawn large."""
 MOST_PAIRED = 4
 """Largest number of parameters that are drawn against each other."""
 NAMES = {
@@ -34,6 +36,12 @@ NAMES = {
     "shear_force": ("shear force", "F", "N"),
     "slip": ("slip", "u", "m"),
     "slip_rate": ("slip rate", "v", "m/s"),
+    "friction_peak": ("peak friction", r"\mu_p", "1"),
+    "shear_stress_peak": ("peak stress", r"\tau_p", "Pa"),
+    "shear_force_peak": ("peak force", "F_p", "N"),
+    "friction_rest": ("friction at rest", r"\mu_r", "1"),
+    "shear_stress_rest": ("stress at rest", r"\tau_r", "Pa"),
+    "shear_force_rest": ("force at rest", "F_r", "N"),
     "friction_drop": ("drop of friction", r"\Delta\mu", "1"),
     "shear_stress_drop": ("stress drop", r"\Delta\tau", "Pa"),
     "shear_force_drop": ("drop of force", r"\Delta F", "N"),
@@ -45,6 +53,10 @@ NAMES = {
 """Names, symbols and units of what is measured."""
 JOINT = 2.4477468306808166
 """Half width, in standard uncertainties, of an ellipse that holds two numbers with a probability of 95 %."""
+TWO = 1.96
+"""Half width, in standard errors, of the band that holds a mean with a probability of 95 %."""
+PANELS = {"record": "record and best run", "residual": "residual", "rate": "slip rate of the best run"}
+"""The panels of samples of a record, with their titles."""
 FRAMES = 4000
 """Number of times at which the slip rate is drawn, evenly spaced, besides those of the samples."""
 
@@ -64,7 +76,7 @@ def data(study: Inference) -> xr.Dataset:
     unit = units.pop() if len(units) == 1 else "SI"
     for name, text in (("data", "measured"), ("model", "best run"), ("residual", "measured minus best run")):
         contents[name] = quantity("sample", table[name].to_numpy(), text, "", unit)
-    contents |= _rates(study) | _numbers(study)
+    contents |= (_rates(study) if study.features is None else _means(study.features)) | _numbers(study)
     line = study.scenario.title.partition(", part 1")[0]
     attributes = {
         "notes": "\n".join(study.notes),
@@ -86,6 +98,15 @@ def _rates(study: Inference) -> dict[str, xr.Variable]:
     return {
         "run_time": quantity("frame", np.concatenate(times), "time", "t", "s"),
         "slip_rate": quantity("frame", np.concatenate(rates), "slip rate", "v", "m/s"),
+    }
+
+
+def _means(features: pd.DataFrame) -> dict[str, xr.Variable]:
+    names = {"feature": "feature of slip events", "mean": "mean of the record", "error": "standard error of the mean", "run": "run"}
+    of = xr.Variable("row", features.part.to_numpy(), {"long_name": "part of the record"})
+    return {"part_of_mean": of} | {
+        name: xr.Variable("row", features[name].to_numpy(str if name == "feature" else float), {"long_name": text})
+        for name, text in names.items()
     }
 
 
@@ -116,14 +137,31 @@ def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw record and best run, the residual and the slip rate below each other, and beside them pairs of numbers."""
     paired = _paired(dataset)
     count = max(len(paired) - 1, 0)
-    figure = sheet((7.2, 5.4) if count else (5.0, 5.4), **place)
-    axes: Any = figure.subplot_mosaic(_layout(count), width_ratios=[2.2, *[1.0] * max(count, 0)] if count else None)
-    _draw_curves(axes, dataset, str(dataset["quantity"].values[0]))
+    shown = PANELS if "feature" not in dataset else {name: NAMES[name][0] for name in _features(dataset)}
+    figure = sheet((7.2 if count else 5.0, max(5.4, 1.2 * len(shown) + 1.0)), **place)
+    axes: Any = figure.subplot_mosaic(_layout(list(shown), count), width_ratios=[2.2, *[1.0] * count] if count else None)
+    if "feature" in dataset:
+        _draw_features(axes, dataset)
+    else:
+        _draw_curves(axes, dataset, str(dataset["quantity"].values[0]))
     _draw_pairs(axes, dataset, paired)
-    lettered = [axes["record"], axes["residual"], axes["rate"], *([axes["00"]] if count else [])]
-    letter_panels(lettered, ["record and best run", "residual", "slip rate of the best run", *(["pairs, 95 %"] if count else [])])
-    add_legend(axes["record"], [*_marks(dataset), *(_pair_marks(dataset, "(d) ") if count else [])])
+    last = {"00": "pairs, 95 %"} if count else {}
+    letter_panels([axes[name] for name in (*shown, *last)], [*shown.values(), *last.values()])
+    letter = f"({string.ascii_lowercase[len(shown)]}) "
+    add_legend(next(iter(axes.values())), [*_marks(dataset), *(_pair_marks(dataset, letter) if count else [])])
     set_title(figure, str(dataset.attrs["title"]))
+    return figure
+
+
+@styled
+def draw_features(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
+    """Draw each feature of the slip events of the record, its mean, and that of the best run."""
+    shown = _features(dataset)
+    figure = sheet((6.4, 1.2 * len(shown) + 1.0), **place)
+    axes: Any = figure.subplot_mosaic([[name] for name in shown])
+    _draw_features(axes, dataset)
+    letter_panels([axes[name] for name in shown], [NAMES[name][0] for name in shown])
+    add_legend(axes[shown[0]], _marks(dataset))
     return figure
 
 
@@ -161,6 +199,7 @@ def _draw_curves(axes: Mapping[str, Axes], dataset: xr.Dataset, name: str) -> No
     for row in ("record", "residual"):
         axes[row].sharex(axes["rate"])
         axes[row].tick_params(labelbottom=False)
+    axes["rate"].ticklabel_format(axis="x", useOffset=False, style="plain")
     axes["rate"].set_xlabel(f"time $t$ ({unit})")
 
 
@@ -172,16 +211,13 @@ def _draw_pairs(axes: Mapping[str, Axes], dataset: xr.Dataset, paired: list[int]
             _draw_pair(axes[f"{i}{j}"], dataset, paired[j], paired[i + 1], (i == count - 1, j == 0))
 
 
-def _layout(count: int) -> Any:
-    """Return the places of the panels: three below each other, and a triangle of pairs beside them."""
-    rows = [["record"], ["residual"], ["rate"]]
-    if not count:
-        return rows
-    tall = 2 if count == 2 else 1  # so that rows of both sides have a common height
+def _layout(rows: list[str], count: int) -> Any:
+    """Return the places of the panels: some below each other, and a triangle of pairs beside them."""
+    high = math.lcm(len(rows), max(count, 1))  # so that rows of both sides have a common height
     wide = []
-    for k in range(3 * tall):
-        i = k * count // (3 * tall)
-        wide.append([rows[k // tall][0], *(f"{i}{j}" if j <= i else "." for j in range(count))])
+    for k in range(high):
+        i = k * count // high
+        wide.append([rows[k * len(rows) // high], *(f"{i}{j}" if j <= i else "." for j in range(count))])
     return wide
 
 
@@ -189,6 +225,34 @@ def _paired(dataset: xr.Dataset, most: int = MOST_PAIRED) -> list[int]:
     """Return the indices of the numbers that are drawn against each other: shared ones that the record determines."""
     known = np.isfinite(dataset["uncertainty"].values) & (dataset["shared"].values == 1)
     return np.flatnonzero(known).tolist()[:most]
+
+
+def _features(dataset: xr.Dataset) -> list[str]:
+    """Return the names of the features, each once."""
+    return [str(name) for name in dict.fromkeys(dataset["feature"].values.tolist())]
+
+
+def _draw_features(axes: Mapping[str, Axes], dataset: xr.Dataset) -> None:
+    """Draw each feature in the panel of its name: all events, the mean of each part of the record, and the run."""
+    time_name, size = time_unit(float(np.nanmax(dataset["time"].values)))
+    names = _features(dataset)
+    for name in names:
+        _, letter, si = NAMES[name]
+        of = dataset["quantity"].values == name
+        unit, scale = unit_of(si, dataset["data"].values[of])
+        for row in np.flatnonzero(dataset["feature"].values == name).tolist():
+            chosen = of & (dataset["part"].values == dataset["part_of_mean"].values[row])
+            time = dataset["time"].values[chosen] / size
+            mean, error, run = (float(dataset[what].values[row]) / scale for what in ("mean", "error", "run"))
+            dots = 3 if chosen.sum() > FEW else 6
+            axes[name].plot(time, dataset["data"].values[chosen] / scale, ".", color=SKY, markersize=dots, rasterized=True)
+            axes[name].fill_between(time[[0, -1]], mean - TWO * error, mean + TWO * error, color=BLUE, alpha=0.4, linewidth=0.0)
+            axes[name].plot(time[[0, -1]], [run, run], color=INK, linewidth=1.0)
+        axes[name].set_ylabel(f"${letter}$" if unit == "1" else f"${letter}$ ({unit})")
+        axes[name].ticklabel_format(useOffset=False, style="plain")
+        axes[name].sharex(axes[names[-1]])
+        axes[name].tick_params(labelbottom=name == names[-1])
+    axes[names[-1]].set_xlabel(f"time $t$ ({time_name})")
 
 
 def _draw_record(axes: Axes, dataset: xr.Dataset, name: str, size: float) -> None:
@@ -291,6 +355,8 @@ def _marks(dataset: xr.Dataset) -> list[Artist]:
         Line2D([], [], color=SKY, linestyle="none", marker="o", markersize=3, label="measured"),
         Line2D([], [], color=INK, label="best run"),
     ]
+    if "feature" in dataset:
+        marks.insert(1, Patch(color=BLUE, alpha=0.4, linewidth=0.0, label="mean of the record, 95 %"))
     if (dataset["fitted"].values == 0).any():
         marks.append(Patch(color=GREY, alpha=0.15, linewidth=0.0, label="left out, predicted"))
     return marks

@@ -70,7 +70,7 @@ def certainty_of(found: Estimate) -> Certainty:
     covariance = np.zeros((len(x), len(x)))
     moves = null_directions(model, x, slopes[:, inner], inner) if len(inner) else np.zeros((0, 0))
     if len(inner):
-        covariance[np.ix_(inner, inner)] = covariance_of(without(slopes[:, inner], moves), 1.0)[0]
+        covariance[np.ix_(inner, inner)] = covariance_of(without(slopes[:, inner], moves), model.variance(x))[0]
     covariance[idle] = covariance[:, idle] = np.nan
     covariance[on_bound] = covariance[:, on_bound] = 0.0
     widths, correlation = sizes_and_correlation(covariance)
@@ -125,6 +125,8 @@ def _slopes(model: Model, x: Floats) -> tuple[Floats, dict[int, str]]:
     A sample that a jump of the run passes within the step of the differences has no derivative with respect to any number: its row
     is 0, so that what such samples tell is left out of the curvature, and intervals are rather too wide.
     """
+    if model.of_means:
+        return model.jacobian(x), {}
     right, left = model.jacobian(x, sides=(1.0,)), model.jacobian(x, sides=(-1.0,))
     right, left = np.where(right.any(axis=0), right, left), np.where(left.any(axis=0), left, right)  # a limit leaves one side only
     size, apart = np.maximum(np.abs(right), np.abs(left)), np.abs(right - left)

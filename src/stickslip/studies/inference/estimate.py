@@ -88,6 +88,8 @@ def _with_noise(model: Model, searched: Floats, loss: str, tell: Tell, best: Bes
         before = searched
         model = model.with_jumps(searched).fine(searched)
         searched = solved(model, searched, loss, best, thorough=True)
+        if model.of_means:
+            return Estimate(model, searched, loss=loss)
         by = model.jacobian(searched, white=False)
         new = _noise(model, searched, by, loss)
         if turn == 0 and not model.unsure and loss == "linear" and _keeps_minimum(model, new):

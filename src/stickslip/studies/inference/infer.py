@@ -18,7 +18,7 @@ from stickslip.friction.law import FrictionLaw
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_rtol
 from stickslip.scenarios.source import read_source
-from stickslip.studies.inference.by_features import FeatureModel, by_features
+from stickslip.studies.inference.by_features import FeatureModel, by_features, scatter_of
 from stickslip.studies.inference.certainty import Certainty, Profile, certainty_of, profile_of
 from stickslip.studies.inference.directions import IDLE
 from stickslip.studies.inference.estimate import Estimate, estimate
@@ -238,7 +238,8 @@ def _model(problem: Problem, parts: list[Part], names: Sequence[str] | str, wish
     own = own_of(problem, parts, wishes.each) if wishes.parts == "rests" else []
     own = [one for one in own if one.name not in {shared.name for shared in chosen}]
     kind = FeatureModel if wishes.by == "features" else Model
-    model = kind(problem, tuple(parts), (*chosen, *own), wishes.rtol, first_sizes(parts))
+    sizes = scatter_of(parts) if wishes.by == "features" else first_sizes(parts)
+    model = kind(problem, tuple(parts), (*chosen, *own), wishes.rtol, sizes)
     if wishes.by == "features" and sum(len(part.observed) for part in parts) < len(chosen):
         names = ", ".join(parts[0].observed)
         raise InputError(f"infer: {names} cannot determine {len(chosen)} numbers: free fewer of them, or record slip too")

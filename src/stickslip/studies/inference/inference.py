@@ -23,6 +23,7 @@ from stickslip.problem.problem import Problem
 from stickslip.scenarios.scenario import Scenario
 from stickslip.solution.accessors import report_of_study
 from stickslip.solution.solution import Solution
+from stickslip.studies.inference.by_features import FeatureModel
 from stickslip.studies.inference.certainty import Certainty, Profile
 from stickslip.studies.inference.estimate import Estimate
 from stickslip.studies.inference.free import Free
@@ -194,6 +195,14 @@ class Inference(Study):
             total += 2.0 * count * math.log(size)
         return total + self.estimate.cost(self.estimate.searched) + len(self.free) * math.log(n)
 
+    @cached_property
+    def features(self) -> pd.DataFrame | None:
+        """Features of slip events of the best run beside their means in the record; None if samples were fitted.
+
+        Columns: part, feature, mean and its standard error, run, unit, and missed (True where the run misses the mean).
+        """
+        return self.model.compared(self.estimate.searched) if isinstance(self.model, FeatureModel) else None
+
     @property
     def fit(self) -> pd.DataFrame:
         """What is left of each fitted quantity: samples, noise (standard deviation, SI), memory (s), and rms of the residual."""
@@ -231,8 +240,9 @@ class Inference(Study):
     def headline(self) -> str:
         """What was found from what, in one line."""
         shared = sum(one.part is None for one in self.free)
-        noise = ", ".join(f"{name} {brief(size, unit_of(name), 3)}" for name, size in self.model.sizes.items())
-        return f"{shared} numbers from {self.model.counted}, noise: {noise}; intervals of 95 %"
+        sizes = ", ".join(f"{name} {brief(size, unit_of(name), 3)}" for name, size in self.model.sizes.items())
+        what = "scatter" if self.model.of_means else "noise"
+        return f"{shared} numbers from {self.model.counted}, {what}: {sizes}; intervals of 95 %"
 
     def to_netcdf(self, path: str | Path) -> Path:
         """Write data, model, residual, numbers, samples and provenance, and return the path. Raises InputError if that fails."""

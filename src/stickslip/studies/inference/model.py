@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -49,7 +49,7 @@ class Model:
     differences, in searched numbers: one for all, or one for each. `smooth` is the share of the samples over which residuals are
     averaged, so that an event at another time is felt from afar. A run that needs more than `max_pieces` has failed. A jump of a
     run is spread over `blur` samples, and `unsure` is the standard deviation (SI) of each used sample from the unknown time of a
-    jump beside it, by part and quantity.
+    jump beside it, by part and quantity. `of_means` is True if residuals are few means whose errors are known.
     """
 
     problem: Problem
@@ -65,6 +65,7 @@ class Model:
     blur: int = RAMP
     unsure: dict[tuple[int, str], Floats] = field(default_factory=dict)
     _last: dict[int, tuple[bytes, Floats]] = field(default_factory=dict)
+    of_means: ClassVar[bool] = False
 
     def values(self, searched: Floats) -> list[float]:
         """Return the free values (SI), within their limits."""
@@ -288,6 +289,10 @@ class Model:
         """The number of independent samples, as many as the memory of the noise leaves."""
         blocks = [one for i in range(len(self.parts)) for one in self.blocks(i)]
         return sum(independent(block.time, self.memory.get(name, 0.0)) for name, block in blocks)
+
+    def variance(self, searched: Floats) -> float:
+        """Return the factor on the covariance of the numbers, beside the size of the noise: 1."""
+        return 1.0
 
     def thinned(self, most: int) -> Model:
         """Return the same model on about so many samples, but no fewer than 200 of the longest part."""

@@ -29,7 +29,7 @@ MEASURED = (*SHEAR, "slip", "slip_rate")
 """Everything that may be fitted."""
 LOADING = ("load_point", "load_rate")
 UNITS = {"friction": "1", "shear_stress": "Pa", "shear_force": "N", "slip": "m", "slip_rate": "m/s"}
-UNITS |= {f"{name}_drop": UNITS[name] for name in SHEAR}
+UNITS |= {f"{name}_{level}": UNITS[name] for name in SHEAR for level in ("peak", "rest", "drop")}
 UNITS |= {"recurrence": "s", "duration": "s", "event_slip": "m", "peak_rate": "m/s"}
 WANTED = ("time", *LOADING, *MEASURED, "normal_stress", "normal_force", *(f"{name}_deviation" for name in MEASURED))
 """The columns that are looked for."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -51,6 +52,9 @@ def minima_of(study: Inference) -> Iterator[str]:
 
 def noise_of(study: Inference) -> Iterator[str]:
     """Yield sentences on the memory of the noise, and on standard deviations that were given too small."""
+    if study.features is not None:
+        yield from _features(study, missed=False)
+        return
     for name, memory in study.model.memory.items():
         if memory > 0.0:
             yield f"residuals of {name} remember themselves for {brief(memory, 's', 3)}; the intervals allow for it"
@@ -66,8 +70,23 @@ def record_of(study: Inference) -> Iterator[str]:
         yield f"{' and '.join(own)} belong to the record: the run of the best scenario, and the explorer, are without them"
 
 
+def _features(study: Inference, *, missed: bool) -> Iterator[str]:
+    """Yield a sentence on each feature whose mean the run misses, or does not miss."""
+    if study.features is None:
+        return
+    for row in study.features[study.features.missed == missed].itertuples():
+        of = f"{row.feature} of part {row.part}" if len(study.model.parts) > 1 else row.feature
+        mean = f"{brief(row.mean, row.unit, 5)} ± {brief(row.error, row.unit, 2)}"
+        ran = "has no slip events" if math.isnan(row.run) else f"has {brief(row.run, row.unit, 4)}"
+        away = f", {abs(row.run - row.mean) / row.error:.0f} standard errors away" if missed and np.isfinite(row.run) else ""
+        yield f"{'the run misses ' * missed}{of}: the mean of the record is {mean}, and the run {ran}{away}"
+
+
 def _misfit(study: Inference) -> Iterator[str]:
     """Yield a sentence if what is left is far more than the noise of neighbouring samples: the run misses the record."""
+    if study.features is not None:
+        yield from _features(study, missed=True)
+        return
     for name, noise in first_sizes(study.model.parts).items():
         given = any(name in part.record.deviations for part in study.model.parts)
         times = study.model.sizes[name] / noise
