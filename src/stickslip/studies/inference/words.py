@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -74,7 +74,8 @@ def _features(study: Inference, *, missed: bool) -> Iterator[str]:
     """Yield a sentence on each feature whose mean the run misses, or does not miss."""
     if study.features is None:
         return
-    for row in study.features[study.features.missed == missed].itertuples():
+    rows: list[Any] = list(study.features[study.features.missed == missed].itertuples())
+    for row in rows:
         of = f"{row.feature} of part {row.part}" if len(study.model.parts) > 1 else row.feature
         mean = f"{brief(row.mean, row.unit, 5)} ± {brief(row.error, row.unit, 2)}"
         ran = "has no slip events" if math.isnan(row.run) else f"has {brief(row.run, row.unit, 4)}"
