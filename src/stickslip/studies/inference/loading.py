@@ -12,7 +12,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief
 from stickslip.loading import LoadingHistory, Steps
-from stickslip.studies.inference.noise import noise_of, rounding_of
+from stickslip.studies.inference.noise import GAUSSIAN, noise_of, rounding_of
 from stickslip.studies.inference.record import Record
 
 MOST_PARTS = 2000
@@ -21,6 +21,10 @@ SURE = 5.0
 """Number of standard deviations by which the mean of some samples may differ from a straight part."""
 ROUNDING = 1e-7
 """Smallest noise that is assumed, as a share of the range of the displacement: no sensor and no clock is better."""
+BLOCKS = 8
+"""Smallest number of means in a record from which their noise is measured; wider ones are taken to be surer, as under white noise."""
+WALK = 1.7
+"""Growth of noise from one width to its double, twice in turn, that is motion: a random walk's grows by the square root of 2."""
 MANY_GAPS = 0.05
 """Share of the samples from which gaps are how the record was sampled."""
 GAP = 20.0
@@ -51,8 +55,10 @@ def loading_of(record: Record) -> Loading | None:
             f"{record.name}: the load point has fewer than two numbers: give its rate in the scenario, and leave it out"
         )
     least = max(float(np.max(np.abs(values - values[0]))), 1e-3 * float(np.max(np.abs(values))))
-    noise = max(noise_of(values), rounding_of(values), ROUNDING * least, 1e-300)
-    cuts, coarser = straight_parts(time, values, noise, 0 if is_rate else 1)
+    floor = max(rounding_of(values), ROUNDING * least, 1e-300)
+    allowed = _allowed(time, values, max(noise_of(values), floor), floor)
+    noise = float(allowed[0]) / SURE
+    cuts, coarser = straight_parts(time, values, allowed, 0 if is_rate else 1)
     if is_rate:
         middle = 0.5 * (time[np.array(cuts[1:-1], int) - 1] + time[cuts[1:-1]]) if len(cuts) > 2 else np.zeros(0)
         starts = np.append(0.0, middle)
@@ -84,25 +90,58 @@ def _notes(record: Record, time: Floats, rates: Floats, coarser: float, noise: f
     return tuple(found)
 
 
-def straight_parts(time: Floats, values: Floats, noise: float, order: int = 1) -> tuple[list[int], float]:
+def _allowed(time: Floats, values: Floats, noise: float, floor: float) -> Floats:
+    """Return how far means over 1, 2, 4, ... neighbouring samples may lie from a straight part, shape (n,).
+
+    That is `SURE` standard deviations of what noise does to such a mean. They are measured on the values themselves, since a sensor
+    hums and a digitiser rounds, so that neighbouring errors resemble each other: a mean over a width holds the noise of that width
+    and of all beyond it. No mean is surer than the last digit.
+    """
+    sums = [np.append(0.0, np.cumsum(one - one[0])) for one in (time, values)]
+    own = [noise]
+    while 2 ** len(own) * BLOCKS <= len(values):
+        own.append(_noise_of_means(sums[0], sums[1], 2 ** len(own)))
+    grows = [after > WALK * before for before, after in pairwise(own)]
+    motion = next((k for k, twice in enumerate(pairwise(grows)) if all(twice)), len(own) - 1)
+    sizes = [noise]
+    for k in range(1, len(values).bit_length()):
+        white = sizes[-1] / math.sqrt(2.0)
+        sizes.append(max(own[k], white) if k <= motion else white)
+    beyond = np.cumsum(np.square(sizes)[::-1])[::-1] + sizes[-1] ** 2
+    return np.asarray(np.maximum(SURE * np.sqrt(0.5 * beyond), floor))
+
+
+def _noise_of_means(time_sums: Floats, sums: Floats, width: int) -> float:
+    """Return the standard deviation of means over a number of samples, each compared with the line between those beside it."""
+    first = np.arange(0, len(sums) - width, max(width // 4, 1))
+    t, y = ((total[first + width] - total[first]) / width for total in (time_sums, sums))
+    apart = min(width, 4)
+    t0, t1, t2 = t[: -2 * apart], t[apart:-apart], t[2 * apart :]
+    share = (t1 - t0) / (t2 - t0)
+    bends = y[apart:-apart] - (1.0 - share) * y[: -2 * apart] - share * y[2 * apart :]
+    return float(np.median(np.abs(bends / np.sqrt(1.0 + (1.0 - share) ** 2 + share**2)))) / GAUSSIAN
+
+
+def straight_parts(time: Floats, values: Floats, allowed: Floats, order: int = 1) -> tuple[list[int], float]:
     """Return the indices at which parts that are straight (order 1) or constant (0) begin, and the number of samples behind them.
 
-    The second number is the factor by which more than the noise had to be allowed for parts that are not too many.
+    `allowed` is how far means over 1, 2, 4, ... samples may lie from a part. The second number is the factor by which more than that
+    had to be allowed for parts that are not too many.
     """
     coarser = 1.0
     while True:
-        cuts = _cuts(time, values, coarser * noise, order)
+        cuts = _cuts(time, values, coarser * allowed, order)
         if len(cuts) - 1 <= MOST_PARTS:
-            return _without_needless(time, values, cuts, coarser * noise, order), coarser
+            return _without_needless(time, values, cuts, coarser * allowed, order), coarser
         coarser *= 4.0
 
 
-def _cuts(time: Floats, values: Floats, noise: float, order: int) -> list[int]:
+def _cuts(time: Floats, values: Floats, allowed: Floats, order: int) -> list[int]:
     """Return indices between which parts leave nothing but noise; the search stops a little beyond the largest number of parts."""
     open_parts, ends = [(0, len(time))], list[int]()
     while open_parts and len(ends) + len(open_parts) <= 2 * MOST_PARTS:
         first, last = open_parts.pop()
-        at = None if last - first < 3 else _worst(time[first:last], values[first:last], noise, order)
+        at = None if last - first < 3 else _worst(time[first:last], values[first:last], allowed, order)
         if at is None:
             ends.append(first)
         else:
@@ -123,25 +162,24 @@ def _rest(time: Floats, values: Floats, order: int) -> Floats:
     return np.asarray(values - level - (slope * (time - time.mean()) if order else 0.0))
 
 
-def _misfit(rest: Floats) -> float:
-    """Return the largest mean of neighbouring samples, in standard errors per unit of noise, over lengths that are powers of 2."""
-    worst, width = 0.0, 1
+def _is_noise(rest: Floats, allowed: Floats) -> bool:
+    """Return True if means of neighbouring samples are as small as noise makes them, over all lengths that are powers of 2."""
     sums = np.append(0.0, np.cumsum(rest))
-    while width <= len(rest):
+    for k in range(len(rest).bit_length()):
+        width = 2**k
         step = max(width // 2, 1)
-        means = (sums[width::step] - sums[:-width:step]) / math.sqrt(width)
-        worst = max(worst, float(np.max(np.abs(means))))
-        width *= 2
-    return worst
+        if np.max(np.abs(sums[width::step] - sums[:-width:step])) > width * allowed[k]:
+            return False
+    return True
 
 
-def _worst(time: Floats, values: Floats, noise: float, order: int) -> int | None:
+def _worst(time: Floats, values: Floats, allowed: Floats, order: int) -> int | None:
     """Return where to cut a part that is not straight, or None if it is.
 
     A line is cut where it is farthest from the chord of its ends, a constant where the sum of what it leaves is largest.
     """
     rest = _rest(time, values, order)
-    if _misfit(rest) <= SURE * noise:
+    if _is_noise(rest, allowed):
         return None
     if order == 0:
         return int(np.argmax(np.abs(np.cumsum(rest)[:-1]))) + 1
@@ -152,12 +190,12 @@ def _worst(time: Floats, values: Floats, noise: float, order: int) -> int | None
     return int(np.clip(np.argmax(away[1:-1]) + 1, 1, len(values) - 1))
 
 
-def _without_needless(time: Floats, values: Floats, cuts: list[int], noise: float, order: int) -> list[int]:
+def _without_needless(time: Floats, values: Floats, cuts: list[int], allowed: Floats, order: int) -> list[int]:
     """Return the cuts without those whose two parts are one."""
     kept = [cuts[0]]
     for i in range(1, len(cuts) - 1):
         first, last = kept[-1], cuts[i + 1]
-        if _misfit(_rest(time[first:last], values[first:last], order)) > SURE * noise:
+        if not _is_noise(_rest(time[first:last], values[first:last], order), allowed):
             kept.append(cuts[i])
     return [*kept, cuts[-1]]
 
