@@ -21,10 +21,10 @@ SURE = 5.0
 """Number of standard deviations by which the mean of some samples may differ from a straight part."""
 ROUNDING = 1e-7
 """Smallest noise that is assumed, as a share of the range of the displacement: no sensor and no clock is better."""
-BLOCKS = 8
+BLOCKS = 16
 """Smallest number of means in a record from which their noise is measured; wider ones are taken to be surer, as under white noise."""
 WALK = 1.7
-"""Growth of noise from one width to its double, twice in turn, that is motion: a random walk's grows by the square root of 2."""
+"""Growth from one width to its double, twice in turn or at the widest, that is motion: a random walk grows by the square root of 2."""
 MANY_GAPS = 0.05
 """Share of the samples from which gaps are how the record was sampled."""
 GAP = 20.0
@@ -101,7 +101,7 @@ def _allowed(time: Floats, values: Floats, noise: float, floor: float) -> Floats
     own = [noise]
     while 2 ** len(own) * BLOCKS <= len(values):
         own.append(_noise_of_means(sums[0], sums[1], 2 ** len(own)))
-    grows = [after > WALK * before for before, after in pairwise(own)]
+    grows = [*(after > WALK * before for before, after in pairwise(own)), True]
     motion = next((k for k, twice in enumerate(pairwise(grows)) if all(twice)), len(own) - 1)
     sizes = [noise]
     for k in range(1, len(values).bit_length()):
