@@ -101,7 +101,7 @@ TEXTS = [
     ("v [m**99],mu\n1,1\n2,2\n", "line 1, column 1: the unit in the heading does not convert"),
     ("v,mu [MPa]\n1,1\n", "line 1, column 2: friction is a pure number: no unit in its heading"),
     ("v,velocity,mu\nx,1,1\n", "line 1: columns 1 and 2 both are the slip_rate: rename or remove one"),
-    ("v mu\n1 .5\n", "line 1: no column 'friction'; columns are separated by commas, semicolons or tabs"),
+    ("v mu\n1 .5 2\n", "line 1: no column 'friction'; columns are separated by commas, semicolons, tabs or blanks"),
     ("0,.5\n1,.4\n", "line 1: no column 'friction'; the first line must name the columns, as friction"),
     ("v,frictoin\n0,.5\n", "line 1: no column 'friction'; rename 'frictoin'?"),
     ("w,mu\n0,.5\n", "line 1: no column slip or slip_rate; write it as slip_rate (m/s)"),

@@ -117,7 +117,7 @@ BAD_FILES = [
     ("slip_rate,friction\n-1,0.7\n1,0.1\n", "line 2: slip_rate must not be negative, got -1"),
     ("slip,friction\n-1,0.7\n1,0.1\n", "slip[0] must be at least 0 where the path is counted"),
     (b"slip,friction\n\xff\xfe", "not a text file in UTF-8"),
-    ("slip friction\n0 1\n", "no column 'friction' in the header; columns are separated by commas, semicolons or tabs"),
+    ("slip friction\n0 1 2\n", "no column 'friction' in the header; columns are separated by commas, semicolons, tabs or blanks"),
     ("slip,friction\n" + "".join(f"{i},0.5\n" for i in range(10_002)), "more than 10000 rows"),
 ]  # fmt: skip
 

@@ -161,8 +161,9 @@ def test_a_data_file_is_read(tmp_path: Path) -> None:
             ": 'pull.csv', line 1: no column 'pull_rate' in the header; write it as pull_rate (m/s)",
         ),
         (
-            "time pull_rate\n0 1\n1 2\n",
-            ": 'pull.csv', line 1: no column 'pull_rate' in the header; columns are separated by commas, semicolons or tabs",
+            "time pull_rate\n0 1 3\n1 2 3\n",
+            ": 'pull.csv', line 1: no column 'pull_rate' in the header; "
+            "columns are separated by commas, semicolons, tabs or blanks",
         ),
         ("", ": 'pull.csv', line 1: no column 'pull_rate' in the header; there are no headings: is it empty?"),
         ("time,pull_rate\n1,1\n0,2\n", ": 'pull.csv', line 3: time must ascend, but 0 follows 1; sort the rows"),

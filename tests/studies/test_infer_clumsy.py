@@ -90,10 +90,10 @@ def test_rows_in_disorder_repeated_and_without_numbers_are_put_right_and_told() 
     assert len(read) == 400
     assert (np.diff(read.time) > 0.0).all()
     assert read.notes == (
-        "1 rows without a time are left out",
-        "friction has no number in 1 of 401 rows: they are left out",
+        "1 row without a time is left out",
+        "friction has no number in 1 of 401 rows: left out",
         "the rows were not in the order of time: they were sorted",
-        "1 rows repeat a time: their mean was taken",
+        "1 row repeats a time: the mean was taken",
     )
 
 
@@ -113,7 +113,7 @@ def test_marks_of_missing_numbers_are_left_out_and_told() -> None:
     """Programs write -999 where nothing was measured; a slip event, however large, lasts for more samples."""
     read = Record.read({**GOOD, "friction": np.where(np.isin(np.arange(len(CLOCK)), [7, 8, 300]), -999.0, FRICTION)})
     assert np.flatnonzero(np.isnan(read.measured["friction"])).tolist() == [7, 8, 300]
-    assert read.notes == ("friction is far beyond the rest in 3 lone samples, as at -999: they are left out",)
+    assert read.notes == ("friction is far beyond the rest in 3 lone samples, as at -999: left out",)
     preload = np.where(np.arange(len(CLOCK)) > 380, FRICTION, 1e-4)
     assert np.isfinite(Record.read({**GOOD, "friction": preload}).measured["friction"]).all()
 
@@ -142,7 +142,7 @@ FILES = [
     ("time (s),load point (m),mu\n0,1,0,0,0,6\n", "6 cells, but the header has 3; decimal commas?"),
     ("time,load point (m),mu\n2026-05-01 12:00:07,0,0.6\n", "times of day are not read, write seconds from the start"),
     ("time,load point,mu\n(s),(g),(-)\n0,0,0.6\n", "a unit belongs in the heading, as in time (s)"),
-    ("time load_point mu\n0 0 0.6\n", "columns are separated by commas, semicolons or tabs"),
+    ("time load_point mu\n0 0 0.6 7\n", "columns are separated by commas, semicolons, tabs or blanks"),
     ("time (s),mu\n0,0.6\n1,0.6\nend of test\n", "time must be a number, got text"),
 ]
 

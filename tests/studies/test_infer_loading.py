@@ -18,9 +18,8 @@ CLOCK = np.arange(0.0, 1.8, 1e-3)
 BEGIN, END, SLOW, FAST = 0.735, 0.79, 22.9e-6, 228.4e-6
 RAMP = ss.loading.PiecewiseLinear([0.0, BEGIN, END], [SLOW, SLOW, FAST])
 OUTSIDE = (CLOCK < BEGIN - 0.02) | (CLOCK > END + 0.02)
-BLOCK = ss.Problem(
-    ss.SpringBlock(8000.0, 1.6e11, 1e8), ss.friction.RateAndState(0.49, 0.0062, 0.0044, 30e-6, SLOW, evolution="slip"), pull_rate=RAMP
-)  # fmt: skip
+LAW = ss.friction.RateAndState(0.49, 0.0062, 0.0044, 30e-6, SLOW, evolution="slip")
+BLOCK = ss.Problem(ss.SpringBlock(8000.0, 1.6e11, 1e8), LAW, pull_rate=RAMP)
 
 
 def servo_step() -> Any:

@@ -11,7 +11,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, BinaryIO
 from uuid import uuid4
 
 from typing_extensions import override
@@ -31,17 +31,27 @@ FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 """Error numbers that mean that there is no space left: full disk, exhausted quota, or a file size limit."""
 
 
-def read_bounded(path: Path, largest: int) -> bytes:
-    """Return the content of a regular file of at most `largest` bytes.
+@contextmanager
+def open_bounded(path: Path, largest: int) -> Iterator[BinaryIO]:
+    """Open a regular file of at most `largest` bytes for reading.
 
     Pipes and devices are refused at once, because they may never begin or never end. Raises OSError, and InputError with a message
     that is meant to follow the name of the file.
     """
     with open(path, "rb", opener=_opened_at_once) as stream:
-        if not stat.S_ISREG(os.fstat(stream.fileno()).st_mode):
+        about = os.fstat(stream.fileno())
+        if not stat.S_ISREG(about.st_mode):
             raise InputError("not an ordinary file")
+        if about.st_size > largest:
+            raise InputError(f"larger than {largest} bytes")
+        yield stream
+
+
+def read_bounded(path: Path, largest: int) -> bytes:
+    """Return the content of a regular file of at most `largest` bytes. Raises OSError and InputError as `open_bounded` does."""
+    with open_bounded(path, largest) as stream:
         content = stream.read(largest + 1)
-    if len(content) > largest:
+    if len(content) > largest:  # it has grown, or has no size of its own
         raise InputError(f"larger than {largest} bytes")
     return content
 

@@ -54,7 +54,9 @@ _NAMES = {
     "hertz": "Hz",
 }
 """Names that take a prefix that is a name, and their symbols."""
-_OTHERS = {
+_OTHERS: dict[str, tuple[int | Fraction, tuple[int, ...]]] = {
+    **dict.fromkeys(("micron", "microns"), (Fraction(1, 10**6), (1, 0, 0))),
+    "sec": (1, (0, 0, 1)),
     **dict.fromkeys(("min", "minute", "minutes"), (60, (0, 0, 1))),
     **dict.fromkeys(("h", "hr", "hour", "hours"), (3600, (0, 0, 1))),
     **dict.fromkeys(("d", "day", "days"), (86_400, (0, 0, 1))),

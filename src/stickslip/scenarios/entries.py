@@ -9,8 +9,9 @@ from typing import Any, NamedTuple
 
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.atomic_write import read_bounded
-from stickslip.foundation.columns import missing, read_text
+from stickslip.foundation.columns import read_text
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.headings import missing
 from stickslip.foundation.quantities import (
     LARGEST_SERIES,
     Choice,

@@ -13,9 +13,9 @@ from numpy.typing import ArrayLike
 
 from stickslip.foundation.arguments import as_path, shown
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.atomic_write import read_bounded
-from stickslip.foundation.columns import COLUMNS, Table, missing, read_mapping, read_text
+from stickslip.foundation.columns import Table, read_file, read_mapping, read_text
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.headings import COLUMNS, missing
 from stickslip.friction.piecewise import PiecewiseLaw, note_percent
 
 Along = Literal["slip", "slip_rate"]
@@ -150,18 +150,7 @@ def _table_in(source: Any) -> Table:
 
 
 def _from_file(path: Path) -> Table:
-    name = str(path) if str(path).isprintable() else ascii(str(path))
-    try:
-        text = read_bounded(path, LARGEST_FILE).decode("utf-8-sig")
-    except FileNotFoundError:
-        raise InputError(f"{name}: no such file") from None
-    except UnicodeDecodeError:
-        raise InputError(f"{name}: not a text file in UTF-8; save it as CSV in UTF-8") from None
-    except OSError as error:
-        raise InputError(f"{name}: cannot be read: {error.strerror}") from None
-    except InputError as error:
-        raise InputError(f"{name}: {error}") from None
-    return _from_text(text, name)
+    return _complete(read_file(path, WANTED, (LARGEST_FILE, MOST_POINTS)))
 
 
 def _from_text(text: str, name: str) -> Table:

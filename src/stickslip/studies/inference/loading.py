@@ -22,9 +22,9 @@ SURE = 5.0
 ROUNDING = 1e-7
 """Smallest noise that is assumed, as a share of the range of the displacement: no sensor and no clock is better."""
 BLOCKS = 16
-"""Smallest number of means in a record from which their noise is measured; wider ones are taken to be surer, as under white noise."""
+"""Smallest number of means from which their noise is measured; wider ones are taken to be surer, as under white noise."""
 WALK = 1.7
-"""Growth from one width to its double, twice in turn or at the widest, that is motion: a random walk grows by the square root of 2."""
+"""Growth from one width to its double, twice in turn or at the widest, that is motion; that of a random walk is sqrt(2)."""
 MANY_GAPS = 0.05
 """Share of the samples from which gaps are how the record was sampled."""
 GAP = 20.0
@@ -125,8 +125,8 @@ def _noise_of_means(time_sums: Floats, sums: Floats, width: int) -> float:
 def straight_parts(time: Floats, values: Floats, allowed: Floats, order: int = 1) -> tuple[list[int], float]:
     """Return the indices at which parts that are straight (order 1) or constant (0) begin, and the number of samples behind them.
 
-    `allowed` is how far means over 1, 2, 4, ... samples may lie from a part. The second number is the factor by which more than that
-    had to be allowed for parts that are not too many.
+    `allowed` is how far means over 1, 2, 4, ... samples may lie from a part. The second number is the factor by which more than
+    that had to be allowed for parts that are not too many.
     """
     coarser = 1.0
     while True:

@@ -1,0 +1,277 @@
+"""Understand the headings of columns: which quantity each names, in which unit, and what a heading that is missing could be."""
+
+from __future__ import annotations
+
+import math
+import re
+import unicodedata
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from stickslip.foundation.arrays import Floats
+from stickslip.foundation.errors import InputError, nearest, warn
+from stickslip.foundation.units import si_factor, split_quantity, tabulated
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column that may be looked for: the SI unit of its numbers, other headings for it, and whether they may be negative."""
+
+    unit: str
+    others: tuple[str, ...] = ()
+    signed: bool = False
+
+
+def _driven(*what: str) -> tuple[str, ...]:
+    """Return headings for what the driven end of a machine does."""
+    ends = ("load point", "lp", "load", "loading", "driver", "driving", "ram", "piston", "actuator", "crosshead", "pull")
+    return tuple(f"{end} {one}" for end in ends for one in what)
+
+
+COLUMNS: Mapping[str, Column] = {
+    "slip": Column(
+        "m",
+        ("u", "displacement", "slip distance", "cumulative slip", "slip displacement", "fault slip", "h slip"),
+        signed=True,
+    ),
+    "slip_rate": Column(
+        "m/s", ("v", "rate", "velocity", "slip velocity", "sliding velocity", "speed", "sliding speed", "h slip rate")
+    ),
+    "friction": Column(
+        "1",
+        (
+            *("mu", "μ", "friction coefficient", "coefficient of friction", "cof", "friction coeff", "coeff of friction"),
+            *("mu app", "μ app", "app friction", "apparent friction", "apparent friction coefficient"),
+        ),
+    ),
+    "shear_stress": Column("Pa", ("tau", "τ", "shear", "traction", "shr stress", "h shear stress"), signed=True),
+    "normal_stress": Column(
+        "Pa",
+        (
+            *("sigma", "σ", "sigma n", "σ n", "σn", "sig n", "normal", "nor stress", "norm stress"),
+            *("effective normal stress", "eff normal stress", "effns"),
+        ),
+    ),
+    "time": Column("s", ("t", "elapsed time", "time elapsed", "test time")),
+    "load_point": Column("m", ("lp", "lpd", *_driven("displacement", "disp", "position")), signed=True),
+    "load_rate": Column("m/s", ("vlp", "v lp", *_driven("rate", "velocity", "speed")), signed=True),
+    "rotation_rate": Column("rad/s", ("rpm", "rotation", "rotation speed", "rotational speed", "angular velocity"), signed=True),
+    "rotation": Column("rad", ("angle", "rotation angle", "revolutions"), signed=True),
+    "radius": Column("m", ("mean radius", "equivalent radius")),
+    "shear_force": Column("N", ("force", "shear load", "friction force"), signed=True),
+    "normal_force": Column("N", ("normal load",)),
+    "friction_deviation": Column("1", ("standard deviation", "friction error", "mu error", "sd friction", "sd mu")),
+    "shear_stress_deviation": Column("Pa", ("shear stress error", "traction deviation", "tau error", "sd tau")),
+    "shear_force_deviation": Column("N", ("shear force error", "force error", "sd force")),
+    "slip_deviation": Column("m", ("slip error", "sd slip")),
+    "slip_rate_deviation": Column("m/s", ("slip rate error", "sd slip rate")),
+    "pull_rate": Column("m/s", signed=True),
+    "far_stress": Column("Pa", signed=True),
+}
+"""The columns that are known, by their plain heading. Capitals, spaces, dots, - and _ make no difference, nor does CamelCase."""
+LARGEST: Mapping[str, float] = {"slip": 100.0, "slip_rate": 100.0, "load_point": 100.0, "load_rate": 100.0}
+"""Largest values (SI) that no friction test reaches: beyond them the numbers are hardly in SI."""
+MOST_COLUMNS = 1000
+"""Largest number of columns of a table."""
+PURE = ("", ".", "-", "–", "1", "none", "no unit", "dimensionless")
+"""What people write in place of a unit for a pure number."""
+ONE_WORD = 5
+"""Number of letters from which a heading of several words is also understood in one: "loadpoint", but not "sign" for "sig n"."""
+_OFTEN = {"m": "mm", "m/s": "mm/s", "s": "ms", "Pa": "MPa", "N": "kN"}
+"""Units that laboratories use in place of those of SI."""
+_HEADING = re.compile(r"\s*(?P<name>[^()\[\]]*?)\s*(?:[(\[]\s*(?P<unit>[^()\[\]]*?)\s*[)\]])?\s*")
+_BETWEEN = re.compile(r"\s*[\s_,:/]\s*")
+_CAMEL = re.compile(r"(?<=[a-zα-ω])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
+_NO_LETTER = re.compile(r"[\W_]+")
+_SIGNS = str.maketrans({"μ": "µ", "·": " ", "⁻": "-", "⁰": "0", "¹": "1", "²": "2", "³": "3", "−": "-"})
+_POWER = re.compile(r"(?<=[A-Za-zµ])(-?\d)")
+
+
+class Found(NamedTuple):
+    """Where a column stands in a header, the factor of its unit to SI, and the unit as it is written, or None."""
+
+    place: int
+    factor: Fraction
+    unit: str | None
+
+
+def find(header: Sequence[str], wanted: Sequence[str], place: str) -> dict[str, Found]:
+    """Return what a header has of the wanted columns. Raises InputError for two of one kind, and for a unit that does not fit."""
+    if len(header) > MOST_COLUMNS:
+        raise InputError(f"{place}: more than {MOST_COLUMNS} columns: not a table of numbers")
+    told = [_understood(cell, tuple(wanted)) for cell in header]
+    found = {}
+    for column in wanted:
+        at = [i for i, one in enumerate(told) if one is not None and one[0] == column]
+        exact = [i for i in at if plain(told[i][1]) == plain(column)]  # type: ignore[index] # at has none that are None
+        at = exact if len(exact) == 1 else at
+        if len(at) > 1:
+            cure = "rename or remove one"
+            cure = "of two clocks, write each with its columns to a file of its own" if column == "time" else cure
+            raise InputError(f"{place}: columns {at[0] + 1} and {at[1] + 1} both are the {column}: {cure}")
+        if at:
+            unit = told[at[0]][2]  # type: ignore[index]
+            found[column] = Found(at[0], factor_of(unit, column, f"{place}, column {at[0] + 1}"), unit)
+    return {column: found[column] for column in wanted if column in found}
+
+
+def count_named(cells: Sequence[str], wanted: Sequence[str]) -> int:
+    """Return how many cells name a wanted column."""
+    return sum(_understood(cell, tuple(wanted)) is not None for cell in cells)
+
+
+@lru_cache(maxsize=4096)
+def _understood(heading: str, wanted: tuple[str, ...]) -> tuple[str, str, str | None] | None:
+    """Return the column that a heading names, its name and its unit as they are written; None if it names none.
+
+    A unit stands in brackets, or behind the name as in `slip_rate_m_per_s` and "tau MPa".
+    """
+    known = _by_heading(wanted)
+    part = _HEADING.fullmatch(heading)
+    name, unit = (part["name"], part["unit"]) if part else (heading, None)
+    fitting = known.get(plain(name), ())
+    if fitting:
+        unit = "rpm" if unit is None and plain(name) == "rpm" else unit
+        best = next((one for one in fitting if len(fitting) > 1 and unit is not None and _fits(unit, one)), fitting[0])
+        return best, name, unit
+    if unit is None:
+        for cut in reversed(list(_BETWEEN.finditer(name))):
+            before, behind = name[: cut.start()], name[cut.end() :].replace("_per_", "/").replace("_", " ")
+            for column in known.get(plain(before), ()):
+                if COLUMNS[column].unit != "1" and tabulated(_unit_text(behind)) is not None and _fits(behind, column):
+                    return column, before, behind
+    return None
+
+
+@lru_cache(maxsize=64)
+def _by_heading(wanted: tuple[str, ...]) -> dict[str, tuple[str, ...]]:
+    """Return the columns that each plain heading may name, in the order of `wanted`."""
+    found: dict[str, tuple[str, ...]] = {}
+    for column in wanted:
+        for heading in headings(column):
+            found[heading] = (*found.get(heading, ()), column)
+    return found
+
+
+def headings(column: str) -> set[str]:
+    """Return the plain headings of a column."""
+    names = [plain(column), *map(plain, COLUMNS[column].others if column in COLUMNS else ())]
+    words = [name.replace(" ", "") for name in names]
+    return {*names, *(word for word in words if len(word) >= ONE_WORD)}
+
+
+@lru_cache(maxsize=4096)
+def plain(heading: str) -> str:
+    """Return the words of a heading in small letters, with single blanks between them."""
+    return _NO_LETTER.sub(" ", _CAMEL.sub(" ", unicodedata.normalize("NFKC", heading)).casefold()).strip()
+
+
+def names_of(header: Sequence[str]) -> list[str]:
+    """Return plain headings without their units in brackets."""
+    return [plain(part["name"] if (part := _HEADING.fullmatch(cell)) else cell) for cell in header]
+
+
+def has_unit(heading: str) -> bool:
+    """Return True if a heading has a unit in brackets."""
+    return "(" in heading or "[" in heading
+
+
+def quoted(heading: str) -> str:
+    """Return a heading of a file for a message, with its Greek letters as they are; what cannot be printed is escaped."""
+    return repr(heading.strip())[:60]
+
+
+def _fits(unit: str, column: str) -> bool:
+    try:
+        factor_of(unit, column, "")
+    except InputError:
+        return False
+    return True
+
+
+def _unit_text(unit: str) -> str:
+    return _POWER.sub(r"^\1", unit.translate(_SIGNS).replace("^", "").replace("**", ""))
+
+
+def factor_of(unit: str | None, column: str, place: str) -> Fraction:
+    """Return the factor from the unit in a heading to SI. Raises InputError, which does not repeat the unit."""
+    known = COLUMNS.get(column, Column("1"))
+    if unit is None or (known.unit == "1" and unit.strip().casefold() in PURE):
+        return Fraction(1)
+    if known.unit == "1":
+        raise InputError(f"{place}: {column} is a pure number: no unit in its heading (a percentage is not converted)")
+    text = _unit_text(unit)
+    try:
+        if split_quantity(f"1 {text}") is None:
+            raise InputError("")
+        return si_factor(text, known.unit)
+    except InputError:
+        raise InputError(f"{place}: the unit in the heading does not convert to {known.unit}; write it like {known.unit}") from None
+
+
+def is_signed(column: str) -> bool:
+    """Return True if the numbers of a column may be negative."""
+    return COLUMNS.get(column, Column("1")).signed
+
+
+def example(column: str) -> str:
+    """Return a heading for a column, with its unit in SI."""
+    unit = COLUMNS.get(column, Column("1")).unit
+    return column if unit == "1" else f"{column} ({unit})"
+
+
+def missing(header: Sequence[str], column: str) -> str:
+    """Return a hint for a header that lacks a column: the heading that could be meant, or how a header is written."""
+    if not any(cell.strip() for cell in header):
+        return "there are no headings: is it empty?"
+    if len(header) == 1 and len(header[0].split()) > 1:
+        return "columns are separated by commas, semicolons, tabs or blanks"
+    if column == "friction" and not headings("shear_stress").isdisjoint(names_of(header)):
+        return "friction is shear stress over normal stress, both in one unit"
+    if any(plain(cell).startswith(("log", "ln")) for cell in header):
+        return f"logarithms are not read: write the numbers themselves, as in a column {example(column)}"
+    if any(map(is_number, header)):
+        return f"the first line must name the columns, as {example(column)}"
+    hint = nearest(column, [cell for cell in header if cell.strip()])
+    close = hint[14:-2]
+    for i, name in enumerate(names_of(header)):  # "lambda V", "theta v"
+        if name.rpartition(" ")[2] in headings(column):
+            return f"column {i + 1} is not the {column} itself, by its heading; if it is, write {example(column)} there"
+    return f"rename {quoted(close)}?" if hint.startswith("did") and close != column else f"write it as {example(column)}"
+
+
+def note_units(chosen: Mapping[str, Found], columns: Mapping[str, Floats], place: str) -> None:
+    """Issue an `InputWarning` for a column without a unit that is hardly in SI.
+
+    That is so if another heading has a unit other than SI, or if its numbers are larger than any slip or slip rate. The ratio of
+    two stresses needs no unit if both have none.
+    """
+    for message in _unit_doubts(chosen, columns):
+        warn(f"{place}: {message}")
+
+
+def _unit_doubts(chosen: Mapping[str, Found], columns: Mapping[str, Floats]) -> Iterator[str]:
+    units = {name: found.unit for name, found in chosen.items()}
+    if units.get("shear_stress", "") is units.get("normal_stress", "") is None:
+        del units["shear_stress"], units["normal_stress"]
+    sized = {name: unit for name, unit in units.items() if COLUMNS.get(name, Column("1")).unit != "1"}
+    foreign = any(chosen[name].factor != 1 for name in sized)
+    for name in (name for name, unit in sized.items() if unit is None):
+        if foreign or np.max(np.abs(columns[name]), initial=0.0) > LARGEST.get(name, math.inf):
+            si = COLUMNS[name].unit
+            cure = f"write its unit into the heading, as in {name} ({_OFTEN.get(si, si)})"
+            yield f"column {chosen[name].place + 1}, {name}, has no unit and is read in {si}; if it is in another, {cure}"
+
+
+def is_number(text: str) -> bool:
+    """Return True for a text that is a number, as Python reads it."""
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
