@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 import stickslip as ss
 from stickslip.friction import LAWS
+from stickslip.loading import HISTORIES, Steps
 from stickslip.scenarios.scenario import read_scenario
 from stickslip.scenarios.templates import template
 
@@ -30,6 +33,53 @@ def test_every_number_of_every_law_can_be_put_back_and_changed(kind: str) -> Non
             assert {n: p.value for n, p in changed.parameters.items() if n != name} == {
                 n: p.value for n, p in found.items() if n != name
             }
+
+
+@pytest.mark.parametrize("field", ["pull_rate", "far_stress"])
+@pytest.mark.parametrize("kind", HISTORIES)
+def test_every_number_of_every_loading_history_can_be_changed_alone(kind: str, field: str) -> None:
+    history = HISTORIES[kind](**HISTORIES[kind].example)
+    body = replace(SLAB, driver_impedance=1e7)
+    given = ss.Problem(body, ss.friction.Coulomb(0.6, 0.5), initial_excess=0.0, **{field: history})
+    found = {name: one for name, one in given.parameters.items() if name.startswith(f"loading.{field}.")}
+    assert len(found) >= 3
+    for name, one in found.items():
+        factor = 0.0 if name.endswith("times[0]") and kind == "steps" else 1e-9
+        changed = one.put(one.value * (1.0 + factor))
+        assert changed.parameters[name].value == one.value * (1.0 + factor), name
+        rest = {n: p.value for n, p in changed.parameters.items() if n != name}
+        assert rest == {n: p.value for n, p in given.parameters.items() if n != name}
+        assert one.unit == (
+            "s"
+            if "time" in name or "period" in name
+            else "rad"
+            if "phase" in name
+            else {"pull_rate": "m/s", "far_stress": "Pa"}[field]
+        )
+
+
+@pytest.mark.parametrize("start", ["initial_load", "initial_excess"])
+def test_pressing_keeps_the_ratio_of_all_loads_to_the_normal_load(start: str) -> None:
+    history = Steps([0.0, 10.0], [4e7, 5e7])
+    driven = replace(SLAB, driver_impedance=1e7)
+    given = ss.Problem(driven, ss.friction.Coulomb(0.6, 0.5), far_stress=history, far_stress_rate=30.0, **{start: 5e7})
+    pressed = given.parameters["pressing"].put(3e8)
+    assert given.parameters["pressing"].value == 1e8
+    assert pressed.normal == pressed.body.normal_load == 3e8
+    assert pressed.load / given.load == pytest.approx(3.0, rel=1e-15, abs=0.0)
+    assert pressed.strength / given.strength == pytest.approx(3.0, rel=1e-15, abs=0.0)
+    assert (pressed.far_stress.values, pressed.far_stress.times) == ((1.2e8, 1.5e8), (0.0, 10.0))
+    assert (pressed.far_stress_rate, pressed.body.density) == (90.0, 2800.0)
+    block = ss.Problem(ss.SpringBlock(1.0, 1.0, 10.0), ss.friction.Coulomb(0.6, 0.5), initial_load=5.0)
+    assert (block.parameters["pressing"].put(20.0).load, block.parameters["pressing"].unit) == (10.0, "N")
+
+
+def test_a_load_and_an_excess_replace_each_other() -> None:
+    given = problem(ss.friction.Coulomb(0.6, 0.5))
+    assert not {"initial.load", "pressing"} & set(given.parameters)  # what is given is listed
+    loaded = given.parameters["initial.load"].put(5e7)
+    assert (loaded.initial_load, loaded.initial_excess) == (5e7, None)
+    assert loaded.parameters["initial.excess"].put(1.0).initial_load is None
 
 
 def test_parameters_are_found_with_name_unit_and_value() -> None:

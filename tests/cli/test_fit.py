@@ -44,6 +44,22 @@ def test_parameters_are_shown_with_uncertainty_and_unit(command, points):
     assert re.search(r"^alpha +1 +s/m \(fixed\)", held.out, re.MULTILINE)
 
 
+def test_the_block_of_a_fit_takes_the_numbers_of_a_machine(command, points):
+    machine = [f"--set={one}" for one in ("normal_force=50 kN", "mass=20 kg", "stiffness=1 MN/m", "pull_rate=1 mm/s")]
+    fitting = ["fit", "data.csv", "--law", "hyperbolic-rate", "--body", "block", *machine]
+    assert command(*fitting, "--out", "mine.toml").code == 0
+    body, rate = load_scenario("mine.toml").problem.body, load_scenario("mine.toml").problem.pull_rate
+    assert (body.normal_force, body.mass, body.stiffness, rate) == (5e4, 20.0, 1e6, 1e-3)
+    for given, said in (
+        (["--out=b.toml", "--set=friction.static=0.5"], "block: friction.static belongs to the law, which comes from the points"),
+        (["--out=b.toml", "--set=stifness=1"], "'stifness' is not a parameter of this scenario; did you mean 'stiffness'?"),
+        (["--out=b.toml", "--set=pressing=1"], "block: pressing and body.normal_force exclude each other"),
+        ([], "fit: --set belongs to --out"),
+    ):
+        shown = command(*fitting, *given)
+        assert (shown.code, said in shown.err, Path("b.toml").exists()) == (2, True, False), shown.err
+
+
 @pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("how", [["--law", "hyperbolic-rate"], ["--smooth", "auto"], ["--smooth", "1e-4", "--monotone"], []])
 def test_the_scenario_is_checked_and_run_as_it_is(command, points, how):

@@ -16,6 +16,8 @@ EDITS = [
     ("fig6-slab", {"alpha": "0.1 s/m"}, [("alpha = 1.0", "alpha = 0.1")]),
     ("fig6-slab", {"body.thickness": "5 km", "run.duration": 6.0}, [('"10 km"', '"5000 m"'), ('"12 s"', '"6 s"')]),
     ("fig6-slab", {"initial.load": "81 MPa"}, [("excess = 0.0", 'load = "81 MPa"')]),
+    ("velocity-steps-block", {"loading.pull_rate.values[1]": "3 um/s"}, [('"10 um/s"', '"3 um/s"')]),
+    ("bowed-string-slab", {"pressing": "2 Pa"}, [("normal_stress = 1.0", "normal_stress = 2.0"), ("load = 0.35", "load = 0.70")]),
     ("second-event-maximal", {"run.selection": "maxwell"}, [('selection = "maximal"', 'selection = "maxwell"')]),
 ]
 
@@ -53,6 +55,29 @@ def test_each_parameter_can_be_given_the_value_that_it_has(name: str) -> None:
             found = scenario.with_values({parameter.name: value})
             assert found.problem == scenario.problem
             assert found.to_toml().partition("[body]")[2] == scenario.to_toml().partition("[body]")[2]
+
+
+def test_pressing_changes_all_loads_along_a_contact_too() -> None:
+    scenario = ss.scenarios["planar-patch"].with_values({"pressing": "50 MPa"})
+    before, after = ss.scenarios["planar-patch"].planar_slab, scenario.planar_slab
+    assert (after.values.normal == 0.5 * before.values.normal).all()
+    assert (after.values.load == 0.5 * before.values.load).all()
+    assert len(set(after.values.load)) > 1
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ({"pressing": 1e7, "normal_stress": 1e7}, "pressing and body.normal_stress exclude each other"),
+        ({"initial.load": 1e7, "initial.excess": 0.0}, "initial.load and initial.excess exclude each other"),
+        ({"pressing": -1.0}, "pressing must be greater than 0 Pa"),
+        ({"loading.pull_rate.values[1]": 1.0}, "'loading.pull_rate.values[1]' is not a parameter of this scenario"),
+    ],
+)
+def test_values_that_do_not_go_together_are_refused(values: dict[str, Any], said: str) -> None:
+    with pytest.raises(ss.InputError) as error:
+        ss.scenarios["fig6-slab"].with_values(values)
+    assert said in str(error.value)
 
 
 def test_the_title_tells_what_was_changed_and_what_was_described_is_left_out() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, NamedTuple, Self
 
@@ -19,6 +19,8 @@ from stickslip.problem.problem import Problem
 Floats = NDArray[np.float64]
 LOCKED = "locked"
 """Name of the profile that is true where the contact never slips."""
+PRESSED = ("body.normal_stress", "initial.load", "initial.excess")
+"""Names of what follows when a contact is pressed harder."""
 _DECLARED = fields_of(PlanarSlab)
 GRID = (*_DECLARED, "replicas")
 """Fields that a contact shares with `PlanarSlab`."""
@@ -116,6 +118,21 @@ class Contact:
     def names(self) -> set[str]:
         """The names of all that varies."""
         return {name for name, _ in self.along} | {name for patch in self.patches for name, _ in patch.values}
+
+    def pressed(self, factor: float) -> Self:
+        """Return a contact on which normal stress and initial load are `factor` times what is given along it."""
+
+        def scaled(given: Any) -> Any:
+            if isinstance(given, tuple):
+                return given._replace(values=scaled(given.values)) if isinstance(given, Points) else tuple(map(scaled, given))
+            return factor * given
+
+        along = tuple((name, scaled(one) if name in PRESSED else one) for name, one in self.along)
+        patches = [
+            replace(patch, values=tuple((name, scaled(one) if name in PRESSED else one) for name, one in patch.values))
+            for patch in self.patches
+        ]
+        return replace(self, along=along, patches=tuple(patches))
 
     def slab(self, problem: Problem) -> PlanarSlab:
         """Return the planar slab with this contact. Raises InputError as `PlanarSlab` does, and for a patch that has no node."""

@@ -1,28 +1,29 @@
 """The parameters of a scenario, named by their place in the file, and scenarios in which some of them have other values.
 
-Every quantity is one: "body.thickness", "friction.slip.mean", "run.rtol". The last part of a name ("thickness") is
-sufficient if it is unambiguous. One element of a series is written "friction.values[2]".
+The names of the problem's numbers are those of `problem.parameters`, "pressing" among them; to them come those of [run] and
+[contact]. The last part of a name ("thickness") is sufficient if it is unambiguous.
 """
 
 from __future__ import annotations
 
+import copy
 import re
-import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from stickslip.foundation.errors import full_name
-from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, fields_of, quantities_of
+from stickslip.foundation.errors import InputError, full_name
+from stickslip.foundation.quantities import Choice, Quantity, quantities_of
 from stickslip.planar.nodes import varying
+from stickslip.problem.parameters import PRESSING, entries_of, pressed, pressing_of
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import DURATION
 from stickslip.problem.selection_rule import names as rules
 from stickslip.scenarios.contact import LOCKED, Contact
 from stickslip.scenarios.contact_table import PLACES, TAPER
-from stickslip.scenarios.entries import Source, key_of
+from stickslip.scenarios.entries import Source
 from stickslip.scenarios.scenario import Scenario, scenario_of
-from stickslip.scenarios.schema import entries_in
+from stickslip.scenarios.schema import quantities_in
 
 EVENTS = Quantity("1", "stop after this number of slip events", at_least=1)
 SELECTION = "selection rule"
@@ -31,6 +32,8 @@ WHOLE = ("run.events", "contact.nodes", "contact.width_nodes", "contact.frames")
 """Parameters that count."""
 EXCLUDE_EACH_OTHER = {"initial.load": "excess", "initial.excess": "load"}
 """A scenario has either an initial load or an initial excess. The one that is given another value replaces the other."""
+TOGETHER = (("initial.load", "initial.excess"), *((PRESSING, f"body.{name}") for name in ("normal_stress", "normal_force")))
+"""Pairs of which one alone can be given another value."""
 _STEP = re.compile(r"(?P<name>[^\[]+)(?:\[(?P<index>\d+)\])?")
 
 
@@ -87,43 +90,94 @@ def find_parameter(scenario: Scenario, name: str, where: str) -> ParameterPath:
     return found[full_name(name, found, f"{where}: ", "is not a parameter of this scenario")]
 
 
+Changes = Sequence[tuple[ParameterPath, Any]]
+"""Parameters with other values (SI)."""
+
+
+def document_with(scenario: Scenario, changes: Changes, where: str) -> dict[str, Any]:
+    """Return the document of a scenario, in SI, with other values of parameters.
+
+    Raises InputError, which begins with `where`, if two of them exclude each other.
+    """
+    _check_together(changes, where)
+    pressing = next((value for parameter, value in changes if parameter.name == PRESSING), None)
+    document = copy.deepcopy((scenario if pressing is None else _pressed(scenario, pressing)).document)
+    _put(document, [one for one in changes if one[0].name != PRESSING])
+    return document
+
+
+def put_into(document: Mapping[str, Any], scenario: Scenario, changes: Changes, where: str) -> dict[str, Any]:
+    """Return the document of a scenario as somebody wrote it, with other values, and all else as it was written.
+
+    What the document leaves out, keeps in a file of its own, or has in several places needs the scenario's whole text, in SI.
+    Raises InputError as `document_with` does.
+    """
+    _check_together(changes, where)
+    found = copy.deepcopy(dict(document))
+    try:
+        _put(found, changes)
+    except KeyError:
+        return document_with(scenario, changes, where)
+    return found
+
+
+def _check_together(changes: Changes, where: str) -> None:
+    names = {parameter.name for parameter, _ in changes}
+    for one, other in TOGETHER:
+        if {one, other} <= names:
+            raise InputError(f"{where}: {one} and {other} exclude each other: give one of them")
+
+
+def _put(document: dict[str, Any], changes: Changes) -> None:
+    """Write values into a document. Raises KeyError if it has no place for one."""
+    for parameter, value in changes:
+        if parameter.name == PRESSING:
+            raise KeyError(PRESSING)
+        document["initial"].pop(EXCLUDE_EACH_OTHER.get(parameter.name), None)
+        parameter.put(document, value)
+
+
+def _pressed(scenario: Scenario, value: float) -> Scenario:
+    """Return a scenario with another normal load, and all loads that it gives in proportion."""
+    contact, factor = scenario.contact, value / scenario.problem.normal
+    return replace(scenario, problem=pressed(scenario.problem, value), contact=contact and contact.pressed(factor))
+
+
 def with_values(scenario: Scenario, values: Mapping[str, Any], where: str) -> Scenario:
     """Return a scenario in which some parameters have other values, as `Scenario.with_values` does; `where` begins messages."""
-    document, texts = tomllib.loads(scenario.to_toml()), []
+    changes, texts = [], []
     for name, value in values.items():
         parameter = find_parameter(scenario, name, where)
-        document["initial"].pop(EXCLUDE_EACH_OTHER.get(parameter.name), None)
-        parameter.put(document, parameter.read(value, where))
+        changes.append((parameter, parameter.read(value, where)))
         counts = parameter.name in WHOLE and isinstance(value, float) and value.is_integer()
         texts.append(f"{name} = {int(value) if counts else value}")
     changed = ", ".join(texts)
     title = f"{scenario.heading}: {changed}" if scenario.heading else changed
-    return replace(scenario_of(document, Source(where)), name=scenario.name, title=title, description="")
+    return replace(
+        scenario_of(document_with(scenario, changes, where), Source(where)), name=scenario.name, title=title, description=""
+    )
 
 
 def values_in(scenario: Scenario) -> Iterator[tuple[ParameterPath, Any]]:
     """Yield every parameter that has a value in the file of a scenario, with the value (SI)."""
-    document = tomllib.loads(scenario.to_toml())
     for one in parameter_paths(scenario):
-        owner, key = _place_of(one.name, document)
-        if isinstance(key, int) or key in owner:
+        owner, key = _place_of(one.name, scenario.document)
+        if (isinstance(key, int) or key in owner) and not isinstance(owner[key], Mapping):  # a history in place of a number
             yield one, owner[key]
 
 
 def parameter_paths(scenario: Scenario) -> Iterator[ParameterPath]:
     """Yield every parameter, in the order of the scenario file."""
     problem = scenario.problem
-    yield from _paths_in(problem.body, "body")
-    yield from _paths_in(problem.friction, "friction")
-    tables = ("loading", "initial") if scenario.contact is not None else ("loading", "initial", "run")
-    for table in tables:
-        for name, (declared, _) in entries_in(table, type(problem.body), problem.friction.states).items():
-            if isinstance(declared, Quantity) and (f"{table}.{name}" != "initial.rate" or problem.has_initial_rate):
-                yield ParameterPath(f"{table}.{name}", declared)
+    ours = [ParameterPath(one.name, one.declared, one.written) for one in entries_of(problem)]
+    for table in ("body", "friction", "loading", "initial"):
+        yield from (one for one in ours if one.name.startswith(f"{table}."))
+    yield ParameterPath(PRESSING, pressing_of(problem))
     if scenario.contact is not None:
         yield ParameterPath("run.duration", DURATION)
         yield from _paths_in_contact(scenario.contact, problem)
         return
+    yield from (ParameterPath(f"run.{name}", declared) for name, (declared, _) in quantities_in("run", Problem).items())
     yield ParameterPath("run.events", EVENTS)
     yield ParameterPath("run.selection", Choice(SELECTION, tuple(rules())))
 
@@ -141,17 +195,3 @@ def _paths_in_contact(contact: Contact, problem: Problem) -> Iterator[ParameterP
         yield from (ParameterPath(f"{place}.{name}", units[name]) for name in values)
         if values:
             yield ParameterPath(f"{place}.taper", TAPER)
-
-
-def _paths_in(owner: Any, place: str) -> Iterator[ParameterPath]:
-    """Yield the parameters of a body or a law, and of the laws inside it."""
-    for name, (declared, _) in fields_of(type(owner)).items():
-        path, value = f"{place}.{key_of(name, declared)}", getattr(owner, name)
-        if isinstance(declared, Quantity | Choice):
-            yield ParameterPath(path, declared)
-        elif isinstance(declared, Part):
-            yield from _paths_in(value, path)
-        elif isinstance(declared, Series):
-            yield from (ParameterPath(f"{path}[{i}]", declared.item) for i in range(len(value)))
-        elif isinstance(declared, NamedNumbers):
-            yield from (ParameterPath(f"{path}.{one.name}", Quantity(one.unit or "1", declared.meaning), one.unit) for one in value)

@@ -94,6 +94,11 @@ class Scenario:
             raise InputError(f"{self.name}: has no [contact] of many nodes: take its .problem")
         return self.contact.slab(self.problem)
 
+    @cached_property
+    def document(self) -> dict[str, Any]:
+        """The scenario as a parsed TOML document, in SI; it must not be changed. Raises InputError as `to_toml` does."""
+        return tomllib.loads(self.to_toml())
+
     @classmethod
     def of(cls, solution: Solution, name: str = UNNAMED) -> Self:
         """Return the scenario of which a solution is a run."""

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import MISSING
+from types import MappingProxyType
 from typing import Any
 
 from stickslip.foundation.errors import InputError, nearest
@@ -17,6 +18,8 @@ from stickslip.loading import HISTORIES
 from stickslip.problem.selection_rule import SELECTION_RULES
 from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source, describe, key_of, to_table
+from stickslip.scenarios.parameter_paths import find_parameter, put_into
+from stickslip.scenarios.scenario import scenario_of
 from stickslip.scenarios.schema import KINDS, TABLES, columns_of, entries_in, has_kind, kind_of, read_part
 
 STARTERS = {"slab": "fig6-slab", "lab-slab": "granite-slab", "block": "fig6-block-reconstructed"}
@@ -70,10 +73,12 @@ def check_takes_law(name: str) -> None:
         raise InputError(f"{name} has a [contact] of many nodes, which takes no other law: name another scenario")
 
 
-def with_law(name: str, law: FrictionLaw, about: Sequence[str]) -> str:
+def with_law(name: str, law: FrictionLaw, about: Sequence[str], values: Mapping[str, Any] = MappingProxyType({})) -> str:
     """Return a starter or a bundled scenario with another friction law without a state, as commented TOML text to the last digit.
 
-    `about` are lines of comments for the head of the text; the first one becomes the title. Raises InputError for an unknown name.
+    `about` are lines of comments for the head of the text; the first one becomes the title. `values` are other values of its
+    parameters, as for `Scenario.with_values`, but for those of friction. Raises InputError for an unknown name, and for values that
+    the scenario cannot have.
     """
     check_takes_law(name)
     example = tomllib.loads(library.text(STARTERS.get(name, name)))
@@ -81,6 +86,14 @@ def with_law(name: str, law: FrictionLaw, about: Sequence[str]) -> str:
     if former.state is not None:  # type: ignore[attr-defined] # registered
         example["initial"] = {"excess": 0.0}
     example |= {"title": about[0], "description": f"Body, loading and start of {name}.", "friction": _listed(to_table(law))}
+    if values:
+        scenario = scenario_of(example, Source(name))
+        changes = [(one, one.read(value, name)) for key, value in values.items() for one in (find_parameter(scenario, key, name),)]
+        taken = next((one.name for one, _ in changes if one.name.startswith("friction.")), None)
+        if taken is not None:
+            raise InputError(f"{name}: {taken} belongs to the law, which comes from the points")
+        example = put_into(example, scenario, changes, name)
+        _ = scenario_of(example, Source(name))
     return _written(example, "".join(f"# {clean(line)}".rstrip() + "\n" for line in about))
 
 

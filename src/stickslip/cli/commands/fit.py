@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from stickslip.cli.options import Dpi, FigureFile, Size, complete_fitted, complete_table, complete_template, option
+from stickslip.cli.options import Changes, Dpi, FigureFile, Size, complete_fitted, complete_table, complete_template, option
 from stickslip.cli.output.files import Look, Target, announce, check_targets, drawing, write_files
 from stickslip.cli.output.show import console, print_sentences, print_words, say
 from stickslip.foundation.errors import InputError, InputWarning
@@ -40,6 +40,7 @@ def fit(
     body: Annotated[
         str, typer.Option(help="The scenario that lends --out its body and loading.", autocompletion=complete_template)
     ] = "slab",
+    changes: Changes = None,
     out: Annotated[Path | None, option("Write a scenario with the law (.toml).", "--out", "-o")] = None,
     figure: FigureFile = None,
     dpi: Dpi = None,
@@ -58,13 +59,14 @@ def fit(
     points instead.
 
     --out writes a scenario that can be run as it is. It takes its body and
-    loading from --body: edit them.
+    loading from --body, with the numbers of --set: edit them.
 
     \b
       stickslip fit data.csv
       stickslip fit data.csv --law hyperbolic-rate --figure fit.png
       stickslip fit data.csv --law exponential-stribeck --fix viscosity=0
-      stickslip fit data.csv --smooth auto --out mine.toml --body slab
+      stickslip fit data.csv --smooth auto --out mine.toml --body block \
+        --set "body.normal_force=50 kN" --set "pull_rate=1 mm/s"
     """
     from stickslip import friction
     from stickslip.cli.overrides import typed_values
@@ -74,10 +76,13 @@ def fit(
     check_targets(Target("--out", out, (".toml",)), Target("--figure", figure))
     look.check(figure)
     _check_options(law, smooth, monotone, along, {"--fix": fix, "--start": start})
+    values = typed_values(changes or (), "fit: --set", '"body.normal_force=50 kN"')
+    if values and out is None:
+        raise InputError("fit: --set belongs to --out, which takes its body and loading from --body")
     if out is not None:
-        from stickslip.scenarios.templates import check_takes_law
+        from stickslip.scenarios.templates import with_law
 
-        check_takes_law(body)  # before the work
+        with_law(body, friction.Coulomb(0.6, 0.5), ["before the work"], values)
     points = Points.read(data)
     if law is not None:
         known = typed_values(fix or (), "fit: --fix", "static=0.6")
@@ -87,7 +92,7 @@ def fit(
     else:
         result = _best(points)
     _show_result(result)
-    text = None if out is None else _scenario(result, body, data)
+    text = None if out is None else _scenario(result, body, data, values)
     if text is not None:
         from stickslip.scenarios.scenario import read_scenario
 
@@ -126,12 +131,12 @@ def _strength(text: str) -> Any:
         raise InputError(f"fit: --smooth must be auto or a number such as 1e-5, got {ascii(text)[:60]}") from None
 
 
-def _scenario(result: Fit | Smooth, body: str, data: str) -> str:
+def _scenario(result: Fit | Smooth, body: str, data: str, values: dict[str, Any]) -> str:
     """Return the text of a scenario with the law of a result, and with the result as comments at its head."""
     from stickslip.scenarios.templates import with_law
 
     rows = [f"  {name} = {value} {meaning}" for name, value, meaning in result.rows]
-    return with_law(body, result.law, [f"{Path(data).name}: {result.title}", *rows, *result.notes])
+    return with_law(body, result.law, [f"{Path(data).name}: {result.title}", *rows, *result.notes], values)
 
 
 def _write_text(path: Path, text: str) -> Path:

@@ -7,9 +7,7 @@ it cannot do are run one after the other, with a line on the progress.
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Callable, Mapping
-from copy import deepcopy
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -20,7 +18,8 @@ from stickslip.explorer.model.solve import Stopped
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity
-from stickslip.scenarios.parameter_paths import EXCLUDE_EACH_OTHER, ParameterPath, find_parameter, parameter_paths
+from stickslip.problem.parameters import PRESSING
+from stickslip.scenarios.parameter_paths import ParameterPath, find_parameter, parameter_paths, put_into, values_in
 from stickslip.scenarios.scenario import Scenario
 from stickslip.sweeps.design.quantities import QUANTITIES, quantities_named
 from stickslip.sweeps.execution.chunk import Work, run_chunk
@@ -122,13 +121,9 @@ def _run(work: Work, name: str, values: Floats, told: Told) -> tuple[dict[str, F
 
 def present(scenario: Scenario, parameter: ParameterPath) -> float:
     """Return the value (SI) that a parameter has in a scenario; NaN if it has none, as the load where the excess is given."""
-    value: Any = tomllib.loads(scenario.to_toml())
-    *tables, last = parameter.name.split(".")
-    key, _, index = last.partition("[")
-    for table in (*tables, key):
-        value = value.get(table) if isinstance(value, Mapping) else None
-    if index and isinstance(value, list):
-        value = value[int(index[:-1])]
+    if parameter.name == PRESSING:
+        return scenario.problem.normal
+    value = next((value for one, value in values_in(scenario) if one.name == parameter.name), None)
     return math.nan if value is None else float(parameter.read(value, "strip"))
 
 
@@ -167,14 +162,7 @@ def setting_at(setting: Setting, name: str, value: float) -> Setting:
     """Return a setting with another value (SI) of the parameter of a strip. Raises InputError if there is no such parameter."""
     scenario = setting.scenario()
     found = numeric(scenario, name)
-    document = deepcopy(dict(setting.document))
-    document["initial"].pop(EXCLUDE_EACH_OTHER.get(found.name), None)
-    try:
-        found.put(document, value)
-    except KeyError:  # what a document leaves out, or keeps in a file of its own, its full text holds
-        document = tomllib.loads(scenario.to_toml())
-        found.put(document, value)
-    return replace(setting, document=document)
+    return replace(setting, document=put_into(setting.document, scenario, [(found, value)], "strip"))
 
 
 def choices(scenario: Scenario) -> list[str]:

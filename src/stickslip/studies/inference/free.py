@@ -126,7 +126,11 @@ def read_free(problem: Problem, names: Sequence[str], hints: Mapping[str, float]
 
 def known_numbers(problem: Problem, hints: Mapping[str, float]) -> dict[str, tuple[Quantity, float]]:
     """Return declaration and value of all numbers that may be free."""
-    found = {name: (one.declared, one.value) for name, one in problem.parameters.items()}
+    found = {
+        name: (one.declared, one.value)
+        for name, one in problem.parameters.items()
+        if not name.startswith("loading.") and name != "initial.second_state"  # the record has the loading
+    }
     found[LOAD] = Quantity(problem.load_unit, "load at the start"), hints.get(LOAD, math.nan)
     if problem.friction.states:
         state = problem.friction.states[0]

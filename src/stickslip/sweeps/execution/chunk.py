@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import copy
 import os
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -20,7 +18,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.run.simulate import simulate
 from stickslip.scenarios.entries import Source
-from stickslip.scenarios.parameter_paths import EXCLUDE_EACH_OTHER, ParameterPath
+from stickslip.scenarios.parameter_paths import ParameterPath, document_with
 from stickslip.scenarios.scenario import Scenario, read_scenario, scenario_of
 from stickslip.solution.solution import Solution
 from stickslip.sweeps.design.axis import Values
@@ -104,14 +102,6 @@ class Work:
     defers: bool = False
 
     @cached_property
-    def _document(self) -> dict[str, Any]:
-        """The scenario as a document, without an entry that a varied one replaces."""
-        document = tomllib.loads(self.text)
-        for parameter in self.parameters:
-            document["initial"].pop(EXCLUDE_EACH_OTHER.get(parameter.name), None)
-        return document
-
-    @cached_property
     def scenario(self) -> Scenario:
         """The scenario whose parameters are varied."""
         return read_scenario(self.text, "member")
@@ -136,9 +126,7 @@ class Work:
 
         Raises InputError with the same one-line message as a scenario file that cannot be used.
         """
-        document = copy.deepcopy(self._document)
-        for parameter in self.parameters:
-            parameter.put(document, values[parameter.name])
+        document = document_with(self.scenario, [(parameter, values[parameter.name]) for parameter in self.parameters], "member")
         return scenario_of(document, Source("member"))
 
 
