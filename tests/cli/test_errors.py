@@ -195,6 +195,56 @@ def test_bad_input_gives_one_line_and_writes_nothing(command, tmp_path: Path, ar
     assert sorted(tmp_path.iterdir()) == before
 
 
+FOREIGN = b"# stick-slip tests, not made by stickslip\ntime,force\n0,1\n"
+"""A file of somebody else that a command was told to write by mistake."""
+
+
+@pytest.mark.parametrize(
+    ("arguments", "file"),
+    [
+        (["run", "fig6-slab", "--catalogue"], "data.csv"),
+        (["run", "fig6-slab", "--catalogue"], "data.nc"),
+        (["run", "fig6-slab", "--out"], "data.nc"),
+        (["compare", "fig6-slab", "fig6-slab", "--out"], "data.csv"),
+        (["ensemble", "fig6-slab", "--members", "2", "--out"], "data.nc"),
+        (["regularise", "fig4-loop", "--out"], "data.csv"),
+        (["schemes", "fig4-loop", "--nx", "20", "--out"], "data.csv"),
+        (["analogy", "fig6-slab", "--map", "alpha=1..2:2", "--map", "thickness=1..2:2", "--out"], "data.csv"),
+        (["export", "fig6-slab"], "data.txt"),
+        (["fit", "points.csv", "--out"], "data.toml"),
+    ],
+    ids=lambda one: one[0] if isinstance(one, list) else one,
+)
+def test_a_file_of_somebody_else_is_never_replaced(command, tmp_path: Path, arguments: list[str], file: str):
+    (tmp_path / file).write_bytes(FOREIGN)
+    (tmp_path / "points.csv").write_text("slip,friction\n0,0.6\n1,0.5\n2,0.4\n3,0.4\n")
+    shown = command(*arguments, file)
+    assert shown.code == 2
+    assert f"{file}: exists, and" in shown.err
+    assert shown.err.endswith("choose another name, or remove it\n")
+    assert (tmp_path / file).read_bytes() == FOREIGN
+
+
+def test_python_replaces_no_file_of_somebody_else_either(tmp_path: Path):
+    for name in ("data.csv", "data.nc", "a.rows.csv"):
+        (tmp_path / name).write_bytes(FOREIGN)
+    for call, name in (
+        (lambda: ss.catalogue("fig6-slab", path=tmp_path / "data.csv"), "data.csv"),
+        (lambda: ss.catalogue("fig6-slab", path=tmp_path / "a.nc"), "a.rows.csv"),
+        (lambda: ss.simulate("fig6-slab", checkpoint=tmp_path / "data.nc"), "data.nc"),
+    ):
+        with pytest.raises(ss.InputError, match=f"{name}: exists, and stickslip did not write it"):
+            call()
+        assert (tmp_path / name).read_bytes() == FOREIGN
+
+
+def test_results_of_an_earlier_run_are_replaced(command):
+    for options in (["--out", "a.nc"], ["--catalogue", "a.csv"], ["--catalogue", "b.nc"]):
+        assert [command("run", "fig6-slab", *options).code for _ in range(2)] == [0, 0]
+    assert [command("compare", "fig6-slab", "fig6-slab", "--out", "c.csv").code for _ in range(2)] == [0, 0]
+    assert [command("export", "fig6-slab", "d.txt").code for _ in range(2)] == [0, 0]
+
+
 def test_a_folder_that_cannot_be_written_is_refused_before_the_run(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr("stickslip.cli.output.files.os.access", lambda *_: False)
     monkeypatch.setattr("stickslip.run.simulate.simulate", lambda *_, **__: pytest.fail("ran"))

@@ -15,6 +15,7 @@ from typing import Any, Literal
 from stickslip.contact.equation import Resistance, resistance
 from stickslip.contact.folds import Verdict, certificate, lowest_slope
 from stickslip.contact.roots import sign_change
+from stickslip.foundation.arguments import NamesAttributes, for_users
 from stickslip.foundation.brief_repr import brief_repr
 from stickslip.foundation.errors import InputError
 from stickslip.friction.statements import is_known
@@ -79,7 +80,7 @@ _STEPS = tuple(2.0**-k for k in range(50, 25, -4))
 
 
 @dataclass(frozen=True)
-class Critical:
+class Critical(NamesAttributes):
     """Values of one parameter of a problem at which the regime changes, with everything else fixed; in SI units, ascending.
 
     `regimes` has one more entry than `values`: the regime below the first value, between neighbours, and above the last.
@@ -142,6 +143,7 @@ def critical_normal_stress(g: Resistance) -> float | None:
     return g.damping / weakening if weakening > 1e-12 * g.damping / g.normal else None
 
 
+@for_users
 def critical_value(problem: Problem, name: str, law_slip: float | None = None) -> Critical:
     """Find the values of one parameter at which the contact equation changes between one solution and several, to rounding.
 

@@ -19,6 +19,7 @@ from stickslip.contact.equation import Plateau, Resistance, resistance
 from stickslip.contact.folds import Certificate, Fold, Verdict, certificate, critical_stress_between, sentence
 from stickslip.contact.rules.loop import Jump, Loop, jumps_of, loop_of
 from stickslip.contact.rules.selection import table_of
+from stickslip.foundation.arguments import NamesAttributes
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief, html_table
@@ -36,7 +37,7 @@ Regime = Literal["regular", "irregular", "continuum"]
 
 
 @dataclass(frozen=True, repr=False)
-class Uniqueness:
+class Uniqueness(NamesAttributes):
     """The result of `stickslip.uniqueness`; `print` shows it in sentences.
 
     Loads are in Pa and slip rates in m/s, all for forward slip; backward slip is the mirror image.

@@ -7,6 +7,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from stickslip.foundation.arguments import for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
@@ -29,6 +30,7 @@ ROUND_TRIPS = 3.0
 """Round trips of a slab, or periods of a block, that are shown of a problem to which no duration is given."""
 
 
+@for_users
 def explore(
     problem: Problem | Scenario | str | Path = "fig6-slab",
     duration: float | str | WithUnit | None = None,

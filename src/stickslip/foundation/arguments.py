@@ -5,15 +5,16 @@ from __future__ import annotations
 import inspect
 import math
 import os
+from collections.abc import Callable, Mapping, Sequence
 from datetime import date, time
-from functools import cache
+from functools import cache, wraps
 from numbers import Integral, Real
 from pathlib import Path
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self, TypeVar, cast
 
 import numpy as np
 
-from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.errors import ArgumentError, InputError, UnknownAttributeError, nearest
 
 LONGEST = 60
 """Largest number of characters of a value that a message repeats."""
@@ -81,26 +82,73 @@ def as_path(where: str, value: Any, wanted: str = "the name of a file") -> Path:
     return Path(value)
 
 
-class CheckedArguments:
+class NamesAttributes:
+    """Base of the classes that people use: an attribute that an object does not have is answered with those that it has."""
+
+    if not TYPE_CHECKING:  # with it, type checkers would accept any attribute
+
+        def __getattr__(self, name: str) -> Any:
+            if name.startswith("_") or hasattr(type(self), name):  # the second is a property that raised an error of this kind
+                return object.__getattribute__(self, name)
+            raise UnknownAttributeError(self, name)
+
+
+class CheckedArguments(NamesAttributes):
     """Base of the classes that people make by hand."""
 
     def __new__(cls, *given: Any, **named: Any) -> Self:
         """Check the names of the arguments; their values are checked once they are in their fields."""
-        names, needed = _fields(cls)  # type: ignore[arg-type] # classes are hashable
-        wrong = next((name for name in named if name not in names), None)
-        if wrong is not None:
-            raise InputError(f"{cls.__name__}: unknown argument '{wrong}'; {nearest(wrong, names)}")
-        if len(given) > len(names):
-            raise InputError(f"{cls.__name__}: takes at most {len(names)} arguments, {', '.join(names)}; got {len(given)}")
-        if given or named:  # a copy is made without arguments, and filled afterwards
-            missing = [name for name in needed if name not in named and name not in names[: len(given)]]
-            if missing:
-                raise InputError(f"{cls.__name__}: {', '.join(missing)} must be given")
+        check_names(cls.__name__, _taken(cls), given, named)  # type: ignore[arg-type] # classes are hashable
         return super().__new__(cls)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Copy and pickle an object without its arguments: it is made empty and filled."""
+        return _empty, (type(self),), vars(self)
+
+
+def _empty(cls: type) -> Any:
+    return object.__new__(cls)
 
 
 @cache
-def _fields(cls: type) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Return the names of a class's arguments, and of those that must be given."""
-    taken = list(inspect.signature(cls.__init__).parameters.values())[1:]  # type: ignore[misc] # of the class itself
-    return tuple(one.name for one in taken), tuple(one.name for one in taken if one.default is one.empty)
+def _taken(cls: type) -> tuple[inspect.Parameter, ...]:
+    """Return the arguments that a class takes."""
+    return tuple(inspect.signature(cls.__init__).parameters.values())[1:]  # type: ignore[misc] # of the class itself
+
+
+def check_names(who: str, taken: Sequence[inspect.Parameter], given: Sequence[Any], named: Mapping[str, Any]) -> None:
+    """Raise ArgumentError, which begins with `who`, for arguments that are unknown, too many, given twice or missing."""
+    if any(one.kind in (one.VAR_POSITIONAL, one.VAR_KEYWORD) for one in taken):
+        return
+    names = [one.name for one in taken]
+    by_place = [one.name for one in taken if one.kind is not one.KEYWORD_ONLY]
+    wrong = next((name for name in named if name not in names), None)
+    if wrong is not None:
+        raise ArgumentError(f"{who}: unknown argument '{wrong}'; {nearest(wrong, names)}")
+    if len(given) > len(by_place):
+        named_only = f" and by name {', '.join(names[len(by_place) :])}" if len(by_place) < len(names) else ""
+        most = f"takes at most {len(by_place)} arguments, {', '.join(by_place)}{named_only}" if names else "takes no arguments"
+        raise ArgumentError(f"{who}: {most}; got {len(given)}")
+    twice = next((name for name in by_place[: len(given)] if name in named), None)
+    if twice is not None:
+        raise ArgumentError(f"{who}: {twice} is given twice")
+    missing = [one.name for one in taken if one.default is one.empty and one.name not in {*named, *by_place[: len(given)]}]
+    if missing:
+        raise ArgumentError(f"{who}: {', '.join(missing)} must be given")
+
+
+_Function = TypeVar("_Function", bound=Callable[..., Any])
+
+
+def for_users(function: _Function) -> _Function:
+    """Decorate a function that people call: arguments that it does not have, or lacks, are refused in one line with the nearest."""
+
+    @wraps(function)
+    def call(*given: Any, **named: Any) -> Any:
+        try:
+            return function(*given, **named)
+        except TypeError:
+            check_names(function.__name__, tuple(inspect.signature(function).parameters.values()), given, named)
+            raise
+
+    return cast(_Function, call)

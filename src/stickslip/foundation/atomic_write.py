@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import io
 import os
+import re
 import shutil
 import stat
 import time
@@ -248,11 +249,40 @@ class Sink(io.FileIO):
             raise self.error
 
 
+OWN = re.compile(rb"^# (written by |code=)?stickslip\b|^start,end,duration,recurrence,", re.MULTILINE)
+"""What stands in the text files that this package writes: a comment, or the columns of a catalogue that grows."""
+BINARY = {".nc": b"\x89HDF", ".parquet": b"PAR1"}
+"""First bytes of files that name this package somewhere at their beginning or end, by suffix."""
+LOOKED_AT = 65_536
+"""Number of bytes at the beginning, and at the end, in which a file of this package names it."""
+
+
+def check_replaceable(path: Path, where: str) -> None:
+    """Refuse to replace data that this package did not write, and scenarios, which people edit; an empty file may be replaced.
+
+    Pictures and seismograms are not looked into. Raises InputError, which begins with `where`.
+    """
+    suffix = path.suffix.lower()
+    if suffix not in (".csv", ".txt", ".dat", ".toml", *BINARY) or not path.is_file() or not path.stat().st_size:
+        return
+    if suffix == ".toml":
+        raise InputError(f"{where}: exists, and may have been edited: choose another name, or remove it")
+    with path.open("rb") as file:
+        ends = file.read(LOOKED_AT)
+        file.seek(max(path.stat().st_size - LOOKED_AT, 0))
+        ends += file.read()
+    is_own = b"stickslip" in ends and ends.startswith(BINARY[suffix]) if suffix in BINARY else OWN.search(ends)
+    if not is_own:
+        raise InputError(f"{where}: exists, and stickslip did not write it: choose another name, or remove it")
+
+
 def write_table(path: Path, table: pd.DataFrame, about: Iterable[str]) -> Path:
     """Write a table as CSV with all digits, after comment lines (`#`) that say where it comes from, and return the path.
 
-    Read it with `pandas.read_csv(path, comment="#")`.
+    Read it with `pandas.read_csv(path, comment="#")`. By one of the comments `check_replaceable` knows the file again.
     """
-    comment = "".join(f"# {line}".rstrip() + "\n" for text in about for line in text.splitlines())
+    lines = [line for text in about for line in text.splitlines()]
+    lines = lines if any(line.startswith("stickslip ") for line in lines) else ["written by stickslip", *lines]
+    comment = "".join(f"# {line}".rstrip() + "\n" for line in lines)
     text = comment + table.to_csv(index=False, lineterminator="\n")
     return write_atomically(path, lambda draft: draft.write_text(text, encoding="utf-8", newline="\n"))

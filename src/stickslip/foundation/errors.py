@@ -25,10 +25,28 @@ class InputError(ValueError):
         super().__init__(printable(message))
 
 
+class ArgumentError(InputError, TypeError):
+    """Raised for an argument that a function or a class does not have, or lacks: also an error of Python's own kind."""
+
+
+class UnknownAttributeError(AttributeError):
+    """Raised for an attribute that an object does not have; the message names the nearest public one, or all."""
+
+    def __init__(self, owner: object, attribute: str) -> None:
+        super().__init__(owner, attribute)  # the message is made when it is read: `hasattr` needs none
+
+    def __str__(self) -> str:
+        owner, attribute = self.args
+        hint = nearest(attribute, [one for one in dir(owner) if not one.startswith("_")], "it has ")
+        return f"{type(owner).__name__} has no attribute {ascii(attribute)[:60]}; {hint}"
+
+
 class InputWarning(UserWarning):
     """Issued for input that can be used but hardly means what it says; the message is one line with the cure."""
 
 
+NONE = "none"
+"""What a hint says where no word at all is allowed."""
 _GATHERED: ContextVar[list[str] | None] = ContextVar("gathered", default=None)
 """Where `warn` puts its messages within `gathered`; each thread has its own."""
 
@@ -56,18 +74,18 @@ def warn(message: str) -> None:
     warnings.warn(InputWarning(message), stacklevel=level)
 
 
-def nearest(word: str, allowed: Iterable[str]) -> str:
+def nearest(word: str, allowed: Iterable[str], before: str = "allowed: ") -> str:
     """Return a hint that names the allowed word nearest to `word`, or else all of them, to be appended to an error message."""
     allowed = list(allowed)
     close = difflib.get_close_matches(word, allowed, n=1)
-    return f"did you mean '{close[0]}'?" if close else f"allowed: {', '.join(sorted(allowed))}"
+    return f"did you mean '{close[0]}'?" if close else f"{before}{', '.join(sorted(allowed)) or NONE}"
 
 
 def nearest_and_all(word: str, allowed: Iterable[str]) -> str:
     """Return a hint that names the allowed word nearest to `word`, if one is near, and all of them in the order given."""
     allowed = list(allowed)
     close = difflib.get_close_matches(word, allowed, n=1)
-    return f"{f'did you mean {close[0]!r}? ' if close else ''}allowed: {', '.join(allowed)}"
+    return f"{f'did you mean {close[0]!r}? ' if close else ''}allowed: {', '.join(allowed) or NONE}"
 
 
 def full_name(name: str, known: Collection[str], before: str, unknown: str) -> str:

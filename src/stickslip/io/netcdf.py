@@ -14,7 +14,7 @@ import stickslip
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import HistoryPiece, Store
 from stickslip.foundation import netcdf_file
-from stickslip.foundation.arguments import as_path
+from stickslip.foundation.arguments import as_path, for_users
 from stickslip.foundation.errors import InputError, printable
 from stickslip.foundation.netcdf_file import FullDiskError, Variable, write_variables
 from stickslip.friction.contract import STATE_NAMES
@@ -272,6 +272,7 @@ def _tables(solution: Solution) -> dict[str, Variable]:
     return variables
 
 
+@for_users
 def open_solution(path: str | Path) -> Solution | PlanarSolution:
     """Read a solution from a netCDF file that `Solution.to_netcdf` or a run wrote, or from the folder of a `PlanarSlab`'s run.
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.engine.state.layout import Floats, Integers
-from stickslip.foundation.arguments import check_type
+from stickslip.foundation.arguments import check_type, for_users
 from stickslip.observables.energy.balance import event_energies
 from stickslip.trajectory.history import History, Positions
 from stickslip.trajectory.slip_events import NOT_YET, SlipEvents
@@ -30,6 +30,7 @@ SAME = 1e-9
 """Relative spread below which values count as equal: the correlation of successive values then says nothing."""
 
 
+@for_users
 def catalogue_statistics(table: pd.DataFrame) -> pd.DataFrame:
     """Return statistics of the events of a catalogue, such as `Solution.events`, one row per quantity, in the unit of the quantity.
 

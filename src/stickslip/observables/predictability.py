@@ -17,7 +17,7 @@ import numpy as np
 
 from stickslip.engine_input.branch_table import folds_move, is_algebraic
 from stickslip.engine_input.prepare import SAFETY
-from stickslip.foundation.arguments import shown
+from stickslip.foundation.arguments import NamesAttributes, for_users, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.brief_repr import brief_repr
 from stickslip.foundation.constants import YEAR
@@ -33,7 +33,7 @@ LOST = 0.1
 
 
 @dataclass(frozen=True)
-class Predictability:
+class Predictability(NamesAttributes):
     """The result of `predictability`, at the times (s) at which pieces of the history, or slip events, start.
 
     `amplification` is the size there of a disturbance of the load that is 1 at the start of the run; NaN if it is not known.
@@ -92,6 +92,7 @@ class Run(Protocol):
         ...
 
 
+@for_users
 def predictability(run: Run) -> Predictability:
     """Return how far disturbances have grown along a run of a slab without contact mass, under a law of slip rate only.
 

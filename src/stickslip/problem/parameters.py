@@ -181,7 +181,7 @@ def _scaled(value: Any, factor: float) -> Any:
             fields[name] = tuple(factor * x for x in one)
         elif isinstance(declared, Quantity) and declared.unit == VARYING:
             fields[name] = factor * one
-    return replace(value, **fields)
+    return replace(value, **fields)  # type: ignore[type-var] # every history is a dataclass
 
 
 def _entries_in(owner: Any, place: str, put: Callable[[Any], Problem], units: Mapping[str, str] | None = None) -> Iterator[Entry]:

@@ -16,6 +16,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol
 
+from stickslip.foundation.arguments import CheckedArguments, for_users
 from stickslip.foundation.errors import InputError, nearest
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,59}")
 
 
 @dataclass(frozen=True)
-class SelectionTable:
+class SelectionTable(CheckedArguments):
     """The loads at which a contact leaves stick, and between which it stays on each branch: excesses over the static strength (Pa).
 
     A stuck contact stays stuck while excess <= stick_to; otherwise it takes the first branch i, slowest first, that is ever taken
@@ -82,6 +83,7 @@ registered: dict[str, SelectionRule] = {}
 """Rules that users have registered, by name."""
 
 
+@for_users
 def register(name: str, rule: SelectionRule) -> None:
     """Register a selection rule under a name, for problems, scenarios and saved runs.
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from stickslip.foundation.arguments import as_path
-from stickslip.foundation.atomic_write import held
+from stickslip.foundation.arguments import as_path, for_users
+from stickslip.foundation.atomic_write import check_replaceable, held
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.io.catalogue_rows import Rows, RowsInMemory, check_catalogue
@@ -36,6 +36,7 @@ CAPACITY = 16_384
 """Pieces of history for which a catalogue has room at first, about 7 MB; it grows only where what must be kept fills half of it."""
 
 
+@for_users
 def catalogue(
     problem: Problem | Scenario | str | Path,
     duration: float | str | WithUnit | None = None,
@@ -87,7 +88,8 @@ def catalogue(
     ------
     InputError
         If an argument is out of range (see `stickslip.simulate`), the suffix of `path` is unknown, Parquet is wanted without
-        pyarrow, another run writes to the same files, or `energy` is combined with a positive creep_rtol.
+        pyarrow, the file exists and was not written by this package, another run writes to the same files, or `energy` is combined
+        with a positive creep_rtol.
     """
     rate = check_event_rate(event_rate, "catalogue")
     file = None if path is None else as_path("catalogue: path", path)
@@ -113,7 +115,12 @@ def catalogue(
 def catalogue_of(
     problem: Problem, options: RunOptions, path: Path | None, event_rate: float | None = None, *, energy: bool = False
 ) -> Catalogue:
-    """Run from the start; with a path, an earlier table and checkpoint of the same names are deleted first."""
+    """Run from the start; with a path, an earlier table and checkpoint of the same names are deleted first.
+
+    Raises InputError if a file of such a name was not written by this package.
+    """
+    for file in () if path is None else {path, Rows(path).growing, checkpoint_of(Rows(path))}:
+        check_replaceable(file, f"catalogue: {file}")
     run = Session.begin(problem, replace(options, creep_rtol=leaps_with(energy, options.creep_rtol)))
     stream = run.events(event_rate, energy)
     if path is None:

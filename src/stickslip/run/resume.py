@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from stickslip.foundation.arguments import as_path
+from stickslip.foundation.arguments import as_path, for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.io.catalogue_rows import Rows, check_catalogue
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
+@for_users
 def resume(
     path: str | Path,
     duration: float | str | WithUnit | None = None,

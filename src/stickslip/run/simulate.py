@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
-from stickslip.foundation.arguments import as_path
+from stickslip.foundation.arguments import as_path, for_users
+from stickslip.foundation.atomic_write import check_replaceable
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.planar.slab import PlanarSlab
@@ -54,6 +55,7 @@ def simulate(
 ) -> Solution: ...
 
 
+@for_users
 def simulate(
     problem: Problem | Scenario | PlanarSlab | str | Path,
     duration: float | str | WithUnit | None = None,
@@ -152,6 +154,9 @@ def simulate(
             return simulate_planar(found, duration, frames=frames, progress=report, **keep)
         if frames is not None:
             raise InputError("simulate: frames is for a PlanarSlab: a slab in 1D is known at all times")
+        file = None if checkpoint is None else as_path("simulate: checkpoint", checkpoint)
+        if file is not None:
+            check_replaceable(file, f"simulate: {file}")
         given, options = problem_and_options(
             "simulate",
             found,
@@ -161,7 +166,7 @@ def simulate(
             shortest_event=shortest_event,
             max_events=max_events,
             progress=report,
-            checkpoint=None if checkpoint is None else as_path("simulate: checkpoint", checkpoint),
+            checkpoint=file,
             checkpoint_every=checkpoint_every,
             max_pieces=max_pieces,
             title=title or None,

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Self
 import tomli_w
 
 from stickslip.engine_input.limits import check_creep_rtol, check_shortest_event
-from stickslip.foundation.arguments import as_path, shown
+from stickslip.foundation.arguments import CheckedArguments, as_path, for_users, shown
 from stickslip.foundation.brief_repr import shown_fields
 from stickslip.foundation.conversion import Number
 from stickslip.foundation.errors import InputError
@@ -48,7 +48,7 @@ _LONG_KEY = re.compile(rf"""(?<![\w-])(?:(?:[\w-]+|"[^"\n]*"|'[^'\n]*')[ \t]*\.[
 
 
 @dataclass(frozen=True)
-class Scenario:
+class Scenario(CheckedArguments):
     """A problem, and how long (s, or a text with a unit) and how accurately to run it.
 
     Two scenarios are equal if they differ in `name` and `source`, the TOML text from which it was read, only. After `max_events`
@@ -158,6 +158,7 @@ def doubts(problem: Problem) -> list[str]:
     return found
 
 
+@for_users
 def load_scenario(path_or_name: str | Path) -> Scenario:
     """Read a scenario file (TOML), or a bundled scenario by its name.
 

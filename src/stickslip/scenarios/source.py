@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
+from stickslip.foundation.arguments import for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem, check_problem
@@ -54,6 +55,7 @@ def read_duration_and_problem(
     return DURATION.check(who, "duration", found.duration if duration is None else duration), found.problem
 
 
+@for_users
 def uniqueness(problem: Problem | Scenario | str | Path, law_slip: float | str | WithUnit | None = None) -> Uniqueness:
     """Determine whether the load fixes the slip rate of a contact, and otherwise what the selection rule does.
 

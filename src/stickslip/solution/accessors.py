@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar, Unpack
 import numpy as np
 from numpy.typing import ArrayLike
 
+from stickslip.foundation.arguments import NamesAttributes
 from stickslip.foundation.errors import InputError
 from stickslip.solution.evaluation import Curve, Readings
 
@@ -32,7 +33,7 @@ Run = TypeVar("Run", bound=Readings)
 T = TypeVar("T")
 
 
-class Plots(Generic[Run]):
+class Plots(NamesAttributes, Generic[Run]):
     """Figures of a run, or of a window on it: `solution.plot()` draws the default one, `solution.plot.energy()` the energies.
 
     Methods with `start` and `end` draw between these times (s); the default is the whole run, or what the window shows. All but
@@ -247,7 +248,7 @@ def check_size(t: ArrayLike, x: ArrayLike | None) -> None:
         raise InputError(f"to_dataset: {wanted:.3g} values are too many: take fewer times or places (at most {MOST_VALUES:.0e})")
 
 
-class PlanarPlots:
+class PlanarPlots(NamesAttributes):
     """Figures of the run of a planar slab: `run.plot()` draws the default one, `run.plot.animation(path)` writes a film."""
 
     def __init__(self, run: PlanarSolution) -> None:

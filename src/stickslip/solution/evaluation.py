@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.foundation.arguments import shown
+from stickslip.foundation.arguments import NamesAttributes, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import Quantity
@@ -45,7 +45,7 @@ def times_of(t: ArrayLike) -> Floats:
         raise InputError(f"solution: times must be numbers in s or texts with a unit such as '3 ms', got {shown(t)}") from None
 
 
-class Readings:
+class Readings(NamesAttributes):
     """Values of a run at given times.
 
     Slip, slip rate, traction, load and state are methods of the same form: they take times (s since `history.epoch`), a scalar or

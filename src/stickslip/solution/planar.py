@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from stickslip.foundation.arguments import NamesAttributes
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief
 from stickslip.observables.energy.balance import LONG_NAMES
@@ -38,7 +39,7 @@ FEWEST_STEPS, QUICK = 100.0, 2e8
 
 
 @dataclass(frozen=True, eq=False)
-class PlanarSolution:
+class PlanarSolution(NamesAttributes):
     """The motion of the contact of a planar slab. Arrays have time first, then the axes of the contact.
 
     `times` are those of the frames (s), `fields` the arrays by the names in `FIELDS`, each read when it is first used. `status`

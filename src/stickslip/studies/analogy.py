@@ -21,6 +21,7 @@ import pandas as pd
 from stickslip.bodies import as_slab
 from stickslip.contact.critical import margin
 from stickslip.contact.regime_map import Axis, put_both, two_parameters
+from stickslip.foundation.arguments import for_users
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
@@ -99,6 +100,7 @@ def block_for(problem: Problem) -> Problem:
     return replace(problem, body=slab.equivalent_block())
 
 
+@for_users
 def analogy(
     problem: Problem | Scenario | str | Path,
     duration: float | str | WithUnit | None,

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import pandas as pd
 
 import stickslip
+from stickslip.foundation.arguments import for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.io.netcdf import PAPER, read_solution
@@ -123,6 +124,7 @@ class Comparison(Study):
         return self.table.set_index("name").rename(columns=with_units).T.rename_axis(columns=None)
 
 
+@for_users
 def compare(
     *sources: str | Path | Scenario | Solution,
     names: Sequence[str] | None = None,

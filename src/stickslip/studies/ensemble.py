@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from stickslip.foundation.arguments import for_users
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import YEAR
 from stickslip.foundation.conversion import WithUnit
@@ -213,6 +214,7 @@ class Ensemble(RunsCompared):
         return about, self.note, self.text, self.growth_text, self.stopped
 
 
+@for_users
 def ensemble(
     problem: Problem | Scenario | str | Path,
     duration: float | str | WithUnit | None = None,

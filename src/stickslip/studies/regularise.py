@@ -19,6 +19,7 @@ import numpy as np
 import pandas as pd
 
 from stickslip.engine_input.prepare import prepare
+from stickslip.foundation.arguments import for_users
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
@@ -190,6 +191,7 @@ def default_sizes(two_way_time: float) -> tuple[float, ...]:
     return tuple(two_way_time / LARGEST_SHARE / FACTOR**k for k in range(COUNT))
 
 
+@for_users
 def regularise(
     problem: Problem | Scenario | str | Path,
     duration: float | str | WithUnit | None = None,

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 import stickslip
+from stickslip.foundation.arguments import for_users
 from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
@@ -165,6 +166,7 @@ def _orders(table: pd.DataFrame, column: str) -> list[float]:
     return found[: len(table)]
 
 
+@for_users
 def schemes(
     problem: Problem | Scenario | str | Path,
     duration: float | str | WithUnit | None = None,
@@ -233,6 +235,7 @@ def schemes(
     return Schemes(given, exact, tuple(done), interrupted)
 
 
+@for_users
 def judge_series(
     series: Series | Sequence[Series],
     problem: Problem | Scenario | str | Path,

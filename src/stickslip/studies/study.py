@@ -9,6 +9,7 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
+from stickslip.foundation.arguments import NamesAttributes
 from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.constants import YEAR
 from stickslip.run.progress import told
@@ -44,7 +45,7 @@ def uninterrupted(solution: Solution) -> Solution:
     return solution
 
 
-class Study:
+class Study(NamesAttributes):
     """The result of a study: a table, a text and a figure.
 
     The figure is drawn by the module of `stickslip.figures.studies` that has the study's name.

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from stickslip.foundation.arguments import for_users
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
@@ -45,6 +46,7 @@ class _StoppedError(Exception):
     """The signal that a round of the search was stopped by Ctrl-C."""
 
 
+@for_users
 def refine(
     scenario: Problem | Scenario | str | Path,
     vary: Any,

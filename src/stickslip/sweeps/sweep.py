@@ -14,7 +14,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from stickslip.foundation.arguments import check_whole
+from stickslip.foundation.arguments import check_whole, for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import about_time, number
@@ -66,6 +66,7 @@ Runner = Callable[[Work, Iterable[tuple[int, dict[str, Values]]]], Iterator[tupl
 """A function that runs chunks, each given by its number and its values, and yields their numbers and results in any order."""
 
 
+@for_users
 def sweep(
     scenario: Problem | Scenario | str | Path,
     vary: Any,

@@ -79,7 +79,8 @@ def run(
     r"""Simulate a scenario, or resume a run, and report what happened: slip events, shocks, and what ended the run.
 
     Times are in s, slips in m, slip rates in m/s, tractions in Pa (slab) or
-    N (block). Existing files are replaced, each when its content is complete.
+    N (block). Results and figures of earlier runs are replaced, each when its
+    content is complete; data that stickslip did not write are not.
 
     \b
       stickslip run fig6-slab

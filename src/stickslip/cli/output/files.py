@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import typer
 
-from stickslip.foundation.atomic_write import write_atomically
+from stickslip.foundation.atomic_write import check_replaceable, write_atomically
 from stickslip.foundation.errors import InputError, warn
 
 CATALOGUES = (".csv", ".parquet", ".nc")
@@ -105,6 +105,7 @@ def _check_place(path: Path, where: str) -> None:
         raise InputError(f"{where}: exists and is not an ordinary file: choose another name")
     if path.exists() and not os.access(path, os.W_OK):
         raise InputError(f"{where}: exists and is write-protected: choose another name")
+    check_replaceable(path, where)
     _check_writable(path.parent, where)
 
 

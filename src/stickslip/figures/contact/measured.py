@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from stickslip.figures.panels import letter_panels, set_title, zero_line
 from stickslip.figures.sheet import sheet, shown_or_saved
 from stickslip.figures.style import BLUE, GREY, INK, axis_text, quantity, spans_decades, styled, unit_shown
+from stickslip.foundation.arguments import for_users
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.friction import Fit, Smooth
@@ -28,6 +29,7 @@ SHADES = ("#F8D9C4", "#F0A879")
 """Colours of the band of two standard errors, and of the band of one above it."""
 
 
+@for_users
 def plot_fit(result: Fit | Smooth, path: str | Path | None = None, **place: Unpack[Place]) -> Figure:
     """Draw measured points, the law through them and its band, and save the figure if a file is named, whole or not at all.
 

@@ -17,6 +17,7 @@ from stickslip.figures.sheet import shown_or_saved
 from stickslip.figures.style import styled
 from stickslip.figures.sweeps.curves import MOST_CURVES, draw_curves
 from stickslip.figures.sweeps.maps import draw_cells, draw_maps, draw_members
+from stickslip.foundation.arguments import for_users
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.solution.place import Place
 from stickslip.sweeps.design.design import MEMBER
@@ -24,6 +25,7 @@ from stickslip.sweeps.execution.chunk import FIRST_FAILURE, NOT_RUN
 from stickslip.sweeps.results.refinement_spec import ATTRIBUTE, RefinementSpec
 
 
+@for_users
 def plot_sweep(dataset: xr.Dataset, quantity: str | None = None, path: str | Path | None = None, **place: Unpack[Place]) -> Any:
     """Draw a quantity of a sweep over the varied keys, and save the figure if a file is named.
 

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from stickslip.foundation.arguments import NamesAttributes, for_users
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.determined import covariance_of, misses_trend, sizes_and_correlation, undetermined
 from stickslip.foundation.errors import InputError
@@ -27,7 +28,7 @@ AT_LIMIT = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Fit:
+class Fit(NamesAttributes):
     """The result of `fit`: the law that fits best, and how well the points determine it.
 
     `points` have the variables on which the law depends, and `residual` is their standard deviation about the law (no unit), with
@@ -82,6 +83,7 @@ class Fit:
         return html_table(self.title, [*self.rows, *(("note", note) for note in self.notes)])
 
 
+@for_users
 def fit(points: Any, law: Any, *, start: Mapping[str, Any] | None = None, fixed: Mapping[str, Any] | None = None) -> Fit:
     """Fit the parameters of a friction law to measured points, by least squares.
 
@@ -126,6 +128,7 @@ def fit(points: Any, law: Any, *, start: Mapping[str, Any] | None = None, fixed:
     return _result(wanted, chosen, {name: values[name] for name in known}, total, whole=whole, free=free)
 
 
+@for_users
 def fit_each(points: Any) -> list[Fit]:
     """Fit every law that suits the points, and return the fits, best first by `Fit.bic`.
 

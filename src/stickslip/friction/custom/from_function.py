@@ -9,7 +9,7 @@ from typing import Any, Literal, overload
 
 import numpy as np
 
-from stickslip.foundation.arguments import shown
+from stickslip.foundation.arguments import for_users, shown
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.friction.custom.from_expression import AtReversal, FromExpression
@@ -54,6 +54,7 @@ def FromFunction(
     at_reversal: AtReversal = "keeps-sign",
     **parameters: float | str | WithUnit,
 ) -> Callable[[Callable[..., Any]], FromExpression]: ...
+@for_users
 def FromFunction(function: Callable[..., Any] | None = None, /, **given: Any) -> Any:  # noqa: N802 - reads as the law it makes
     """Make a friction law from a Python function of slip u, of slip rate v, or of both, with named parameters.
 

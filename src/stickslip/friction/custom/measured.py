@@ -11,7 +11,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stickslip.foundation.arguments import as_path, shown
+from stickslip.foundation.arguments import CheckedArguments, as_path, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.columns import Table, read_file, read_mapping, read_text
 from stickslip.foundation.errors import InputError, nearest
@@ -33,7 +33,7 @@ WANTED = (*ALONG, "friction", *STRESSES)
 
 
 @dataclass(frozen=True, eq=False)
-class Points:
+class Points(CheckedArguments):
     """Measured friction coefficients (no unit), with the slip (m) or the slip rate (m/s, not negative) of each point, or both.
 
     Make one with `Points.read`. Points may be in any order and may repeat a slip or a slip rate. `name` is for messages and

@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stickslip.foundation.arguments import is_number, shown
+from stickslip.foundation.arguments import NamesAttributes, for_users, is_number, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, InputWarning, nearest
 from stickslip.foundation.formatting import html_table, text_table
@@ -35,7 +35,7 @@ FOLLOWS = 0.01
 
 
 @dataclass(frozen=True, eq=False)
-class Smooth:
+class Smooth(NamesAttributes):
     """The result of `smooth`: a law through the smooth curve, constant outside the range of the points, and what was smoothed away.
 
     `residual` is the standard deviation of the points about the curve (no unit), with the degrees of freedom taken into account;
@@ -133,6 +133,7 @@ class _Axis:
         return places if self.unit is None else np.log1p(places / self.unit)
 
 
+@for_users
 def smooth(
     points: Any,
     strength: float | Literal["auto"] = "auto",

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
-from stickslip.foundation.arguments import check_whole, shown
+from stickslip.foundation.arguments import check_whole, for_users, shown
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import Choice, Quantity, fields_of
@@ -82,6 +82,7 @@ class Wishes:
         check_rtol(self.rtol, "infer")
 
 
+@for_users
 def infer(
     problem: Problem | Scenario | str | Path,
     record: Any,
@@ -275,6 +276,7 @@ def _idle_as_given(found: Estimate, sure: Certainty) -> Estimate:
     return replace(found, searched=given) if kept else found
 
 
+@for_users
 def ranking(*found: Inference) -> pd.DataFrame:
     """Compare inferences from one record, each with `held_out`, by what they predict of the part that was left out, best first.
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from stickslip.foundation.arguments import CheckedArguments
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief
@@ -24,7 +25,7 @@ HIGHEST, LOWEST = 3.0, 1e-2
 
 
 @dataclass(frozen=True, eq=False)
-class Record:
+class Record(CheckedArguments):
     """A laboratory record in SI, at ascending times (s). Make one with `Record.read`.
 
     `measured` holds friction (1), shear_stress (Pa), shear_force (N), slip (m) and slip_rate (m/s), NaN where nothing was measured,
