@@ -11,10 +11,9 @@ You learn to have a series from any code judged: its errors, each of its shocks 
 from pathlib import Path
 
 import stickslip as ss
-from stickslip.io.series import read_series
 
 file = Path(__file__).parent / "records" / "staggered_grid.csv"
-study = ss.studies.judge_series(read_series(file), "fig4-loop")
+study = ss.studies.judge_series(file, "fig4-loop")
 print(study.verdicts)
 print(study.shocks[["exact_time", "time", "delay", "size"]].round(3).to_string(index=False))
 

@@ -22,10 +22,10 @@ from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.netcdf_file import write
 from stickslip.friction import HyperbolicRate, LinearSlipWeakening, SinusoidalSlip
 from stickslip.friction.laws.of_rate import Coulomb
-from stickslip.io.series import read_series
 from stickslip.problem.problem import Problem
 from stickslip.run.simulate import simulate
 from stickslip.scenarios import Scenario, load_scenario
+from stickslip.studies.judgement import TOLERANCE
 from stickslip.studies.schemes import Schemes, judge_series
 from stickslip.studies.study import TextProgress
 
@@ -159,11 +159,13 @@ def write_benchmark(name: str, folder: str | Path = ".") -> tuple[Path, Path, Pa
     return scenario, series, checksums
 
 
-def judge_benchmark(file: str | Path, name: str | None = None, *, progress: TextProgress | bool | None = None) -> Schemes:
+def judge_benchmark(
+    file: str | Path, name: str | None = None, *, tolerance: float = TOLERANCE, progress: TextProgress | bool | None = None
+) -> Schemes:
     """Compare the series of another program, in a file that `stickslip.io.series.read_series` reads, with the exact solution.
 
-    The problem is by default that with the name of the file; `progress` is as for `stickslip.studies.schemes`. Raises InputError if
+    The problem is by default that with the name of the file; the other arguments are as for `judge_series`. Raises InputError if
     the name is unknown, or the file cannot be read.
     """
     scenario = benchmark_of(Path(file).stem if name is None else name).scenario
-    return judge_series(read_series(file), scenario, progress=progress)
+    return judge_series(file, scenario, tolerance=tolerance, progress=progress)

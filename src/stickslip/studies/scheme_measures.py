@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stickslip.foundation.arrays import Floats
 from stickslip.schemes.contract import Energies, Series
@@ -22,6 +23,8 @@ COLUMNS = {
     "slip_error": ("m", "mean magnitude of the slip difference from the exact solution under the problem's own rule"),
     "largest_error": ("m", "largest magnitude of this difference"),
     "rate_error": ("m/s", "mean magnitude of the difference in slip rate, away from shocks"),
+    "traction_error": ("Pa", "mean magnitude of the difference in traction, away from shocks"),
+    "rest_error": ("Pa", "mean magnitude of the difference in traction while the exact contact rests; NaN if it never does"),
     "slip_order": ("", "order of convergence of slip_error, from the mesh before"),
     "rate_order": ("", "order of convergence of rate_error, from the mesh before"),
     "final_slip": ("m", "slip at the end, since t = 0"),
@@ -97,6 +100,23 @@ class Measured:
         return self.exact.slip_rate(self.time)
 
     @cached_property
+    def traction(self) -> Floats:
+        """Traction of the series, Pa."""
+        tractions: Floats = self.series.traction[self._kept]
+        return tractions
+
+    @cached_property
+    def exact_traction(self) -> Floats:
+        """Exact traction at these times, Pa."""
+        return self.exact.traction(self.time)
+
+    @cached_property
+    def away(self) -> NDArray[np.bool_]:
+        """True at times away from the exact shocks, at which slip rate and traction are compared."""
+        shocks = self.exact.shocks.time.to_numpy(float)
+        return np.asarray((np.abs(self.time[:, None] - shocks) > self.shadow).all(axis=1))
+
+    @cached_property
     def gap(self) -> Floats:
         """Slip of the series minus the exact slip, m."""
         gap: Floats = self.series.slip[self._kept] - (self.exact.slip(self.time) - self.exact.problem.initial_slip)
@@ -120,10 +140,13 @@ class Measured:
     @property
     def rate_error(self) -> float:
         """The mean magnitude of the difference in slip rate away from shocks, m/s."""
-        shocks = self.exact.shocks.time.to_numpy(float)
-        away = (np.abs(self.time[:, None] - shocks) > self.shadow).all(axis=1)
-        gap = np.abs(self.rate - self.exact_rate)[away]
-        return float(gap.mean()) if gap.size else math.nan
+        return _mean(np.abs(self.rate - self.exact_rate)[self.away])
+
+    @property
+    def traction_errors(self) -> tuple[float, float]:
+        """The mean magnitude of the difference in traction away from shocks, in all and while the exact contact rests, Pa."""
+        gap = np.abs(self.traction - self.exact_traction)
+        return _mean(gap[self.away]), _mean(gap[self.away & (self.exact_rate == 0.0)])
 
     @property
     def oscillation(self) -> float:
@@ -136,10 +159,10 @@ class Measured:
 
         A series without energies has its heat only. It is compared with the exact one by the same sum over the same samples.
         """
-        own, series = self.series.energies, self.series
+        own = self.series.energies
         if own is None:
-            heat = float(np.trapezoid((series.traction * series.rate)[self._kept], self.time))
-            exact = float(np.trapezoid(self.exact.traction(self.time) * self.exact_rate, self.time))
+            heat = float(np.trapezoid(self.traction * self.rate, self.time))
+            exact = float(np.trapezoid(self.exact_traction * self.exact_rate, self.time))
             unknown = dict.fromkeys(("stored", "driver_work", "damped", "energy_drift"), math.nan)
             return unknown | {"heat": heat, "heat_error": (heat - exact) / exact if exact else math.nan}
         first, last = Energies(*own[0]), Energies(*own[self._kept][-1].tolist())
@@ -167,6 +190,7 @@ class Measured:
             "slip_error": self.slip_error,
             "largest_error": float(np.abs(self.gap).max()),
             "rate_error": self.rate_error,
+            **dict(zip(("traction_error", "rest_error"), self.traction_errors, strict=True)),
             "final_slip": float(self.series.slip[self._kept][-1]),
             "peak_rate": float(np.abs(self.rate).max()),
             "pulses": pulses_in(self.rate, self.threshold),
@@ -178,3 +202,7 @@ class Measured:
             **self.energies(),
             "oscillation": self.oscillation,
         }
+
+
+def _mean(gap: Floats) -> float:
+    return float(gap.mean()) if gap.size else math.nan

@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 import stickslip
-from stickslip.foundation.arguments import for_users
+from stickslip.foundation.arguments import for_users, shown
 from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.conversion import WithUnit
-from stickslip.foundation.errors import InputError
+from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.netcdf_file import write
 from stickslip.problem.problem import Problem
 from stickslip.scenarios.source import read_duration_and_problem, read_source
@@ -28,6 +28,7 @@ from stickslip.schemes.contract import Scheme, Series
 from stickslip.schemes.registry import scheme_of
 from stickslip.schemes.run import check_runs, check_suitable, run_scheme
 from stickslip.solution.solution import Solution
+from stickslip.studies.judgement import TOLERANCE, Judgement
 from stickslip.studies.scheme_measures import COLUMNS, Measured
 from stickslip.studies.scheme_shocks import SHOCK_COLUMNS, check_length, check_units
 from stickslip.studies.study import Study, TextProgress, telling
@@ -46,13 +47,15 @@ FEWEST, FALLING, NEGLIGIBLE = 3, 0.75, 0.02
 class Schemes(Study):
     """The result of `schemes` and `judge_series`: the exact run under each selection rule, and the series that were finished.
 
-    `interrupted` is True if Ctrl-C ended the study before all meshes were done.
+    `interrupted` is True if Ctrl-C ended the study before all meshes were done. `tolerance` is the largest share by which a series
+    of another program may be off, None if the series are those of schemes.
     """
 
     problem: Problem
     exact: dict[str, Solution]
     series: tuple[Series, ...]
     interrupted: bool = False
+    tolerance: float | None = None
 
     @cached_property
     def until(self) -> float:
@@ -73,6 +76,17 @@ class Schemes(Study):
     def measured(self) -> tuple[Measured, ...]:
         """Each series beside the exact solution under the problem's own rule."""
         return tuple(Measured(one, self.own, self.until) for one in self.series)
+
+    @cached_property
+    def judgements(self) -> tuple[Judgement, ...]:
+        """Whether each series passes, how far it is from the exact one, and which convention would explain that."""
+        tolerance = TOLERANCE if self.tolerance is None else self.tolerance
+        return tuple(Judgement(one, self.paths, tolerance) for one in self.measured)
+
+    @property
+    def passed(self) -> bool:
+        """True if every series is as near to the exact one as the tolerance asks."""
+        return all(one.passed for one in self.judgements)
 
     @cached_property
     def table(self) -> pd.DataFrame:
@@ -151,6 +165,9 @@ class Schemes(Study):
             yield "all selection rules have the same solution here"
         else:
             yield from (f"{scheme} follows {rule}" for scheme, rule in self.verdicts.items())
+        if self.tolerance is not None:
+            for one in self.judgements:
+                yield from (one.text, one.reasons, *one.hints)
 
 
 def _depends(found: list[str]) -> str:
@@ -237,23 +254,46 @@ def schemes(
 
 @for_users
 def judge_series(
-    series: Series | Sequence[Series],
-    problem: Problem | Scenario | str | Path,
+    series: Series | str | Path | Sequence[Series | str | Path],
+    problem: Problem | Scenario | str | Path | None = None,
     *,
+    tolerance: float = TOLERANCE,
     rtol: float = 1e-10,
     progress: TextProgress | bool | None = None,
 ) -> Schemes:
     """Compare series of any other program with the exact solution of every selection rule, at the relative tolerance `rtol`.
 
-    A series has slip since t = 0, slip rate and traction over time; `stickslip.io.series.read_series` reads it from a file. The
-    other arguments are as for `schemes`. Raises InputError if the problem is not a slab's, if no series is given, or if one does
-    not begin at t = 0, is shorter than the scenario's duration, or has slip, slip rate or traction in wrong units;
-    KeyboardInterrupt if the user presses Ctrl-C.
+    Parameters
+    ----------
+    series : Series, str, Path or sequence of them
+        Slip since t = 0, slip rate and traction over time, or files of them, which `stickslip.io.series.read_series` reads.
+    problem : Problem, Scenario, str or Path, optional
+        As for `schemes`; by default the benchmark or the bundled scenario that has the name of the first series.
+    tolerance : float
+        Largest share by which a series that passes may be off; see `stickslip.studies.judgement.Judgement`.
+
+    Returns
+    -------
+    Schemes
+        With `passed`, and in `judgements` what is off and which convention would explain it.
+
+    Raises
+    ------
+    InputError
+        If the problem is not a slab's or has no name, if no series is given, or if one cannot be read, does not begin at t = 0, is
+        shorter than the scenario's duration, or has slip, slip rate or traction in wrong units.
+    KeyboardInterrupt
+        If the user presses Ctrl-C.
     """
-    several = (series,) if isinstance(series, Series) else tuple(series)
+    from stickslip.io.series import read_series
+
+    given_series = [series] if isinstance(series, Series | str | Path) else list(series)
+    several = tuple(one if isinstance(one, Series) else read_series(one) for one in given_series)
     if not several:
         raise InputError("judge_series: needs a series or more")
-    source = read_source("judge_series", problem)
+    if not 0.0 < tolerance < 1.0:
+        raise InputError(f"judge_series: tolerance must lie between 0 and 1, got {shown(tolerance)}")
+    source = read_source("judge_series", _named(several[0].name) if problem is None else problem)
     ends = max(float(one.time[-1]) for one in several) if isinstance(source, Problem) else None
     lasts, given = read_duration_and_problem("judge_series", source, ends)
     check_suitable(given)
@@ -263,4 +303,18 @@ def judge_series(
         exact = exact_runs(given, lasts, rtol, tell)
     for one in several:
         check_units(one, exact[given.rule], given)
-    return Schemes(given, exact, several)
+    return Schemes(given, exact, several, tolerance=tolerance)
+
+
+def _named(name: str) -> Scenario:
+    """Return the benchmark or the bundled scenario of a name. Raises InputError if there is none."""
+    from stickslip.scenarios import library, load_scenario
+    from stickslip.studies.benchmarks import BENCHMARKS
+
+    if name in BENCHMARKS:
+        return BENCHMARKS[name].scenario
+    if name in library.names():
+        return load_scenario(name)
+    hint = nearest(name, [*BENCHMARKS, *library.names()])
+    hint = hint if hint.startswith("did") else 'name it, as in judge_series(FILE, "fig4-loop")'
+    raise InputError(f"judge_series: of which problem is {ascii(name)[:60]}? {hint}")

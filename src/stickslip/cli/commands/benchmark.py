@@ -22,6 +22,7 @@ def benchmark(
     name: Annotated[str | None, option("Judge: the problem; by default it has the name of the file.")] = None,
     folder: Annotated[Path, typer.Option(help="Get: where the files go.")] = Path(),
     out: Annotated[Path | None, option("Judge: save the table (.csv, shocks in NAME-shocks.csv; .nc: all).", "--out", "-o")] = None,
+    tolerance: Annotated[float, option("Judge: the largest share by which a series that passes may be off.")] = 0.05,
     figure: FigureFile = None,
     dpi: Dpi = None,
     size: Size = None,
@@ -30,14 +31,18 @@ def benchmark(
 
     `get` writes the problem as TOML, its exact series as netCDF, and checksums
     of both. `judge` reads time, slip since the start, slip rate and traction
-    from a CSV file or one in the layout of the SCEC benchmarks.
+    from a CSV file or one in the layout of the SCEC benchmarks, and says
+    whether the series passes: whether slip, slip rate and traction, at rest
+    too, are within --tolerance, and shocks and selection rule are the exact
+    ones. Opposite signs, other zeros and halves are recognised.
 
     \b
       stickslip benchmark list
       stickslip benchmark get loop
       stickslip benchmark judge mine.csv --name loop --figure mine.png
 
-    Exit code: 0 done, 2 unusable input, 130 interrupted.
+    Exit code: 0 done, 1 the series does not pass, 2 unusable input,
+    130 interrupted.
     """
     if action not in ACTIONS:
         raise InputError(f"benchmark: there is nothing called {ascii(action)[:60]}; {nearest(action, ACTIONS)}")
@@ -54,7 +59,8 @@ def benchmark(
     look = Look(dpi, size)
     check_targets(Target("--out", out, (".csv", ".nc")), Target("--figure", figure))
     look.check(figure)
-    _judge(Path(what), name, out, (figure, look))
+    if not _judge(Path(what), name, tolerance, (out, figure, look)):
+        raise typer.Exit(1)
 
 
 def _list() -> None:
@@ -64,14 +70,16 @@ def _list() -> None:
     print_numbers(console(), ("name", "asks for"), [[name, one.asks] for name, one in BENCHMARKS.items()], text=2)
 
 
-def _judge(file: Path, name: str | None, out: Path | None, picture: tuple[Path | None, Look]) -> None:
+def _judge(file: Path, name: str | None, tolerance: float, results: tuple[Path | None, Path | None, Look]) -> bool:
+    """Judge a series, show and write what comes out, and return True if it passes."""
     from stickslip.cli.output.studies import show_schemes, tables_of
     from stickslip.run.progress import progress_line
     from stickslip.studies.benchmarks import benchmark_of, judge_benchmark
 
     asked = benchmark_of(file.stem if name is None else name)
     with progress_line("benchmark") as tell:
-        study = judge_benchmark(file, asked.name, progress=tell)
+        study = judge_benchmark(file, asked.name, tolerance=tolerance, progress=tell)
     show_schemes(asked.scenario, study)
-    figure, look = picture
+    out, figure, look = results
     announce(*write_files(*tables_of(study, out), (figure, drawing(study.plot, look))))
+    return study.passed

@@ -88,10 +88,8 @@ def _study(scenario: Scenario, scheme: str, cells: list[int], search: str, coura
 
 
 def _judged(scenario: Scenario, files: list[Path]) -> Schemes:
-    from stickslip.io.series import read_series
     from stickslip.run.progress import progress_line
     from stickslip.studies.schemes import judge_series
 
-    read = [read_series(file) for file in files]
     with progress_line("schemes") as tell:
-        return judge_series(read, scenario, rtol=scenario.rtol, progress=tell)
+        return judge_series(files, scenario, rtol=scenario.rtol, progress=tell)

@@ -192,10 +192,12 @@ def show_schemes(scenario: Scenario, study: Schemes) -> None:
         print_sentences(screen, "Interrupted: these are the runs that were finished")
     if len(study.paths.groups()) == 1:
         print_sentences(screen, "all selection rules have the same solution here")
-        return
-    for verdict in dict.fromkeys(study.verdicts.values()):
-        names = [clean(scheme) for scheme, found in study.verdicts.items() if found == verdict]
-        print_sentences(screen, f"rule {verdict}: {', '.join(names)}")
+    else:
+        for verdict in dict.fromkeys(study.verdicts.values()):
+            names = [clean(scheme) for scheme, found in study.verdicts.items() if found == verdict]
+            print_sentences(screen, f"rule {verdict}: {', '.join(names)}")
+    if study.tolerance is not None:
+        print_sentences(screen, *(clean(text) for one in study.judgements for text in (one.text, one.reasons, *one.hints)))
 
 
 def _short(value: float) -> str:

@@ -1,0 +1,132 @@
+"""Say whether the series of another program passes, how far it is from the exact one, and which convention would explain that."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.foundation.arrays import Floats
+from stickslip.foundation.formatting import brief
+from stickslip.studies.scheme_measures import Measured
+from stickslip.studies.verdict import UNTOLD, RulePaths
+
+TOLERANCE = 0.05
+"""Largest share of the exact values by which a series may be off, if no other is given."""
+EXPLAINS = 0.2
+"""Factor by which a convention must lessen the distance from the exact series to be named."""
+QUANTITIES = {"slip": "m", "slip rate": "m/s", "traction": "Pa"}
+"""What a series has, with units."""
+SIDES = "of two elastic sides each slips by half, and the jump between them counts"
+ZERO = "another zero than the exact"
+CONVENTIONS: dict[str, tuple[str, Callable[[Floats, Floats], Floats]]] = {
+    "the opposite sign of the exact": ("multiply by -1", lambda own, exact: -own),
+    "half of the exact": (SIDES, lambda own, exact: 2.0 * own),
+    "twice the exact": ("divide by 2", lambda own, exact: 0.5 * own),
+    ZERO: ("subtract", lambda own, exact: own - float(np.median(own - exact))),
+}
+"""Conventions in which a right series may be written: what it then has, the cure, and the series in the convention used here."""
+
+
+@dataclass(frozen=True, eq=False)
+class Judgement:
+    """A series beside the exact solution under the problem's own selection rule, and the largest share by which it may be off."""
+
+    measured: Measured
+    paths: RulePaths
+    tolerance: float = TOLERANCE
+
+    @property
+    def name(self) -> str:
+        """The name of the series."""
+        return self.measured.series.name
+
+    @cached_property
+    def shares(self) -> dict[str, float]:
+        """How far the series is from the exact one, for slip, slip rate, traction, and traction at rest.
+
+        The mean distance in slip is a share of the largest slip, that in slip rate of the mean slip rate, and that in traction, in
+        the whole and while the exact contact rests, of the range of traction. Slip rate and traction are compared away from shocks.
+        """
+        return {name: share for what in QUANTITIES for name, share in self._shares(what, self._pairs[what][0]).items()}
+
+    @cached_property
+    def _pairs(self) -> dict[str, tuple[Floats, Floats]]:
+        one = self.measured
+        slip = one.exact.slip(one.time) - one.exact.problem.initial_slip
+        found = (slip + one.gap, slip), (one.rate, one.exact_rate), (one.traction, one.exact_traction)
+        return dict(zip(QUANTITIES, found, strict=True))
+
+    def _shares(self, what: str, own: Floats) -> dict[str, float]:
+        exact, away = self._pairs[what][1], self.measured.away
+        gap = np.abs(own - exact)
+        if what == "slip":
+            mean = float(np.trapezoid(gap, self.measured.time) / np.ptp(self.measured.time))
+            return {what: _share(mean, float(np.abs(exact).max()) or self.paths.size.slip)}
+        if what == "slip rate":
+            return {what: _share(_mean(gap, away), float(np.abs(exact).mean()) or self.paths.size.rate)}
+        rest, scale = away & (self.measured.exact_rate == 0.0), float(np.ptp(exact)) or float(np.abs(exact).max())
+        return {what: _share(_mean(gap, away), scale), "traction at rest": _share(_mean(gap, rest), scale)}
+
+    @cached_property
+    def faults(self) -> tuple[str, ...]:
+        """What keeps the series from passing, one text each; none if it passes."""
+        found = [f"{name} is off by {share:.2g}" for name, share in self.shares.items() if not share <= self.tolerance]
+        row, rule = self.measured.row(), self.paths.followed(self.measured.series)
+        own, exact = self.measured.exact.problem.rule, len(self.measured.shocks) - row["own_shocks"]
+        if rule != UNTOLD and own not in rule.split(" or "):
+            found.append(f"the rule that it follows is {rule}, and not {own}")
+        if row["shocks"] < exact:
+            found.append(f"it makes {row['shocks']} of {exact} shocks")
+        if row["own_shocks"]:
+            more = "a shock" if row["own_shocks"] == 1 else f"{row['own_shocks']} shocks"
+            found.append(f"it makes {more} that the exact series does not have")
+        return tuple(found)
+
+    @property
+    def passed(self) -> bool:
+        """True if every share is within the tolerance, the rule is the problem's own, and the shocks are the exact ones."""
+        return not self.faults
+
+    @property
+    def text(self) -> str:
+        """Whether the series passes."""
+        return f"{'passed' if self.passed else 'not passed'}, with a tolerance of {self.tolerance:g}: {self.name}"
+
+    @property
+    def reasons(self) -> str:
+        """Why it does not pass, or how far it is off."""
+        shares = "; ".join(f"{name} is off by {share:.2g}" for name, share in self.shares.items())
+        return "; ".join(self.faults) or shares
+
+    @cached_property
+    def hints(self) -> tuple[str, ...]:
+        """The conventions that explain what is off, one sentence each."""
+        return () if self.passed else tuple(self._conventions())
+
+    def _conventions(self) -> Iterator[str]:
+        explained: dict[str, list[str]] = {}
+        for what, (own, exact) in self._pairs.items():
+            named = {said: max(self._shares(what, change(own, exact)).values()) for said, (_, change) in CONVENTIONS.items()}
+            best, off = min(named, key=lambda said: named[said]), max(self._shares(what, own).values())
+            if off > 0.5 * self.tolerance and named[best] < EXPLAINS * off and (what, best) != ("slip rate", ZERO):
+                explained.setdefault(best, []).append(what)
+        for said, names in explained.items():
+            cure = CONVENTIONS[said][0]
+            if said == ZERO:
+                zeros = (brief(float(np.median(np.subtract(*self._pairs[what]))), QUANTITIES[what], 4) for what in names)
+                cure = f"subtract {' and '.join(zeros)}"
+            yield f"{self.name} has {said} {', '.join(names[:-1])}{' and ' if len(names) > 1 else ''}{names[-1]}: {cure}"
+
+
+def _mean(gap: Floats, which: NDArray[np.bool_]) -> float:
+    """Return the mean over some samples; 0 if there are none."""
+    return float(gap[which].mean()) if which.any() else 0.0
+
+
+def _share(value: float, scale: float) -> float:
+    return 0.0 if value == 0.0 else value / scale if scale > 0.0 else math.inf

@@ -1,0 +1,150 @@
+"""Whether the series of another program passes, which convention explains one that does not, and how its file may be written."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from stickslip.cli.main import main
+from stickslip.io.series import read_series
+from stickslip.schemes.contract import Series
+from stickslip.studies.benchmarks import benchmark_of
+from stickslip.studies.judgement import Judgement
+from stickslip.studies.schemes import judge_series
+
+NAME = "linear-weakening"
+"""A problem with shocks, slip and rest, whose solution has a closed form."""
+
+
+@cache
+def right() -> Series:
+    scenario = benchmark_of(NAME).scenario
+    run, time = ss.simulate(scenario), np.linspace(0.0, scenario.duration, 2001)
+    return Series(time, run.slip(time) - scenario.problem.initial_slip, run.slip_rate(time), run.traction(time), "mine")
+
+
+def judged(series: Series, **options: Any) -> Judgement:
+    (found,) = judge_series(series, benchmark_of(NAME).scenario, **options).judgements
+    return found
+
+
+def test_the_exact_series_passes_at_any_tolerance() -> None:
+    found = judged(right(), tolerance=1e-9)
+    assert found.passed
+    assert max(found.shares.values()) < 1e-12
+    assert found.text == "passed, with a tolerance of 1e-09: mine"
+    assert found.reasons.startswith("slip is off by ")
+    assert found.hints == ()
+
+
+def test_each_share_is_the_mean_distance_over_its_scale() -> None:
+    """Of slip 2 % of the largest, of the slip rate 3 % of the mean, of traction 4 % of its range; at rest the same."""
+    base = right()
+    shifted = {"slip": 0.02 * base.slip.max(), "rate": 0.03 * np.abs(base.rate).mean(), "traction": 0.04 * np.ptp(base.traction)}
+    found = judged(replace(base, **{name: getattr(base, name) + by for name, by in shifted.items()}), tolerance=0.1)
+    assert found.shares == pytest.approx({"slip": 0.02, "slip rate": 0.03, "traction": 0.04, "traction at rest": 0.04}, rel=1e-3)
+    assert found.passed
+    assert not judged(replace(base, traction=base.traction + shifted["traction"]), tolerance=0.03).passed
+
+
+def test_traction_at_rest_must_be_right_too() -> None:
+    base = right()
+    found = judged(replace(base, traction=np.where(base.rate == 0.0, 0.0, base.traction)))
+    assert found.shares["slip rate"] < 1e-9
+    assert found.shares["traction at rest"] > 1.0
+    assert [fault.partition(" is off")[0] for fault in found.faults] == ["traction", "traction at rest"]
+
+
+SIDES = "of two elastic sides each slips by half, and the jump between them counts"
+CONVENTIONS: dict[str, tuple[Callable[[Series], Series], tuple[str, ...]]] = {
+    "signs": (
+        lambda one: replace(one, slip=-one.slip, rate=-one.rate, traction=-one.traction),
+        ("mine has the opposite sign of the exact slip, slip rate and traction: multiply by -1",),
+    ),
+    "sign of traction": (
+        lambda one: replace(one, traction=-one.traction),
+        ("mine has the opposite sign of the exact traction: multiply by -1",),
+    ),
+    "half": (
+        lambda one: replace(one, slip=0.5 * one.slip, rate=0.5 * one.rate),
+        (f"mine has half of the exact slip and slip rate: {SIDES}",),
+    ),
+    "twice": (
+        lambda one: replace(one, slip=2.0 * one.slip, rate=2.0 * one.rate),
+        ("mine has twice the exact slip and slip rate: divide by 2",),
+    ),
+    "zero": (
+        lambda one: replace(one, slip=one.slip + 0.6, traction=one.traction - 81.6e6),
+        ("mine has another zero than the exact slip and traction: subtract 0.6 m and -81.6 MPa",),
+    ),
+    "noise": (lambda one: replace(one, rate=one.rate + 0.3 * np.sin(9.0 * one.time)), ()),
+}
+
+
+@pytest.mark.parametrize("convention", CONVENTIONS)
+def test_a_right_series_in_another_convention_does_not_pass_and_is_explained(convention: str) -> None:
+    change, hints = CONVENTIONS[convention]
+    found = judged(change(right()))
+    assert not found.passed
+    assert found.hints == hints
+
+
+def columns() -> Any:
+    one = right()
+    return np.column_stack([one.time, one.slip, one.rate, one.traction])
+
+
+FILES: dict[str, tuple[str, str, tuple[float, ...]]] = {
+    "semicolons and units": ("time (ms);slip (mm);v (mm/s);tau (MPa)", ";", (1e3, 1e3, 1e3, 1e-6)),
+    "units in names": ("time_s,slip_m,slip_rate_m_per_s,traction_Pa", ",", (1.0, 1.0, 1.0, 1.0)),
+    "blanks, as in the SCEC benchmarks": ("t h-slip h-slip-rate h-shear-stress", " ", (1.0, 1.0, 1.0, 1e-6)),
+    "notes before the headings": (
+        "code 7, version 2\nrun 5\nt (s),slip (m),slip rate (m/s),shear stress (kPa)",
+        ",",
+        (1.0, 1.0, 1.0, 1e-3),
+    ),
+}
+
+
+@pytest.mark.parametrize("form", FILES)
+def test_series_are_read_as_records_are(tmp_path: Path, form: str) -> None:
+    header, separator, factors = FILES[form]
+    file = tmp_path / f"{NAME}.csv"
+    np.savetxt(file, columns() * factors, delimiter=separator, header=header, comments="", fmt="%.17g", encoding="utf-8-sig")
+    read = read_series(file)
+    for name, exact in (("time", right().time), ("slip", right().slip), ("rate", right().rate), ("traction", right().traction)):
+        np.testing.assert_allclose(getattr(read, name), exact, rtol=1e-13, atol=1e-300)
+
+
+def test_a_file_alone_is_judged_by_its_name(tmp_path: Path) -> None:
+    header = "time_s,slip_m,slip_rate_m_per_s,traction_Pa"
+    for name in (NAME, "mine"):
+        np.savetxt(tmp_path / f"{name}.csv", columns(), delimiter=",", header=header, comments="", fmt="%.17g")
+    assert judge_series(tmp_path / f"{NAME}.csv").passed
+    assert judge_series([str(tmp_path / "mine.csv")], benchmark_of(NAME).scenario).passed
+    with pytest.raises(ss.InputError, match="judge_series: of which problem is 'mine'"):
+        judge_series(tmp_path / "mine.csv")
+    with pytest.raises(ss.InputError, match="tolerance must lie between 0 and 1, got 5"):
+        judge_series(tmp_path / f"{NAME}.csv", tolerance=5)
+    (tmp_path / "nan.csv").write_text("t,slip,v,tau\n0,0,0,0\n1,nan,0,0\n2,0,0,0\n")
+    with pytest.raises(ss.InputError, match=r"nan\.csv, line 3: slip is not a finite number"):
+        read_series(tmp_path / "nan.csv")
+
+
+@pytest.mark.parametrize(("factor", "code", "verdict"), [(1.0, 0, "Passed"), (0.9, 1, "Not passed")])
+def test_the_exit_code_says_whether_a_series_passes(
+    factor: float, code: int, verdict: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file, header = tmp_path / "mine.csv", "time_s,slip_m,slip_rate_m_per_s,traction_Pa"
+    np.savetxt(file, columns() * [1.0, factor, factor, 1.0], delimiter=",", header=header, comments="", fmt="%.17g")
+    with pytest.raises(SystemExit) as ended:
+        main(("benchmark", "judge", str(file), "--name", NAME, "--tolerance", "0.05"))
+    assert ended.value.code == code
+    assert f"\n{verdict}, with a tolerance of 0.05: mine.\nSlip is off by " in capsys.readouterr().out
