@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import sys
+import tomllib
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,6 +12,10 @@ import pytest
 from tests.planar.patches import LAW, SLAB, patch
 
 import stickslip as ss
+from stickslip.run.planar_run import memory_here
+from stickslip.scenarios.contact import Contact
+from stickslip.scenarios.entries import Source
+from stickslip.scenarios.scenario import scenario_of
 
 PROBLEM = ss.Problem(SLAB, LAW, initial_load=60e6)
 GRID = {"nodes": 32, "length": 2e4}
@@ -96,3 +102,77 @@ def test_progress_is_told() -> None:
     ss.simulate(patch(**GRID), 3.0, frames=10, progress=told.append)
     assert str(told[-1]).startswith("3 of 3 s, slips at up to") or "of 3 s" in str(told[-1])
     assert [one.time for one in told] == sorted(one.time for one in told)
+
+
+ROUGH = np.random.default_rng(1)
+PLACES = (32, 16)
+STATES = ss.Problem(
+    SLAB, ss.friction.RateAndState(reference=0.6, a=0.01, b=0.015, distance=1e-2), initial_load=60e6, initial_state=1.0
+)
+OF_RATE = ss.Problem(SLAB, ss.friction.HyperbolicRate(0.8, 0.7, 0.1), initial_excess=-1e6)
+
+
+def rough(low: float, high: float) -> np.ndarray:
+    return low + (high - low) * ROUGH.random(PLACES)
+
+
+@pytest.mark.parametrize(
+    ("problem", "along"),
+    [
+        (PROBLEM, {"load": rough(60e6, 61e6)}),
+        (PROBLEM, {"static": rough(0.65, 0.66), "load": rough(60e6, 61e6), "initial.slip": rough(-0.1, 0.5)}),
+        (STATES, {"a": rough(0.01, 0.011), "initial.state": rough(1.0, 2.0)}),
+        (STATES, {"initial.state": rough(1.0, 2.0), "normal_stress": rough(1e8, 1.1e8)}),
+        (OF_RATE, {"alpha": rough(0.1, 0.11), "excess": rough(-1e6, 0.0)}),
+    ],
+    ids=lambda one: " ".join(one) if isinstance(one, dict) else "",
+)
+def test_many_different_nodes_have_the_numbers_of_a_problem_each(problem: Any, along: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    grid = {"nodes": 32, "length": 2e4, "width": 1e4, "width_nodes": 16}
+    few = ss.PlanarSlab(problem, along=along, **grid)
+    monkeypatch.setattr("stickslip.planar.nodes.MANY", 1000)
+    each = ss.PlanarSlab(problem, along=along, **grid)
+    assert (len(few.values.problems) <= 256, len(each.values.problems)) == (True, 512)
+    for name in ("normal", "load", "excess", "slip", "law_slip", "states", "static_excess", "knots"):
+        assert np.array_equal(getattr(few.values, name), getattr(each.values, name)), name
+    for one, other in zip(few.values.numbers, each.values.numbers, strict=True):
+        assert one.keys() == other.keys()
+        assert all(np.array_equal(one[name], other[name]) for name in one)
+    assert few.steps_per_round_trip == each.steps_per_round_trip
+
+
+@pytest.mark.parametrize(
+    ("name", "wrong", "message"),
+    [
+        ("static", -0.1, "LinearSlipWeakening: static must be at least 0 "),
+        ("normal_stress", -1.0, "ElasticSlab: normal_stress must be greater than 0 Pa, got -1"),
+        ("initial.slip", 1e300, "initial_slip must lie within"),
+    ],
+)
+def test_one_wrong_node_among_many_is_found(name: str, wrong: float, message: str) -> None:
+    values = rough(0.6, 0.7) * (1e8 if name == "normal_stress" else 1.0)
+    values[5, 7] = wrong
+    with pytest.raises(ss.InputError, match=message):
+        ss.PlanarSlab(PROBLEM, along={name: values}, nodes=32, length=2e4, width=1e4, width_nodes=16)
+
+
+def test_a_contact_of_more_nodes_than_can_be_used_is_refused_before_it_is_made(monkeypatch: pytest.MonkeyPatch) -> None:
+    document = tomllib.loads(ss.scenarios["planar-patch"].to_toml())
+    monkeypatch.setattr(Contact, "slab", lambda *_: pytest.fail("it was made"))
+    with pytest.raises(ss.InputError, match=r"x: \[contact\] has 256 nodes, 100 are the most that can be used here"):
+        scenario_of(document, Source("x", most_nodes=100))
+
+
+def test_the_memory_of_the_machine_bounds_a_run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    limit = tmp_path / "memory.max"
+    monkeypatch.setattr("stickslip.run.planar_run.LIMITS_OF_CONTAINER", (str(limit),))
+    limit.write_text("max\n")
+    machine = memory_here()
+    assert machine > 1e9
+    limit.write_text("70000000\n")
+    assert memory_here() == 7e7
+    with pytest.raises(ss.InputError, match=r"needs [\d.]+ GB for 3 s, and there are 0.07 GB here: take fewer nodes"):
+        ss.simulate(patch(nodes=1024, length=2e4), 3.0)
+    monkeypatch.delattr("os.sysconf")
+    limit.unlink()
+    assert memory_here() == 16e9

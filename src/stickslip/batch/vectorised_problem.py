@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import fields, replace
-from typing import Any, NamedTuple, TypeVar, cast
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,7 @@ from stickslip.engine_input.limits import LARGEST_SHARE, check_shortest_event
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import nearest
 from stickslip.foundation.quantities import Quantity, quantities_of
+from stickslip.problem.parameters import with_numbers
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import DURATION, LARGEST_RTOL, RTOL, check_rtol
 from stickslip.run.session import MOST_ROUND_TRIPS, check_round_trips
@@ -33,7 +34,6 @@ Values = Mapping[str, Floats]
 """Numbers in SI, one for each member, by key such as "friction.alpha"."""
 Booleans = NDArray[np.bool_]
 Places = NDArray[np.intp]
-Owner = TypeVar("Owner")
 
 QUANTITIES = COLUMNS
 """Names of the quantities to which a batch can reduce a run."""
@@ -89,13 +89,6 @@ def member(scenario: Scenario, values: Mapping[str, float]) -> Scenario:
     check_shortest_event(problem, scenario.shortest_event, "run")
     check_round_trips(run.get("duration", scenario.duration), problem.round_trip_time, "run")
     return replace(scenario, problem=problem, **run)  # type: ignore[arg-type] # by name
-
-
-def with_numbers(owner: Owner, numbers: Mapping[str, Any]) -> Owner:
-    """Return a body, law or problem with other numbers, which may be arrays and are not checked."""
-    made = object.__new__(type(owner))  # without what the owner remembers that follows from its numbers
-    vars(made).update({field.name: getattr(owner, field.name) for field in fields(cast(Any, owner))} | dict(numbers))
-    return made
 
 
 def with_values(problem: Problem, numbers: Numbers) -> Problem:

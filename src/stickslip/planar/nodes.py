@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from itertools import combinations
 from types import SimpleNamespace
 from typing import Any
 
@@ -14,11 +15,14 @@ from stickslip.foundation.errors import InputError, full_name
 from stickslip.foundation.quantities import Quantity, in_units, quantities_of
 from stickslip.friction import FrictionLaw
 from stickslip.friction.contract import one_argument
+from stickslip.problem.parameters import law_with, with_numbers
 from stickslip.problem.problem import LOAD, Problem
 
 Floats = NDArray[np.float64]
 START = {"initial.load": "initial_load", "initial.excess": "initial_excess", "initial.state": "initial_state"}
 """Names of numbers of the start that may vary beside those in `problem.parameters`, and the fields of `Problem` that hold them."""
+MANY = 256
+"""Number of different nodes up to which each is checked as a problem of its own; of more, the extremes are, and some others."""
 MAY_VARY = ("friction.", "body.normal_stress", "initial.")
 """Beginnings of the names of what may vary along the contact."""
 
@@ -28,7 +32,7 @@ class NodeValues:
     """The numbers of each node. Arrays have the shape of the contact, after the axes that are mentioned."""
 
     problems: tuple[Problem, ...]
-    """The different problems of the nodes."""
+    """The different problems of the nodes; of more than MANY, those with the extremes of each number, and some others."""
     normal: Floats
     """Normal stress, Pa."""
     load: Floats
@@ -120,33 +124,135 @@ def node_values(problem: Problem, along: Mapping[str, Floats], shape: tuple[int,
     Raises InputError if a name is unknown, or a node would have a number that its problem does not allow.
     """
     names = full_names(problem, along, "PlanarSlab: along")
-    if not along:
-        problems, which = [problem], np.zeros(int(np.prod(shape)), int)
+    columns = np.stack([values.ravel() for values in along.values()], axis=1) if along else np.zeros((1, 0))
+    rows, which = np.unique(columns, axis=0, return_inverse=True) if along else (columns, np.zeros(int(np.prod(shape)), int))
+    different = {full: rows[:, i] for i, full in enumerate(names.values())}
+
+    def at(places: Any) -> list[Problem]:
+        values = (rows[place].tolist() for place in places)
+        return [_with(problem, dict(zip(different, row, strict=True))) for row in values]
+
+    if len(rows) <= MANY:
+        problems = at(range(len(rows)))
+        found = _of_problems(problems)
     else:
-        rows, which = np.unique(np.stack([values.ravel() for values in along.values()], axis=1), axis=0, return_inverse=True)
-        problems = [_with(problem, dict(zip(names.values(), row.tolist(), strict=True))) for row in rows]
-    laws = [one.friction for one in problems]
-    if any(law.trees() != laws[0].trees() for law in laws):
+        for full, values in different.items():
+            for place in np.flatnonzero(~varying(problem)[full][0].allows(values))[:1]:
+                at([place])  # says what is wrong
+        problems, found = at(_extremes(rows)), _of_many(problem, different)
+    if any(one.friction.trees() != problems[0].friction.trees() for one in problems):
         raise InputError(f"PlanarSlab: {', '.join(names)}: the formula of friction would differ from node to node")
 
     def spread(values: Any) -> Floats:
-        """Return an array whose last axis, over the problems, is replaced by the axes of the contact."""
-        found = np.asarray(values, float)[..., np.ravel(which)]
-        return found.reshape(*found.shape[:-1], *shape)
+        """Return an array whose last axis, over different nodes, is replaced by the axes of the contact."""
+        placed = np.asarray(values, float)[..., np.ravel(which)]
+        return placed.reshape(*placed.shape[:-1], *shape)
 
+    numbers = tuple({name: spread(values) for name, values in piece.items()} for piece in found.pop("numbers"))
+    return NodeValues(problems=tuple(problems), numbers=numbers, **{name: spread(values) for name, values in found.items()})
+
+
+def _of_problems(problems: list[Problem]) -> dict[str, Any]:
+    """Return the fields of `NodeValues` but `problems`, with one entry for each problem along the last axis of all arrays."""
+    laws = [one.friction for one in problems]
+    return {
+        "normal": [one.normal for one in problems],
+        "load": [one.strength + one.excess for one in problems],
+        "excess": [one.excess for one in problems],
+        "slip": [one.initial_slip for one in problems],
+        "law_slip": [one.law_slip for one in problems],
+        "states": np.reshape([one.states for one in problems], (len(problems), -1)).T,
+    } | _of_laws(laws)
+
+
+def _of_laws(laws: list[FrictionLaw]) -> dict[str, Any]:
     numbers = [[law.numbers(i) for law in laws] for i in range(len(laws[0].pieces))]
-    return NodeValues(
-        problems=tuple(problems),
-        normal=spread([one.normal for one in problems]),
-        load=spread([one.strength + one.excess for one in problems]),
-        excess=spread([one.excess for one in problems]),
-        slip=spread([one.initial_slip for one in problems]),
-        law_slip=spread([one.law_slip for one in problems]),
-        states=spread(np.reshape([one.states for one in problems], (len(problems), -1)).T),
-        static_excess=spread([law.static_excess for law in laws]),
-        knots=spread(np.reshape([law.knots for law in laws], (len(laws), -1)).T),
-        numbers=tuple({name: spread([row[name] for row in rows]) for name in laws[0].parameters()} for rows in numbers),
-    )
+    return {
+        "static_excess": [law.static_excess for law in laws],
+        "knots": np.reshape([law.knots for law in laws], (len(laws), -1)).T,
+        "numbers": [{name: [row[name] for row in rows] for name in laws[0].parameters()} for rows in numbers],
+    }
+
+
+# ---- more different nodes than can each be a problem of their own -----------------------------------------------------------
+
+
+def _extremes(rows: Floats) -> list[int]:
+    """Return the places of at most MANY rows: extremes of each column, of differences, products and ratios of two, and others."""
+    columns = list(rows.T)
+    with np.errstate(all="ignore"):
+        both = [found for one, other in combinations(columns, 2) for found in (one * other, one / other, one - other)]
+    ends = {int(end(one)) for one in (*columns, *map(np.nan_to_num, both)) for end in (np.argmin, np.argmax)}
+    return sorted({*ends, *np.linspace(0, len(rows) - 1, max(2, MANY - len(ends)), dtype=int).tolist()})
+
+
+def _of_many(problem: Problem, rows: Mapping[str, Floats]) -> dict[str, Any]:
+    """Return what `_of_problems` returns of the problems with these values, each of which is allowed, from arrays."""
+    count, law = len(next(iter(rows.values()))), problem.friction
+    of_law = {name: values for name, values in rows.items() if name.startswith("friction.")}
+    laws, which = [law], np.zeros(count, int)
+    if of_law and law.many:
+        found = _of_arrays(problem, of_law)
+    else:
+        if of_law:
+            kinds, which = np.unique(np.stack(list(of_law.values()), axis=1), axis=0, return_inverse=True)
+            laws = [law_with(law, dict(zip(of_law, kind, strict=True))) for kind in kinds.tolist()]
+        found = {name: np.asarray(values)[..., which] for name, values in _of_laws(laws).items() if name != "numbers"}
+        found["numbers"] = [{name: np.asarray(one)[which] for name, one in piece.items()} for piece in _of_laws(laws)["numbers"]]
+    slip = rows.get("initial.slip", np.full(count, problem.initial_slip))
+    law_slip = np.abs(slip) if law.counts == "path" else slip
+    law_slip = np.zeros(count) if law.memory == "since-arrest" else law_slip
+    normal = rows.get("body.normal_stress", np.full(count, problem.normal))
+    strength = normal * (_at_rest(law, found, law_slip) + found["static_excess"])
+    excess = rows.get("initial.excess")
+    if excess is None and ("initial.load" in rows or problem.initial_excess is None):
+        excess = _excess(rows.get("initial.load", problem.load), strength)
+    excess = np.full(count, problem.initial_excess) if excess is None else excess
+    states: Any = _states([replace(problem, friction=one) for one in laws], which, rows.get("initial.state")) if law.states else []
+    start = {"normal": normal, "load": strength + excess, "excess": excess, "slip": slip, "law_slip": law_slip}
+    return start | found | {"states": np.reshape(states, (len(law.states), count))}
+
+
+def _of_arrays(problem: Problem, rows: Mapping[str, Floats]) -> dict[str, Any]:
+    """Return what `_of_laws` returns of the laws with these values, for a law that takes arrays. Raises InputError."""
+    law, count = problem.friction, len(next(iter(rows.values())))
+    law = with_numbers(law, {name.removeprefix("friction."): values for name, values in rows.items()})
+    fine = np.broadcast_to((np.asarray(law.range()[0]) >= 0.0) & (np.asarray(law.static_excess) >= 0.0), count)
+    for place in np.flatnonzero(~fine)[:1]:
+        _with(problem, {name: float(values[place]) for name, values in rows.items()})  # says what is wrong
+    numbers = {name: np.broadcast_to(getattr(law, name), count) for name in law.parameters()}
+    knots = np.reshape([np.broadcast_to(one, count) for one in law.knots], (-1, count))
+    return {"static_excess": np.broadcast_to(law.static_excess, count), "knots": knots, "numbers": [numbers] * len(law.pieces)}
+
+
+def _at_rest(law: FrictionLaw, found: Mapping[str, Any], slip: Floats) -> Floats:
+    """Return the formula of a law at v = 0+ and these slips (m), in the healed state, from numbers and knots of each node."""
+    piece = np.sum(found["knots"] <= (slip if law.knot_variable == "slip" else 0.0), axis=0)
+    values = np.empty(slip.shape)
+    for i in np.unique(piece).tolist():
+        at = piece == i
+        numbers = SimpleNamespace(**{name: one[at] for name, one in found["numbers"][i].items()})
+        values[at] = law.pieces[i](numbers, slip[at], np.zeros(int(at.sum())), *(np.zeros(int(at.sum())) for _ in law.states))
+    return values
+
+
+def _states(problems: list[Problem], which: NDArray[np.intp], first: Floats | None) -> Floats:
+    """Return the states, as formulas use them, of nodes: problem `which` of some, with other values of the first state if given."""
+    if first is None:
+        return np.transpose([one.states for one in problems])[:, which]
+    found = np.empty((len(problems[0].friction.states), len(which)))
+    for problem, at in zip(problems, np.split(np.argsort(which, kind="stable"), np.cumsum(np.bincount(which))[:-1]), strict=True):
+        values, back = np.unique(first[at], return_inverse=True)
+        others = problem.given_states[1:]
+        found[:, at] = np.transpose([problem.friction.inner_states((one, *others)) for one in values.tolist()])[:, back]
+    return found
+
+
+def _excess(load: Any, strength: Floats) -> Floats:
+    """Return loads minus strengths (Pa), as `Problem.excess` does."""
+    near = 4 * np.spacing(strength)
+    backward = np.where(np.abs(load + strength) <= near, -strength - strength, load - strength)
+    return np.where(np.abs(load - strength) <= near, 0.0, backward)
 
 
 def varying(problem: Problem) -> dict[str, tuple[Quantity, float]]:

@@ -7,9 +7,9 @@ enough if only one name ends with it. `PRESSING` has no place in a file: it is t
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
 
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError, full_name
@@ -47,6 +47,9 @@ class Entry(NamedTuple):
     put: Callable[[Any], Problem]
     written: str = ""
     """Unit that follows the number in a scenario file (only parameters of a formula have one)."""
+
+
+Owner = TypeVar("Owner")
 
 
 @dataclass(frozen=True)
@@ -207,6 +210,20 @@ def _field_of(problem: Problem, name: str) -> Callable[[Any], Problem]:
 
 def _instead(problem: Problem, name: str, other: str) -> Callable[[Any], Problem]:
     return lambda value: replace(problem, **{f"initial_{name}": value, f"initial_{other}": None})
+
+
+def law_with(law: Any, values: Mapping[str, float]) -> Any:
+    """Return a friction law with other values (SI) of its numbers, by names such as "friction.alpha". Raises InputError."""
+    for name, value in values.items():
+        law = next(one for one in _entries_in(law, "friction", lambda law: law) if one.name == name).put(value)
+    return law
+
+
+def with_numbers(owner: Owner, numbers: Mapping[str, Any]) -> Owner:
+    """Return a body, law or problem with other numbers, which may be arrays and are not checked."""
+    made = object.__new__(type(owner))  # without what the owner remembers that follows from its numbers
+    vars(made).update({one.name: getattr(owner, one.name) for one in fields(cast(Any, owner))} | dict(numbers))
+    return made
 
 
 def _in_field(owner: Any, name: str, put: Callable[[Any], Problem]) -> Callable[[Any], Problem]:

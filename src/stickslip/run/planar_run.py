@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import math
+import os
+import sys
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from time import perf_counter
@@ -42,8 +45,10 @@ NODES_AT_ONCE = 1_000_000
 """Nodes times steps in the first call of the solver, which are computed in less than a second."""
 COMPILER = 6e7
 """Memory that compiling a run takes, bytes."""
-MOST_MEMORY = 16e9
-"""Largest memory of a run, bytes: echoes need most of it, and they are kept for all round trips to come."""
+UNKNOWN_MEMORY = 16e9
+"""Memory that a machine is taken to have which does not say how much it has, bytes."""
+LIMITS_OF_CONTAINER = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes")
+"""Files in which Linux says how much memory the processes of a container may take."""
 
 
 class PlanarReport(NamedTuple):
@@ -88,11 +93,26 @@ def memory_of(slab: PlanarSlab, duration: float, frames: int = FRAMES) -> float:
     return float(COMPILER + exponentials + waves + kept)
 
 
+def memory_here() -> float:
+    """Return the memory (bytes) that a run may take: that of the machine, or of the container or the devices it runs on."""
+    found = []
+    with suppress(ValueError, OSError, AttributeError):  # where the system does not know these names
+        found.append(float(os.sysconf("SC_PAGE_SIZE")) * os.sysconf("SC_PHYS_PAGES"))
+    for file in LIMITS_OF_CONTAINER:
+        with suppress(ValueError, OSError):  # no such file, or "max"
+            found.append(float(Path(file).read_text(encoding="ascii")))
+    here, jax = min(found, default=UNKNOWN_MEMORY), sys.modules.get("jax")
+    if jax is None:
+        return here
+    devices = [device.memory_stats() or {} for device in jax.local_devices()]
+    return float(jax.process_count() * (sum(one.get("bytes_limit", 0.0) for one in devices) or here))
+
+
 def check_memory(slab: PlanarSlab, duration: float, frames: int) -> float:
-    """Return the memory of a run (see `memory_of`). Raises InputError if it is more than MOST_MEMORY."""
-    if (needed := memory_of(slab, duration, frames)) > MOST_MEMORY:
+    """Return the memory of a run (see `memory_of`). Raises InputError if it is more than there is: see `memory_here`."""
+    if (needed := memory_of(slab, duration, frames)) > (here := memory_here()):
         raise InputError(
-            f"simulate: this PlanarSlab needs {needed / 1e9:.3g} GB for {duration:g} s, allowed are {MOST_MEMORY / 1e9:g} GB:"
+            f"simulate: this PlanarSlab needs {needed / 1e9:.3g} GB for {duration:g} s, and there are {here / 1e9:.3g} GB here:"
             " take fewer nodes, a shorter duration, or fewer frames"
         )
     return needed
@@ -198,13 +218,13 @@ class Follow:
         Raises InputError if the run needs too much memory, or if JAX is missing.
         """
         solved, here = slab.alone_for(self.duration)
-        self.memory = check_memory(solved, self.duration, 0 if streams else self.frames)
-        if self.progress is not None:
-            self.progress(PlanarReport(time, self.duration, math.nan, math.nan, math.nan, self.memory))
         try:
             from stickslip.planar.solver import PlanarSolver
         except ImportError:
             raise InputError("simulate: a PlanarSlab needs the library JAX: pip install 'stickslip[planar]'") from None
+        self.memory = check_memory(solved, self.duration, 0 if streams else self.frames)
+        if self.progress is not None:
+            self.progress(PlanarReport(time, self.duration, math.nan, math.nan, math.nan, self.memory))
         return PlanarSolver(solved, self.duration), here
 
     def fault(self, run: PlanarSolver, motion: Motion) -> int | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -27,10 +28,15 @@ from stickslip.foundation.quantities import (
 
 
 class Source(NamedTuple):
-    """The origin of a document: its name in messages and, for a document in a file, the folder of its data files."""
+    """The origin of a document: its name in messages and, for a document in a file, the folder of its data files.
+
+    `most_nodes` is the largest number of nodes of a [contact] that whoever reads the document can use; a contact with more of them
+    is refused before it is made.
+    """
 
     file: str
     folder: Path | None = None
+    most_nodes: float = math.inf
 
 
 def key_of(name: str, entry: Field) -> str:

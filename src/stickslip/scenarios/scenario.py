@@ -219,6 +219,9 @@ def _with_contact(plain: Scenario, document: Mapping[str, Any], source: Source) 
         why = "has no effect with a [contact], whose nodes and courant set the accuracy: leave it out"
         raise InputError(f"{source.file}: [run] {needless} {why}")
     contact = read_contact(read_table(CONTACT, Contact, document[CONTACT], source), plain.problem, source.file)
+    nodes = contact.nodes * (contact.width_nodes or 1)
+    if nodes > source.most_nodes:
+        raise InputError(f"{source.file}: [contact] has {nodes} nodes, {source.most_nodes:g} are the most that can be used here")
     found = replace(plain, contact=contact, title=document["title"], description=document["description"])
     try:
         _ = found.planar_slab
