@@ -6,6 +6,7 @@ import asyncio
 import gc
 import re
 import socket
+import subprocess
 import sys
 import threading
 import time
@@ -410,3 +411,23 @@ def test_a_bokeh_without_a_private_name_gets_one_line(monkeypatch: pytest.Monkey
     monkeypatch.delattr(server if name == "_tornado" else application, name)
     with pytest.raises(InputError, match=r"^explore: bokeh .* does not suit; .*: pip install 'bokeh>=3.9,<3.11'$"):
         serving.application_of(server)
+
+
+LOGS = """
+import logging
+import panel  # whose log goes to standard output
+from stickslip.explorer.server.serve import log_to_stderr
+
+log_to_stderr()
+for _ in range(5000):
+    logging.getLogger("panel.io").error("x" * 200)
+print("through")
+"""
+
+
+def test_a_log_that_nobody_reads_holds_up_nothing() -> None:
+    """A pipe holds some 64 kB; what is logged here is 1 MB."""
+    process = subprocess.Popen([sys.executable, "-c", LOGS], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert process.stdout is not None
+    assert process.stdout.read() == "through\n"
+    assert process.wait() == 0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import os
 import shutil
@@ -12,6 +13,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import google_crc32c
+import numcodecs
 import numpy as np
 import pytest
 import xarray
@@ -21,6 +24,7 @@ from tests.planar.patches import patch, state_patch
 import stickslip as ss
 from stickslip.foundation import netcdf_file, zarr_folder
 from stickslip.foundation.atomic_write import held
+from stickslip.foundation.zarr_folder import unpacked_size
 from stickslip.io import planar_layout, planar_store
 from stickslip.run import run_loop
 from stickslip.run.planar_run import PlanarReport
@@ -265,7 +269,7 @@ def edited(path: Path, **changes: Any) -> None:
         ({"stickslip_planar": 2}, "format 1 expected, found 2"),
         ({"scenario": "x = 1"}, "run.zarr"),
         ({"scenario": 3}, "cannot be read"),
-        ({"grid": {"nodes": 16, "length": 2e4}}, "load must give (16,) values"),
+        ({"grid": {"nodes": 16, "length": 2e4}}, "its array 'y' has another form"),
         ({"grid": [1]}, "run.zarr"),
         ({"along": ["static"]}, "static"),
         ({"modes": [2, 9]}, "waves/sent"),
@@ -319,3 +323,105 @@ def test_a_clumsy_resume_is_refused(store: Path) -> None:
     refused(lambda: ss.resume(store, checkpoint="other.zarr"), "without checkpoint")
     with held(store, "held"):
         refused(lambda: ss.resume(store), "another run is writing into it")
+
+
+# ---- folders that attack ---------------------------------------------------------------------------------------------------------
+
+
+def grown(path: Path, name: str, rows: int) -> None:
+    """Let the metadata of an array say that it has so many rows."""
+    for file in (path / "zarr.json", path / name / "zarr.json"):
+        about = json.loads(file.read_text())
+        one = about if file.parent.name == Path(name).name else about["consolidated_metadata"]["metadata"][name]
+        one["shape"][0] = rows
+        file.write_text(json.dumps(about))
+
+
+def bomb(path: Path) -> None:
+    """A chunk of 64 kB that unpacks to 2 GB."""
+    packed = numcodecs.Zstd().encode(np.zeros(2**21))
+    frame = bytearray(packed)
+    assert unpacked_size(bytes(frame)) == 2**24
+    huge = b"\x28\xb5\x2f\xfd" + b"\xe0" + (2**31).to_bytes(8, "little") + b"\0" * 65_536
+    path.write_bytes(huge + google_crc32c.Checksum(huge).digest()[::-1])
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs pipes and links")
+@pytest.mark.parametrize(
+    ("attack", "words"),
+    [
+        (lambda store: os.mkfifo(moved(store / "slip/c.0.0")), "slip/c.0.0: not an ordinary file"),
+        (lambda store: moved(store / "slip/c.0.0").symlink_to("/dev/zero"), "slip/c.0.0: not an ordinary file"),
+        (lambda store: os.mkfifo(moved(store / "zarr.json")), "not an ordinary file"),
+        (lambda store: bomb(store / "slip/c.0.0"), "slip/c.0.0: unpacks to more than 268435456 bytes"),
+        (lambda store: (store / "slip/c.0.0").write_bytes(b"x" * 100), "slip/c.0.0: unpacks to more than"),
+        (lambda store: grown(store, "slip", 300_000_000), "its array 'slip' has 300000000 rows, and 2 files of them"),
+        (lambda store: grown(store, "waves/sent", 300_000_000), "its array 'waves/sent' has 300000000 rows"),
+        (lambda store: grown(store, "barrier", 300_000_000), "its array 'barrier' has another form"),
+        (lambda store: grown(store, "time", 0), "its times (0,)"),
+        (lambda store: edited(store, duration=1e300), "rows"),
+    ],
+    ids=["pipe", "device", "pipe of metadata", "bomb", "no frame", "rows", "rows of waves", "profile", "no rows", "duration"],
+)
+def test_a_folder_that_attacks_is_refused_in_one_line(store: Path, attack: Callable[[Path], object], words: str) -> None:
+    attack(store)
+    if words != "rows":
+        refused(lambda: ss.open_solution(store).slip, str(store), words)
+    told = try_to(lambda: ss.resume(store))  # which may not need what is wrong
+    assert "\n" not in told
+
+
+def moved(path: Path) -> Path:
+    """The name of a file that is no longer there."""
+    path.unlink()
+    return path
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs links")
+def test_nothing_is_written_through_a_link(store: Path, tmp_path: Path) -> None:
+    link = tmp_path / "link.zarr"
+    link.symlink_to(store)
+    before = {path: path.stat().st_mtime_ns for path in store.rglob("*")}
+    refused(lambda: ss.resume(link), "is a link: name the folder itself")
+    refused(lambda: ss.simulate(patch(**GRID), 3.0, checkpoint=link), "is a link: name the folder itself")
+    assert before == {path: path.stat().st_mtime_ns for path in store.rglob("*")}
+
+
+def test_a_folder_that_was_killed_before_its_first_checkpoint_is_used_again(tmp_path: Path, whole: Any, monkeypatch: Any) -> None:
+    path = tmp_path / "run.zarr"
+
+    def dies(*_: Any) -> None:
+        raise Killed
+
+    monkeypatch.setattr(planar_store.PlanarStore, "save", dies)
+    with pytest.raises(Killed):
+        ss.simulate(patch(**GRID), DURATION, frames=10, checkpoint=path)
+    monkeypatch.undo()
+    assert path.is_dir()
+    refused(lambda: ss.resume(path), "has no checkpoint yet: begin the run again with this name")
+    check_same(ss.simulate(patch(**GRID), DURATION, frames=10, checkpoint=path), whole)
+    refused(
+        lambda: ss.simulate(patch(**GRID), DURATION, frames=10, checkpoint=path), "exists: stickslip.resume continues the run in it"
+    )
+
+
+def test_a_state_that_counts_other_frames_is_refused(store: Path) -> None:
+    state = netcdf_file.read(store / "state.nc")
+    netcdf_file.write(state.assign_attrs(written=99), store / "state.nc")
+    refused(lambda: ss.resume(store), "it has 15 frames, its state.nc says 99")
+
+
+def test_python_without_assertions_is_refused_in_one_line(store: Path) -> None:
+    code = "import stickslip as ss\ntry: ss.open_solution('run.zarr')\nexcept ss.InputError as error: print(error)"
+    path = str(Path(ss.__file__).parents[1])
+    done = subprocess.run(
+        [sys.executable, "-O", "-c", code],
+        cwd=store.parent,
+        env=os.environ | {"PYTHONPATH": path},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout == (
+        "run.zarr: zarr needs the assertions of Python for the run of a planar slab: unset PYTHONOPTIMIZE, or leave out python -O\n"
+    )

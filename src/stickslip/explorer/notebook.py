@@ -43,7 +43,7 @@ def explore(
     Parameters
     ----------
     problem : Problem, Scenario, str or Path
-        What to show first: a problem, a scenario, the name of a bundled scenario, or a scenario file.
+        What to show first: a problem, a scenario (that of a fault in 2D, too), the name of a bundled scenario, or a scenario file.
     duration : float or str, optional
         Duration of the run: a number in s, or a text with a unit such as "480 years". By default the scenario's duration; for a
         problem three round trips of the waves in a slab, or three periods of a block.
@@ -69,12 +69,14 @@ def explore(
     from stickslip.scenarios.scenario import Scenario
     from stickslip.scenarios.source import read_source
 
-    found = read_source("explore", problem)
+    found = read_source("explore", problem, contact=True)
     if isinstance(found, Problem):
         found = Scenario(found, found.round_trip_time * ROUND_TRIPS if duration is None else duration, name="problem")
     elif duration is not None:
         found = replace(found, duration=duration)
     behind = None
+    if record is not None and found.contact is not None:
+        raise InputError("explore: a record is not drawn behind a fault: leave out record, or [contact]")
     if record is not None:
         from stickslip.explorer.model.answer import Backdrop
         from stickslip.studies.inference.record import Record

@@ -1,23 +1,98 @@
-"""Folders of zarr: how their arrays are compressed, and errors of one line for all that goes wrong with them."""
+"""Folders of zarr: how their arrays are compressed, how they are read with care, and errors of one line for all that goes wrong.
+
+Somebody else may have written a folder that is read. Only ordinary files are read, of a bounded size, and a chunk whose compressed
+content says that it unpacks to more than a bound is refused before it is unpacked.
+"""
 
 from __future__ import annotations
 
+import asyncio
 import errno
+import math
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
+from pathlib import Path
+from typing import Any, Literal
 
 import zarr
+from typing_extensions import override
 from zarr.codecs import Crc32cCodec, ZstdCodec
+from zarr.core.buffer import default_buffer_prototype
+from zarr.storage import LocalStore
 
+from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import clean
 
 COMPRESSED = (ZstdCodec(), Crc32cCodec())
 """Codecs of every array: compression, then a CRC-32C checksum after each chunk, which every reader of zarr verifies."""
+LARGEST_CHUNK = 2**28
+"""Bytes of the largest chunk that is unpacked, and of the largest file that is read: 33 million numbers."""
+LARGEST_METADATA = 4_000_000
+"""Bytes of the largest file of metadata that is read."""
+METADATA = "zarr.json"
+"""Name of the files of metadata."""
+SIZES = {0: 0, 1: 2, 2: 4, 3: 8}
+"""Bytes of the field with the size of the content in a frame of Zstandard, by its flag (RFC 8878)."""
 IN_ONE_FOLDER: Any = {"name": "default", "separator": "."}
 """Names of chunks with which all chunks of an array lie in one folder."""
+
+
+class Folder(LocalStore):
+    """A folder of zarr of which only ordinary files are read, none of them large, and none that unpacks to more than it may."""
+
+    @override
+    async def get(self, key: str, prototype: Any = None, byte_range: Any = None) -> Any:
+        if byte_range is not None:
+            raise InputError(f"{self.root}: a part of a file is asked for: not a folder that stickslip has written")
+        path = self.root / key
+        largest = LARGEST_METADATA if path.name == METADATA else LARGEST_CHUNK
+        try:
+            content = await asyncio.to_thread(read_bounded, path, largest)
+        except (FileNotFoundError, IsADirectoryError, NotADirectoryError):
+            return None
+        except InputError as error:
+            raise InputError(f"{path}: {error}") from None
+        if path.name != METADATA and unpacked_size(content) > LARGEST_CHUNK:
+            raise InputError(f"{path}: unpacks to more than {LARGEST_CHUNK} bytes")
+        return (prototype or default_buffer_prototype()).buffer.from_bytes(content)
+
+
+def unpacked_size(content: bytes) -> float:
+    """Return the number of bytes to which a chunk unpacks as its first frame says; infinity if it is no frame that says so."""
+    if content[:4] != b"\x28\xb5\x2f\xfd" or len(content) < 5:
+        return math.inf
+    kind = content[4]
+    is_single, dictionary, flag = kind >> 5 & 1, (0, 1, 2, 4)[kind & 3], kind >> 6
+    size = SIZES[flag] or is_single
+    if not size:
+        return math.inf
+    begin = 5 + (not is_single) + dictionary
+    return int.from_bytes(content[begin : begin + size], "little") + (256 if size == 2 else 0)
+
+
+def opened(path: Path, mode: Literal["r", "r+"] = "r", use_consolidated: bool | None = None) -> zarr.Group:
+    """Open the group in a folder that somebody else may have written: see `Folder`.
+
+    Raises InputError if the folder is a link, or an array in it is not compressed as those of this package are.
+    """
+    check_folder(path)
+    group = zarr.open_group(Folder(path), mode=mode, use_consolidated=use_consolidated)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", category=UserWarning)  # of files in the folder that are not zarr's own
+        arrays = list(group.arrays())
+    for name, array in arrays:
+        codecs = [one["name"] for one in array.metadata.to_dict().get("codecs", ())]  # type: ignore[union-attr, index, call-overload]
+        if codecs[1:] != ["zstd", "crc32c"] or codecs[0] not in ("bytes", "vlen-utf8"):
+            raise InputError(f"its array {ascii(name)[:60]} is packed in another way")
+    return group
+
+
+def check_folder(path: Path) -> None:
+    """Refuse a folder that is a link: what is written would go elsewhere. Raises InputError."""
+    if path.is_symlink():
+        raise InputError(f"{path}: is a link: name the folder itself")
 
 
 def consolidate(place: Any) -> None:

@@ -12,7 +12,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, cast
 
 import numpy as np
 import zarr
@@ -22,11 +22,12 @@ from zarr.storage import MemoryStore
 
 import stickslip
 from stickslip.foundation import zarr_folder
+from stickslip.foundation.arguments import shown
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError, printable
 from stickslip.io.netcdf import PAPER
 from stickslip.io.soundness import number, whole_number
-from stickslip.planar.slab import PlanarSlab
+from stickslip.planar.slab import COUNTS, MOST_NODES, PlanarSlab
 from stickslip.scenarios.contact import GRID, Contact
 from stickslip.scenarios.scenario import LARGEST_TEXT, Scenario, read_scenario
 from stickslip.solution.planar import FIELDS, PlanarSolution
@@ -49,21 +50,31 @@ CHANGES = ("duration", "residual", "status", "status_message", "status_ok", "dig
 
 def lay_out(place: Any, slab: PlanarSlab, about: Any) -> None:
     """Create all arrays, without frames, and the attributes."""
-    group: Any = zarr.create_group(place, attributes=dict(about))
-    axes = dict(zip(("y", "z"), slab.shape, strict=False))
-    for axis, places in zip(axes, (slab.y, slab.z), strict=False):
-        _array(group, axis, {axis: len(places)}, units="m")[...] = places
+    made: Any = _arrays(place, slab.shape, about)
+    for axis, places in zip("yz", (slab.y, slab.z)[: len(slab.shape)], strict=False):
+        made[axis][...] = places
     for name, given in slab.along.items():
-        values = slab.at_nodes(name, given)
-        _array(group, f"along.{name}", axes, long_name=f"{name} along the contact")[...] = values
-    _array(group, "barrier", axes, long_name="1 where the contact is locked")[...] = slab.locked
+        made[f"along.{name}"][...] = slab.at_nodes(name, given)
+    made["barrier"][...] = slab.locked
+    zarr_folder.consolidate(place)
+
+
+def _arrays(place: Any, shape: tuple[int, ...], about: Any) -> zarr.Group:
+    """Create all arrays of a contact of this shape, still empty, and the attributes; return the group."""
+    group: Any = zarr.create_group(place, attributes=dict(about))
+    axes = dict(zip(("y", "z"), shape, strict=False))
+    for axis, count in axes.items():
+        _array(group, axis, {axis: count}, units="m")
+    for name in about["along"]:
+        _array(group, f"along.{name}", axes, long_name=f"{name} along the contact")
+    _array(group, "barrier", axes, long_name="1 where the contact is locked")
     _array(group, "time", {"time": 0}, about["frames"], units="s")
     for name, unit in FIELDS.items():
         _array(group, name, {"time": 0} | axes, about["frames"], units=unit)
     modes = dict(zip(("part", *(f"k_{axis}" for axis in axes)), about["modes"], strict=True))
     sent = "what the contact sends at each step of each round trip, by wavenumber"
     _array(group, SENT, {"row": 0} | modes, about["steps_per_round_trip"], units="Pa", long_name=sent)
-    zarr_folder.consolidate(place)
+    return cast(zarr.Group, group)
 
 
 def attributes(slab: PlanarSlab, scenario: Scenario, frames: int, run: PlanarSolver) -> dict[str, Any]:
@@ -182,9 +193,10 @@ def is_planar(path: Path) -> bool:
 
 def opened(path: Path, mode: Literal["r", "r+"] = "r", use_consolidated: bool | None = None) -> zarr.Group:
     """Return the group in a folder after checking its attributes. Raises InputError."""
-    if not (path / "zarr.json").is_file():
+    check_python(path)
+    if not (path / zarr_folder.METADATA).exists():
         raise InputError(f"{path}: not {WHAT}: it is no folder of zarr")
-    group = zarr.open_group(path, mode=mode, use_consolidated=use_consolidated)
+    group = zarr_folder.opened(path, mode, use_consolidated)
     if group.attrs.get(KIND) != FORMAT:
         found = "it is the store of a sweep" if "stickslip_sweep" in group.attrs else f"found {group.attrs.get(KIND, 'none')}"
         raise InputError(f"{path}: not {WHAT} of this version of stickslip (format {FORMAT} expected, {found})")
@@ -193,21 +205,51 @@ def opened(path: Path, mode: Literal["r", "r+"] = "r", use_consolidated: bool | 
     return group
 
 
+def check_python(path: Path) -> None:
+    """Refuse a Python without assertions, by which zarr cannot read groups inside a group. Raises InputError."""
+    if not __debug__:
+        raise InputError(f"{path}: zarr needs the assertions of Python for {WHAT}: unset PYTHONOPTIMIZE, or leave out python -O")
+
+
 def slab_in(group: zarr.Group, path: Path) -> PlanarSlab:
-    """Return the slab from the attributes and profiles of a folder."""
-    given: Any = group
+    """Return the slab from the attributes and profiles of a folder, whose arrays must have the form that follows from these."""
     about: Any = group.attrs
+    grid = dict(about["grid"])
+    counts = [grid[name] for name in COUNTS if grid.get(name) is not None]
+    if not all(isinstance(count, int) and count > 0 for count in counts) or math.prod(counts) > MOST_NODES:
+        raise InputError(f"its grid is {shown(grid)}")
+    _check_arrays(group, tuple(counts), about)
     problem = read_scenario(about["scenario"], str(path)).problem
     along = {name: finite_rows(group, f"along.{name}") for name in about["along"]}
-    slab = PlanarSlab(problem, **about["grid"], along=along, barrier=finite_rows(group, "barrier") > 0.5)
-    wanted = MemoryStore()
-    lay_out(wanted, slab, about)
-    ours: Any = zarr.open_group(wanted, mode="r")
-    for name in (*ours.array_keys(), SENT):
-        one, other = (found[name].metadata.to_dict() | {"shape": found[name].shape[1:]} for found in (ours, given))
-        if one != other:
-            raise InputError(f"its array {name!r} has another form")
+    slab = PlanarSlab(problem, **grid, along=along, barrier=finite_rows(group, "barrier") > 0.5)
+    _check_rows(group, path, slab)
     return slab
+
+
+def _check_arrays(group: Any, shape: tuple[int, ...], about: Any) -> None:
+    """Refuse arrays of another form than those of a contact of this shape, but for the number of rows of those that grow."""
+    ours: Any = _arrays(MemoryStore(), shape, about)
+    for name in (*ours.array_keys(), SENT):
+        wanted, found = ours[name], group[name]
+        one, other = (
+            array.metadata.to_dict() | {"shape": array.shape[len(array.shape) - len(wanted.shape) + 1 :]}
+            for array in (wanted, found)
+        )
+        grows = name in (*FIELDS, "time", SENT)
+        if one != other or not (grows or wanted.shape == found.shape):
+            raise InputError(f"its array {name!r} has another form")
+
+
+def _check_rows(group: Any, path: Path, slab: PlanarSlab) -> None:
+    """Refuse more rows than a run of this duration has, or rows of which there is no file."""
+    steps, frames = (whole_number(group.attrs, name, path, 1) for name in ("steps_per_round_trip", "frames"))
+    trips = slab.round_trips(number(group.attrs, "duration", path))
+    most = {"time": trips * (min(frames, steps) * 2 + 1) + 2, SENT: trips * (steps + 1)}
+    for name in (*FIELDS, "time", SENT):
+        array = group[name]
+        files = sum(1 for one in (path / name).glob("c.*")) if array.shape[0] else 0
+        if array.shape[0] > min(most.get(name, most["time"]), files * array.chunks[0]):
+            raise InputError(f"its array {name!r} has {array.shape[0]} rows, and {files} files of them")
 
 
 def finite_rows(group: Any, name: str, rows: slice = slice(None)) -> Floats:

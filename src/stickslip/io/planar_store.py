@@ -7,6 +7,7 @@ What the folder holds beyond it, or half of it, is written again by the run that
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -15,7 +16,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
-import zarr
 from numpy.typing import NDArray
 from typing_extensions import override
 
@@ -29,8 +29,10 @@ from stickslip.io.planar_layout import (
     KIND,
     SENT,
     attributes,
+    check_python,
     finite_rows,
     in_attributes,
+    is_planar,
     lay_out,
     open_planar,
     opened,
@@ -83,10 +85,14 @@ class PlanarStore(Frames):
     @contextmanager
     def new(cls, path: Path, slab: PlanarSlab, scenario: Scenario, frames: int, run: PlanarSolver) -> Iterator[Self]:
         """Create the folder of a run, locked against other processes. Raises InputError if the name exists."""
-        if path.exists():
+        zarr_folder.check_folder(path)
+        check_python(path)
+        if path.exists() and not _is_unbegun(path):
             raise InputError(f"{path}: exists: stickslip.resume continues the run in it; choose another name, or remove it")
         about = attributes(slab, scenario, frames, run)
         with zarr_folder.writing(path, "choose another disk"), held(path, f"{path}: {BUSY}"):
+            if path.exists():  # killed before its first checkpoint
+                shutil.rmtree(path)
             write_atomically(path, lambda draft: lay_out(draft, slab, about), folder=True)
         with held(path, f"{path}: {BUSY}"):
             yield cls(slab, run.steps, path=path, duration=scenario.duration, frames=frames, digest=about["digest"])
@@ -95,8 +101,11 @@ class PlanarStore(Frames):
     @contextmanager
     def at(cls, path: Path) -> Iterator[Self]:
         """Open the folder of a run to continue it, locked against other processes. Raises InputError for anything else."""
+        zarr_folder.check_folder(path)
         with held(path, f"{path}: {BUSY}"):
             with reading(path):
+                if _is_unbegun(path):
+                    raise InputError(f"{path}: has no checkpoint yet: begin the run again with this name")
                 store = cls._opened(path)
             yield store
 
@@ -116,6 +125,8 @@ class PlanarStore(Frames):
         store.written, store.sent = (whole_number(about, name, path, 1) for name in ("written", "sent"))
         store.largest_slip, store.fastest = (number(about, name, path) for name in ("largest_slip", "fastest"))
         store.times = finite_rows(group, "time", slice(store.written)).tolist()
+        if len(store.times) != store.written:
+            raise InputError(f"it has {len(store.times)} frames, its {STATE} says {store.written}")
         return store
 
     def restore(self, run: PlanarSolver) -> None:
@@ -204,13 +215,22 @@ class PlanarStore(Frames):
         with reading(self.path):
             zarr_folder.consolidate(self.path)
             # the group that knows the arrays keeps what it knows of them: the file changes at once
-            zarr.open_group(self.path, mode="r+").attrs.update(
+            opened(self.path, "r+").attrs.update(
                 in_attributes(STATUSES[code]) | {"duration": self.duration, "residual": self.residual}
             )
 
     @override
     def solution(self, code: int) -> PlanarSolution:
         return open_planar(self.path)
+
+
+def _is_unbegun(path: Path) -> bool:
+    """Return True for the folder of a run that was killed before its first checkpoint: it holds nothing that was calculated."""
+    if not is_planar(path) or (path / STATE).exists():
+        return False
+    with reading(path):
+        group: Any = opened(path, use_consolidated=False)
+        return not any(group[name].shape[0] for name in ("time", *FIELDS, SENT))
 
 
 def _engine() -> str:

@@ -62,7 +62,7 @@ class ParameterPath:
 
     def put(self, document: dict[str, Any], value: float | str) -> None:
         """Write a value (SI) into the document of a scenario, in place of the one that is there."""
-        owner, key = _place_of(self.name, document)
+        owner, key = place_of(self.name, document)
         if self.written:
             owner[key] = f"{value!r} {self.written}"
         elif self.declared is YES_OR_NO:
@@ -72,7 +72,7 @@ class ParameterPath:
             owner[key] = int(value) if whole else value
 
 
-def _place_of(name: str, document: Any) -> tuple[Any, Any]:
+def place_of(name: str, document: Any) -> tuple[Any, Any]:
     """Return the table or list in a document that has a value with this name, and its key or index there."""
     step, dot, rest = name.partition(".")
     found = _STEP.fullmatch(step)
@@ -81,7 +81,7 @@ def _place_of(name: str, document: Any) -> tuple[Any, Any]:
     if not dot:
         return (document[found["name"]], int(found["index"])) if found["index"] else (document, step)
     inner = document[found["name"]]
-    return _place_of(rest, inner[int(found["index"])] if found["index"] else inner)
+    return place_of(rest, inner[int(found["index"])] if found["index"] else inner)
 
 
 def find_parameter(scenario: Scenario, name: str, where: str) -> ParameterPath:
@@ -161,7 +161,7 @@ def with_values(scenario: Scenario, values: Mapping[str, Any], where: str) -> Sc
 def values_in(scenario: Scenario) -> Iterator[tuple[ParameterPath, Any]]:
     """Yield every parameter that has a value in the file of a scenario, with the value (SI)."""
     for one in parameter_paths(scenario):
-        owner, key = _place_of(one.name, scenario.document)
+        owner, key = place_of(one.name, scenario.document)
         if (isinstance(key, int) or key in owner) and not isinstance(owner[key], Mapping):  # a history in place of a number
             yield one, owner[key]
 

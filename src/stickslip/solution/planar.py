@@ -193,11 +193,16 @@ class PlanarSolution(NamesAttributes):
         return xarray.Dataset(fields, coords={"time": ("time", times, {"units": "s"})})
 
     @property
-    def _energy_sentence(self) -> str:
-        """How well energy is balanced, or nothing if it would take long to know."""
+    def knows_energy(self) -> bool:
+        """True if the energies of the run are known within about two seconds."""
         from stickslip.observables.energy.planar import cost
 
-        if len(self.times) < 3 or cost(self.slab, self.times[-1], self._steps_of_energies) > QUICK:
+        return len(self.times) > 2 and cost(self.slab, self.times[-1], self._steps_of_energies) <= QUICK
+
+    @property
+    def _energy_sentence(self) -> str:
+        """How well energy is balanced, or nothing if it would take long to know."""
+        if not self.knows_energy:
             return ""
         found = self._energies
         heat, missed = float(found["heat"][-1]), float(np.abs(found["balance"]).max())

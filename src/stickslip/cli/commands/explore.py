@@ -80,13 +80,7 @@ def explore(
     from stickslip.explorer.server.serve import Endpoint
     from stickslip.explorer.server.start import start
 
-    setting: Setting | FaultSetting
-    if loaded.contact is None:
-        setting = Setting.of(loaded)
-    else:
-        from stickslip.explorer.page.fault import FaultSetting
-
-        setting = FaultSetting(loaded)
+    setting = Setting.of(loaded)
     for name in allow_origin or ():
         if not _HOST.fullmatch(name):
             raise InputError(f"explore: --allow-origin must be NAME or NAME:PORT, got {name[:60]!a}")

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, field
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,6 +65,14 @@ class ContactPicture:
     path_load: Floats
 
 
+class State(NamedTuple):
+    """One state of friction over time: what it means, its unit, and its values (SI)."""
+
+    meaning: str
+    unit: str
+    values: Floats
+
+
 @dataclass(frozen=True)
 class Motion:
     """Slip (m), slip rate (m/s), traction and load (Pa, for a block N) of one body against time (s).
@@ -83,6 +91,8 @@ class Motion:
     load_unit: Literal["Pa", "N"]
     normal_load: float = 1.0
     """Normal stress (Pa) or force (N) of this body: traction over it can be compared between slab and block."""
+    states: tuple[State, ...] = ()
+    """The states of friction, at the same times."""
 
 
 @dataclass(frozen=True)
@@ -171,13 +181,15 @@ DRAWN_AS = {"friction": "traction", "shear_stress": "traction", "shear_force": "
 class Measured:
     """Samples of a record (SI) against the time of a run, and the misfit of each measured quantity.
 
-    `curves` are slip, slip_rate and traction (Pa, for a block N) as far as they were measured.
+    `curves` are slip, slip_rate and traction (Pa, for a block N) as far as they were measured; `residuals` what is measured minus
+    the run, without the zero of a sensor.
     """
 
     time: Floats
     curves: Mapping[str, Floats]
     misfits: tuple[KeyNumber, ...]
     name: str
+    residuals: Mapping[str, Floats] = field(default_factory=dict)
 
     @property
     def sentence(self) -> str:
@@ -216,7 +228,8 @@ class Backdrop:
     def behind(self, run: Solution) -> Measured:
         """Return the samples behind a run, as long as it lasts."""
         inside = self.record.clock <= run.history.span[1]
-        time, curves, misfits = self.record.clock[inside], dict[str, Floats](), list[KeyNumber]()
+        time, misfits = self.record.clock[inside], list[KeyNumber]()
+        curves, residuals = dict[str, Floats](), dict[str, Floats]()
         for name in self._names(run.problem):
             data = self.record.measured[name][inside]
             model = measured(run, name, self.sensor, time)
@@ -226,5 +239,7 @@ class Backdrop:
             size = float(np.sqrt(np.mean(away**2))) if known.any() else float("nan")
             misfits.append(KeyNumber(f"misfit of {name.replace('_', ' ')}", size, UNITS[name]))
             shift = run.problem.initial_slip - zero if name == "slip" else 0.0
-            curves[DRAWN_AS[name]] = data * (run.problem.normal if name == "friction" else 1.0) + shift
-        return Measured(time, curves, tuple(misfits), self.record.name)
+            scale = run.problem.normal if name == "friction" else 1.0
+            curves[DRAWN_AS[name]] = data * scale + shift
+            residuals[DRAWN_AS[name]] = (data - zero - model) * scale
+        return Measured(time, curves, tuple(misfits), self.record.name, residuals)

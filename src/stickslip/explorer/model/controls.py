@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import MISSING, dataclass, replace
+from dataclasses import MISSING, dataclass, fields, replace
 from typing import Any, Literal
 
 from stickslip.bodies import BODIES
@@ -19,15 +19,23 @@ from stickslip.friction.contract import STATE_NAMES, StateVariable
 from stickslip.loading import HISTORIES
 from stickslip.problem.selection_rule import SELECTION_RULES, names
 from stickslip.problem.start import STEADY
+from stickslip.run.planar_run import FRAMES
 from stickslip.scenarios import library
+from stickslip.scenarios.contact import Contact
 from stickslip.scenarios.entries import describe, typed_number
-from stickslip.scenarios.schema import check_events, entries_in, kind_of
+from stickslip.scenarios.parameter_paths import WHOLE, YES_OR_NO, ParameterPath, parameter_paths
+from stickslip.scenarios.schema import CONTACT, check_events, entries_in, kind_of
 
 ControlKind = Literal["number", "whole", "choice", "text", "points"]
 CONSTANT = "constant"
 """Kind of a pull rate that does not vary."""
 STARTS, STARTS_IN_MOTION = ("excess", "load"), ("steady", "load")
 """How the load of the start is given, which takes the place of a kind: minus the static strength, or as it is."""
+PARTS_OF_PATCH = {"y[0]": "from y", "y[1]": "to y", "taper": "taper"}
+"""Names of the numbers of a patch."""
+RARE_IN_CONTACT = ("frames", "courant", "taper")
+"""Numbers of a contact and its patches that are seldom changed."""
+DEFAULTS_OF_CONTACT = {one.name: one.default for one in fields(Contact)} | {"taper": 0.0}
 RARE = ("run.rtol", "run.creep_rtol", "run.shortest_event", "body.p_wave_speed", "run.events", "loading.far_stress_rate")
 """Numbers that are seldom changed: a page may hide them at first."""
 TITLES: dict[str, str] = {"body": "Body", "friction": "Friction", "loading": "Loading", "initial": "Start", "run": "Run"}
@@ -38,6 +46,7 @@ EMPTY = {
     "loading.far_stress": "the initial load",
     "run.creep_rtol": "automatic",
     "run.shortest_event": "automatic",
+    "contact.frames": f"{FRAMES}",
 }
 """What an empty field of a number stands for that has neither a default nor need be given."""
 PARTLESS = tuple(kind for kind, law in LAWS.items() if not any(isinstance(entry, Part) for entry, _ in fields_of(law).values()))
@@ -81,7 +90,7 @@ class Control:
     def entry(self, value: float) -> float | str:
         """Return what stands in the document for a number (SI) from the slider: in `unit`, as a person would write it."""
         if self.kind == "whole":
-            return round(value)
+            return 2 * round(value / 2.0) if self.path.endswith("nodes") else round(value)
         return self._with_unit(float(f"{value / self.size:.12g}"))
 
     def read(self, typed: str) -> Any:
@@ -92,6 +101,8 @@ class Control:
         text = typed.strip()
         if not text and self.empty:
             return None
+        if self.declared is YES_OR_NO:
+            return text == "true"
         if self.kind in ("choice", "text"):
             return text
         if self.kind == "points":
@@ -99,7 +110,9 @@ class Control:
         if self.path == "run.events":
             number = typed_number(text)
             return check_events(int(number) if isinstance(number, float) and number.is_integer() else number, self.label, "number")
-        return self._number(text)
+        number = self._number(text)
+        is_whole = self.path in WHOLE and isinstance(number, float) and number.is_integer()
+        return int(number) if is_whole else number
 
     def _number(self, text: str) -> float | str:
         declared = self.declared.item if isinstance(self.declared, Series) else self.declared
@@ -142,6 +155,9 @@ class _Tables:
         self.began: Callable[[str], Any] = began.value
 
     def groups(self) -> Iterator[Group]:
+        if self.setting.is_fault:
+            yield from self.of_fault()
+            return
         body, law = self.problem.body, self.problem.friction
         yield self.of("body", type(body), tuple(BODIES))
         yield from self.of_law("friction", tuple(LAWS))
@@ -162,6 +178,39 @@ class _Tables:
         kinds = STARTS if law.sticks else STARTS_IN_MOTION if in_motion else ()
         yield replace(self.of("initial", type(body), (), states=law.states), kind=start, kinds=kinds)
         yield self.of_run()
+
+    def of_fault(self) -> Iterator[Group]:
+        """Yield the tables of a fault: its patches first, then those of the problem that each node has; kinds stay as they are."""
+        body, law = type(self.problem.body), self.problem.friction
+        found: dict[str, list[Control]] = {}
+        for one in parameter_paths(self.setting.scenario()):
+            if one.name.startswith(CONTACT) and "width" not in one.name:
+                found.setdefault(one.name.rpartition("].")[0], []).append(self.of_contact(one))
+        grid = Group(CONTACT, "Contact", "", (), tuple(found.pop("", ())))
+        for table, controls in found.items():
+            number = int(table.rpartition("[")[2]) + 1
+            yield Group(f"{table}]", f"Patch {number}", "", (), tuple(controls))
+        yield grid
+        yield from (replace(group, kind="", kinds=()) for group in self.of_law("friction", ()))
+        own = self.of("body", body, ())
+        own = replace(own, controls=tuple(one for one in own.controls if one.path != "body.contact_mass"))  # it must be 0
+        others = (own, self.of("loading", body, ()), self.of("initial", body, (), states=law.states))
+        yield from (group for group in others if group.controls)
+        run = self.of("run", body, ())
+        yield replace(run, controls=tuple(one for one in run.controls if one.path == "run.duration"))
+
+    def of_contact(self, one: ParameterPath) -> Control:
+        """Return the control of a number of the contact or of one of its patches."""
+        inside = one.name.rpartition("].")[2].removeprefix(f"{CONTACT}.")
+        label = PARTS_OF_PATCH.get(inside, inside.replace(".", " ").replace("_", " "))
+        rare, value = inside in RARE_IN_CONTACT, self.setting.value(one.name)
+        if isinstance(one.declared, Choice):
+            text = str(DEFAULTS_OF_CONTACT.get(inside) if value is None else value).lower()
+            return Control(
+                one.name, label, one.declared.meaning, "choice", text, choices=one.declared.allowed, declared=one.declared
+            )
+        control = self.number(one.name, label, one.declared, DEFAULTS_OF_CONTACT.get(inside), rare)
+        return replace(control, kind="whole") if one.name in WHOLE else control
 
     def of_law(self, table: str, kinds: tuple[str, ...]) -> Iterator[Group]:
         content = self.setting.value(table)

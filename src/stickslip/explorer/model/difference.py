@@ -12,7 +12,8 @@ from typing import Any
 import tomli_w
 
 from stickslip.explorer.model.answer import Answer, KeyNumber
-from stickslip.explorer.model.setting import Setting, leaves_of
+from stickslip.explorer.model.fault import FaultAnswer
+from stickslip.explorer.model.setting import Setting, inner_leaves_of
 from stickslip.explorer.model.words import short
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.formatting import brief, clean
@@ -36,7 +37,7 @@ def changes_of(setting: Setting) -> list[str]:
     """Return what was changed in a bundled scenario, as "friction.alpha = 0.7 s/m"; empty for another scenario."""
     if not setting.is_changed:
         return []
-    began, now = (leaves_of(one.document) for one in (Setting.bundled(setting.name), setting))
+    began, now = (inner_leaves_of(one.document) for one in (Setting.bundled(setting.name), setting))
     changed = [f"{path} = {_short(value)}" for path, value in now.items() if path not in began or began[path] != value]
     return changed + [f"no {path}" for path in began if path not in now]
 
@@ -200,7 +201,7 @@ def _more(count: int) -> str:
     return f"; and {count - MOST_NAMED} more" if count > MOST_NAMED else ""
 
 
-def difference(before: tuple[Setting, Answer], after: tuple[Setting, Answer]) -> Difference:
+def difference(before: tuple[Setting, Answer | FaultAnswer], after: tuple[Setting, Answer | FaultAnswer]) -> Difference:
     """Return the named difference of two runs, each a setting and its answer."""
     (old, old_answer), (new, new_answer) = before, after
     return Difference(_changes(old, new), _moved(old_answer.numbers, new_answer.numbers))
@@ -208,7 +209,7 @@ def difference(before: tuple[Setting, Answer], after: tuple[Setting, Answer]) ->
 
 def _changes(old: Setting, new: Setting) -> tuple[Change, ...]:
     """Return the changes; "1 s/m" and 1.0 are the same."""
-    was, now = (leaves_of(tomllib.loads(one.scenario().to_toml())) for one in (old, new))
+    was, now = (inner_leaves_of(tomllib.loads(one.scenario().to_toml())) for one in (old, new))
     paths = [path for path in dict.fromkeys((*was, *now)) if path not in TEXTS and was.get(path) != now.get(path)]
     return tuple(Change(path, _shown(old, path, was), _shown(new, path, now)) for path in paths)
 

@@ -20,6 +20,8 @@ INVERSE_RATES = ("s/m", "m^-1 s")
 """Units of numbers that may be 0, but whose size is to be seen on a logarithmic slider."""
 NEARLY = 1e-3
 """A slider of a pure number that must be greater than 0 begins at this share of its end."""
+COUNTS = {"contact.nodes": (8.0, 1024.0), "contact.frames": (1.0, 400.0), "contact.courant": (0.05, 0.79)}
+"""Ends of the sliders of numbers of a grid."""
 COEFFICIENTS = 1.5
 """Smallest end of the slider of a friction coefficient."""
 
@@ -49,7 +51,11 @@ def range_of(path: str, declared: Quantity, anchor: float | None, problem: Probl
         return None
     if declared.whole:
         return Range(1.0, float(LARGEST_WHOLE))
-    special = _special(path, anchor, problem)
+    if path in COUNTS:
+        return Range(*COUNTS[path])
+    if path.endswith(("y[0]", "y[1]")):
+        return Range(-2.0 * abs(anchor), 2.0 * abs(anchor))
+    special = _special(path.rpartition("].")[2], anchor, problem)  # of a patch: as that of all nodes
     if special is not None:
         return special
     if not math.isfinite(anchor):

@@ -17,19 +17,23 @@ from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from copy import deepcopy
 from dataclasses import dataclass, field, replace
-from functools import cache
+from functools import cache, cached_property
 from typing import Any, Self
 
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError, gathered, nearest
 from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source, typed_number
+from stickslip.scenarios.parameter_paths import place_of
 from stickslip.scenarios.scenario import Scenario, scenario_of
-from stickslip.scenarios.schema import TABLES
-from stickslip.scenarios.source import all_slips_alike
+from stickslip.scenarios.schema import CONTACT, TABLES
 
 DEEPEST = 5
 """Largest number of parts in a path."""
+
+
+MOST_NODES = 1024
+"""Largest number of nodes of a fault that a page shows."""
 
 
 def leaves_of(document: Mapping[str, Any]) -> dict[str, Any]:
@@ -37,10 +41,18 @@ def leaves_of(document: Mapping[str, Any]) -> dict[str, Any]:
     return dict(_leaves(document, ""))
 
 
-def _leaves(table: Mapping[str, Any], before: str) -> Iterator[tuple[str, Any]]:
+def inner_leaves_of(document: Mapping[str, Any]) -> dict[str, Any]:
+    """Return all entries that are no tables, those of tables in lists too: "contact.patches[0].initial.load"."""
+    return dict(_leaves(document, "", in_lists=True))
+
+
+def _leaves(table: Mapping[str, Any], before: str, *, in_lists: bool = False) -> Iterator[tuple[str, Any]]:
     for key, value in table.items():
         if isinstance(value, Mapping) and value:
-            yield from _leaves(value, f"{before}{key}.")
+            yield from _leaves(value, f"{before}{key}.", in_lists=in_lists)
+        elif in_lists and isinstance(value, list) and value and all(isinstance(one, Mapping) for one in value):
+            for i, one in enumerate(value):
+                yield from _leaves(one, f"{before}{key}[{i}].", in_lists=True)
         else:
             yield f"{before}{key}", value
 
@@ -93,23 +105,32 @@ class Setting:
 
     def value(self, path: str) -> Any:
         """Return the entry at a path such as "friction.alpha" or "loading.pull_rate"; None if the document has none."""
-        found: Any = self.document
-        for key in path.split("."):
-            found = found.get(key) if isinstance(found, Mapping) else None
-        return found
+        try:
+            owner, key = place_of(path, self.document)
+            return owner[key] if isinstance(key, int) else owner.get(key)
+        except (KeyError, IndexError, TypeError, AttributeError):
+            return None
 
     def with_value(self, path: str, value: Any) -> Self:
         """Return a setting in which one entry is replaced, or left away if `value` is None."""
         document = deepcopy(dict(self.document))
         *tables, key = path.split(".")
-        place = document
-        for table in tables:
-            place = place.setdefault(table, {})
+        place: Any = document
+        if "[" in path:
+            place, key = place_of(path, document)
+        else:
+            for table in tables:
+                place = place.setdefault(table, {})
         if value is None:
             place.pop(key, None)
         else:
             place[key] = value
         return replace(self, document=document, notes=() if path.partition(".")[0] == "friction" else self.notes)
+
+    @property
+    def is_fault(self) -> bool:
+        """True if the contact has many nodes."""
+        return CONTACT in self.document
 
     @property
     def is_changed(self) -> bool:
@@ -128,9 +149,17 @@ class Setting:
 
     def read(self) -> tuple[Scenario, tuple[str, ...]]:
         """Return the scenario, and doubts about its entries, one line each. Raises InputError as `scenario` does."""
+        scenario, doubts = self._read
+        return scenario, tuple(dict.fromkeys((*self.notes, *doubts)))
+
+    @cached_property
+    def _read(self) -> tuple[Scenario, tuple[str, ...]]:
         with gathered() as doubts:
-            scenario = replace(scenario_of(self.document, Source(self.name, None)), name=self.name, title=self.title)
-        return all_slips_alike("explore", scenario), tuple(dict.fromkeys((*self.notes, *doubts)))
+            source = Source(self.name, None, MOST_NODES)
+            scenario = replace(scenario_of(self.document, source), name=self.name, title=self.title)
+        if scenario.contact is not None and scenario.planar_slab.is_plane:
+            raise InputError("explore: a fault in 3D is not shown: `stickslip run --figure` and `--animation` draw the run")
+        return scenario, tuple(doubts)
 
 
 @cache
@@ -204,7 +233,11 @@ def setting_of(parameters: Mapping[str, str]) -> Setting:
     Parameters that are no entries of a scenario, such as the place of a cursor, are left to others. Raises InputError, in one line,
     if the link is too long, of another version, broken, or does not lead to a scenario.
     """
-    ours = {key: value for key, value in parameters.items() if key in ("scenario", "document", "v") or key.split(".")[0] in TABLES}
+    ours = {
+        key: value
+        for key, value in parameters.items()
+        if key in ("scenario", "document", "v") or key.split(".")[0] in (*TABLES, CONTACT)
+    }
     if _length(ours) > LONGEST:
         raise InputError(f"link: it has more than {LONGEST} characters")
     if ours.get("v", VERSION) != VERSION:

@@ -6,14 +6,16 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 from stickslip.bodies import ElasticSlab
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
-from stickslip.explorer.model.answer import Answer, Backdrop, Motion
+from stickslip.explorer.model.answer import Answer, Backdrop, Motion, State
 from stickslip.explorer.model.findings import Found, key_numbers, marks_of, sentence
 from stickslip.explorer.model.pictures import contact_picture, energy_picture, law_picture, slab_picture
 from stickslip.explorer.model.sampled_waves import SampledWaves, Shown
 from stickslip.foundation.errors import InputError
+from stickslip.friction.contract import STATE_NAMES
 from stickslip.problem.problem import Problem
 from stickslip.run.simulate import simulate
 from stickslip.scenarios.examine import warnings_of
@@ -179,7 +181,9 @@ EVEN_TIMES = 400
 def motion(solution: Solution, name: str = "") -> Motion:
     """Return the motion of one body; `name` is what the legend calls it, by default "slab" or "block"."""
     has_waves = solution.problem.body.has_waves
-    time, (slip, rate, traction, load) = solution.curves_together(("slip", "slip_rate", "traction", "load"), points=EVEN_TIMES)
+    known = solution.problem.friction.states
+    names: tuple[Any, ...] = ("slip", "slip_rate", "traction", "load", *STATE_NAMES[: len(known)])
+    time, (slip, rate, traction, load, *states) = solution.curves_together(names, points=EVEN_TIMES)
     return Motion(
         body="slab" if has_waves else "block",
         name=name or ("slab" if has_waves else "block"),
@@ -190,4 +194,5 @@ def motion(solution: Solution, name: str = "") -> Motion:
         load=load,
         load_unit="Pa" if has_waves else "N",
         normal_load=solution.problem.normal,
+        states=tuple(State(one.meaning, one.unit, values) for one, values in zip(known, states, strict=True)),
     )

@@ -12,7 +12,7 @@ from typing import Any, Literal
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.strip import StripRange
 
-Panel = Literal["law", "contact", "shape", "slip", "rate", "traction", "field", "energy"]
+Panel = Literal["law", "contact", "shape", "slip", "rate", "traction", "field", "energy", "profile_rate", "profile_slip"]
 """The panels of the page to which a step can point."""
 
 
@@ -30,7 +30,7 @@ class Step:
     question: str
     panel: Panel
     cursor: float
-    strip: StripRange
+    strip: StripRange | None
     scenario: str
     changes: Mapping[str, Any] = field(default_factory=dict)
 
@@ -151,3 +151,48 @@ TOUR = (
     ),
 )
 """The steps of the tour, in the order of the paper."""
+TOUR_OF_A_FAULT = (
+    Step(
+        "A nucleus",
+        "The contact of a slab is a line here, 40 km long, and each of its nodes slides under the same law: friction falls with "
+        "slip, from 0.7 to 0.5 over 40 cm. Only in a nucleus of 8 km is the load above the strength. Slip begins there at once and "
+        "spreads, because what slips loads what does not. At 18 km it meets barriers, which never slip.",
+        "the slip rate along the contact: two fronts leave the nucleus, while the middle slips on.",
+        "Lower the load of patch 1. From where on does nothing slip at all?",
+        "profile_rate",
+        1.5,
+        None,
+        "planar-patch",
+    ),
+    Step(
+        "The echo",
+        "Slip sends waves into the slab, and the driver, 10 km away, sends them back. After one two-way travel time, 5.714 s, the "
+        "first of them arrives and takes load off the contact: slip is over soon after. In one dimension the echo arrests "
+        "everything at once. Here waves from the ends arrive, too, and some places rest before others.",
+        "the contact in space and time: where the colour ends, the place has come to rest.",
+        "Make the slab half as thick. How far do the fronts get before their echo comes?",
+        "field",
+        5.714,
+        None,
+        "planar-patch",
+    ),
+    Step(
+        "A weaker fault",
+        "With dynamic friction of 0.45 in place of 0.5 more stress is released, and each place slips faster and further. The "
+        "fronts are faster, too: they come close to the speed of the waves, 3.5 km/s, which they cannot pass. The barriers stop "
+        "them all the same. Pin the run of the first step to compare the two.",
+        "slip in the middle: it is larger than before, and so is the drop of the traction.",
+        "Make the distance of the law longer. When do the fronts become slow, or fail to start?",
+        "slip",
+        3.0,
+        None,
+        "planar-patch",
+        {"friction.dynamic": 0.45},
+    ),
+)
+"""The steps of the tour on the page of a fault in 2D."""
+
+
+def tour_of(setting: Setting) -> tuple[Step, ...]:
+    """Return the tour of a page on which a setting is shown."""
+    return TOUR_OF_A_FAULT if setting.is_fault else TOUR

@@ -6,6 +6,7 @@ changes (assets/theme.js), so that a page without Python can change it too.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from functools import cache
 from importlib.resources import files
@@ -120,7 +121,7 @@ class PlayerBar(JSComponent):  # type: ignore[misc] # panel has no types
 
     def _handle_msg(self, data: Any) -> None:
         seconds = data.get("cursor") if isinstance(data, dict) else None
-        if isinstance(seconds, int | float):
+        if isinstance(seconds, int | float) and math.isfinite(seconds):
             self._moved(float(seconds))
 
 

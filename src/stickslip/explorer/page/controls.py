@@ -63,6 +63,12 @@ class Offered(NamedTuple):
     description: str
 
 
+def faults() -> list[str]:
+    """Return the names of the bundled scenarios of faults in 2D."""
+    others = (name for name in library.names() if name not in library.in_1d())
+    return [name for name in others if Setting.bundled(name).value("contact.width") is None]
+
+
 def offered() -> tuple[Offered, ...]:
     """Return all bundled scenarios in 1D in the order in which they are offered, section by section."""
     known = {name: library.entries()[name] for name in library.in_1d()}
@@ -149,6 +155,8 @@ def groups_of(setting: Setting, controls: Iterable[Group]) -> tuple[list[dict[st
 
 def _scenarios(setting: Setting) -> dict[str, Any]:
     options = [{"value": one.name, "label": one.title, "group": one.section} for one in offered()]
+    if setting.is_fault:
+        options = [{"value": name, "label": library.entries()[name].title, "group": ""} for name in faults()]
     if setting.name not in {one["value"] for one in options}:
         options.insert(0, {"value": setting.name, "label": setting.name, "group": ""})
     row = {"path": SCENARIO, "label": "scenario", "kind": "choice", "options": options, "text": setting.name}
@@ -199,6 +207,8 @@ def _whole(row: Row) -> Row:
 
 def symbol_of(control: Control) -> tuple[str, str]:
     """Return the symbol of an entry and its index, such as "μ" and "S"; both "" if its meaning has none."""
+    if control.path.startswith("contact."):
+        return "", ""
     found = SYMBOL.fullmatch(symbol(control.path, control.declared.meaning if control.declared else ""))
     return (GREEK.get(found["letter"], found["letter"]), found["index"] or "") if found else ("", "")
 

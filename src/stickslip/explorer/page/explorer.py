@@ -4,17 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
-from typing import Any, Literal, Protocol
+from typing import Any, Literal, Protocol, TypeVar
 
 from stickslip.explorer.model.answer import Answer
+from stickslip.explorer.model.fault import FaultAnswer
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.solve import Told
 from stickslip.explorer.model.strip import StripRange
 from stickslip.foundation.errors import InputError, gathered
 from stickslip.scenarios.scenario import Scenario
 
+Shown = TypeVar("Shown", Answer, FaultAnswer)
 News = Literal["setting", "answer", "fault", "progress", "pin", "cursor", "tour", "strip"]
 """What the parts of a page can listen to."""
+OTHER_PAGE = "{name}: a fault in 2D and a contact of one place have pages of their own: open it with `stickslip explore`"
+"""What is said of a setting that another page shows."""
 NOISY = "the points look noisy"
 """What a warning of noisy points says; an answer's own notes say it too, with the number of folds that the noise makes."""
 
@@ -41,7 +45,7 @@ class Explorer:
     the strip.
     """
 
-    def __init__(self, setting: Setting, desk: Desk, answer: Callable[..., Answer], files: Desk | None = None) -> None:
+    def __init__(self, setting: Setting, desk: Desk, answer: Callable[..., Any], files: Desk | None = None) -> None:
         self.setting, self.answer, self.shown, self.pinned = setting, None, None, None
         self.fault, self.progress, self.cursor = "", "", 0.0
         self.tour, self.strip = 0, None
@@ -51,9 +55,9 @@ class Explorer:
         self._listeners: dict[News, list[Callable[[], None]]] = {}
         self._once: list[Callable[[], None]] = []
 
-    answer: Answer | None
-    shown: tuple[Setting, Answer] | None
-    pinned: tuple[Setting, Answer] | None
+    answer: Any
+    shown: tuple[Setting, Any] | None
+    pinned: tuple[Setting, Any] | None
     strip: StripRange | None
 
     def listen(self, news: News, call: Callable[[], None]) -> None:
@@ -71,6 +75,8 @@ class Explorer:
         With the answer the cursor moves to the time `cursor` (s), if one is given.
         """
         try:
+            if setting.is_fault != self.setting.is_fault:
+                raise InputError(OTHER_PAGE.format(name=setting.name))
             scenario, doubts = setting.read()
         except InputError as error:
             self.refuse(str(error))
@@ -85,11 +91,15 @@ class Explorer:
             self._fail,
         )
 
-    def _answered(self, scenario: Scenario, doubts: tuple[str, ...], told: Told) -> Answer:
+    def _answered(self, scenario: Scenario, doubts: tuple[str, ...], told: Told) -> Any:
         """Return the answer, with doubts about the setting and those that came up meanwhile among its notes."""
         with gathered() as more:
             answer = self._calculate(scenario, told)
         return with_notes(answer, (*doubts, *more))
+
+    def read(self, work: Callable[[], Any], done: Callable[[Any], None]) -> None:
+        """Have something read beside the page, and call `done` with it; if it cannot be read, say why."""
+        self._desk.ask(lambda told: work(), done, self._fail)
 
     def once_answered(self, call: Callable[[], None]) -> None:
         """Have `call` called once, after the next answer is shown; not at all if there is a fault in its place."""
@@ -135,7 +145,7 @@ class Explorer:
         self.pinned = None if self.pinned else self.shown
         self.tell("pin")
 
-    def _show(self, shown: tuple[Setting, Answer], number: int, cursor: float | None) -> None:
+    def _show(self, shown: tuple[Setting, Any], number: int, cursor: float | None) -> None:
         self.shown, self.answer, self.fault, self.progress, self._shown = shown, shown[1], "", "", number
         if cursor is not None:
             self.cursor = cursor
@@ -155,7 +165,7 @@ class Explorer:
         self.refuse(str(error))
 
 
-def with_notes(answer: Answer, notes: Iterable[str]) -> Answer:
+def with_notes(answer: Shown, notes: Iterable[str]) -> Shown:
     """Return an answer with further notes, without those that it holds already in other words or that come twice."""
-    further = tuple(note for note in dict.fromkeys(notes) if NOISY not in note and note not in answer.notes)
+    further: tuple[str, ...] = tuple(note for note in dict.fromkeys(notes) if NOISY not in note and note not in answer.notes)
     return replace(answer, notes=(*answer.notes, *further)) if further else answer

@@ -10,11 +10,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath, PureWindowsPath
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import stickslip
 from stickslip.explorer.model.answer import Answer
 from stickslip.explorer.model.difference import python_of, toml_of
 from stickslip.explorer.model.exchange import with_kind
+from stickslip.explorer.model.fault import FaultAnswer
 from stickslip.explorer.model.setting import Setting
 from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.errors import InputError, gathered
@@ -74,7 +76,7 @@ def _with_table(name: str, content: bytes, present: Setting) -> Setting:
     return replace(changed, notes=tuple(notes))
 
 
-Write = Callable[[Setting, Answer], bytes]
+Write = Callable[[Setting, Any], bytes]
 
 _DRAWING = threading.Lock()
 """Held while a figure is drawn: the style of matplotlib is one for all threads, and each page exports in its own."""
@@ -108,6 +110,13 @@ def _made_with(command: str, setting: Setting, suffix: str) -> str:
 def netcdf_file(setting: Setting, answer: Answer) -> bytes:
     """Return the whole run as a netCDF file, as `stickslip run --out` writes it."""
     return _written(".nc", answer.solution.to_netcdf)
+
+
+def fields_file(setting: Setting, answer: Any) -> bytes:
+    """Return slip, slip rate, traction and heat of a fault over time and y as a netCDF file."""
+    from stickslip.foundation.netcdf_file import write
+
+    return _written(".nc", lambda path: write(answer.run.dataset(), path))
 
 
 def events_file(setting: Setting, answer: Answer) -> bytes:
@@ -158,6 +167,19 @@ FORMATS = {
     "svg": Format("Figure (SVG)", ".svg", "image/svg+xml", svg_file),
 }
 """The kinds of files, by the name under which the page asks for them."""
+OF_A_FAULT = {
+    "toml": FORMATS["toml"],
+    "netcdf": Format("Whole run (netCDF)", ".nc", "application/x-netcdf", fields_file),
+    "curves": FORMATS["curves"],
+    "png": FORMATS["png"],
+    "svg": FORMATS["svg"],
+}
+"""The kinds of files of a fault in 2D."""
+
+
+def formats_of(setting: Setting) -> dict[str, Format]:
+    """Return the kinds of files that a page can save, by name."""
+    return OF_A_FAULT if setting.is_fault else FORMATS
 
 
 def file_name(setting: Setting, suffix: str) -> str:
@@ -166,11 +188,12 @@ def file_name(setting: Setting, suffix: str) -> str:
     return f"{stem}{'-changed' if setting.is_changed else ''}{suffix}"
 
 
-def export(kind: str, setting: Setting, answer: Answer) -> tuple[str, str, bytes]:
+def export(kind: str, setting: Setting, answer: Answer | FaultAnswer) -> tuple[str, str, bytes]:
     """Return name, media type and content of a file. Raises InputError for an unknown kind."""
-    if kind not in FORMATS:
-        raise InputError(f"export: there is no kind {ascii(kind)[:40]}; allowed: {', '.join(FORMATS)}")
-    found = FORMATS[kind]
+    formats = formats_of(setting)
+    if kind not in formats:
+        raise InputError(f"export: there is no kind {ascii(kind)[:40]}; allowed: {', '.join(formats)}")
+    found = formats[kind]
     return file_name(setting, found.suffix), found.media, found.write(setting, answer)
 
 
@@ -186,9 +209,9 @@ def _written(suffix: str, write: Callable[[Path], object]) -> bytes:
         return path.read_bytes()
 
 
-def _figure(answer: Answer, kind: str) -> bytes:
-    from stickslip.figures.runs import run
+def _figure(answer: Any, kind: str) -> bytes:
+    from stickslip.figures.runs import planar, run
     from stickslip.figures.style import image
 
     with _DRAWING:
-        return image(run.draw(answer.solution), kind)
+        return image(planar.draw(answer.run) if isinstance(answer, FaultAnswer) else run.draw(answer.solution), kind)

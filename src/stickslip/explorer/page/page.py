@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
 
 import panel as pn
 
 from stickslip.explorer.page.components import Markup, PlayerBar, asset, style_sheet
 from stickslip.explorer.page.controls import Controls
 from stickslip.explorer.page.explorer import Explorer
-from stickslip.explorer.page.panels import plots, view_of
+from stickslip.explorer.page.panels import fault, plots, view_of
 from stickslip.explorer.page.stage import Stage
 from stickslip.explorer.page.strip import StripView
 from stickslip.explorer.page.tools import Tools
@@ -18,9 +19,26 @@ from stickslip.explorer.page.words import PinnedRun, Tour, Words
 
 TITLES = {
     "law": "Friction law", "contact": "Contact g(v)", "shape": "Body now", "slip": "Slip", "rate": "Slip rate",
-    "traction": "Traction", "field": "Slab in space and time", "energy": "Energy",
+    "state": "State of friction",
+    "residual": "Measured minus run", "traction": "Traction", "field": "Slab in space and time", "energy": "Energy",
 }  # fmt: skip
 """Titles of the panels before the first answer, and of those whose axes have texts of their own."""
+FIELDS = (("velocity", "velocity"), ("displacement", "displacement"), ("stress", "stress change"))
+"""What can be shown of the slab in space and time, and its name."""
+FIRST_WORDS = "All pictures show one run, in which a slab or a block slips against friction. First move a slider: they all follow."
+
+
+class Layout(NamedTuple):
+    """The panels of a page: titles by name, rows, and plots; what the map can show; and the first words in the bar."""
+
+    titles: Mapping[str, str]
+    rows: tuple[tuple[str, ...], tuple[tuple[str, ...], ...]]
+    plots: Callable[[Stage], dict[str, Any]]
+    fields: tuple[tuple[str, str], ...]
+    first_words: str
+    has_strip: bool = True
+
+
 SLOTS = ("bar", "aside", "below", "above")
 """Places for further parts: in the bar at the top, below the controls, below and above the panels."""
 
@@ -30,7 +48,8 @@ class Panels:
 
     def __init__(self, explorer: Explorer) -> None:
         self._explorer, self._hears, self.view = explorer, False, View()
-        self.plots = {name: pn.pane.Bokeh(plot, sizing_mode="stretch_both") for name, plot in plots(Stage()).items()}
+        self.layout = layout_of(explorer)
+        self.plots = {name: pn.pane.Bokeh(plot, sizing_mode="stretch_both") for name, plot in self.layout.plots(Stage()).items()}
         self.player = PlayerBar(self._moved, sizing_mode="stretch_width")
         for news in ("answer", "pin"):
             explorer.listen(news, self.show)
@@ -48,7 +67,7 @@ class Panels:
     @property
     def headings(self) -> dict[str, str]:
         """The heading of each panel, as HTML."""
-        return headings_of(self.view, TITLES)
+        return headings_of(self.view, self.layout.titles)
 
     def _move(self) -> None:
         if not self._hears:  # else it is the browser itself that has moved it, and perhaps further meanwhile
@@ -66,25 +85,56 @@ def build(explorer: Explorer, **parts: Any) -> Any:
     """Return the page of an explorer, for a server; `parts` are further parts by the name of their place, one of `SLOTS`."""
     panels, words, controls = Panels(explorer), Words(explorer), Controls(explorer)
     parts = {"bar": Tools(explorer).view, "above": PinnedRun(explorer).view} | parts
-    tour, strip = Tour(explorer), StripView(explorer)
+    if panels.layout.has_strip:
+        parts["strip"] = StripView(explorer).view
+    tour, layout = Tour(explorer), panels.layout
     page = pn.Template(asset("page.html"))
     page.add_variable("page_style", style_sheet() + asset("page.css") + asset("heading.css"))
     page.add_variable("app_title", "stickslip explorer")
     page.add_variable("parts", sorted(parts))
     page.add_variable("headings", panels.headings)
+    for name in ("titles", "rows", "fields", "first_words"):
+        page.add_variable(name, getattr(layout, name))
     for name, pane in panels.plots.items():
         page.add_panel(name, pane)
     own = {"player": panels.player, "words": words.view, "controls": controls.view}
-    own |= {"tour": tour.card, "tour_button": tour.button, "strip": strip.view}
+    own |= {"tour": tour.card, "tour_button": tour.button}
     for name, part in {**own, **parts}.items():
         page.add_panel(name, part)
     return page
 
 
-HEIGHTS = {"slip": 110, "rate": 110, "traction": 150, "field": 180, "energy": 190, "law": 240, "contact": 240, "shape": 240}
+HEIGHTS = {
+    "profile_rate": 240,
+    "state": 110,
+    "residual": 110,
+    "profile_slip": 240,
+    "slip": 110,
+    "rate": 110,
+    "traction": 150,
+    "field": 180,
+    "energy": 190,
+    "law": 240,
+    "contact": 240,
+    "shape": 240,
+}
 """Heights (px) of the panels, with their headings."""
-ROWS = (("law", "contact", "shape"), (("slip", "rate", "traction"), ("field", "energy")))
+ROWS = (("law", "contact", "shape"), (("slip", "rate", "state", "residual", "traction"), ("field", "energy")))
 """The rows of panels: names side by side, and within the second row names below each other."""
+OF_ONE_PLACE = Layout(TITLES, ROWS, plots, FIELDS, FIRST_WORDS)
+OF_A_FAULT = Layout(
+    fault.TITLES,
+    (("profile_rate", "profile_slip"), (("slip", "rate", "traction"), ROWS[1][1])),
+    fault.plots,
+    (("velocity", "slip rate"), ("displacement", "slip"), ("stress", "change of traction")),
+    "All pictures show one run of a fault in 2D: a slab whose slip varies along its contact. First move a slider: they all follow.",
+    has_strip=False,
+)
+
+
+def layout_of(explorer: Explorer) -> Layout:
+    """Return the panels of the page of an explorer: those of a fault, or of a contact that is a single place."""
+    return OF_A_FAULT if explorer.setting.is_fault else OF_ONE_PLACE
 
 
 def build_for_notebook(explorer: Explorer) -> Any:
@@ -101,8 +151,9 @@ def build_for_notebook(explorer: Explorer) -> Any:
     for news in ("answer", "pin"):
         explorer.listen(news, show)
     show()
-    first = pn.Row(*(cards[name] for name in ROWS[0]), sizing_mode="stretch_width")
-    stacks = [pn.Column(*(cards[name] for name in stack), sizing_mode="stretch_width") for stack in ROWS[1]]
+    rows = panels.layout.rows
+    first = pn.Row(*(cards[name] for name in rows[0]), sizing_mode="stretch_width")
+    stacks = [pn.Column(*(cards[name] for name in stack), sizing_mode="stretch_width") for stack in rows[1]]
     tour, wide = Tour(explorer), {"sizing_mode": "stretch_width"}
     side = pn.Column(Controls(explorer).view, width=300, height=660, scroll="y-auto", margin=(0, 10, 0, 0))
     body = pn.Column(first, pn.Row(*stacks, **wide), **wide)
@@ -113,7 +164,7 @@ def build_for_notebook(explorer: Explorer) -> Any:
         PinnedRun(explorer).view,
         pn.Row(side, body, **wide),
         panels.player,
-        StripView(explorer).view,
+        *([StripView(explorer).view] if panels.layout.has_strip else []),
         stylesheets=[style_sheet(":host") + asset("notebook_page.css")],
         min_width=900,
         **wide,

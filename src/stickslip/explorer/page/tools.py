@@ -12,10 +12,10 @@ from panel.custom import JSComponent
 
 from stickslip.explorer.model.setting import Setting, parameters_of, setting_of
 from stickslip.explorer.model.strip import StripRange
-from stickslip.explorer.model.tour import TOUR
+from stickslip.explorer.model.tour import tour_of
 from stickslip.explorer.page.components import asset
 from stickslip.explorer.page.explorer import Explorer
-from stickslip.explorer.page.files import FORMATS, content_of, export, opened
+from stickslip.explorer.page.files import content_of, export, formats_of, opened
 from stickslip.foundation.errors import InputError
 
 MOST_FIELDS = 500
@@ -49,23 +49,36 @@ def begin(explorer: Explorer, parameters: Mapping[str, str]) -> None:
 
     A part of the link that cannot be used is left out, and the page says why.
     """
-    faults: list[str] = []
-    setting, pinned = explorer.setting, None
+    cursor = _number(parameters.get("t", ""))
+    tour, strip = _step(parameters.get("tour", ""), len(tour_of(explorer.setting))), _strip(parameters.get("strip", ""))
+    if tour:
+        explorer.show_step(tour, None, None, 0.0)
+    if strip is not None:
+        explorer.show_strip(strip)
+    if not {"scenario", "document", "pin"} & set(parameters):
+        _ask(explorer, None, explorer.setting, cursor)
+        return
+
+    def follow(found: tuple[Setting, Setting | None, str]) -> None:
+        setting, pinned, fault = found
+        if fault:
+            explorer.once_answered(lambda: explorer.refuse(fault))
+        _ask(explorer, pinned, setting, cursor)
+
+    # a stranger's document may take a while to read: not on the page's own thread, which other pages share
+    explorer.read(lambda: _of_link(parameters, explorer.setting), follow)
+
+
+def _of_link(parameters: Mapping[str, str], present: Setting) -> tuple[Setting, Setting | None, str]:
+    """Return the setting and the pinned one of a link, as far as they can be read, and what is wrong with it, or ""."""
+    setting, pinned = present, None
     try:
         setting = setting_of(parameters) if {"scenario", "document"} & set(parameters) else setting
         if "pin" in parameters:
             pinned = setting_of(dict(parse_qsl(parameters["pin"], keep_blank_values=True, max_num_fields=MOST_FIELDS)))
     except (InputError, ValueError) as error:
-        faults.append(str(error))
-    cursor = _number(parameters.get("t", ""))
-    tour, strip = _step(parameters.get("tour", "")), _strip(parameters.get("strip", ""))
-    if tour:
-        explorer.show_step(tour, None, None, 0.0)
-    if strip is not None:
-        explorer.show_strip(strip)
-    if faults:
-        explorer.once_answered(lambda: explorer.refuse(faults[0]))
-    _ask(explorer, pinned, setting, cursor)
+        return setting, pinned, str(error)
+    return setting, pinned, ""
 
 
 def _ask(explorer: Explorer, pinned: Setting | None, setting: Setting, cursor: float | None) -> None:
@@ -89,8 +102,8 @@ def _number(text: str) -> float | None:
     return value if math.isfinite(value) else None
 
 
-def _step(text: str) -> int:
-    return int(text) if text.isdecimal() and text.isascii() and len(text) < 3 and 1 <= int(text) <= len(TOUR) else 0
+def _step(text: str, count: int) -> int:
+    return int(text) if text.isdecimal() and text.isascii() and len(text) < 3 and 1 <= int(text) <= count else 0
 
 
 def _strip(text: str) -> StripRange | None:
@@ -101,14 +114,10 @@ def _strip(text: str) -> StripRange | None:
     return StripRange(parameter, low, high, log=ends[2:] == ["log"])
 
 
-KINDS = [{"kind": kind, "label": one.label} for kind, one in FORMATS.items()]
-"""The entries of the menu of files."""
-
-
 class ToolBar(JSComponent):  # type: ignore[misc] # panel has no types
     """The buttons and the menu of files; what is pressed is handed to a function."""
 
-    kinds = param.List(default=KINDS, doc="Kind and label of each file that can be saved.")
+    kinds = param.List(default=[], doc="Kind and label of each file that can be saved.")
     pinned = param.Boolean(default=False, doc="True if a run is kept.")
     ready = param.Boolean(default=False, doc="True if there is a run to keep and to save.")
     busy = param.Boolean(default=False, doc="True while a file is written.")
@@ -131,7 +140,8 @@ class Tools:
 
     def __init__(self, explorer: Explorer, *, linked: bool = True) -> None:
         self._explorer = explorer
-        self.view = ToolBar(self._press, linked=linked, margin=0)
+        kinds = [{"kind": kind, "label": one.label} for kind, one in formats_of(explorer.setting).items()]
+        self.view = ToolBar(self._press, kinds=kinds, linked=linked, margin=0)
         for news in ("answer", "pin", "cursor", "tour", "strip"):
             explorer.listen(news, self.update)
         self.update()
@@ -158,7 +168,8 @@ class Tools:
             elif do == "save":
                 self._save(str(data.get("kind")))
             elif do == "open":
-                self._explorer.change(opened(str(data.get("name")), content_of(str(data.get("content"))), self._explorer.setting))
+                name, content, present = str(data.get("name")), str(data.get("content")), self._explorer.setting
+                self._explorer.read(lambda: _read(opened(name, content_of(content), present)), self._explorer.change)
             elif do == "refuse":
                 raise InputError(str(data.get("fault"))[:200])
         except InputError as error:
@@ -179,3 +190,9 @@ class Tools:
     def _not_saved(self, error: Exception) -> None:
         self.view.busy = False
         self._explorer.refuse(str(error))
+
+
+def _read(setting: Setting) -> Setting:
+    """Return a setting that has been read, which it remembers. Raises InputError."""
+    setting.scenario()
+    return setting

@@ -12,14 +12,15 @@ from panel.custom import JSComponent
 
 from stickslip.explorer.model.answer import Answer
 from stickslip.explorer.model.difference import difference
-from stickslip.explorer.model.tour import TOUR
+from stickslip.explorer.model.fault import FaultAnswer
+from stickslip.explorer.model.tour import TOUR, Step, tour_of
 from stickslip.explorer.page.components import Markup, asset
 from stickslip.explorer.page.explorer import Explorer
 
 
-def told_steps() -> list[dict[str, str]]:
+def told_steps(steps: tuple[Step, ...] = TOUR) -> list[dict[str, str]]:
     """Return what the card shows of each step, as plain texts."""
-    return [{name: getattr(step, name) for name in ("title", "text", "look", "question", "panel")} for step in TOUR]
+    return [{name: getattr(step, name) for name in ("title", "text", "look", "question", "panel")} for step in steps]
 
 
 class TourCard(JSComponent):  # type: ignore[misc] # panel has no types
@@ -32,11 +33,11 @@ class TourCard(JSComponent):  # type: ignore[misc] # panel has no types
 
     def __init__(self, asked: Callable[[int], None], **params: Any) -> None:
         self._asked = asked
-        super().__init__(steps=told_steps(), stylesheets=[asset("tour.css")], **params)
+        super().__init__(stylesheets=[asset("tour.css")], **params)
 
     def _handle_msg(self, data: Any) -> None:
         step = data.get("step") if isinstance(data, dict) else None
-        if isinstance(step, int) and 0 <= step <= len(TOUR):
+        if isinstance(step, int) and 0 <= step <= len(self.steps):
             self._asked(step)
 
 
@@ -45,14 +46,15 @@ class Tour:
 
     def __init__(self, explorer: Explorer) -> None:
         self._explorer = explorer
-        self.card = TourCard(self.show, step=explorer.tour, sizing_mode="stretch_width", margin=0)
+        self._steps = tour_of(explorer.setting)
+        self.card = TourCard(self.show, steps=told_steps(self._steps), step=explorer.tour, sizing_mode="stretch_width", margin=0)
         self.button = pn.widgets.Button(label="Tour", margin=0, stylesheets=[asset("button.css")])
         self.button.on_click(lambda _: self.show(0 if explorer.tour else 1))
         explorer.listen("tour", self._update)
 
     def show(self, step: int) -> None:
         """Show a step of the tour, from 1; 0 closes the tour."""
-        found = TOUR[step - 1] if step else None
+        found = self._steps[step - 1] if step else None
         if found is None:
             self._explorer.show_step(0, None, None, 0.0)
         else:
@@ -137,6 +139,6 @@ class Words:
         self.view.texts = told | {"fault": explorer.fault, "progress": explorer.progress}
 
 
-def words_of(answer: Answer) -> dict[str, Any]:
+def words_of(answer: Answer | FaultAnswer) -> dict[str, Any]:
     """Return what is said of an answer: the sentence, the word for the regime, and the notes."""
     return {"sentence": answer.sentence, "regime": answer.regime, "notes": list(answer.notes)}

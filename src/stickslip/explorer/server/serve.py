@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import errno
+import logging
 import signal
 import socket
+import sys
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import nullcontext
+from contextlib import nullcontext, suppress
 from dataclasses import dataclass
 from functools import partial
+from logging.handlers import QueueHandler, QueueListener
+from queue import Full, Queue
 from typing import Any
 from urllib.parse import quote
 from weakref import ref
@@ -75,8 +79,12 @@ LARGEST_MESSAGE = 4_000_000
 """Size (bytes) of the largest message from a browser: an upload of 1 MB with all that surrounds it."""
 LARGEST_REQUEST = {"max_body_size": 10_000, "max_header_size": 100_000, "max_buffer_size": LARGEST_MESSAGE, "body_timeout": 30}
 """Bounds of what a browser may send outside the websocket: there is nothing to send but an address, which can hold a long link."""
-LONGEST_LOADING = 10.0
+LONGEST_LOADING = 60.0
 """Time (s) after which a page that has not told that it is there is taken to be there."""
+LOGGERS = ("panel", "bokeh", "tornado", "asyncio", "stickslip")
+"""Loggers of what runs in the server."""
+MOST_LINES = 1000
+"""Lines of the log that wait to be written; further ones are lost."""
 EVERYWHERE = ("0.0.0.0", "::", "")
 """Addresses by which a server listens on all networks of the computer."""
 
@@ -101,6 +109,31 @@ class Endpoint:
     def is_loopback(self) -> bool:
         """True if the server can be reached from this computer only."""
         return self.address in ("127.0.0.1", "localhost", "::1")
+
+
+class _Log(QueueHandler):
+    """Hands what is logged to a thread of its own; what that cannot write in time is lost."""
+
+    def enqueue(self, record: logging.LogRecord) -> None:
+        with suppress(Full):
+            self.queue.put_nowait(record)
+
+
+def log_to_stderr() -> None:
+    """Have the libraries of the server log to standard error, and wait for nobody who should read that.
+
+    Panel logs to standard output, where the address of the page is said. Whoever reads nothing but the address lets the pipe become
+    full, at which the server would stand still.
+    """
+    queue: Queue[Any] = Queue(MOST_LINES)
+    handler = logging.StreamHandler(sys.stderr)
+    handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(name)s: %(message)s"))
+    QueueListener(queue, handler).start()  # in a daemon thread, so that a full pipe does not keep the process alive
+    through = _Log(queue)
+    through.setLevel(logging.WARNING)  # Panel's logger passes on all that is for finding faults in it
+    for name in LOGGERS:
+        logger = logging.getLogger(name)
+        logger.handlers, logger.propagate = [through], False
 
 
 class ExplorerServer:
@@ -151,6 +184,7 @@ class ExplorerServer:
 
         signal.signal(signal.SIGINT, leave)
         signal.signal(signal.SIGTERM, leave)
+        log_to_stderr()
         self.start()
         loop.start()
         self.stop()

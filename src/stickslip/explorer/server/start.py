@@ -14,7 +14,7 @@ from html import escape
 from pathlib import Path
 from queue import SimpleQueue
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import panel as pn
 
@@ -25,9 +25,6 @@ from stickslip.explorer.server.desk import ThreadDesk
 from stickslip.explorer.server.serve import Endpoint, ExplorerServer
 from stickslip.foundation.errors import InputError
 from stickslip.scenarios.scenario import Scenario
-
-if TYPE_CHECKING:
-    from stickslip.explorer.page.fault import FaultSetting
 
 WARNING = (
     "warning: listening on {address}: whoever reaches this computer over a network, and has the address with the token, can use "
@@ -44,7 +41,7 @@ LEADS_ON = """<!DOCTYPE html>
 
 
 def start(
-    setting: Setting | FaultSetting,
+    setting: Setting,
     endpoint: Endpoint,
     *,
     browser: bool,
@@ -55,17 +52,10 @@ def start(
 
     Raises InputError if the port is taken.
     """
-    if isinstance(setting, Setting):
-        from stickslip.explorer.page.page import build
+    from stickslip.explorer.page.page import build
 
-        server = ExplorerServer(endpoint, partial(explorer_of, setting, behind=behind), build)
-    else:
-        from stickslip.explorer.page.fault import build_fault, solve_fault
-
-        of_fault: Any = (setting, solve_fault)
-        server = ExplorerServer(
-            endpoint, lambda desk, files: Explorer(of_fault[0], desk, of_fault[1], files), build_fault, warms=False
-        )
+    make = partial(explorer_of, setting, behind=behind)
+    server = ExplorerServer(endpoint, make, build, warms=not setting.is_fault)
     if not endpoint.is_loopback:
         say(WARNING.format(address=endpoint.address))
     say(f"explorer: {server.url}")
@@ -78,6 +68,10 @@ def start(
 
 def explorer_of(setting: Setting, desk: ThreadDesk, files: ThreadDesk, behind: Backdrop | None = None) -> Explorer:
     """Return the explorer of a new page."""
+    if setting.is_fault:
+        from stickslip.explorer.model.fault import solve_fault
+
+        return Explorer(setting, desk, solve_fault, files)
     from stickslip.explorer.model.solve import solve  # imports the compiler, which takes a second
 
     return Explorer(setting, desk, partial(solve, behind=behind), files)

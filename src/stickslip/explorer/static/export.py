@@ -23,6 +23,7 @@ from stickslip.explorer.model.tour import TOUR, Step
 from stickslip.explorer.page.components import asset, look, player_script, style_sheet
 from stickslip.explorer.page.page import TITLES
 from stickslip.explorer.page.panels import plots, view_of
+from stickslip.explorer.page.panels.motion import FURTHER
 from stickslip.explorer.page.stage import Stage
 from stickslip.explorer.page.strip import place_of, view_of_strip
 from stickslip.explorer.page.strip import plots as strip_plots
@@ -156,6 +157,7 @@ def check_folder(folder: Path) -> None:
 def content_of(step: Step, places: int) -> dict[str, Any]:
     """Return what the page needs of a step: its strip, and what the panels show at each place of it."""
     setting = step.setting
+    assert step.strip is not None
     strip = strip_of(setting.scenario(), step.strip)
     kept = np.union1d(step.strip.values(places), [strip.here])
     unit, size = unit_of(strip.unit, strip.values, log=strip.log)
@@ -198,7 +200,8 @@ def index_page() -> str:
     from bokeh.embed import components
 
     stages = Stage(), Stage()
-    models = plots(stages[0]) | {f"strip_{name}": plot for name, plot in strip_plots(stages[1]).items()}
+    shown = {name: plot for name, plot in plots(stages[0]).items() if name not in FURTHER}  # no step has a state or a record
+    models = shown | {f"strip_{name}": plot for name, plot in strip_plots(stages[1]).items()}
     made, places = components(models, wrap_script=False)
     facts = {"look": look(), "steps": told_steps()}
     return Template(_asset("index.html")).substitute(

@@ -179,7 +179,7 @@ def check_contents(found: xr.Dataset) -> None:
 def as_begun(plan: Plan, path: Path) -> Plan:
     """Return the plan with the chunk shape of an existing store. Raises InputError if the store does not belong to this plan."""
     with reading(path):
-        group = zarr.open_group(path, mode="r")
+        group = zarr_folder.opened(path)
         if "stickslip_sweep" not in group.attrs:
             raise InputError(f"{path}: exists and is not the store of a sweep: choose another name")
         ours = attributes(plan)

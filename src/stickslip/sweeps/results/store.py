@@ -115,7 +115,7 @@ class ResultStore:
 
     def __init__(self, plan: Plan, place: Path | MemoryStore) -> None:
         self.plan, self.place, self._lock = plan, place, ExitStack()
-        self.group = zarr.open_group(place, mode="r+")
+        self.group = zarr_folder.opened(place, "r+") if isinstance(place, Path) else zarr.open_group(place, mode="r+")
 
     @classmethod
     def in_memory(cls, plan: Plan) -> Self:
@@ -130,6 +130,7 @@ class ResultStore:
 
         Temporary files and unverified chunks, left by a sweep that was killed, are removed first.
         """
+        zarr_folder.check_folder(path)
         if not path.exists():
             publish(path, lambda draft: lay_out(plan, draft))
         check_store(path)
@@ -193,7 +194,8 @@ class ResultStore:
     def dataset(self) -> xr.Dataset:
         """Return the contents as a dataset, read lazily from a folder, or as arrays from a store in memory."""
         with reading(self.place):
-            found: xr.Dataset = xr.open_zarr(self.place, chunks=None, consolidated=isinstance(self.place, Path))
+            place = zarr_folder.Folder(self.place) if isinstance(self.place, Path) else self.place
+            found: xr.Dataset = xr.open_zarr(place, chunks=None, consolidated=isinstance(self.place, Path))
             ordered = found[[*self.plan.work.names, STATUS, REASON]]
             return ordered if isinstance(self.place, Path) else ordered.load()
 
@@ -210,7 +212,7 @@ def check_store(path: Path) -> set[str]:
     """
     if not is_vouched_for(path, LAYOUT):
         about = path / "zarr.json"
-        ours = (path / FOLDER).exists() or (about.is_file() and b"stickslip_sweep" in about.read_bytes())
+        ours = (path / FOLDER).exists() or (about.is_file() and b"stickslip_sweep" in read_bounded(about, LARGEST_LIST))
         what = "a store without its checksums, of an older version or damaged" if ours else "not the store of a sweep"
         raise InputError(f"{path}: exists and is {what}: choose another name")
     return check_all(path)
@@ -225,13 +227,15 @@ def open_store(path: str | Path) -> xr.Dataset:
     path = Path(path)
     if not path.exists():
         raise InputError(f"{path}: no such store")
+    zarr_folder.check_folder(path)
     listed = check_store(path)
     for file in path.glob(f"{STATUS}/c*"):
         if file.relative_to(path).as_posix() not in listed and file.suffix != ".partial":
             raise InputError(f"{path}: has members without checksums, where a sweep was stopped: run the same sweep again")
     with reading(path), warnings.catch_warnings():
         warnings.simplefilter("ignore", category=UserWarning)  # of a dimension that is there twice, which is refused
-        found: xr.Dataset = xr.open_zarr(path, chunks=None)
+        zarr_folder.opened(path)
+        found: xr.Dataset = xr.open_zarr(zarr_folder.Folder(path), chunks=None)
         check_contents(found)
         return found
 

@@ -139,6 +139,7 @@ class Controls {
     if (parts.slider) parts.slider.setAttribute("aria-valuetext", `${row.text} ${row.unit}`);
     if (active === parts.slider && parts.slider) return; // it is being moved: what it says is newer
     if (active !== parts.field || parts.field.value !== row.text) parts.field.value = row.text;
+    parts.field.title = row.text.length > 9 ? row.text : ""; // where a field cannot grow with its number
   }
 }
 

@@ -41,7 +41,7 @@ class Models {
   }
 }
 
-const TIME_PLOTS = ["slip", "rate", "traction"], NEAR_PLOTS = ["field", "energy"];
+const TIME_PLOTS = ["slip", "rate", "state", "residual", "traction"], NEAR_PLOTS = ["field", "energy"];
 const COLUMNS_DRAWN = 11, ROWS_DRAWN = 20;
 
 /** Time t on the axis of the panels of slab and energy, which show one event of a long run; and back. */
@@ -63,6 +63,7 @@ function showMoment(models, facts, t) {
   showContact(models, facts, t);
   if (facts.shape?.kind === "slab") showSlab(models, facts, near);
   else if (facts.shape) showBlock(models, facts, values);
+  if (facts.profile) showProfile(models, near);
   return values;
 }
 
@@ -81,18 +82,34 @@ function showContact(models, facts, t) {
   if (Number.isFinite(load)) models.set("cursor:contact", { location: load });
 }
 
-/** The slab, sheared by the displacements at time t: lines that were straight across it, and particles coloured by velocity. */
-function showSlab(models, facts, t) {
-  const { scale, bar, width, height, text } = facts.shape;
-  const displacement = models.column("field", "displacement")[0], velocity = models.column("field", "velocity")[0];
-  if (!displacement) return;
+/** The images over time and place as functions of a row at time t; nothing before the first answer. */
+function imagesAt(models, t) {
+  const [displacement, velocity] = ["displacement", "velocity"].map((name) => models.column("field", name)[0]);
+  if (!displacement) return null;
   const [rows, columns] = displacement.shape;
   const start = models.column("field", "x")[0], span = models.column("field", "dw")[0];
   const at = Math.min(Math.max((t - start) / span * columns - 0.5, 0), columns - 1);
   const left = Math.floor(at), right = Math.min(left + 1, columns - 1), share = at - left;
-  const mean = (values, row) => values[row * columns + left] * (1 - share) + values[row * columns + right] * share;
+  const mean = (values) => (row) => values[row * columns + left] * (1 - share) + values[row * columns + right] * share;
+  return { rows, displacement: mean(displacement), velocity: mean(velocity) };
+}
+
+/** Slip rate and slip of a fault at time t, from place to place. */
+function showProfile(models, t) {
+  const found = imagesAt(models, t), y = models.column("profile", "y");
+  if (!found) return;
+  const along = (value) => Float64Array.from(y, (_, row) => value(row));
+  models.put("profile", { y, rate: along(found.velocity), slip: along(found.displacement) });
+}
+
+/** The slab, sheared by the displacements at time t: lines that were straight across it, and particles coloured by velocity. */
+function showSlab(models, facts, t) {
+  const { scale, bar, width, height, text } = facts.shape;
+  const found = imagesAt(models, t);
+  if (!found) return;
+  const { rows, displacement, velocity } = found;
   const u = [], y = [];
-  for (let row = 0; row < rows; row++) { u.push(scale * mean(displacement, row)); y.push(row / (rows - 1) * height); }
+  for (let row = 0; row < rows; row++) { u.push(scale * displacement(row)); y.push(row / (rows - 1) * height); }
   const first = 0.06 * width, step = 0.58 * width / (COLUMNS_DRAWN - 1);
   const lines = { x: [], y: [] }, particles = { x: [], y: [], velocity: [] };
   for (let column = 0; column < COLUMNS_DRAWN; column++) {
@@ -103,7 +120,7 @@ function showSlab(models, facts, t) {
       const row = Math.round((one + 0.5) / ROWS_DRAWN * rows - 0.5);
       particles.x.push(x + u[row]);
       particles.y.push(y[row]);
-      particles.velocity.push(mean(velocity, row));
+      particles.velocity.push(velocity(row));
     }
   }
   models.put("lines", lines);

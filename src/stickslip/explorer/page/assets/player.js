@@ -60,6 +60,7 @@ class Player {
   /** Show a view: a new answer. The cursor stays at its time as far as the run has it. */
   update(view) {
     showView(this.models, view);
+    document.querySelector("[data-plots]")?.setAttribute("data-answered", "");
     this.facts = view.facts;
     this.showField();
     this.showPanels();

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from stickslip.explorer.model.answer import Answer
-from stickslip.explorer.page.panels import contact, energy, field, law, motion, shape
+from stickslip.explorer.model.fault import FaultAnswer
+from stickslip.explorer.page.panels import contact, energy, fault, field, law, motion, shape
 from stickslip.explorer.page.panels.law import place, unit_along
 from stickslip.explorer.page.panels.motion import COLUMNS, DRAWN, columns_of
 from stickslip.explorer.page.panels.units import share_loads, units_of
@@ -56,8 +57,10 @@ __all__ = ["plots", "view_of"]
 PANELS = (law, contact, motion, field, energy, shape)
 
 
-def view_of(answer: Answer, kept: Answer | None = None) -> View:
-    """Return all that the panels show of an answer, with the run that is kept beside it."""
+def view_of(answer: Answer | FaultAnswer, kept: Any = None) -> View:
+    """Return all that the panels show of an answer, with the run that is kept beside it, which is of the same kind."""
+    if isinstance(answer, FaultAnswer):
+        return fault.view_of_fault(answer, kept)
     units, view = units_of(answer, kept), View()
     for panel in PANELS:
         view.add(panel.data_of(answer, units))
@@ -68,5 +71,5 @@ def view_of(answer: Answer, kept: Answer | None = None) -> View:
 
 def plots(stage: Stage) -> dict[str, Any]:
     """Return all plots by name, without data."""
-    found = {"law": law.plot(stage), "contact": contact.plot(stage)} | motion.plots(stage)
+    found = {"law": law.plot(stage), "contact": contact.plot(stage)} | motion.plots(stage) | motion.further_plots(stage)
     return found | {"field": field.plot(stage), "energy": energy.plot(stage), "shape": shape.plot(stage)}

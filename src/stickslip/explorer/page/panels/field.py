@@ -36,9 +36,9 @@ def data_of(answer: Answer, units: Units) -> View:
     of_stress, pascal = unit_of("Pa", change)
     image = {"velocity": [velocity], "displacement": [single(displacement / units.slip[1])], "stress": [single(change / pascal)]}
     fields = {
-        "velocity": _field(velocity, name),
-        "displacement": _field(image["displacement"][0], units.slip[0]),
-        "stress": _field(image["stress"][0], of_stress),
+        "velocity": ends_of(velocity, name),
+        "displacement": ends_of(image["displacement"][0], units.slip[0]),
+        "stress": ends_of(image["stress"][0], of_stress),
     }
     return View(
         columns={
@@ -56,15 +56,15 @@ def data_of(answer: Answer, units: Units) -> View:
     )
 
 
-def _field(values: Any, unit: str) -> dict[str, Any]:
+def ends_of(values: Any, unit: str) -> dict[str, Any]:
     """Return the ends of the colour scale of an image, as a number and as the text of the legend."""
     most = float(np.abs(values).max()) or 1.0
     return {"most": most, "text": f"±{most:.3g} {unit}"}
 
 
-def plot(stage: Stage) -> Any:
+def plot(stage: Stage, text: str = TEXT) -> Any:
     """Return the plot of what is chosen of the slab, over time and place."""
-    drawn = stage.plot("field", "near", "place", TEXT, left=NARROW, bare=True)
+    drawn = stage.plot("field", "near", "place", text, left=NARROW, bare=True)
     picture, colours = stage.source("picture", "image", "x", "y", "dw", "dh"), signed_scale("colour:field")
     drawn.image("image", "x", "y", "dw", "dh", source=picture, color_mapper=colours, level="image")
     picture.tags = [stage.source("field", *EMPTY)]  # what nothing refers to, the browser does not get

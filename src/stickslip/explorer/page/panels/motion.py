@@ -6,17 +6,25 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from bokeh.models import Span
 
 from stickslip.explorer.model.answer import Answer, Motion
 from stickslip.explorer.model.words import short
 from stickslip.explorer.page.components import paint
 from stickslip.explorer.page.panels.units import Curve, held, share_loads
 from stickslip.explorer.page.stage import NARROW, Stage
-from stickslip.explorer.page.view import Columns, Key, Units, View, axis_label, limits
+from stickslip.explorer.page.view import Columns, Key, LineStyle, Units, View, axis_label, limits
 from stickslip.figures.runs.curves import after_start
 from stickslip.figures.style import CURVES, FORCES, unit_of
 
 TEXTS = {"slip": "Slip against time", "rate": "Slip rate against time", "traction": "Traction and load against time"}
+FURTHER = {
+    "state": "States of friction against time",
+    "residual": "What was measured minus the run, against time",
+}
+"""Panels that only some answers have something to show in."""
+SEVERAL = 100.0
+"""States that change by more than this factor are drawn on a logarithmic axis."""
 MOST_LINES = 30
 """More marks than this are not drawn as lines in the panels."""
 DRAWN = {"slip": "slip", "rate": "rate_at", "traction": "traction"}
@@ -47,7 +55,7 @@ def data_of(answer: Answer, units: Units) -> View:
         keys[name] = (*keys[name], key)
     keys["traction"] = (*keys["traction"], Key("spring force" if force else "load", "load", "dot"))
     time = columns["motion"]["time"]
-    return View(
+    view = View(
         columns=columns,
         limits={
             "time": (float(time[0]), float(time[-1])),
@@ -76,6 +84,45 @@ def data_of(answer: Answer, units: Units) -> View:
             "marks": [{"time": mark.time / units.time[1], "kind": mark.kind, "text": mark.text} for mark in answer.marks],
         },
     )
+    view.add(_states(main, units))
+    view.add(_residual(answer, units))
+    return view
+
+
+def _states(main: Motion, units: Units) -> View:
+    """Return the states of friction, on a logarithmic axis if they change by orders of magnitude."""
+    both = ("state", "second")
+    if not main.states:
+        return View(columns={"states": {name: [] for name in ("time", *both)}}, hidden={"state"})
+    values = [one.values for one in main.states]
+    log = all((one > 0.0).all() and one.max() > SEVERAL * one.min() for one in values)
+    unit, size = (main.states[0].unit, 1.0) if log else unit_of(main.states[0].unit, *values)
+    shown = [np.log10(one) if log else one / size for one in values]
+    nothing = np.full(main.time.size, np.nan)
+    columns = {"time": main.time / units.time[1]} | dict(zip(both, [*shown, nothing], strict=False))
+    styles: tuple[LineStyle, ...] = ("line", "dash")
+    return View(
+        columns={"states": columns},
+        limits={"state": limits(*shown)},
+        titles={"state": axis_label("State of friction", "", unit)},
+        keys={"state": tuple(Key(one.meaning, "law", style) for one, style in zip(main.states, styles, strict=False))},
+        hidden={"axis:state@state" if log else "axis:state_powers"},
+    )
+
+
+def _residual(answer: Answer, units: Units) -> View:
+    """Return what was measured minus the run, of the traction if that was measured, and otherwise of slip or slip rate."""
+    found = answer.measured
+    curve = next((one for one in ("traction", "slip", "slip_rate") if found is not None and one in found.residuals), "")
+    if found is None or not curve:
+        return View(columns={"residual": {"time": [], "residual": []}}, hidden={"residual"})
+    unit, size = unit_of({"slip": "m", "slip_rate": "m/s"}.get(curve, answer.motions[0].load_unit), found.residuals[curve])
+    away = found.residuals[curve] / size
+    return View(
+        columns={"residual": {"time": found.time / units.time[1], "residual": away}},
+        limits={"residual": limits(away, 0.0)},
+        titles={"residual": axis_label(f"Measured minus run: {curve.replace('_', ' ')}", "", unit)},
+    )
 
 
 def _measured(answer: Answer, units: Units) -> Columns:
@@ -101,7 +148,7 @@ def _misfits(answer: Answer) -> dict[str, Key]:
         return {}
     panels: dict[str, str] = {curve: name for name, curve in CURVE_OF.items()}
     return {
-        panels[curve]: Key(f"measured, misfit {short(one.value, one.unit)}", "muted", "ring")
+        panels[curve]: Key(f"measured, misfit {short(one.value, one.unit)}", "path", "ring")
         for curve, one in zip(found.curves, found.misfits, strict=True)
     }
 
@@ -152,6 +199,21 @@ def plots(stage: Stage) -> dict[str, Any]:
     return {name: _plot(stage, name, bare=name != "traction") for name in TEXTS}
 
 
+def further_plots(stage: Stage) -> dict[str, Any]:
+    """Return the plots of the states and of what was measured minus the run, over the same axis of time."""
+    found = {name: stage.plot(name, "time", name, text, left=NARROW, bare=True) for name, text in FURTHER.items()}
+    stage.powers(found["state"], "state_powers", "left")
+    states = stage.source("states", "time", "state", "second")
+    paint(found["state"].line("time", "state", source=states, line_width=2).glyph, line_color="law")
+    paint(found["state"].line("time", "second", source=states, line_width=1.6, line_dash="dashed").glyph, line_color="law")
+    source = stage.source("residual", "time", "residual")
+    paint(found["residual"].scatter("time", "residual", source=source, size=3, line_color=None).glyph, fill_color="path")
+    found["residual"].add_layout(paint(Span(location=0.0, dimension="width", line_width=1), line_color="faint"))
+    for name in found:
+        stage.cursor(name)
+    return found
+
+
 def _plot(stage: Stage, name: str, *, bare: bool) -> Any:
     drawn = stage.plot(name, "time", name, TEXTS[name], left=NARROW, bare=bare)
     if name == "rate":
@@ -164,8 +226,8 @@ def _plot(stage: Stage, name: str, *, bare: bool) -> Any:
     if name == "traction":
         drawn.yaxis[0].ticker.desired_num_ticks = 3  # it often lies within a part of 10, where two would come down to one
         paint(drawn.line("time", "load", source=main, line_width=1.2, line_dash="dotted").glyph, line_color="load")
-    samples = drawn.scatter("time", column, source=stage.source("measured", "time", *DRAWN.values()), size=3, line_color=None)
-    paint(samples.glyph, fill_color="muted")
+    samples = drawn.scatter("time", column, source=stage.source("measured", "time", *DRAWN.values()), size=4, fill_color=None)
+    paint(samples.glyph, line_color="path")
     paint(drawn.line("time", column, source=other, line_width=1.3, line_dash="dashed", line_alpha=0.65).glyph, line_color=name)
     paint(drawn.line("time", column, source=main, line_width=2).glyph, line_color=name)
     stage.cursor(name)
