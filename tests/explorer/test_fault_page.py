@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import re
 from dataclasses import replace
@@ -9,6 +10,7 @@ from typing import Any
 from urllib.parse import unquote
 
 import numpy as np
+import panel as pn
 import pytest
 from bokeh.models import Plot
 
@@ -58,14 +60,14 @@ def test_the_view_shows_the_run(answer: FaultAnswer) -> None:
     even = np.linspace(run.times[0], run.times[-1], len(run.times))
     nearest = [int(np.abs(run.times - time).argmin()) for time in even]
     assert np.array_equal(picture["velocity"][0], run.slip_rate[nearest].T.astype(np.float32))
-    assert np.array_equal(picture["displacement"][0], run.slip[nearest].T.astype(np.float32))
-    assert np.array_equal(view.columns["motion"]["slip"], run.slip[:, 16])
+    assert np.array_equal(picture["displacement"][0], (run.slip[nearest].T / 1e-3).astype(np.float32))
+    assert np.array_equal(view.columns["motion"]["slip"], run.slip[:, 16] / 1e-3)
     assert view.limits["along"] == pytest.approx((-20.625, 19.375), abs=1e-12)
-    assert view.titles["slip"] == "Slip in the middle u (m)"
+    assert view.titles["slip"] == "Slip in the middle u (mm)"
     assert answer.sentence == " ".join(run.sentences[:3])
     parts = answer.energy.parts if answer.energy else {}
     share = (parts["total"] - parts["elastic"] - parts["kinetic"] - parts["heat"]) / parts["heat"][-1]
-    assert np.abs(share).max() == pytest.approx(np.abs(run.energy().balance).max() / parts["heat"][-1], rel=1e-9)
+    assert np.abs(share).max() == pytest.approx(float(np.abs(run.energy().balance).max()) / parts["heat"][-1], rel=1e-9)
     assert view_bytes(view, headings_of(view, {}))
 
 
@@ -176,3 +178,14 @@ def test_the_numbers_in_the_tour_are_those_of_its_runs() -> None:
     assert TOUR_OF_A_FAULT[2].setting.value("friction.dynamic") == 0.45
     assert all(40 <= len(re.findall(r"\w+", step.text)) <= 90 for step in TOUR_OF_A_FAULT)
     assert json.dumps([step.title for step in TOUR_OF_A_FAULT])
+
+
+def test_a_fault_is_shown_in_a_notebook_and_answers() -> None:
+    async def cells() -> None:
+        page = ss.explore(SETTING.scenario())
+        assert page.explorer.answer.sentence.startswith("22% of the contact slips")
+        assert len([one for one in page.select(pn.pane.Bokeh) if one.object.name.startswith("plot:profile")]) == 2
+
+    asyncio.run(cells())
+    with pytest.raises(ss.InputError, match="a record is not drawn behind a fault"):
+        ss.explore(SETTING.scenario(), record={"time (s)": [0.0, 1.0], "mu": [0.6, 0.6]})

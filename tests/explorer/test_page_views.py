@@ -89,7 +89,8 @@ def test_a_cell_of_a_notebook_hides_what_has_nothing_to_show(explorer: Explorer)
     cell = build_for_notebook(explorer)
     cell.explorer = explorer
     cards = {card[1].object.name: card for card in cell.select(pn.Column) if len(card) == 2 and isinstance(card[1], pn.pane.Bokeh)}
-    assert len(cards) == 12  # eight panels, and four of the strip
+    assert len(cards) == 14  # ten panels, and four of the strip
+    assert not cards["plot:state"].visible
     assert cards["plot:field"].visible
     explorer.change(Setting.bundled("fig6-block-reconstructed"))
     assert not cards["plot:field"].visible
@@ -102,6 +103,21 @@ NAMES = ("fig5-slab-reconstructed", "fig6-slab", "fig6-block-reconstructed", "ra
 @cache
 def answer(name: str) -> Answer:
     return solve(Setting.bundled(name).scenario())
+
+
+def test_a_state_is_a_curve_on_a_logarithmic_axis() -> None:
+    """A round trip of creep takes theta over decades."""
+    found, (view, run) = (
+        answer("rate-and-state-slab"),
+        (view_of(answer("rate-and-state-slab")), answer("rate-and-state-slab").solution),
+    )
+    column = view.columns["states"]
+    seconds = column["time"] * view.facts["time"]["size"]
+    assert np.abs(column["state"] - np.log10(run.state(seconds))).max() < 1e-9
+    assert column["state"].max() - column["state"].min() > 2.0
+    assert "axis:state@state" in view.hidden
+    assert [key.text for key in view.keys["state"]] == [found.motions[0].states[0].meaning]
+    assert "state" in view_of(answer("fig6-slab")).hidden
 
 
 @pytest.fixture(params=NAMES)

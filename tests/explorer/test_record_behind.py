@@ -117,6 +117,10 @@ def test_the_misfit_is_the_distance_from_what_another_integrator_made() -> None:
     low, high = view.limits["traction"]
     drawn = view.columns["measured"]["traction"]
     assert low <= drawn.min() < drawn.max() <= high
+    away = answer.measured.residuals["traction"] / TRUE.normal  # measured minus run: the noise that was added
+    assert np.abs(away - 3e-4 * np.where(np.arange(601) % 2, 1.0, -1.0)).max() < 1e-6
+    assert view.titles["residual"].startswith("Measured minus run: traction")
+    assert "residual" not in view.hidden
 
 
 def test_a_slider_that_leads_away_from_the_record_makes_the_misfit_larger() -> None:
@@ -129,6 +133,7 @@ def test_a_slider_that_leads_away_from_the_record_makes_the_misfit_larger() -> N
 
 
 def test_a_run_without_a_record_has_no_samples_and_says_nothing_of_it() -> None:
+    assert "residual" in view_of(solve(SCENARIO.scenario())).hidden
     answer = solve(SCENARIO.scenario())
     assert answer.measured is None
     assert "differs from" not in answer.sentence
