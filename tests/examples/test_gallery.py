@@ -195,7 +195,7 @@ def fit_velocity_steps(names: Names) -> None:
     table = names["found"].table
     truth = np.array([0.008, 0.0125, 15e-6, 60e6, 0.62])
     assert (np.abs(table.value - truth) < 4.0 * table.uncertainty).all()
-    close(names["found"].model.memory["friction"], 1.95, 0.35)
+    close(names["found"].model.memory["friction"].time, 1.95, 0.35)
 
 
 @check

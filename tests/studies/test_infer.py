@@ -83,8 +83,8 @@ def test_the_figure_shows_record_residual_rate_and_pairs(found: Inference) -> No
 
 def test_correlated_noise_is_told_and_widens_the_intervals() -> None:
     white, memory = inferred(), inferred(record(per_sample=10.0))
-    assert memory.model.memory["friction"] == pytest.approx(10.0 * CLOCK[1], rel=0.3)
-    assert white.model.memory["friction"] == 0.0
+    assert memory.model.memory["friction"].time == pytest.approx(10.0 * CLOCK[1], rel=0.3)
+    assert white.model.memory["friction"].time == 0.0
     assert any(note.startswith("residuals of friction remember themselves for 1.") for note in memory.notes)
     check_holds(memory, TRUTH)
     slow = ["friction.reference"]  # what changes slowly suffers most from slow noise

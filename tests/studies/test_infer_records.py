@@ -99,7 +99,7 @@ def test_derivatives_of_residuals_are_central_differences_of_runs_made_by_hand()
     """To 1e-6 of the largest of a column: 1e-7 is what the square of the step and the tolerance of runs leave."""
     study = ss.studies.infer(GUESS, record(), FREE, starts=1)
     model, x = study.model, study.estimate.searched
-    found = model.fine(x).jacobian(x, white=False)
+    found = model.fine(x).jacobian(x)
     size = study.model.sizes["friction"] * SIZE
 
     def residual(problem: ss.Problem) -> Any:

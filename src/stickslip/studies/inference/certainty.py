@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.determined import UNSEEN as DETERMINED
 from stickslip.foundation.determined import covariance_of, sizes_and_correlation, undetermined
 from stickslip.foundation.formatting import brief
 from stickslip.studies.inference.directions import IDLE, better_known, null_directions, told, without
-from stickslip.studies.inference.estimate import Estimate
+from stickslip.studies.inference.estimate import Estimate, pieces_of
 from stickslip.studies.inference.free import Free
+from stickslip.studies.inference.memory import WHITE, spread_by, spreads_of, unevenness
 from stickslip.studies.inference.model import FAILED, Model
 from stickslip.studies.inference.noise import cost_of, weights
 from stickslip.studies.inference.search import Tell
@@ -28,8 +31,10 @@ AT_BOUND = 1e-4
 """Distance from a bound, in searched numbers, at which a number lies on it."""
 ROUGH = 0.1
 """Difference of derivatives to one side from those to both, as a share, from which the fit is not smooth."""
-HALF = 0.975
-"""Probability below the upper end of an interval of 95 %."""
+HALF, NORMAL = 0.975, 1.959963984540054
+"""Probability below the upper end of an interval of 95 %, and that end for a normal deviate."""
+FEWEST = 4.0
+"""Least number of independent samples, beyond the free numbers, that are assumed: so few make intervals 1.4 times as wide."""
 GAIN = 0.02
 """Fall of twice the logarithm of the likelihood below which a place of a profile is found."""
 CHORDS, PLACES = 6, 10
@@ -42,46 +47,92 @@ class Certainty:
 
     `covariance` is NaN for those that are not determined and 0 for those on a bound. `widths` are their standard uncertainties,
     infinite where the record does not determine a number, 0 on a bound; `factor` times that is half the width of an interval of 95
-    %. `notes` are sentences on what is not determined, and `slopes` derivatives of the residuals with respect to the searched
-    numbers.
+    %. `excess` is the factor by which each is larger than white noise of the same size would make it. `notes` are sentences on what
+    is not determined, `slopes` derivatives of the residuals with respect to the searched numbers, and `uneven` says of each
+    quantity how many times larger residuals are where the run depends most on its numbers, 1 if chance explains it.
     """
 
     covariance: Floats
     widths: Floats
     correlation: Floats
-    factor: float
     on_bound: NDArray[np.bool_]
     notes: tuple[str, ...]
     slopes: Floats
+    excess: Floats
+    uneven: Mapping[str, float] = field(default_factory=dict)
+    factor: float = NORMAL
+
+
+def unknown(found: Estimate) -> Certainty:
+    """Return that nothing is known of how sure the numbers are, as after Ctrl-C."""
+    count = len(found.searched)
+    nothing = np.full((count, count), np.nan)
+    no = np.zeros(count, bool)
+    return Certainty(nothing, np.full(count, np.inf), nothing, no, (), np.zeros((0, count)), np.ones(count))
 
 
 def certainty_of(found: Estimate) -> Certainty:
-    """Return what a record determines at a best fit, from the curvature of the sum of squares."""
-    from scipy.stats import t as student
+    """Return what a record determines at a best fit, from the derivatives there and from what is left of the record.
 
+    The number whose uncertainty noise with the memory found explains best, or what is left itself if that says more, counts: an
+    estimate of least squares is right, and its intervals hold, also where noise remembers itself or the model is a little wrong.
+    """
     x = found.searched
     model = found.model.with_(rtol=min(EXACT, found.model.rtol)).fine(x)
     slopes, smooth_notes = _slopes(model, x)
-    slopes *= np.sqrt(weights(model.residual(x), found.loss))[:, None]
+    rest = model.residual(x)
+    count = np.sqrt(weights(rest, found.loss))
+    rest, slopes = rest * count, slopes * count[:, None]
     low, high = model.limits
     idle = np.linalg.norm(slopes, axis=0) < IDLE
     on_bound = ~idle & ((x - low < AT_BOUND) | (high - x < AT_BOUND))
     inner = np.flatnonzero(~on_bound & ~idle)
-    covariance = np.zeros((len(x), len(x)))
+    covariance, excess, uneven = np.zeros((len(x), len(x))), np.ones(len(x)), dict[str, float]()
     moves = null_directions(model, x, slopes[:, inner], inner) if len(inner) else np.zeros((0, 0))
     if len(inner):
-        covariance[np.ix_(inner, inner)] = covariance_of(without(slopes[:, inner], moves), model.variance(x))[0]
+        seen = without(slopes[:, inner], moves)
+        plain = covariance_of(seen, 1.0)[0]
+        known = inner[np.isfinite(np.diag(plain))]
+        covariance[np.ix_(inner, inner)] = np.nan
+        covariance[np.ix_(known, known)], uneven = _covariance(model, rest, slopes[:, known], model.variance(x))
+        excess[known] = np.sqrt(np.diag(covariance)[known] / np.diag(plain)[np.isfinite(np.diag(plain))])
     covariance[idle] = covariance[:, idle] = np.nan
     covariance[on_bound] = covariance[:, on_bound] = 0.0
     widths, correlation = sizes_and_correlation(covariance)
-    degrees = max(model.independent - len(inner), 1.0)
-    factor = float(student.ppf(HALF, degrees))
     notes = [f"{model.free[i].label} has no influence on what is fitted: fix it" for i in np.flatnonzero(idle)]
     values = model.values(x)
     notes += [_bound_note(model.free[i], values[i], at_low=bool(x[i] - low[i] < AT_BOUND)) for i in np.flatnonzero(on_bound)]
-    notes += _words(model, np.array(values), (slopes, moves, covariance, correlation), inner, factor)
+    notes += _words(model, np.array(values), (slopes, moves, covariance, correlation), inner, NORMAL)
     notes += [text for i, text in smooth_notes.items() if i in inner]
-    return Certainty(covariance, widths, correlation, factor, on_bound, tuple(notes), slopes)
+    return Certainty(covariance, widths, correlation, on_bound, tuple(notes), slopes, excess, uneven)
+
+
+def _covariance(model: Model, residual: Floats, slopes: Floats, variance: float) -> tuple[Floats, dict[str, float]]:
+    """Return the covariance of some searched numbers from what is left, and how uneven the residuals of each quantity are.
+
+    `slopes` are the derivatives of the residuals with respect to these numbers, all of which the record determines, and `variance`
+    is a factor on it, beside the size of the noise.
+    """
+    from scipy.stats import t as student
+
+    uneven = dict[str, float]()
+    sizes = np.linalg.norm(slopes, axis=0)
+    influence = (np.linalg.pinv(slopes / sizes, rcond=DETERMINED) / sizes[:, None]).T
+    factor = math.sqrt(variance) * float(student.ppf(HALF, max(model.independent - len(sizes), FEWEST))) / NORMAL
+    if model.of_means:
+        return np.asarray(factor**2 * influence.T @ influence), uneven
+    before = influence[model.samples :]
+    total, more = model.inflation * before.T @ before, np.zeros(len(sizes))
+    for name, rest, rows, weight, blocks in pieces_of(model, residual, np.hstack([influence, slopes])):
+        rest, shares, by = rest / weight, rows[:, : len(sizes)] * weight[:, None], rows[:, len(sizes) :] / weight[:, None]
+        memory = model.memory.get(name, WHITE)
+        noise, uneven[name] = spread_by(shares, memory, blocks), unevenness(rest, by, memory, blocks)
+        total = total + noise
+        if memory.time > 0.0 or uneven[name] > 1.0:
+            seen = np.max([np.diag(one) for one in spreads_of(shares, rest, blocks)], axis=0)
+            more += np.maximum(seen - np.diag(noise), 0.0)
+    wider = factor * np.sqrt(1.0 + more / np.diag(total))
+    return np.asarray(total * np.outer(wider, wider)), uneven
 
 
 def _words(
@@ -147,8 +198,8 @@ def _slopes(model: Model, x: Floats) -> tuple[Floats, dict[int, str]]:
 class Profile:
     """The likelihood along one number (SI, ascending), with all others fitted anew.
 
-    `rise` is twice the logarithm of the likelihood below that of the best fit; `low` and `high` are the ends of the interval of 95
-    %, infinite or a bound where the rise is never reached.
+    `rise` is twice the logarithm of the likelihood below that of the best fit, for as many independent samples as there are; `low`
+    and `high` are the ends of the interval of 95 %, infinite or a bound where the rise is never reached.
     """
 
     name: str
@@ -182,14 +233,14 @@ def _end(found: Estimate, sure: Certainty, what: tuple[int, float, float], place
     column, side, least = what
     model, best = found.model, found.searched
     low, high = (end[column] for end in model.limits)
-    width, wanted = float(sure.widths[column]), sure.factor
+    width, excess, wanted = float(sure.widths[column]), float(sure.excess[column]), sure.factor
     inner, inner_root = 0.0, 0.0
     outer, outer_root = math.inf, math.inf
     distance = wanted * width
     for _ in range(PLACES):
         target = float(np.clip(best[column] + side * distance, low, high))
         cost = _least_with(found, sure, column, target)
-        root = math.sqrt(max(cost - least, 0.0))
+        root = math.sqrt(max(cost - least, 0.0)) / excess
         places.append((target, root**2))
         reached = abs(target - best[column])
         if abs(root - wanted) < 0.02 * wanted:

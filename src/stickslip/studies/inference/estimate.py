@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
+from stickslip.studies.inference.memory import Block, Memory, memory_of
 from stickslip.studies.inference.model import Model
-from stickslip.studies.inference.noise import GAUSSIAN, Block, cost_of, memory_of
+from stickslip.studies.inference.noise import GAUSSIAN, cost_of
 from stickslip.studies.inference.search import COMPETES, Best, Tell, is_rough, light, polished, searched_minima, solved
 
 FEW = 1500
@@ -81,7 +84,10 @@ def _at_jumps(model: Model, minima: list[Floats], loss: str, tell: Tell) -> Floa
 
 
 def _with_noise(model: Model, searched: Floats, loss: str, tell: Tell, best: Best) -> Estimate:
-    """Return the best fit and the noise, estimated in turn until both stay."""
+    """Return the best fit, with the sizes of the noise and then its memory, which moves the fit only against what was known before.
+
+    Several quantities are weighed by the sizes of their noise, which are estimated in turn with the fit until both stay.
+    """
     for turn in range(ROUNDS):
         tell(f"fit {turn + 1} to all samples")
         best.cost = np.inf
@@ -90,47 +96,59 @@ def _with_noise(model: Model, searched: Floats, loss: str, tell: Tell, best: Bes
         searched = solved(model, searched, loss, best, thorough=True)
         if model.of_means:
             return Estimate(model, searched, loss=loss)
-        by = model.jacobian(searched, white=False)
+        by = model.jacobian(searched)
         new = _noise(model, searched, by, loss)
-        if turn == 0 and not model.unsure and loss == "linear" and _keeps_minimum(model, new):
-            return Estimate(new, searched, loss=loss)
-        width = _widths(by[: model.samples])
-        settled = turn > 0 and np.all(np.abs(searched - before) < SETTLED * width)
-        same = all(abs(new.sizes[k] / model.sizes[k] - 1.0) < 0.1 for k in new.sizes) and new.memory.keys() == model.memory.keys()
-        same = same and all(abs(new.memory[k] - model.memory[k]) <= 0.1 * model.memory[k] for k in new.memory)
+        same = all(abs(new.sizes[k] / model.sizes[k] - 1.0) < 0.1 for k in new.sizes)
+        settled = turn > 0 and np.all(np.abs(searched - before) < SETTLED * _widths(by[: model.samples]))
+        keeps = turn == 0 and not model.unsure and loss == "linear" and len(model.sizes) == 1
+        known = len(model.priors(searched)) > 0
         model = new
-        if settled and same:
+        if (keeps and not known) or (settled and same):
             break
     return Estimate(model, searched, loss=loss)
 
 
-def _keeps_minimum(model: Model, new: Model) -> bool:
-    """Return True if another size of the noise cannot move the best fit: one quantity, white noise, and nothing known before."""
-    return len(model.sizes) == 1 and not any({**model.memory, **new.memory}.values()) and not len(model.priors(model.begin))
-
-
 def _noise(model: Model, searched: Floats, by: Floats, loss: str) -> Model:
-    rests = [model.part_residual(searched, i) for i in range(len(model.parts))]
-    begins = np.append(0, np.cumsum([len(one) for one in rests]))
+    """Return the model with sizes and memory of the noise of each quantity, from what a fit leaves."""
     sizes, memory = dict(model.sizes), {}
+    residual = np.concatenate([model.part_residual(searched, i) for i in range(len(model.parts))])
+    for name, rest, slopes, weight, blocks in pieces_of(model, residual, by):
+        rest, slopes = rest / weight, slopes / weight[:, None]
+        found = memory_of(rest, slopes, blocks)
+        size = max(found.total if loss == "linear" else float(np.median(np.abs(rest))) / GAUSSIAN, 1e-12)
+        given = any(name in part.record.deviations for part in model.parts)
+        size = size if not given else max(size, 1.0 / model.sizes[name])
+        sizes[name] = model.sizes[name] * size
+        memory[name] = Memory(found.time, found.size / size, found.white / size)
+    return model.with_(sizes=sizes, memory=memory)
+
+
+class Piece(NamedTuple):
+    """What belongs to a quantity in all parts: residuals, rows of a matrix, weights of the samples, and blocks of neighbours."""
+
+    name: str
+    residual: Floats
+    rows: Floats
+    weight: Floats
+    blocks: list[Block]
+
+
+def pieces_of(model: Model, residual: Floats, matrix: Floats) -> Iterator[Piece]:
+    """Yield the residuals of each quantity with the rows of a matrix that belong to them."""
+    blocks_of = [model.blocks(i) for i in range(len(model.parts))]
+    begins = np.append(0, np.cumsum([blocks[-1][1].rows.stop for blocks in blocks_of]))
     for name in model.sizes:
-        blocks: list[Block] = []
-        pieces, rows, count = [], [], 0
-        for i in range(len(model.parts)):
-            for quantity, block in model.blocks(i):
+        blocks, places, weights, count = list[Block](), list[Floats](), list[Floats](), 0
+        for i, part in enumerate(model.parts):
+            for quantity, block in blocks_of[i]:
                 if quantity == name:
                     length = block.rows.stop - block.rows.start
-                    pieces.append(rests[i][block.rows])
-                    rows.append(by[begins[i] + block.rows.start : begins[i] + block.rows.stop])
+                    places.append(begins[i] + np.arange(block.rows.start, block.rows.stop))
+                    weights.append(model.weights(i)[np.isfinite(part.record.measured[name][:: model.every])])
                     blocks.append(Block(slice(count, count + length), block.time))
                     count += length
-        rest, slopes = np.concatenate(pieces), np.concatenate(rows)
-        found = memory_of(rest, slopes, blocks)
-        size = found.size if loss == "linear" else float(np.median(np.abs(rest))) / GAUSSIAN
-        given = any(name in part.record.deviations for part in model.parts)
-        sizes[name] = model.sizes[name] * max(size, 1e-12) if not given else max(model.sizes[name] * size, 1.0)
-        memory[name] = found.time
-    return model.with_(sizes=sizes, memory=memory)
+        rows = np.concatenate(places)
+        yield Piece(name, residual[rows], matrix[rows], np.concatenate(weights), blocks)
 
 
 def _widths(by: Floats) -> Floats:
@@ -141,7 +159,7 @@ def _widths(by: Floats) -> Floats:
 
 def _competing(model: Model, best: Floats, others: list[Floats], every: int) -> tuple[Floats, ...]:
     """Return minima that fit almost as well as the best one, and are elsewhere."""
-    thin = model.with_(every=every)
+    thin = model.with_(every=every, unsure={})
     if not others:
         return ()
     lowest, width = cost_of(thin.residual(best)), _widths(thin.jacobian(best))

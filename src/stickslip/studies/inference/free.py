@@ -17,7 +17,8 @@ FARTHEST, FARTHEST_PURE = 1e3, 30.0
 """Factors by which positive numbers, with a unit and without, may differ from where the search begins, unless bounds say."""
 NEAR, NEAR_KNOWN = 10.0, 2.0
 """Factors within which starts are drawn: of slips and rates of a law, and of pure numbers and the body, which are known better."""
-TREND, DELAY, LOAD, STATE = "record.trend", "record.delay", "initial.load", "initial.state"
+TREND, DELAY, SERVO = "record.trend", "record.delay", "record.servo"
+LOAD, STATE = "initial.load", "initial.state"
 _PRIOR = re.compile(r"\s*(normal|lognormal|uniform)\s*\(\s*([^,()]+)\s*,\s*([^,()]+)\s*\)\s*")
 
 
@@ -137,6 +138,7 @@ def known_numbers(problem: Problem, hints: Mapping[str, float]) -> dict[str, tup
         found[STATE] = Quantity(state.unit, "state at the start", above=None if state.signed else 0.0), hints.get(STATE, math.nan)
     found[TREND] = Quantity("1/m", "trend of friction with slip"), 0.0
     found[DELAY] = Quantity("s", "delay of the record behind the machine"), 0.0
+    found[SERVO] = Quantity("s", "time in which the load point approaches a new rate", at_least=0.0), 0.0
     return found
 
 

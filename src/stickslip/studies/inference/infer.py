@@ -19,7 +19,7 @@ from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_rtol
 from stickslip.scenarios.source import read_source
 from stickslip.studies.inference.by_features import FeatureModel, by_features, scatter_of
-from stickslip.studies.inference.certainty import Certainty, Profile, certainty_of, profile_of
+from stickslip.studies.inference.certainty import Certainty, Profile, certainty_of, profile_of, unknown
 from stickslip.studies.inference.directions import IDLE
 from stickslip.studies.inference.estimate import Estimate, estimate
 from stickslip.studies.inference.free import read_free, with_scale
@@ -30,8 +30,9 @@ from stickslip.studies.inference.part import Part, first_sizes, share_of, shorte
 from stickslip.studies.inference.record import Record
 from stickslip.studies.inference.resample import resampled
 from stickslip.studies.inference.sampling import sample
-from stickslip.studies.inference.search import Tell
+from stickslip.studies.inference.search import Tell, Told
 from stickslip.studies.inference.setup import at_rests, hints_of, own_of, parts_of, scales_of
+from stickslip.studies.inference.windows import windows_of
 from stickslip.studies.study import TextProgress, telling
 
 if TYPE_CHECKING:
@@ -42,6 +43,7 @@ WAYS = ("samples", "features")
 MOST_SAMPLES = 1_000_000
 """Largest number of posterior samples."""
 TIME = Quantity("s", "time of the record")
+WEIGHT = Quantity("1", "exponent of the weight of samples after a change of the pull rate", at_least=0.0)
 RTOL = 1e-8
 """Default relative tolerance of the runs: far below the noise of a laboratory."""
 
@@ -63,6 +65,8 @@ class Wishes:
     priors: Mapping[str, Any] | None
     begin_at: Mapping[str, Any] | None
     loss: str
+    weight: float
+    windows: bool
     starts: int
     seed: int
     rtol: float
@@ -77,6 +81,9 @@ class Wishes:
             raise InputError("infer: by='features' and parts='rests' are two ways to fit stick-slip: choose one")
         if self.parts not in (None, "rests"):
             raise InputError(f"infer: parts must be 'rests' or left out, got {shown(self.parts)}")
+        if self.windows and (self.parts is not None or self.by == "features"):
+            raise InputError("infer: windows are of records that are fitted as a whole: leave out parts='rests' and by='features'")
+        WEIGHT.check("infer", "weight", self.weight)
         for name, least, most in (("starts", 1, 1000), ("samples", 0, MOST_SAMPLES), ("seed", 0, 2**32 - 1)):
             check_whole(f"infer: {name}", getattr(self, name), least, most)
         check_rtol(self.rtol, "infer")
@@ -101,6 +108,8 @@ def infer(
     priors: Mapping[str, Any] | None = None,
     begin_at: Mapping[str, Any] | None = None,
     loss: str = "linear",
+    weight: float = 0.0,
+    windows: bool = False,
     starts: int = 4,
     held_out: float | str | WithUnit | None = None,
     profiles: bool = False,
@@ -118,7 +127,8 @@ def infer(
         The record: a CSV file, or columns by their headings, as `Record.read` describes. Several records share the free numbers.
     free : list of str
         Names of the free numbers: those of `problem.parameters`, such as "friction.a" and "body.stiffness", and "initial.load",
-        "initial.state", "record.trend" (friction per metre of slip) and "record.delay" (s, of the record behind the machine).
+        "initial.state", "record.trend" (friction per metre of slip), "record.delay" (s, of the record behind the machine) and
+        "record.servo" (s, in which the load point approaches a new rate: it falls behind as exp(-t/servo)).
     begin, end : float or str, optional
         The part of the record that is taken: times (s, as in the record, or texts with a unit).
     progress : bool or callable, optional
@@ -148,6 +158,11 @@ def infer(
         Values at which the search begins, by name; by default those of the problem.
     loss : {"linear", "soft_l1", "huber", "cauchy"}
         How residuals count: other than linear if some samples lie far off.
+    weight : float
+        Exponent p of the weight (n/j)**p of the j-th of n samples after each change of the pull rate, as in RSFit3000 (Skarbek &
+        Savage 2019, Geosphere 15, 1665). Default 0: all samples count alike.
+    windows : bool
+        If True, shorter parts of the record are fitted, too: `found.windows` has the numbers, and a note their spread.
     starts : int
         Number of starts of the search: the given one, and the best of twelve times as many draws. Default 4. If none of them leads
         near the record, and this is not 1, a search without derivatives follows.
@@ -177,14 +192,16 @@ def infer(
 
     Notes
     -----
-    Least squares over full runs; positive numbers are searched along their logarithm. The noise is estimated from the residuals:
-    its size and, by restricted maximum likelihood, the time over which it remembers itself, with which residuals are then
-    whitened (generalised least squares). Intervals are of 95 %.
+    Least squares over full runs; positive numbers are searched along their logarithm. What is left is then looked at: its size
+    and, by restricted maximum likelihood, the time over which it remembers itself. Intervals, of 95 %, allow for that memory, and
+    for residuals that are largest where they count most, as those of a model that is a little wrong (sandwich covariance). A
+    misfit is told as a misfit. What is left never moves the numbers themselves.
     """
     wishes = Wishes(
         by=by, observe=observe, start=start,
         sensor=sensor, parts=parts, each=each, held_out=held_out, profiles=profiles, samples=samples,
-        bounds=bounds, priors=priors, begin_at=begin_at, loss=loss, starts=starts, seed=seed, rtol=rtol,
+        bounds=bounds, priors=priors, begin_at=begin_at, loss=loss, weight=weight, windows=windows,
+        starts=starts, seed=seed, rtol=rtol,
     )  # fmt: skip
     wishes.check()
     source = read_source("infer", problem)
@@ -240,7 +257,7 @@ def _model(problem: Problem, parts: list[Part], names: Sequence[str] | str, wish
     own = [one for one in own if one.name not in {shared.name for shared in chosen}]
     kind = FeatureModel if wishes.by == "features" else Model
     sizes = scatter_of(parts) if wishes.by == "features" else first_sizes(parts)
-    model = kind(problem, tuple(parts), (*chosen, *own), wishes.rtol, sizes)
+    model = kind(problem, tuple(parts), (*chosen, *own), wishes.rtol, sizes, weight=wishes.weight)
     if wishes.by == "features" and sum(len(part.observed) for part in parts) < len(chosen):
         names = ", ".join(parts[0].observed)
         raise InputError(f"infer: {names} cannot determine {len(chosen)} numbers: free fewer of them, or record slip too")
@@ -251,12 +268,16 @@ def _model(problem: Problem, parts: list[Part], names: Sequence[str] | str, wish
 
 def _inferred(model: Model, whole: tuple[Part, ...], wishes: Wishes, notes: list[str], tell: Tell) -> Inference:
     """Return the result of all that was asked for; Ctrl-C leaves out what was not finished."""
-    found = estimate(model, wishes.starts, wishes.loss, wishes.seed, tell)
-    sure = certainty_of(found)
-    found = _idle_as_given(found, sure)
-    profiles: list[Profile] = []
+    tell = Told(tell)
+    found = estimate(model.with_(ran=tell.run), wishes.starts, wishes.loss, wishes.seed, tell)
+    sure, profiles, windows = unknown(found), list[Profile](), None
     drawn, said, finished = None, tuple[str, ...](), found.finished
     try:
+        tell("what the record determines")
+        sure = certainty_of(found)
+        found = _idle_as_given(found, sure)
+        if finished and wishes.windows:
+            windows = windows_of(found, tell)
         if finished and wishes.profiles:
             shared = [i for i, one in enumerate(found.model.free) if one.part is None]
             profiles.extend(profile_of(found, sure, i, tell) for i in shared)
@@ -265,7 +286,7 @@ def _inferred(model: Model, whole: tuple[Part, ...], wishes: Wishes, notes: list
     except KeyboardInterrupt:
         finished = False
     found = replace(found, finished=finished)
-    return Inference(found, sure, whole, tuple(notes), tuple(profiles), drawn, said)
+    return Inference(found, sure, whole, tuple(notes), tuple(profiles), drawn, said, windows)
 
 
 def _idle_as_given(found: Estimate, sure: Certainty) -> Estimate:

@@ -27,6 +27,7 @@ from stickslip.studies.inference.by_features import FeatureModel
 from stickslip.studies.inference.certainty import Certainty, Profile
 from stickslip.studies.inference.estimate import Estimate
 from stickslip.studies.inference.free import Free
+from stickslip.studies.inference.memory import WHITE
 from stickslip.studies.inference.model import OF_NO_ZERO, Model, unit_of
 from stickslip.studies.inference.part import Part
 from stickslip.studies.inference.words import notes_of
@@ -44,7 +45,9 @@ class Inference(Study):
 
     `parts` are the parts of the record, with what was left out of the fit; `about` says what was done with it, one sentence each.
     `profiles` of the likelihood and samples `drawn` from the posterior distribution are there if they were asked for;
-    `about_samples` says how good the samples are. `asked` are the options that were given, by name.
+    `about_samples` says how good the samples are. `windows`, if they were asked for, has the numbers of shorter parts of the
+    record, one row each: begin, end (s since the first sample), samples, and each free number (SI). `asked` are the options that
+    were given, by name.
     """
 
     estimate: Estimate
@@ -54,6 +57,7 @@ class Inference(Study):
     profiles: tuple[Profile, ...] = ()
     drawn: Floats | None = None
     about_samples: tuple[str, ...] = ()
+    windows: pd.DataFrame | None = None
     asked: Mapping[str, Any] = field(default_factory=dict)
 
     @property
@@ -84,6 +88,7 @@ class Inference(Study):
 
     def _row(self, i: int, one: Free) -> tuple[float, float, float, float, str, float, str]:
         value, width = self.values[one.label], float(self.certainty.widths[i])
+        uncertainty = one.width(value, width)
         if self.certainty.on_bound[i]:
             return value, math.nan, value, value, one.declared.unit, one.start, "bound"
         searched, half = float(self.estimate.searched[i]), self.certainty.factor * width
@@ -92,10 +97,12 @@ class Inference(Study):
         profile = next((found for found in self.profiles if found.name == one.label), None)
         if profile is not None and np.isfinite([profile.low, profile.high]).all():
             low, high, source = profile.low, profile.high, "profile"
+            uncertainty = (high - low) / (2.0 * self.certainty.factor)
         if self.samples is not None:
             low, high = np.quantile(self.samples[one.label], [0.025, 0.975]).tolist()
             source = "samples"
-        return value, one.width(value, width), low, high, one.declared.unit, one.start, source
+            uncertainty = float(self.samples[one.label].std())
+        return value, uncertainty, low, high, one.declared.unit, one.start, source
 
     @cached_property
     def samples(self) -> pd.DataFrame | None:
@@ -209,7 +216,7 @@ class Inference(Study):
         table, rows = self.curves[self.curves.fitted], {}
         for name, size in self.model.sizes.items():
             rest = table.residual[table.quantity == name].dropna().to_numpy()
-            rows[name] = (len(rest), size, self.model.memory.get(name, 0.0), float(np.sqrt(np.mean(rest**2))), unit_of(name))
+            rows[name] = (len(rest), size, self.model.memory.get(name, WHITE).time, float(np.sqrt(np.mean(rest**2))), unit_of(name))
         return pd.DataFrame.from_dict(rows, orient="index", columns=["samples", "noise", "memory", "rms", "unit"])
 
     @property
@@ -242,7 +249,7 @@ class Inference(Study):
         shared = sum(one.part is None for one in self.free)
         sizes = ", ".join(f"{name} {brief(size, unit_of(name), 3)}" for name, size in self.model.sizes.items())
         what = "scatter" if self.model.of_means else "noise"
-        return f"{shared} numbers from {self.model.counted}, {what}: {sizes}; intervals of 95 %"
+        return f"{shared} number{'' if shared == 1 else 's'} from {self.model.counted}, {what}: {sizes}; intervals of 95 %"
 
     def to_netcdf(self, path: str | Path) -> Path:
         """Write data, model, residual, numbers, samples and provenance, and return the path. Raises InputError if that fails."""

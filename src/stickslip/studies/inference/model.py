@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar
 
@@ -14,9 +14,9 @@ from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 from stickslip.run.simulate import simulate
 from stickslip.solution.solution import Solution
-from stickslip.studies.inference.free import DELAY, LOAD, STATE, TREND, Free
-from stickslip.studies.inference.noise import Block, independent, whitened
-from stickslip.studies.inference.part import Part, changed
+from stickslip.studies.inference.free import DELAY, LOAD, SERVO, STATE, TREND, Free
+from stickslip.studies.inference.memory import Block, Memory, independent
+from stickslip.studies.inference.part import Part, approached, changed
 from stickslip.studies.inference.record import UNITS
 from stickslip.studies.inference.resample import RAMP, Jumps, jumps_in, spread, unsure
 from stickslip.studies.study import uninterrupted
@@ -44,12 +44,13 @@ CHANGED, ABOVE_NOISE = 0.5, 30.0
 class Model:
     """Residuals of a record, part by part, as a function of the searched numbers.
 
-    `sizes` are standard deviations (SI) of each observed quantity that has no column of them, and `memory` is the time over which
-    residuals of a quantity remember themselves (s), 0 for white noise. Each `every`-th sample is used. `step` is that of
-    differences, in searched numbers: one for all, or one for each. `smooth` is the share of the samples over which residuals are
-    averaged, so that an event at another time is felt from afar. A run that needs more than `max_pieces` has failed. A jump of a
-    run is spread over `blur` samples, and `unsure` is the standard deviation (SI) of each used sample from the unknown time of a
-    jump beside it, by part and quantity. `of_means` is True if residuals are few means whose errors are known.
+    `sizes` are standard deviations (SI) of each observed quantity that has no column of them, and `memory` is what was found of
+    their noise, in these. Each `every`-th sample is used. `step` is that of differences, in searched numbers: one for all, or one
+    for each. `smooth` is the share of the samples over which residuals are averaged, so that an event at another time is felt from
+    afar. A run that needs more than `max_pieces` has failed. A jump of a run is spread over `blur` samples, and `unsure` is the
+    standard deviation (SI) of each used sample from the unknown time of a jump beside it, by part and quantity. `weight` is
+    the exponent of the weight of samples after a change of the pull rate. `ran` is called after each run.
+    `of_means` is True if residuals are few means whose errors are known.
     """
 
     problem: Problem
@@ -57,13 +58,15 @@ class Model:
     free: tuple[Free, ...]
     rtol: float = 1e-8
     sizes: dict[str, float] = field(default_factory=dict)
-    memory: dict[str, float] = field(default_factory=dict)
+    memory: dict[str, Memory] = field(default_factory=dict)
     every: int = 1
     step: float | Floats = STEP
     smooth: float = 0.0
     max_pieces: int = 20_000
     blur: int = RAMP
     unsure: dict[tuple[int, str], Floats] = field(default_factory=dict)
+    weight: float = 0.0
+    ran: Callable[[], object] = lambda: None
     _last: dict[int, tuple[bytes, Floats]] = field(default_factory=dict)
     of_means: ClassVar[bool] = False
 
@@ -77,6 +80,8 @@ class Model:
         own = {one.name: v for one, v in zip(self.free, values, strict=True) if one.part in (None, part)}
         first = {name: v for name, v in own.items() if name not in (LOAD, STATE)}
         begun = self.parts[part].begun(changed(self.problem, first))
+        if own.get(SERVO, 0.0) > 0.0:
+            begun = replace(begun, pull_rate=approached(begun.pull_rate, own[SERVO]))
         return changed(begun, {name: v for name, v in own.items() if name in (LOAD, STATE)})
 
     def solve(self, searched: Floats, part: int, rtol: float | None = None) -> Solution | None:
@@ -88,6 +93,7 @@ class Model:
             run = uninterrupted(simulate(problem, lasts, self.rtol if rtol is None else rtol, max_pieces=self.max_pieces))
         except (InputError, ArithmeticError):
             return None
+        self.ran()
         return run if run.status.ok and run.history.span[1] >= lasts * (1.0 - 1e-12) else None
 
     def _own(self, searched: Floats, part: int) -> dict[str, float]:
@@ -138,7 +144,14 @@ class Model:
         for factor in (given, relative):
             scale = scale if factor is None else factor[:: self.every] * scale
         added = self.unsure.get((part, name))
-        return scale if added is None else np.hypot(scale, added)
+        scale = scale if added is None else np.hypot(scale, added)
+        return scale / self.weights(part) if self.weight else scale
+
+    def weights(self, part: int) -> Floats:
+        """Return the weight of each used sample of a part."""
+        if not self.weight:
+            return np.ones(len(self.parts[part].record.clock[:: self.every]))
+        return self.parts[part].weights(self.problem, self.weight)[:: self.every]
 
     def part_residual(self, searched: Floats, part: int) -> Floats:
         """Return the residuals of a part in standard deviations: model minus data, quantity after quantity."""
@@ -175,28 +188,21 @@ class Model:
             begin += len(time)
         return found
 
-    def white(self, residual: Floats, part: int) -> Floats:
-        """Return residuals of a part, or their derivatives, without what neighbouring samples share."""
-        if not any(self.memory.values()):
-            return residual
-        result = residual
-        for name, block in self.blocks(part):
-            if self.memory.get(name, 0.0) > 0.0:
-                result = whitened(result, [block], self.memory[name])
-        return result
-
     def priors(self, searched: Floats) -> Floats:
-        """Return the distances from what was known before, in standard deviations."""
+        """Return the distances from what was known before, in standard deviations, times the root of samples per independent one.
+
+        Residuals that remember themselves count as if they were independent, and what was known before must not be outweighed.
+        """
         values = zip(self.free, self.values(searched), strict=True)
         found = [one.prior.residual(v) for one, v in values if one.prior is not None and one.prior.kind != "uniform"]
-        return np.asarray(np.clip(np.array(found, float), -LARGEST, LARGEST))
+        return np.asarray(np.clip(math.sqrt(self.inflation) * np.array(found, float), -LARGEST, LARGEST))
 
     def residual(self, searched: Floats) -> Floats:
         """Return all residuals, those of the priors last."""
-        parts = [self.white(self.part_residual(searched, i), i) for i in range(len(self.parts))]
+        parts = [self.part_residual(searched, i) for i in range(len(self.parts))]
         return np.concatenate([*parts, self.priors(searched)])
 
-    def jacobian(self, searched: Floats, *, white: bool = True, sides: Sequence[float] = (1.0, -1.0)) -> Floats:
+    def jacobian(self, searched: Floats, *, sides: Sequence[float] = (1.0, -1.0)) -> Floats:
         """Return the derivatives of all residuals with respect to the searched numbers, by differences.
 
         A number that belongs to one part asks for runs of that part only. If the run on one side fails, the other is used.
@@ -214,8 +220,7 @@ class Model:
                 x[column] = min(max(x[column] + side * float(steps[column]), lows[column]), highs[column])
                 stepped.append(x)
             for i in range(len(self.parts)) if one.part is None else (one.part,):
-                by = self._difference(searched, stepped, column, i, base[i])
-                result[begins[i] : begins[i + 1], column] = self.white(by, i) if white else by
+                result[begins[i] : begins[i + 1], column] = self._difference(searched, stepped, column, i, base[i])
             result[begins[-1] :, column] = self._prior_slope(stepped, searched, column)
         return result
 
@@ -288,7 +293,22 @@ class Model:
     def independent(self) -> float:
         """The number of independent samples, as many as the memory of the noise leaves."""
         blocks = [one for i in range(len(self.parts)) for one in self.blocks(i)]
-        return sum(independent(block.time, self.memory.get(name, 0.0)) for name, block in blocks)
+        return sum(independent(block.time, self.memory[name]) if name in self.memory else len(block.time) for name, block in blocks)
+
+    @property
+    def scatter(self) -> float:
+        """The sum of squares of what was measured about its mean, in standard deviations."""
+        total = 0.0
+        for i, part in enumerate(self.parts):
+            for name in part.observed:
+                values = self.data(i, name)[:: self.every]
+                total += float(np.nansum(((values - np.nanmean(values)) / self._deviations(i, name)) ** 2))
+        return total
+
+    @property
+    def inflation(self) -> float:
+        """The number of samples per independent one."""
+        return self.samples / self.independent if self.memory else 1.0
 
     def variance(self, searched: Floats) -> float:
         """Return the factor on the covariance of the numbers, beside the size of the noise: 1."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,12 +37,6 @@ LOSSES = tuple(_LOSSES)
 
 GAUSSIAN = 0.6744897501960817
 """Median magnitude of a normal deviate with standard deviation 1."""
-FORGOTTEN = 0.02
-"""Correlation of neighbouring samples below which noise counts as white."""
-UNSEEN = 1e-9
-"""Eigenvalue of the normal matrix, whose diagonal is 1, below which a combination is not determined."""
-LONGEST = 0.5
-"""Longest time of correlation that is looked for, as a share of the record."""
 
 
 def noise_of(values: Floats) -> float:
@@ -82,108 +75,6 @@ def first_value(time: Floats, values: Floats, noise: float) -> tuple[float, floa
         best = float(level), noise * 2.0 / math.sqrt(count)
         count *= 2
     return best
-
-
-class Block(NamedTuple):
-    """Residuals that follow each other in time: their indices among all, and their times (s)."""
-
-    rows: slice
-    time: Floats
-
-
-def whitened(residual: Floats, blocks: list[Block], memory: float) -> Floats:
-    """Return residuals, or derivatives of residuals, less what the sample before tells of each.
-
-    They are those of a first-order autoregressive noise whose correlation falls as exp(-dt/memory), of variance 1 before and after.
-    """
-    if memory <= 0.0:
-        return residual
-    result = residual.copy()
-    for rows, time in blocks:
-        if len(time) < 2:
-            continue
-        rho = np.exp(-np.diff(time) / memory)
-        if residual.ndim == 2:
-            rho = rho[:, None]
-        part = residual[rows]
-        result[rows][1:] = (part[1:] - rho * part[:-1]) / np.sqrt(1.0 - rho**2)
-    return result
-
-
-def independent(time: Floats, memory: float) -> float:
-    """Return how many independent samples there are among those at some times, as many as the memory of the noise leaves."""
-    if memory <= 0.0 or len(time) < 2:
-        return float(len(time))
-    rho = math.exp(-float(np.median(np.diff(time))) / memory)
-    return max(1.0, len(time) * (1.0 - rho) / (1.0 + rho))
-
-
-class Memory(NamedTuple):
-    """Time over which residuals remember themselves (s; 0 for white noise), and their size relative to the assumed one."""
-
-    time: float
-    size: float
-
-
-def memory_of(residual: Floats, slopes: Floats, blocks: list[Block]) -> Memory:
-    """Return the memory of residuals by restricted maximum likelihood, and 0 if white noise explains them as well.
-
-    `slopes` are the derivatives of the residuals with respect to the parameters that were fitted, shape (n, p): what the fit took
-    from the noise is allowed for (Patterson & Thompson 1971, Biometrika 58, 545).
-    """
-    from scipy.optimize import minimize_scalar
-
-    steps = np.concatenate([np.diff(time) for _, time in blocks]) if blocks else np.zeros(0)
-    slopes = _independent_columns(slopes)
-    n, p = slopes.shape
-    if n < p + 10 or not len(steps):
-        return Memory(0.0, _size(residual, slopes))
-    usual, longest = float(np.median(steps)), LONGEST * max(float(np.ptp(time)) for _, time in blocks)
-
-    def criterion(log_time: float) -> float:
-        memory = math.exp(log_time)
-        white, by = whitened(residual, blocks, memory), whitened(slopes, blocks, memory)
-        size, log_det = _size_and_determinant(white, by)
-        spread = sum(float(np.sum(np.log1p(-np.exp(-2.0 * np.diff(time) / memory)))) for _, time in blocks)
-        return float(2.0 * (n - p) * math.log(max(size, 1e-300)) + spread + log_det)
-
-    size, log_det = _size_and_determinant(residual, slopes)
-    white = 2.0 * (n - p) * math.log(max(size, 1e-300)) + log_det
-    shortest = usual / -math.log(FORGOTTEN)
-    if longest <= shortest:
-        return Memory(0.0, size)
-    found = minimize_scalar(criterion, bounds=(math.log(shortest), math.log(longest)), method="bounded", options={"xatol": 0.01})
-    if found.fun > white - math.log(n):
-        return Memory(0.0, size)
-    memory = math.exp(found.x)
-    return Memory(memory, _size(whitened(residual, blocks, memory), whitened(slopes, blocks, memory)))
-
-
-def _independent_columns(slopes: Floats) -> Floats:
-    """Return columns of unit length, and at right angles, for all that the parameters can change together."""
-    sizes = np.linalg.norm(slopes, axis=0)
-    left, seen, _ = np.linalg.svd(slopes[:, sizes > 0.0] / sizes[sizes > 0.0], full_matrices=False)
-    return np.asarray(left[:, seen**2 > UNSEEN])
-
-
-def _size(residual: Floats, slopes: Floats) -> float:
-    return _size_and_determinant(residual, slopes)[0]
-
-
-def _size_and_determinant(residual: Floats, slopes: Floats) -> tuple[float, float]:
-    """Return the size of residuals after a linear fit of the parameters, and the logarithm of the normal matrix's determinant."""
-    n = len(residual)
-    total = float(residual @ residual)
-    sizes = np.linalg.norm(slopes, axis=0)
-    used = slopes[:, sizes > 0.0] / sizes[sizes > 0.0]
-    if not used.shape[1]:
-        return math.sqrt(total / max(n, 1)), 0.0
-    spectrum, vectors = np.linalg.eigh(used.T @ used)
-    seen = spectrum > UNSEEN
-    along = vectors[:, seen].T @ (used.T @ residual)
-    taken = float(np.sum(along**2 / spectrum[seen]))
-    log_det = float(np.sum(np.log(np.maximum(spectrum, UNSEEN)))) + 2.0 * float(np.sum(np.log(sizes[sizes > 0.0])))
-    return math.sqrt(max(total - taken, 0.0) / max(n - used.shape[1], 1)), log_det
 
 
 RAIL = 8

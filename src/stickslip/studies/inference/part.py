@@ -10,9 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity
-from stickslip.loading import LoadingHistory
+from stickslip.loading import LoadingHistory, PiecewiseLinear, Steps
 from stickslip.problem.problem import Problem
 from stickslip.studies.inference.free import LOAD
 from stickslip.studies.inference.noise import first_value, noise_of
@@ -20,6 +21,10 @@ from stickslip.studies.inference.record import Record
 
 SMALLEST_NOISE = 1e-9
 """Smallest noise, as a share of the range of a quantity: a record without noise has rounding."""
+
+
+CHANGES = 0.1
+"""Share of the range of the pull rate by which it changes at least where a change counts."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +59,32 @@ class Part:
         for name, values in self.record.measured.items():
             found[name] = first_value(self.record.clock, values, noise_of(values))
         return found
+
+    def changes(self, problem: Problem) -> Floats:
+        """Return the times (s) at which the pull rate of a run begins to change by a tenth of its range or more."""
+        pull = problem.pull_rate if self.loading is None else self.loading
+        if not isinstance(pull, LoadingHistory):
+            return np.zeros(0)
+        segments = [one for one in pull.segments if one.start < self.duration]
+        ends = [*(one.start for one in segments[1:]), self.duration]
+        after = np.array([one.at(end) for one, end in zip(segments, ends, strict=True)])
+        jumped = np.array([one.value for one in segments]) - np.append(segments[0].value, after[:-1])
+        changed = np.abs(jumped) + np.abs(after - [one.value for one in segments])
+        least = CHANGES * float(np.ptp(np.append(after, [one.value for one in segments])))
+        return np.array([one.start for one, by in zip(segments, changed, strict=True) if by > least])
+
+    def weights(self, problem: Problem, exponent: float) -> Floats:
+        """Return the weight of each sample: (n/j)**exponent for the j-th of n samples after each change of the pull rate.
+
+        The mean squared weight is 1. Raises InputError if the pull rate does not change.
+        """
+        changes, clock = self.changes(problem), self.record.clock
+        if not len(changes):
+            raise InputError(f"{self.record.name}: the pull rate does not change: a weight of samples after a change needs one")
+        first = np.searchsorted(clock, changes)
+        since = np.arange(len(clock)) - first[np.maximum(np.searchsorted(changes, clock, side="right") - 1, 0)]
+        weight = np.where(since < 0, 1.0, (len(clock) / (np.maximum(since, 0) + 1.0)) ** exponent)
+        return np.asarray(weight * math.sqrt(len(weight) / float(weight @ weight)))
 
     def begun(self, problem: Problem) -> Problem:
         """Return a problem under the loading of this part, with the start that its data give. Raises InputError."""
@@ -94,6 +125,32 @@ def steady(problem: Problem, rates: Mapping[str, Any]) -> Problem:
     load = problem.normal * float(law.steady_coefficient(abs(rate))) + body.damping * abs(rate)
     none |= {"initial_load": math.copysign(load, rate), "initial_state": "steady"}
     return replace(problem, **rates, **none)
+
+
+SETTLED, POINTS = 1e-4, 32
+"""Share of a change of rate that is left when an exponential approach ends, and number of points on the way."""
+
+
+def approached(pull: LoadingHistory | float, time: float) -> LoadingHistory | float:
+    """Return a pull rate whose steps are approached as exp(-t/time): the servo of a machine has such a time (s).
+
+    The rate is linear between points that are closest where it changes fastest. Raises InputError if it is not one of steps.
+    """
+    if not isinstance(pull, LoadingHistory):
+        return pull
+    if not isinstance(pull, Steps):
+        raise InputError(f"infer: record.servo needs a pull rate that changes in steps, got a history of kind {pull.kind}")
+    left = np.linspace(1.0, math.sqrt(SETTLED), POINTS) ** 2
+    after = -np.log(left)
+    left[-1] = 0.0
+    after *= 1.0 / float(np.sum(0.5 * (left[1:] + left[:-1]) * np.diff(after)))  # the load point comes late by just that time
+    times, rates, rate = [0.0], [pull.values[0]], pull.values[0]
+    for at, wanted, end in zip(pull.times[1:], pull.values[1:], (*pull.times[2:], math.inf), strict=True):
+        inside = at + time * after < end
+        times += (at + time * after[inside]).tolist()
+        rates += (wanted + (rate - wanted) * left[inside]).tolist()
+        rate = wanted if math.isinf(end) else float(np.interp(end, at + time * after, wanted + (rate - wanted) * left))
+    return PiecewiseLinear(times, rates)
 
 
 def changed(problem: Problem, values: Mapping[str, float]) -> Problem:

@@ -43,7 +43,7 @@ def sample(found: Estimate, sure: Certainty, count: int, seed: int, tell: Tell) 
 
     random = np.random.default_rng(seed)
     begin = _begun(found, sure, walkers, random)
-    posterior = _Posterior(found)
+    posterior = _Posterior(found, float(np.max(sure.excess**2)))
     sampler: Any = emcee.EnsembleSampler(walkers, dimensions, posterior)
     sampler.random_state = np.random.RandomState(seed).get_state()
     done = 0
@@ -71,11 +71,12 @@ def sample(found: Estimate, sure: Certainty, count: int, seed: int, tell: Tell) 
 class _Posterior:
     """The logarithm of the posterior density; after Ctrl-C it is `stopped` and runs nothing more.
 
-    emcee would print an exception as a fault of this function.
+    emcee would print an exception as a fault of this function. What is left of a record is not independent: its likelihood counts
+    as much less as the variances of the numbers are larger for it, by `tempered`.
     """
 
-    def __init__(self, found: Estimate) -> None:
-        self._found, self.stopped = found, False
+    def __init__(self, found: Estimate, tempered: float) -> None:
+        self._found, self._tempered, self.stopped = found, tempered, False
 
     def __call__(self, x: Floats) -> float:
         model, (low, high) = self._found.model, self._found.model.limits
@@ -83,7 +84,7 @@ class _Posterior:
             if self.stopped or np.any(x < low) or np.any(x > high):
                 return -math.inf
             rest = model.residual(np.asarray(x, float))
-            return -math.inf if np.all(np.abs(rest) >= FAILED) else -0.5 * cost_of(rest, self._found.loss)
+            return -math.inf if np.all(np.abs(rest) >= FAILED) else -0.5 * cost_of(rest, self._found.loss) / self._tempered
         except KeyboardInterrupt:
             self.stopped = True
             return -math.inf

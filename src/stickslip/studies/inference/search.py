@@ -23,14 +23,34 @@ FIRST = 8
 """Number of steps after which starts are compared again."""
 FOLLOWED, HOPELESS = 3, 30.0
 """Number of starts that are followed to their end, and the factor by which the sum of squares of one may be above the least."""
-FAR = 5.0
-"""Size of residuals, in standard deviations, from which a search goes on without derivatives."""
+FAR, FAR_SHARE = 5.0, 0.3
+"""Sizes of residuals from which a search goes on without derivatives, if both are exceeded: in the noise of neighbouring samples,
+and in the scatter of the record, which noise that remembers itself stays far below."""
 AVERAGED = (0.1, 0.02, 0.005, 0.0)
 """Shares of the samples over which residuals are averaged in a search without derivatives, from coarse to fine."""
 GENERATIONS = 60
 """Largest number of generations of such a search."""
 LIGHT = 2000
 """Largest number of pieces of a run while starts are compared, unless the run of the first start needs more than a third of it."""
+
+
+@dataclass
+class Told:
+    """The progress of a search: what it does, and the number of runs so far; a line of text after each."""
+
+    tell: Callable[[str], Any]
+    phase: str = ""
+    runs: int = 0
+
+    def __call__(self, phase: str) -> None:
+        """Tell that something else is done now."""
+        self.phase = phase
+        self.tell(f"{phase}, {self.runs} runs so far" if self.runs else phase)
+
+    def run(self) -> None:
+        """Tell that a run is done."""
+        self.runs += 1
+        self.tell(f"{self.phase}, {self.runs} runs so far")
 
 
 @dataclass
@@ -118,7 +138,7 @@ def searched_minima(model: Model, starts: int, loss: str, seed: int, *, tell: Te
         tell(f"search {i + 1} of {len(chosen)}")
         end = solved(model, x, loss, best, most=FIRST)
         minima.append((_cost(model, end, loss), end))
-    if starts > 1 and min(minima, key=lambda one: one[0])[0] > FAR**2 * model.samples:
+    if starts > 1 and min(minima, key=lambda one: one[0])[0] > max(FAR**2 * model.samples, FAR_SHARE**2 * model.scatter):
         end = solved(model, _by_evolution(model, seed, tell), loss, best, most=FIRST)
         minima.append((_cost(model, end, loss), end))
     minima.sort(key=lambda one: one[0])

@@ -16,7 +16,7 @@ from stickslip.friction.law import FrictionLaw
 from stickslip.loading import LoadingHistory
 from stickslip.problem.problem import Problem
 from stickslip.studies.inference.features import arrests_in
-from stickslip.studies.inference.free import LOAD, STATE, TREND, Free, Prior, known_numbers
+from stickslip.studies.inference.free import DELAY, LOAD, SERVO, STATE, TREND, Free, Prior, known_numbers
 from stickslip.studies.inference.loading import loading_of
 from stickslip.studies.inference.part import Part
 from stickslip.studies.inference.record import HIGHEST, LOWEST, MEASURED, SHEAR, Record
@@ -138,7 +138,8 @@ def scales_of(part: Part, problem: Problem) -> dict[str, float]:
     reach = float(np.nanmax(moved) - np.nanmin(moved)) if moved is not None else 0.0
     if not reach > 0.0:
         reach = abs(problem.first_pull_rate) * part.duration or 1.0
-    return {TREND: 0.1 / reach, "record.delay": 0.01 * part.duration, "initial.slip": 0.1 * reach, "body.damping": 1.0}
+    times = dict.fromkeys((DELAY, SERVO), 0.01 * part.duration)
+    return {**times, TREND: 0.1 / reach, "initial.slip": 0.1 * reach, "body.damping": 1.0}
 
 
 def at_rests(part: Part) -> list[Part]:

@@ -11,14 +11,16 @@ import numpy as np
 from stickslip.foundation.formatting import brief
 from stickslip.studies.inference.features import arrests_in
 from stickslip.studies.inference.free import DELAY, TREND
+from stickslip.studies.inference.memory import LONGEST, WHITE
 from stickslip.studies.inference.part import first_sizes
 from stickslip.studies.inference.record import SHEAR
+from stickslip.studies.inference.windows import told
 
 if TYPE_CHECKING:
     from stickslip.studies.inference.inference import Inference
 
-MISSED, MISSED_WHITE = 10.0, 2.0
-"""Sizes of residuals, in the noise of neighbouring samples, from which a run misses the record: with memory, and white ones."""
+MISSED, MISSED_SHARE = 3.0, 0.2
+"""Sizes of residuals, in the noise of neighbouring samples and in the scatter of the record, beyond which a run misses it."""
 MANY = 1.5
 """Size of residuals, in the standard deviations that were given, from which they are told to be larger."""
 
@@ -31,6 +33,8 @@ def notes_of(study: Inference) -> Iterator[str]:
     yield from noise_of(study)
     if study.prediction is not None:
         yield f"what was left out is predicted with an error of {study.prediction:.3g} times the noise"
+    if study.windows is not None:
+        yield from told(study.windows, [one.label for one in study.free if one.part is None], study.table)
     yield from record_of(study)
     yield from study.about_samples
     yield from study.about
@@ -56,8 +60,8 @@ def noise_of(study: Inference) -> Iterator[str]:
         yield from _features(study, missed=False)
         return
     for name, memory in study.model.memory.items():
-        if memory > 0.0:
-            yield f"residuals of {name} remember themselves for {brief(memory, 's', 3)}; the intervals allow for it"
+        if memory.time > 0.0 and not _drifts(study, name):
+            yield f"residuals of {name} remember themselves for {brief(memory.time, 's', 3)}; the intervals allow for it"
     for name, size in study.model.sizes.items():
         if size > MANY and any(name in part.record.deviations for part in study.parts):
             yield f"residuals of {name} are {size:.3g} times the standard deviations given; the intervals allow for it"
@@ -84,23 +88,44 @@ def _features(study: Inference, *, missed: bool) -> Iterator[str]:
 
 
 def _misfit(study: Inference) -> Iterator[str]:
-    """Yield a sentence if what is left is far more than the noise of neighbouring samples: the run misses the record."""
+    """Yield sentences on what is left if that is no noise: far too much of it, a drift, or most where the run changes."""
     if study.features is not None:
         yield from _features(study, missed=True)
         return
     for name, noise in first_sizes(study.model.parts).items():
         given = any(name in part.record.deviations for part in study.model.parts)
-        times = study.model.sizes[name] / noise
-        allowed = MISSED if study.model.memory.get(name, 0.0) > 0.0 else MISSED_WHITE
-        if not given and times > allowed:
+        size, scatter = study.model.sizes[name], _scatter(study, name)
+        if not given and size > MISSED * noise and size > MISSED_SHARE * scatter:
             alone = len(study.parts) == 1 and name in SHEAR and len(arrests_in(study.parts[0].record.measured[name])) > 1
             cure = "; the record has several slip events: fit each from its own rest with parts='rests'" if alone else ""
             if not cure and _never_slips(study, name):
                 cure = "; the record has a slip event, the run has none: begin, or give bounds, with numbers with which it slips"
             yield (
-                f"the run misses features of {name}: what is left is {times:.3g} times the noise of neighbouring samples, and "
-                f"its numbers may mean little{cure}"
+                f"the run misses features of {name}: what is left is {size / noise:.3g} times the noise of neighbouring samples "
+                f"and {size / scatter:.0%} of the scatter of the record, and its numbers may mean little{cure}"
             )
+        elif _drifts(study, name):
+            yield (
+                f"what is left of {name} is no noise but a drift or a misfit: it remembers itself for more than an eighth of the "
+                "record; a trend can be free as record.trend, or another law may follow"
+            )
+        if (times := study.certainty.uneven.get(name, 1.0)) > 1.0:
+            yield (
+                f"what is left of {name} is {times:.2g} times larger where the run depends most on its numbers than elsewhere: "
+                "law, machine or loading do not follow there; intervals are wider for it, but another model may give other numbers"
+            )
+
+
+def _scatter(study: Inference, name: str) -> float:
+    """Return the standard deviation of what was measured (SI)."""
+    values = [part.record.measured[name] for part in study.model.parts if name in part.observed]
+    return max(float(np.nanstd(np.concatenate(values))), 1e-300)
+
+
+def _drifts(study: Inference, name: str) -> bool:
+    """Return True if what is left of a quantity remembers itself for as long as is looked for."""
+    longest = max(part.record.clock[-1] for part in study.model.parts if name in part.observed)
+    return study.model.memory.get(name, WHITE).time > 0.95 * LONGEST * float(longest)
 
 
 def _never_slips(study: Inference, name: str) -> bool:
