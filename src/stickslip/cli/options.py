@@ -76,9 +76,13 @@ def complete_fitted(incomplete: str) -> list[str]:
     return found
 
 
+TABLES = (".csv", ".txt", ".tsv", ".dat")
+"""How the names of tables of numbers end."""
+
+
 def complete_table(incomplete: str) -> list[str]:
     """Return the CSV files and folders that begin with what is typed."""
-    return _files(incomplete, (".csv", ".txt", ".tsv", ".dat"))
+    return _files(incomplete, TABLES)
 
 
 def complete_scenario(incomplete: str) -> list[str]:

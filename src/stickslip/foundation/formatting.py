@@ -113,3 +113,9 @@ def html_table(caption: str, rows: Iterable[Sequence[object]], heading: Sequence
 def clean(text: str) -> str:
     """Return a text of a scenario with spaces in place of control characters, which could change the terminal."""
     return "".join(letter if letter.isprintable() else " " for letter in text)
+
+
+def sentence(text: str) -> str:
+    """Return a text as a sentence; a name at its begin, as friction.a, keeps its small letter, so that it can be pasted back."""
+    first = text if "." in text.split(maxsplit=1)[0].rstrip(".") else text[:1].upper() + text[1:]
+    return first if first[-1] in ".?!" else f"{first}."

@@ -11,7 +11,7 @@ import numpy as np
 
 import stickslip as ss
 from stickslip.figures.studies import inference as figures
-from stickslip.foundation.formatting import about_time, number
+from stickslip.foundation.formatting import about_time, number, sentence
 from stickslip.reports.page import DIGITS, picture, rendered, save_figure, save_text, superscript, with_unit
 from stickslip.studies.inference.infer import ranking
 from stickslip.studies.inference.inference import Inference
@@ -45,7 +45,7 @@ def write(study: Inference, folder: Path, *others: Inference) -> Path:
         body=study.best.body.kind,
         warnings=list(warnings_of(study)),
         known=list(_known(study)),
-        about=[_sentence(text) for text in (*record_of(study), *study.about_samples, *study.about)],
+        about=[sentence(text) for text in (*record_of(study), *study.about_samples, *study.about)],
         tables=[table for table in (_numbers(study, own=False), _numbers(study, own=True)) if table],
         fit=_fit(study),
         prediction=None if study.prediction is None else number(study.prediction, 3),
@@ -96,7 +96,7 @@ def _known(study: Inference) -> Iterator[str]:
     named = [f"{name} ({_share(table.loc[name])})" for name in shared if name in sure]
     if named:
         yield f"The record determines {_listed(named)}; in brackets half the interval of 95 %."
-    yield from (_sentence(note) for note in (*study.certainty.notes, *minima_of(study), *noise_of(study)))
+    yield from (sentence(note) for note in (*study.certainty.notes, *minima_of(study), *noise_of(study)))
 
 
 def _share(row: Any) -> str:
@@ -109,12 +109,6 @@ def _share(row: Any) -> str:
 
 def _listed(texts: list[str]) -> str:
     return texts[0] if len(texts) == 1 else f"{', '.join(texts[:-1])} and {texts[-1]}"
-
-
-def _sentence(text: str) -> str:
-    """Return a note as a sentence; names of numbers at its begin stay in lower case."""
-    first = text if "." in text.split(maxsplit=1)[0] else text[:1].upper() + text[1:]
-    return first if first.endswith("?") else f"{first.rstrip('.')}."
 
 
 def _numbers(study: Inference, *, own: bool) -> list[list[str]]:

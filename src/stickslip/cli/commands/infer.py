@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from stickslip.cli.options import ACCURACY, RESULTS, Changes, Dpi, FigureFile, ScenarioName, Size, complete_table, option
+from stickslip.cli.options import ACCURACY, RESULTS, TABLES, Changes, Dpi, FigureFile, ScenarioName, Size, complete_table, option
 from stickslip.cli.output.files import Look, Target, announce, check_folder, check_targets, drawing, write_files
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
+    from stickslip.scenarios.scenario import Scenario
     from stickslip.studies.inference.inference import Inference
 
 FREE = 'The numbers to find, with commas: "a,b,body.stiffness".'
@@ -22,6 +23,7 @@ PRIOR = 'What is known before: "friction.a=normal(0.01, 0.002)"; lognormal and u
 BOUND = 'Limits of a number: "friction.a=0.001..0.1".'
 COMPARE = "Another scenario, to compare what both predict of the part left out; may be repeated."
 COMPARE_FREE = "The free numbers of the scenarios of --compare; by default those of --free that they have."
+WEIGHT = "More weight for samples soon after a change of the pull rate: exponent p of (n/j)^p, as in RSFit3000."
 SEARCH = "The search"
 
 
@@ -44,6 +46,8 @@ def infer(
     bound: Annotated[list[str] | None, option(BOUND, panel=SEARCH)] = None,
     prior: Annotated[list[str] | None, option(PRIOR, panel=SEARCH)] = None,
     begin_at: Annotated[list[str] | None, option("Where the search for a number begins: NAME=VALUE.", panel=SEARCH)] = None,
+    weight: Annotated[float, typer.Option(help=WEIGHT, rich_help_panel=SEARCH)] = 0.0,
+    windows: Annotated[bool, typer.Option("--windows", help="Fit shorter parts of the record, too, and tell the spread.")] = False,
     loss: Annotated[str, typer.Option(help="linear; soft_l1, huber or cauchy for outliers.", rich_help_panel=SEARCH)] = "linear",
     starts: Annotated[int, typer.Option(help="How many starts the search has.", rich_help_panel=SEARCH)] = 4,
     seed: Annotated[int, typer.Option(help="Seed of starts and samples.", rich_help_panel=SEARCH)] = 0,
@@ -83,7 +87,8 @@ def infer(
 
     After Ctrl-C the command shows and saves the best numbers so far.
 
-    Exit code: 0 done, 2 unusable input, 130 interrupted.
+    Exit code: 0 done, 1 the record determines none of the numbers,
+    2 unusable input, 130 interrupted.
     """
     from stickslip.cli.output.studies import show_inference, show_ranking
     from stickslip.cli.overrides import load
@@ -103,25 +108,20 @@ def infer(
         "loss": loss,
         "starts": starts,
     }
+    options |= {"weight": weight, "windows": windows}
     options |= {"each": each and each.split(","), "seed": seed, "profiles": profiles, "samples": samples, "rtol": rtol}
     options |= {"held_out": _typed(held_out), "begin": _typed(begin), "end": _typed(end)}
     options |= {"bounds": _bounds(bound), "priors": _values(prior, "--prior"), "begin_at": _values(begin_at, "--begin-at")}
+    if scenario.lower().endswith(TABLES) and data[0].lower().endswith(".toml"):
+        raise InputError(f"infer: the scenario comes first, and then the data: stickslip infer {data[0]} {scenario} ...")
+    if compare and held_out is None:
+        raise InputError("infer: --compare needs --held-out, the part of the record that is predicted")
     chosen = load(scenario, "infer", changes)
+    compared = [(one, _free_of(name, one, compare_free or free)) for name in compare or () for one in (load(name, "infer"),)]
     found = _inferred(chosen, data, free, options)
     show_inference(chosen, found)
-    others: list[Inference] = []
-    if compare:
-        if found.prediction is None:
-            raise InputError("infer: --compare needs --held-out, the part of the record that is predicted")
-        others = [
-            _inferred(
-                load(name, "infer"),
-                data,
-                _free_of(name, compare_free or free),
-                options | {"priors": None, "bounds": None, "begin_at": None},
-            )
-            for name in compare
-        ]
+    others = [_inferred(one, data, names, options | dict.fromkeys(("priors", "bounds", "begin_at"))) for one, names in compared]
+    if others:
         show_ranking(found, *others)
     save = found.to_netcdf if out is not None and out.suffix.lower() == ".nc" else found.to_csv
     announce(*write_files((out, save), (scenario_out, found.to_toml), (figure, drawing(found.plot, look))))
@@ -129,30 +129,35 @@ def infer(
         announce(found.report(report, *others))
     if not found.estimate.finished:
         raise KeyboardInterrupt
+    if not found.determined:
+        raise typer.Exit(1)
 
 
 def _inferred(scenario: Any, data: list[str], free: str, options: dict[str, Any]) -> Inference:
+    from stickslip.cli.output.studies import as_options
     from stickslip.run.progress import progress_line
     from stickslip.studies.inference.infer import infer as study
 
     with progress_line(f"{scenario.name}:") as report:
-        return study(scenario, data, free, progress=report, **options)
+        try:
+            return study(scenario, data, free, progress=report, **options)
+        except InputError as error:
+            raise InputError(as_options(str(error))) from None
 
 
-def _free_of(scenario: str, free: str) -> str:
+def _free_of(name: str, scenario: Scenario, free: str) -> str:
     """Return those of the free numbers that another scenario has. Raises InputError if it has none."""
-    from stickslip.cli.overrides import load
     from stickslip.foundation.errors import full_name
     from stickslip.studies.inference.free import known_numbers
 
-    known, found = known_numbers(load(scenario, "infer").problem, {}), []
-    for name in (one.strip() for one in free.split(",")):
+    known, found = known_numbers(scenario.problem, {}), []
+    for one in free.split(","):
         try:
-            found.append(full_name(name, known, "", ""))
+            found.append(full_name(one.strip(), known, "", ""))
         except InputError:
             continue
     if not found:
-        raise InputError(f"infer: --compare {scenario}: has none of the numbers of --free: name its own with --compare-free")
+        raise InputError(f"infer: --compare {name}: has none of the numbers of --free: name its own with --compare-free")
     return ",".join(found)
 
 

@@ -10,7 +10,7 @@ import sys
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from stickslip.foundation.formatting import clean
+from stickslip.foundation.formatting import clean, sentence
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -60,7 +60,7 @@ def titled(scenario: Scenario) -> Console:
 
 def print_sentences(screen: Console, *texts: str) -> None:
     """Print texts as sentences, each on a line of its own; empty ones are left out."""
-    say(screen, *(f"{text[0].upper()}{text[1:]}{'' if text[-1] in '?!' else '.'}" for text in texts if text))
+    say(screen, *(sentence(text) for text in texts if text))
 
 
 def print_numbers(screen: Console, headings: Sequence[str], rows: Rows, *, text: int = 0) -> None:

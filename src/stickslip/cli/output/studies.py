@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Hashable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -24,6 +25,10 @@ if TYPE_CHECKING:
 
 FIRST = 12
 """Number of events of an ensemble that are shown: the first ones, or those around the first event at which members differ."""
+_ARGUMENT = re.compile(
+    r"\b(by|each|held_out|loss|observe|parts|profiles|samples|sensor|start|starts|weight|windows)='?([\w.]*\w)'?"
+)
+"""An argument of `infer` as messages name it, with its value."""
 
 
 def show_comparison(found: Comparison) -> None:
@@ -147,7 +152,14 @@ def show_inference(scenario: Scenario, found: Inference) -> None:
     say(screen, clean(f"{found.headline}\n"))
     print_words(screen, ("", "value", "unit and interval"), found.rows)
     screen.print()
-    print_sentences(screen, *(clean(note) for note in found.notes))
+    if not found.determined:
+        print_sentences(screen, "the record determines none of these numbers")
+    print_sentences(screen, *(as_options(clean(note)) for note in found.notes))
+
+
+def as_options(text: str) -> str:
+    """Return a text in which an argument of `infer` in Python, such as held_out=0.3, is the option of the command line."""
+    return _ARGUMENT.sub(lambda one: f"--{one[1].replace('_', '-')}{'' if one[2] == 'True' else ' ' + one[2]}", text)
 
 
 def show_ranking(*found: Inference) -> None:

@@ -113,6 +113,11 @@ class Inference(Study):
         return pd.DataFrame(columns)
 
     @property
+    def determined(self) -> bool:
+        """True if the record determines at least one of the numbers."""
+        return bool(np.isfinite(self.certainty.widths).any()) or not self.estimate.finished
+
+    @property
     def correlation(self) -> pd.DataFrame:
         """Correlations of the searched numbers, which are logarithms where numbers are positive; NaN if not determined."""
         labels = [one.label for one in self.free]
