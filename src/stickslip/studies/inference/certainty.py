@@ -16,7 +16,7 @@ from stickslip.foundation.formatting import brief
 from stickslip.studies.inference.directions import IDLE, better_known, null_directions, told, without
 from stickslip.studies.inference.estimate import Estimate, pieces_of
 from stickslip.studies.inference.free import Free
-from stickslip.studies.inference.memory import WHITE, spread_by, spreads_of, unevenness
+from stickslip.studies.inference.memory import WHITE, Unevenness, spread_by, spreads_of, unevenness
 from stickslip.studies.inference.model import FAILED, Model
 from stickslip.studies.inference.noise import cost_of, weights
 from stickslip.studies.inference.search import Tell
@@ -49,7 +49,7 @@ class Certainty:
     infinite where the record does not determine a number, 0 on a bound; `factor` times that is half the width of an interval of 95
     %. `excess` is the factor by which each is larger than white noise of the same size would make it. `notes` are sentences on what
     is not determined, `slopes` derivatives of the residuals with respect to the searched numbers, and `uneven` says of each
-    quantity how many times larger residuals are where the run depends most on its numbers, 1 if chance explains it.
+    quantity how many times larger residuals are where the run depends most on its numbers.
     """
 
     covariance: Floats
@@ -59,7 +59,7 @@ class Certainty:
     notes: tuple[str, ...]
     slopes: Floats
     excess: Floats
-    uneven: Mapping[str, float] = field(default_factory=dict)
+    uneven: Mapping[str, Unevenness] = field(default_factory=dict)
     factor: float = NORMAL
 
 
@@ -87,7 +87,7 @@ def certainty_of(found: Estimate) -> Certainty:
     idle = np.linalg.norm(slopes, axis=0) < IDLE
     on_bound = ~idle & ((x - low < AT_BOUND) | (high - x < AT_BOUND))
     inner = np.flatnonzero(~on_bound & ~idle)
-    covariance, excess, uneven = np.zeros((len(x), len(x))), np.ones(len(x)), dict[str, float]()
+    covariance, excess, uneven = np.zeros((len(x), len(x))), np.ones(len(x)), dict[str, Unevenness]()
     moves = null_directions(model, x, slopes[:, inner], inner) if len(inner) else np.zeros((0, 0))
     if len(inner):
         seen = without(slopes[:, inner], moves)
@@ -107,7 +107,7 @@ def certainty_of(found: Estimate) -> Certainty:
     return Certainty(covariance, widths, correlation, on_bound, tuple(notes), slopes, excess, uneven)
 
 
-def _covariance(model: Model, residual: Floats, slopes: Floats, variance: float) -> tuple[Floats, dict[str, float]]:
+def _covariance(model: Model, residual: Floats, slopes: Floats, variance: float) -> tuple[Floats, dict[str, Unevenness]]:
     """Return the covariance of some searched numbers from what is left, and how uneven the residuals of each quantity are.
 
     `slopes` are the derivatives of the residuals with respect to these numbers, all of which the record determines, and `variance`
@@ -115,7 +115,7 @@ def _covariance(model: Model, residual: Floats, slopes: Floats, variance: float)
     """
     from scipy.stats import t as student
 
-    uneven = dict[str, float]()
+    uneven = dict[str, Unevenness]()
     sizes = np.linalg.norm(slopes, axis=0)
     influence = (np.linalg.pinv(slopes / sizes, rcond=DETERMINED) / sizes[:, None]).T
     factor = math.sqrt(variance) * float(student.ppf(HALF, max(model.independent - len(sizes), FEWEST))) / NORMAL
@@ -128,7 +128,7 @@ def _covariance(model: Model, residual: Floats, slopes: Floats, variance: float)
         memory = model.memory.get(name, WHITE)
         noise, uneven[name] = spread_by(shares, memory, blocks), unevenness(rest, by, memory, blocks)
         total = total + noise
-        if memory.time > 0.0 or uneven[name] > 1.0:
+        if memory.time > 0.0 or uneven[name].found > 1.0:
             seen = np.max([np.diag(one) for one in spreads_of(shares, rest, blocks)], axis=0)
             more += np.maximum(seen - np.diag(noise), 0.0)
     wider = factor * np.sqrt(1.0 + more / np.diag(total))

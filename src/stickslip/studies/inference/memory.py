@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
+from stickslip.studies.inference.noise import noise_of
 
 FORGOTTEN = 0.02
 """Correlation of neighbouring samples below which noise counts as white."""
@@ -19,10 +20,10 @@ UNSEEN = 1e-9
 """Eigenvalue of the normal matrix, whose diagonal is 1, below which a combination is not determined."""
 LONGEST = 1.0 / 8.0
 """Longest time of correlation that is looked for, as a share of the longest part of a record: what lasts longer is a misfit."""
-COARSER, MOST_BINS = 4, 64
-"""Factor between numbers of samples over which residuals are averaged, and least number of such means."""
-RESOLVED, LONGER = 2.0, 2.0
-"""Number of means within the time of correlation from which it counts as found, and factor by which it must be longer."""
+MOST = 4000
+"""Largest number of samples from which the memory is estimated: of more, means over neighbours are taken."""
+TIMES, SHARES = (2.0, 8.0, 32.0, 128.0), (0.05, 0.5, 0.9)
+"""Times of correlation, in samples, and shares of white noise at which the search for both begins."""
 SPREAD = 8
 """Share of a block, 1/SPREAD, up to which sums of neighbouring samples are compared with chance."""
 CHANCE = 1e-4
@@ -73,21 +74,62 @@ def memory_of(residual: Floats, slopes: Floats, blocks: Sequence[Block]) -> Memo
 
     `slopes` are the derivatives of the residuals with respect to the parameters that were fitted, shape (n, p): what the fit took
     from the noise is allowed for (Patterson & Thompson 1971, Biometrika 58, 545). The noise is white, with another on top whose
-    correlation falls as exp(-dt/time): means over more and more samples show it below the white one.
+    correlation falls as exp(-dt/time).
     """
+    from scipy.optimize import minimize
+
+    width = -(-len(residual) // MOST)
+    if width > 1:
+        residual, slopes, blocks = _means(residual, slopes, blocks, width)
     slopes = independent_columns(slopes)
-    total, width = rms(residual, slopes), 1
-    found = Memory(0.0, 0.0, total)
-    while True:
-        rest, by, binned = (residual, slopes, blocks) if width == 1 else _means(residual, slopes, blocks, width)
-        if len(rest) < max(MOST_BINS if width > 1 else 0, slopes.shape[1] + 10):
-            return found
-        time, size = _correlation(rest, by, binned)
-        step = float(np.median(np.concatenate([np.diff(one.time) for one in binned])))
-        if time > LONGER * found.time and (width == 1 or time > RESOLVED * step):
-            slow = max(size**2 - total**2 / width, 0.0) * width / (width - 1.0) if width > 1 else size**2
-            found = Memory(time, math.sqrt(slow), math.sqrt(max(total**2 - slow, 0.0)) if width > 1 else 0.0)
-        width *= COARSER
+    n, p = slopes.shape
+    white = rms(residual, slopes)
+    steps = np.concatenate([np.diff(time) for _, time in blocks]) if blocks else np.zeros(0)
+    alone = Memory(0.0, 0.0, white * math.sqrt(width))
+    if n < p + 10 or not len(steps) or white == 0.0:
+        return alone
+    usual, longest = float(np.median(steps)), LONGEST * max(float(np.ptp(time)) for _, time in blocks)
+    shortest = usual / -math.log(FORGOTTEN)
+    if longest <= shortest:
+        return alone
+
+    def criterion(x: Floats) -> float:
+        return _restricted(residual, slopes, blocks, math.exp(x[0]), float(x[1]))[0]
+
+    bounds = [(math.log(shortest), math.log(longest)), (0.0, 0.99)]
+    starts = [(math.log(min(max(time * usual, shortest), longest)), share) for time in TIMES for share in SHARES]
+    begin = min(starts, key=lambda x: criterion(np.array(x)))
+    found = minimize(criterion, begin, method="Nelder-Mead", bounds=bounds, options={"xatol": 0.02, "fatol": 0.05, "maxfev": 80})
+    if found.fun > 2.0 * (n - p) * math.log(white) - 2.0 * math.log(n):
+        return alone
+    time, share = math.exp(found.x[0]), float(found.x[1])
+    size = _restricted(residual, slopes, blocks, time, share)[1]
+    return Memory(time, size * math.sqrt(1.0 - share), size * math.sqrt(share * width))
+
+
+def _restricted(residual: Floats, slopes: Floats, blocks: Sequence[Block], time: float, share: float) -> tuple[float, float]:
+    """Return twice the negative logarithm of the restricted likelihood, but for a constant, and the size of the noise.
+
+    `slopes` have unit length and are at right angles, so that white noise has the criterion 2 (n - p) log(size). The noise is white
+    to a `share`; the rest, of covariance A, has a tridiagonal inverse T: ((1 - share) A + share)^-1 is ((1 - share) + share T)^-1 T.
+    """
+    from scipy.linalg import cho_solve_banded, cholesky_banded
+
+    rho = np.concatenate([np.append(np.exp(-np.diff(times) / time), 0.0) for _, times in blocks])[:-1]
+    left = rho / (1.0 - rho**2)
+    diagonal = 1.0 + np.append(0.0, left * rho) + np.append(left * rho, 0.0)
+    values = np.column_stack([residual, slopes])
+    after = diagonal[:, None] * values
+    after[1:] -= left[:, None] * values[:-1]
+    after[:-1] -= left[:, None] * values[1:]
+    root = cholesky_banded(np.vstack([np.append(0.0, -share * left), 1.0 - share + share * diagonal]))
+    square = values.T @ cho_solve_banded((root, False), after)
+    log_det = 2.0 * float(np.sum(np.log(root[1]))) + float(np.sum(np.log1p(-(rho**2))))
+    n, p = slopes.shape
+    inner = square[1:, 1:]
+    total = float(square[0, 0] - square[0, 1:] @ np.linalg.solve(inner, square[1:, 0])) if p else float(square[0, 0])
+    total = max(total, 1e-300)
+    return (n - p) * math.log(total / (n - p)) + log_det + float(np.linalg.slogdet(inner)[1]), math.sqrt(total / (n - p))
 
 
 def _means(residual: Floats, slopes: Floats, blocks: Sequence[Block], width: int) -> tuple[Floats, Floats, list[Block]]:
@@ -95,55 +137,12 @@ def _means(residual: Floats, slopes: Floats, blocks: Sequence[Block], width: int
     rests, by, found, count = [residual[:0]], [slopes[:0]], list[Block](), 0
     for rows, time in blocks:
         n = len(time) // width
-        if n < 2:
-            continue
         end = rows.start + n * width
         rests.append(residual[rows.start : end].reshape(n, width).mean(axis=1))
-        by.append(slopes[rows.start : end].reshape(n, width, -1).mean(axis=1))
+        by.append(slopes[rows.start : end].reshape(n, width, slopes.shape[1]).mean(axis=1))
         found.append(Block(slice(count, count + n), time[: n * width].reshape(n, width).mean(axis=1)))
         count += n
-    return np.concatenate(rests), np.concatenate(by), found
-
-
-def _correlation(residual: Floats, slopes: Floats, blocks: Sequence[Block]) -> tuple[float, float]:
-    """Return the time of correlation of first-order autoregressive noise, 0 if white noise explains it as well, and its size."""
-    from scipy.optimize import minimize_scalar
-
-    n, p = slopes.shape
-    steps = np.concatenate([np.diff(time) for _, time in blocks])
-    usual, longest = float(np.median(steps)), LONGEST * max(float(np.ptp(time)) for _, time in blocks)
-
-    def criterion(log_time: float) -> float:
-        time = math.exp(log_time)
-        white, by = whitened(residual, blocks, time), whitened(slopes, blocks, time)
-        size, log_det = _size_and_determinant(white, by)
-        spread = sum(float(np.sum(np.log1p(-np.exp(-2.0 * np.diff(one) / time)))) for _, one in blocks)
-        return float(2.0 * (n - p) * math.log(max(size, 1e-300)) + spread + log_det)
-
-    size, log_det = _size_and_determinant(residual, slopes)
-    white = 2.0 * (n - p) * math.log(max(size, 1e-300)) + log_det
-    shortest = usual / -math.log(FORGOTTEN)
-    if longest <= shortest:
-        return 0.0, size
-    found = minimize_scalar(criterion, bounds=(math.log(shortest), math.log(longest)), method="bounded", options={"xatol": 0.01})
-    if found.fun > white - math.log(n):
-        return 0.0, size
-    time = math.exp(found.x)
-    return time, rms(whitened(residual, blocks, time), whitened(slopes, blocks, time))
-
-
-def whitened(residual: Floats, blocks: Sequence[Block], time: float) -> Floats:
-    """Return residuals, or derivatives of residuals, less what the sample before tells of each.
-
-    They are those of a first-order autoregressive noise whose correlation falls as exp(-dt/time), of variance 1 before and after.
-    """
-    result = residual.copy()
-    for rows, times in blocks:
-        rho = np.exp(-np.diff(times) / time)
-        rho = rho[:, None] if residual.ndim == 2 else rho
-        part = residual[rows]
-        result[rows][1:] = (part[1:] - rho * part[:-1]) / np.sqrt(1.0 - rho**2)
-    return result
+    return np.concatenate(rests), np.concatenate(by), [one for one in found if len(one.time)]
 
 
 def independent_columns(slopes: Floats) -> Floats:
@@ -155,23 +154,9 @@ def independent_columns(slopes: Floats) -> Floats:
 
 def rms(residual: Floats, slopes: Floats) -> float:
     """Return the size of residuals after a linear fit of the parameters, whose derivatives are `slopes`."""
-    return _size_and_determinant(residual, slopes)[0]
-
-
-def _size_and_determinant(residual: Floats, slopes: Floats) -> tuple[float, float]:
-    """Return the size of residuals after a linear fit of the parameters, and the logarithm of the normal matrix's determinant."""
-    n = len(residual)
-    total = float(residual @ residual)
-    sizes = np.linalg.norm(slopes, axis=0)
-    used = slopes[:, sizes > 0.0] / sizes[sizes > 0.0]
-    if not used.shape[1]:
-        return math.sqrt(total / max(n, 1)), 0.0
-    spectrum, vectors = np.linalg.eigh(used.T @ used)
-    seen = spectrum > UNSEEN
-    along = vectors[:, seen].T @ (used.T @ residual)
-    taken = float(np.sum(along**2 / spectrum[seen]))
-    log_det = float(np.sum(np.log(np.maximum(spectrum, UNSEEN)))) + 2.0 * float(np.sum(np.log(sizes[sizes > 0.0])))
-    return math.sqrt(max(total - taken, 0.0) / max(n - used.shape[1], 1)), log_det
+    used = independent_columns(slopes)
+    along = used.T @ residual
+    return math.sqrt(max(float(residual @ residual - along @ along), 0.0) / max(len(residual) - used.shape[1], 1))
 
 
 def spread_by(influence: Floats, memory: Memory, blocks: Sequence[Block]) -> Floats:
@@ -213,8 +198,21 @@ def spreads_of(influence: Floats, residual: Floats, blocks: Sequence[Block]) -> 
     return found
 
 
-def unevenness(residual: Floats, slopes: Floats, memory: Memory, blocks: Sequence[Block]) -> float:
-    """Return how many times larger residuals are where the run depends most on its numbers than elsewhere; 1 if chance explains it.
+class Unevenness(NamedTuple):
+    """How many times larger residuals are where a run depends most on its numbers than elsewhere; 1 if chance explains it.
+
+    `misfit` is the part of it that noise, which differs from sample to sample, does not explain.
+    """
+
+    found: float
+    misfit: float
+
+
+EVEN = Unevenness(1.0, 1.0)
+
+
+def unevenness(residual: Floats, slopes: Floats, memory: Memory, blocks: Sequence[Block]) -> Unevenness:
+    """Return how uneven residuals are; `slopes` are their derivatives with respect to the numbers, shape (n, p).
 
     Noise does not know where the run changes; what the law, the loading or the machine cannot follow does.
     """
@@ -222,13 +220,14 @@ def unevenness(residual: Floats, slopes: Floats, memory: Memory, blocks: Sequenc
 
     columns = independent_columns(slopes)
     if not columns.shape[1] or len(residual) < 4 * columns.shape[1] + 20:
-        return 1.0
+        return EVEN
     leverage = np.sum(columns**2, axis=1)
     order = np.argsort(leverage)[::-1]
-    active = order[: int(np.searchsorted(np.cumsum(leverage[order]), ACTIVE * leverage.sum())) + 1]
-    rest = np.delete(residual, active)
+    last = int(np.searchsorted(np.cumsum(leverage[order]), ACTIVE * leverage.sum())) + 1
+    active, rest = residual[np.sort(order[:last])], residual[np.sort(order[last:])]
     share = sum(independent(time, memory) for _, time in blocks) / len(residual)
     freedom = [max(1.0, share * len(one)) for one in (active, rest)]
-    quiet = float(np.mean(rest**2))
-    ratio = float(np.mean(residual[active] ** 2)) / quiet if quiet > 0.0 else 1.0
-    return math.sqrt(ratio) if ratio > 1.0 and float(f.sf(ratio, *freedom)) < CHANCE else 1.0
+    quiet, noise = float(np.mean(rest**2)), max(noise_of(rest), 1e-300)
+    ratio = float(np.mean(active**2)) / quiet if quiet > 0.0 else 1.0
+    net = ratio / max((noise_of(active) / noise) ** 2, 1.0)
+    return Unevenness(*(math.sqrt(one) if one > 1.0 and float(f.sf(one, *freedom)) < CHANCE else 1.0 for one in (ratio, net)))

@@ -11,7 +11,8 @@ import numpy as np
 from stickslip.foundation.formatting import brief
 from stickslip.studies.inference.features import arrests_in
 from stickslip.studies.inference.free import DELAY, TREND
-from stickslip.studies.inference.memory import LONGEST, WHITE
+from stickslip.studies.inference.memory import EVEN, LONGEST, WHITE
+from stickslip.studies.inference.noise import rounding_of
 from stickslip.studies.inference.part import first_sizes
 from stickslip.studies.inference.record import SHEAR
 from stickslip.studies.inference.windows import told
@@ -109,7 +110,7 @@ def _misfit(study: Inference) -> Iterator[str]:
                 f"what is left of {name} is no noise but a drift or a misfit: it remembers itself for more than an eighth of the "
                 "record; a trend can be free as record.trend, or another law may follow"
             )
-        if (times := study.certainty.uneven.get(name, 1.0)) > 1.0:
+        if (times := study.certainty.uneven.get(name, EVEN).misfit) > 1.0 and size > _rounding(study, name):
             yield (
                 f"what is left of {name} is {times:.2g} times larger where the run depends most on its numbers than elsewhere: "
                 "law, machine or loading do not follow there; intervals are wider for it, but another model may give other numbers"
@@ -120,6 +121,11 @@ def _scatter(study: Inference, name: str) -> float:
     """Return the standard deviation of what was measured (SI)."""
     values = [part.record.measured[name] for part in study.model.parts if name in part.observed]
     return max(float(np.nanstd(np.concatenate(values))), 1e-300)
+
+
+def _rounding(study: Inference, name: str) -> float:
+    """Return half the step of the digitiser of a quantity (SI), 0 if it has none that shows."""
+    return max(rounding_of(part.record.measured[name]) for part in study.model.parts if name in part.observed)
 
 
 def _drifts(study: Inference, name: str) -> bool:
