@@ -119,13 +119,23 @@ def outliers(random: np.random.Generator) -> Floats:
     return white(1e-4)(random) + np.where(random.random(len(CLOCK)) < 0.005, 4e-3, 0.0)
 
 
+def uneven(random: np.random.Generator) -> Floats:
+    """Return friction with noise that is four times larger after the step."""
+    return friction(TRUTH) + 1e-4 * np.where(CLOCK < AT, 1.0, 4.0) * random.standard_normal(len(CLOCK))
+
+
+def ramp(random: np.random.Generator) -> Floats:
+    """Return the load point of a ramp as a digitiser writes it (m)."""
+    return digitised(moved(RAMPED) + 2e-8 * random.standard_normal(len(CLOCK)), 7.65e-8)
+
+
 RAMPED, SERVOED = replace(TRUTH, pull_rate=RAMP), replace(TRUTH, pull_rate=servo(AT, 0.05))
 LATE = replace(TRUTH, pull_rate=Steps([0.0, AT + 0.008], [SLOW, FAST]))
 CASES = (
     Case("white noise", white(1e-4)),
     Case("noise that remembers itself for 50 ms", lambda r: friction(TRUTH) + remembering(r, 50.0, 3e-4)),
     Case("the same, and white noise", lambda r: white(2e-4)(r) + remembering(r, 50.0, 2e-4)),
-    Case("noise four times larger after the step", lambda r: friction(TRUTH) + 1e-4 * np.where(CLOCK < AT, 1.0, 4.0) * r.standard_normal(len(CLOCK))),
+    Case("noise four times larger after the step", uneven),
     Case("hum of 50 Hz", lambda r: white(5e-5)(r) + 2e-4 * np.sin(2.0 * np.pi * (50.0 * CLOCK + r.random()))),
     Case("shear in steps of 0.0005", lambda r: digitised(white(1e-4)(r), 5e-4)),
     Case("one sample of 200 far off, robust loss", outliers, options={"loss": "soft_l1"}),
@@ -133,7 +143,7 @@ CASES = (
     Case("servo of 50 ms, fitted as a step", with_noise(SERVOED), means=False),
     Case("servo of 50 ms, its time free", with_noise(SERVOED), free=(*FREE, "record.servo")),
     Case("ramp of 55 ms, fitted as a step", with_noise(RAMPED), means=False),
-    Case("ramp of 55 ms, from a load point in steps of 0.0765 um", with_noise(RAMPED), load_point=lambda r: digitised(moved(RAMPED) + 2e-8 * r.standard_normal(len(CLOCK)), 7.65e-8)),
+    Case("ramp of 55 ms, from a load point in steps of 0.0765 um", with_noise(RAMPED), load_point=ramp),
     Case("step 8 ms late, fitted as given", with_noise(LATE), means=False),
     Case("step 8 ms late, the delay free", with_noise(LATE), free=(*FREE, "record.delay")),
     Case("a second state, fitted with one", with_noise(replace(TRUTH, friction=TWO)), means=False),
@@ -176,7 +186,8 @@ def tried(case: Case, seeds: int) -> str:
         for name, value in MEANING.items():
             held[name] += study.table.low[name] <= value <= study.table.high[name]
     shares = " ".join(f"{100.0 * count / seeds:4.0f}" for count in held.values())
-    return f"{case.name:<56} {max(ratios):6.3f} {np.median(times):6.1f}   {shares}   {words:3d} of {seeds}  {'' if case.means else 'other'}"
+    told = f"{words:3d} of {seeds}  {'' if case.means else 'other'}"
+    return f"{case.name:<56} {max(ratios):6.3f} {np.median(times):6.1f}   {shares}   {told}"
 
 
 def main() -> None:
@@ -185,9 +196,9 @@ def main() -> None:
     parser.add_argument("--coverage", type=int, default=2, help="records of each kind")
     parser.add_argument("--only", default="", help="kinds whose name has this text")
     asked = parser.parse_args()
-    print(f"{'imperfection':<56} {'rms':>6} {'time':>6}   {'coverage of a b Dc mu0, %'}   words     meaning")
+    print(f"{'imperfection':<56} {'rms':>6} {'time':>6}   {'coverage of a b Dc mu0, %'}   words     meaning")  # noqa: T201
     for case in (one for one in CASES if asked.only in one.name):
-        print(tried(case, asked.coverage), flush=True)
+        print(tried(case, asked.coverage), flush=True)  # noqa: T201
 
 
 if __name__ == "__main__":

@@ -16,8 +16,8 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.solution.solution import Solution
 from stickslip.studies.inference.features import FEATURES, LEVELS, Samples, features_in
+from stickslip.studies.inference.memory import Block
 from stickslip.studies.inference.model import FAILED, JUMPING, LARGEST, Model, measured, unit_of
-from stickslip.studies.inference.noise import Block
 from stickslip.studies.inference.part import Part
 from stickslip.studies.inference.record import Record
 

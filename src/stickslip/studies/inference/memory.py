@@ -12,7 +12,6 @@ from typing import NamedTuple
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
-from stickslip.studies.inference.noise import noise_of
 
 FORGOTTEN = 0.02
 """Correlation of neighbouring samples below which noise counts as white."""
@@ -111,7 +110,7 @@ def _restricted(residual: Floats, slopes: Floats, blocks: Sequence[Block], time:
     """Return twice the negative logarithm of the restricted likelihood, but for a constant, and the size of the noise.
 
     `slopes` have unit length and are at right angles, so that white noise has the criterion 2 (n - p) log(size). The noise is white
-    to a `share`; the rest, of covariance A, has a tridiagonal inverse T: ((1 - share) A + share)^-1 is ((1 - share) + share T)^-1 T.
+    to a `share`, w; the rest, of covariance A, has a tridiagonal inverse T, and ((1 - w) A + w)^-1 is ((1 - w) + w T)^-1 T.
     """
     from scipy.linalg import cho_solve_banded, cholesky_banded
 
@@ -227,7 +226,7 @@ def unevenness(residual: Floats, slopes: Floats, memory: Memory, blocks: Sequenc
     active, rest = residual[np.sort(order[:last])], residual[np.sort(order[last:])]
     share = sum(independent(time, memory) for _, time in blocks) / len(residual)
     freedom = [max(1.0, share * len(one)) for one in (active, rest)]
-    quiet, noise = float(np.mean(rest**2)), max(noise_of(rest), 1e-300)
-    ratio = float(np.mean(active**2)) / quiet if quiet > 0.0 else 1.0
-    net = ratio / max((noise_of(active) / noise) ** 2, 1.0)
+    quiet, noise = max(float(np.mean(rest**2)), 1e-300), max(float(np.mean(np.diff(rest, 2) ** 2)), 1e-300)
+    ratio = float(np.mean(active**2)) / quiet
+    net = ratio / max(float(np.mean(np.diff(active, 2) ** 2)) / noise, 1.0)  # what differs from sample to sample is no misfit
     return Unevenness(*(math.sqrt(one) if one > 1.0 and float(f.sf(one, *freedom)) < CHANCE else 1.0 for one in (ratio, net)))
