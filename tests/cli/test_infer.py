@@ -9,6 +9,7 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
+from stickslip.cli.output.studies import as_options
 from tests.studies.laboratory import RateAndStateBlock, correlated, load_point
 
 TIMES, RATES = [0.0, 60.0, 100.0], [1e-6, 1e-5, 1e-6]
@@ -54,6 +55,10 @@ def test_priors_bounds_and_begins_are_read(command):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
+        (["--free", "a", "--compare", "b.toml", "--held-out", "0.3"], "b.toml: no such file"),
+        (["--free", "a", "--compare", "fig6-slab"], "infer: --compare needs --held-out"),
+        (["--free", "a", "--parts", "rests", "--by", "features"], "infer: --by features and --parts rests are two ways"),
+        (["--free", "a", "--weight", "-1"], "infer: weight must be at least 0"),
         (["--free", "alpha"], "infer: free: 'alpha' is no number of this problem"),
         (["--free", "a", "--bound", "a=1"], "infer: --bound must be NAME=LOW..HIGH"),
         (["--free", "a", "--prior", "a"], "infer: --prior must be NAME=VALUE"),
@@ -93,3 +98,34 @@ def test_the_help_of_by_names_what_infer_can_fit_and_not_what_another_command_ca
     shown = command("infer", "--help")
     assert "features of slip events" in " ".join(shown.out.split())
     assert "contact-mass" not in shown.out
+
+
+def test_a_table_in_place_of_the_scenario_gets_the_order_of_arguments(command):
+    shown = command("infer", "data.csv", "mine.toml", "--free", "a")
+    assert shown.code == 2
+    assert (
+        shown.err.strip() == "stickslip: infer: the scenario comes first, and then the data: stickslip infer mine.toml data.csv ..."
+    )
+
+
+def test_a_record_that_determines_nothing_ends_with_code_1(command):
+    shown = command("infer", "velocity-steps-block", "data.csv", "--free", "body.mass", "--starts", "1")
+    assert shown.code == 1
+    assert "1 number from 801 samples" in shown.out
+    assert "body.mass has no influence on what is fitted: fix it." in shown.out  # the name can be pasted back
+    assert "The record determines none of these numbers." in shown.out
+
+
+def test_arguments_of_python_are_spelt_as_options():
+    assert (
+        as_options("give held_out=0.3, or parts='rests' and profiles=True")
+        == "give --held-out 0.3, or --parts rests and --profiles"
+    )
+    assert as_options("alpha=3, record.trend = 5") == "alpha=3, record.trend = 5"
+
+
+def test_windows_and_weights_are_asked_for_by_options(command):
+    options = ["--free", "a,b,distance", "--starts", "1", "--windows", "--weight", "0.2"]
+    shown = command("infer", "velocity-steps-block", "data.csv", *options)
+    assert shown.code == 0, shown.err
+    assert "Over 8 windows of" in shown.out

@@ -267,7 +267,7 @@ def drawn_until(call: int, count: int) -> Any:
 
     model = SimpleNamespace(limits=(np.array([-9.0]), np.array([9.0])), residual=residual)
     found: Any = SimpleNamespace(model=model, searched=np.zeros(1), loss="linear")
-    sure: Any = SimpleNamespace(widths=np.ones(1), covariance=np.eye(1))
+    sure: Any = SimpleNamespace(widths=np.ones(1), covariance=np.eye(1), excess=np.ones(1))
     return sample(found, sure, count, 1, lambda _: None)
 
 

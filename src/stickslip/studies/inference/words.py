@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.formatting import brief
 from stickslip.studies.inference.features import arrests_in
 from stickslip.studies.inference.free import DELAY, TREND
@@ -22,6 +24,8 @@ if TYPE_CHECKING:
 
 MISSED, MISSED_SHARE = 3.0, 0.2
 """Sizes of residuals, in the noise of neighbouring samples and in the scatter of the record, beyond which a run misses it."""
+FALLING = 0.2
+"""Share of the time in which shear falls below which it does so in slip events."""
 MANY = 1.5
 """Size of residuals, in the standard deviations that were given, from which they are told to be larger."""
 
@@ -97,7 +101,7 @@ def _misfit(study: Inference) -> Iterator[str]:
         given = any(name in part.record.deviations for part in study.model.parts)
         size, scatter = study.model.sizes[name], _scatter(study, name)
         if not given and size > MISSED * noise and size > MISSED_SHARE * scatter:
-            alone = len(study.parts) == 1 and name in SHEAR and len(arrests_in(study.parts[0].record.measured[name])) > 1
+            alone = len(study.parts) == 1 and name in SHEAR and _sticks_and_slips(study.parts[0].record.measured[name])
             cure = "; the record has several slip events: fit each from its own rest with parts='rests'" if alone else ""
             if not cure and _never_slips(study, name):
                 cure = "; the record has a slip event, the run has none: begin, or give bounds, with numbers with which it slips"
@@ -132,6 +136,14 @@ def _drifts(study: Inference, name: str) -> bool:
     """Return True if what is left of a quantity remembers itself for as long as is looked for."""
     longest = max(part.record.clock[-1] for part in study.model.parts if name in part.observed)
     return study.model.memory.get(name, WHITE).time > 0.95 * LONGEST * float(longest)
+
+
+def _sticks_and_slips(shear: Floats) -> bool:
+    """Return True if shear falls more than once, and much faster than it rises: after a velocity step it falls slowly."""
+    known = shear[np.isfinite(shear)]
+    bottoms = [0, *arrests_in(known).tolist()]
+    falling = sum(last - first - int(np.argmax(known[first : last + 1])) for first, last in pairwise(bottoms))
+    return len(bottoms) > 2 and falling < FALLING * bottoms[-1]
 
 
 def _never_slips(study: Inference, name: str) -> bool:
