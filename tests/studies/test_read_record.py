@@ -222,6 +222,12 @@ def test_a_text_stops_at_the_most_rows_and_takes_no_more_memory_than_its_numbers
     assert peak < 4 * numbers + 4 * len(short)  # the text in memory is copied once, with four bytes a character
 
 
+@pytest.mark.parametrize("line", ["a" + " " * 40_000 + "b (", "(" * 40_000, "col 1 " * 900, "µ" * 40_000])
+def test_lines_made_to_hold_up_a_reader_do_not(line: str) -> None:
+    """Each took from seconds to days as a heading, by the patterns that read it."""
+    assert read_text(f"{line}\n" * 100 + "1\n", ("time", "friction"), "a", 200, raw=True).columns == {}
+
+
 def test_a_thousand_columns_are_the_most_and_a_line_is_not_read_to_its_end(tmp_path: Path) -> None:
     with pytest.raises(ss.InputError, match="a, line 1: more than 1000 columns"):
         read_text(",".join(["v"] * 24_000) + "\n1\n", ("slip_rate",), "a", 10)

@@ -58,7 +58,7 @@ XLOOK_WIDTH = 12
 """Number of characters of a heading in text that xlook writes."""
 _COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?")
 _XLOOK = re.compile(r"\s*(col\s+\d+\s*)+")
-_WORD = re.compile(r"[^\s(\[]+(?:\s*[(\[][^)\]]*[)\]])?|[(\[][^)\]]*[)\]]")
+_WORD = re.compile(r"[^\s(\[]+(?:\s*[(\[][^()\[\]]*[)\]])?|[(\[][^()\[\]]*[)\]]|[(\[]")
 _APART = re.compile(r"\s{2,}")
 
 

@@ -78,13 +78,15 @@ LARGEST: Mapping[str, float] = {"slip": 100.0, "slip_rate": 100.0, "load_point":
 """Largest values (SI) that no friction test reaches: beyond them the numbers are hardly in SI."""
 MOST_COLUMNS = 1000
 """Largest number of columns of a table."""
+LONGEST = 120
+"""Largest number of characters of a heading that is understood."""
 PURE = ("", ".", "-", "–", "1", "none", "no unit", "dimensionless")
 """What people write in place of a unit for a pure number."""
 ONE_WORD = 5
 """Number of letters from which a heading of several words is also understood in one: "loadpoint", but not "sign" for "sig n"."""
 _OFTEN = {"m": "mm", "m/s": "mm/s", "s": "ms", "Pa": "MPa", "N": "kN"}
 """Units that laboratories use in place of those of SI."""
-_HEADING = re.compile(r"\s*(?P<name>[^()\[\]]*?)\s*(?:[(\[]\s*(?P<unit>[^()\[\]]*?)\s*[)\]])?\s*")
+_HEADING = re.compile(r"(?P<name>[^()\[\]]*)(?:[(\[](?P<unit>[^()\[\]]*)[)\]])?\s*")
 _BETWEEN = re.compile(r"\s*[\s_,:/]\s*")
 _CAMEL = re.compile(r"(?<=[a-zα-ω])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 _NO_LETTER = re.compile(r"[\W_]+")
@@ -132,8 +134,7 @@ def _understood(heading: str, wanted: tuple[str, ...]) -> tuple[str, str, str | 
     A unit stands in brackets, or behind the name as in `slip_rate_m_per_s` and "tau MPa".
     """
     known = _by_heading(wanted)
-    part = _HEADING.fullmatch(heading)
-    name, unit = (part["name"], part["unit"]) if part else (heading, None)
+    name, unit = _parts(heading)
     fitting = known.get(plain(name), ())
     if fitting:
         unit = "rpm" if unit is None and plain(name) == "rpm" else unit
@@ -168,12 +169,20 @@ def headings(column: str) -> set[str]:
 @lru_cache(maxsize=4096)
 def plain(heading: str) -> str:
     """Return the words of a heading in small letters, with single blanks between them."""
-    return _NO_LETTER.sub(" ", _CAMEL.sub(" ", unicodedata.normalize("NFKC", heading)).casefold()).strip()
+    return _NO_LETTER.sub(" ", _CAMEL.sub(" ", unicodedata.normalize("NFKC", heading[:LONGEST])).casefold()).strip()
 
 
 def names_of(header: Sequence[str]) -> list[str]:
     """Return plain headings without their units in brackets."""
-    return [plain(part["name"] if (part := _HEADING.fullmatch(cell)) else cell) for cell in header]
+    return [plain(_parts(cell)[0]) for cell in header]
+
+
+def _parts(heading: str) -> tuple[str, str | None]:
+    """Return the name in a heading and the unit in brackets, or None; no name if it is too long for a heading."""
+    if len(heading) > LONGEST:
+        return "", None
+    part = _HEADING.fullmatch(heading)
+    return (part["name"].strip(), part["unit"] and part["unit"].strip()) if part else (heading, None)
 
 
 def has_unit(heading: str) -> bool:

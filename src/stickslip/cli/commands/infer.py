@@ -71,7 +71,9 @@ def infer(
     The data are columns with headings and units: time, friction (or
     "tau (MPa)" with "sigma (MPa)", or shear_force), slip, slip_rate, and
     load_point (displacement of the machine) or load_rate, which becomes the
-    loading. Each trial is a full run with inertia and waves, so that machine
+    loading. Two files with clocks of their own are one record if they are
+    given as FIRST+SECOND@SECONDS, by which the second clock begins later.
+    Each trial is a full run with inertia and waves, so that machine
     stiffness, steps of rate, holds and stick-slip are all fitted as they are.
 
     For points of friction against slip or slip rate see `stickslip fit`.

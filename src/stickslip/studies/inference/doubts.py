@@ -26,6 +26,7 @@ LATEST = 0.1
 """Share of the record behind which they are compared."""
 
 
+@np.errstate(over="ignore", invalid="ignore")  # marks of missing numbers may be huge
 def checked(record: Record) -> Record:
     """Return the record with forward shear positive and without samples of a saturated sensor. Raises InputError."""
     notes, measured = list(record.notes), dict(record.measured)
