@@ -222,7 +222,10 @@ def test_a_text_stops_at_the_most_rows_and_takes_no_more_memory_than_its_numbers
     assert peak < 4 * numbers + 4 * len(short)  # the text in memory is copied once, with four bytes a character
 
 
-@pytest.mark.parametrize("line", ["a" + " " * 40_000 + "b (", "(" * 40_000, "col 1 " * 900, "µ" * 40_000])
+HOLDS_UP = {"blanks": "a" + " " * 40_000 + "b (", "brackets": "(" * 40_000, "numbers": "col 1 " * 900, "micro": "µ" * 40_000}
+
+
+@pytest.mark.parametrize("line", HOLDS_UP.values(), ids=HOLDS_UP)
 def test_lines_made_to_hold_up_a_reader_do_not(line: str) -> None:
     """Each took from seconds to days as a heading, by the patterns that read it."""
     assert read_text(f"{line}\n" * 100 + "1\n", ("time", "friction"), "a", 200, raw=True).columns == {}
