@@ -17,7 +17,7 @@ from stickslip.io.netcdf import CATALOGUE, FORMAT, origin, save_checkpoint
 from stickslip.observables.energy.balance import trapped_note
 from stickslip.observables.event_stream import EventStream, Look
 from stickslip.observables.predictability import attributes_of, is_followed, predictability_of_events
-from stickslip.observables.rule_influence import proof_from
+from stickslip.observables.proof import Proven, proven
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_event_rate
 from stickslip.run.monitor import run_to_end
@@ -198,11 +198,13 @@ class Told:
 class EventRows:
     """The sink (`monitor.Sink`) that writes rows as events become known, and discards the history that they no longer need.
 
-    `told` is the output at the point from which this run, or a longer one, would continue.
+    `told` is the output at the point from which this run, or a longer one, would continue, and `residual` (Pa or N) the largest
+    bound of the steps that were proven anew: some of the first ones, and of those still in memory at the end.
     """
 
     rows: Rows | RowsInMemory
     told: Told | None = None
+    residual: float | None = None
     who = "catalogue"
     wants_events = True
 
@@ -219,6 +221,8 @@ class EventRows:
         Returns False if the store may not grow. Nothing is discarded after the checkpoint for a longer run has been stored, which
         refers to pieces by their number.
         """
+        if self.residual is None:
+            self.residual = proven(run.history()).residual
         dropped = run.forget_before(stream.needed(run.history())) if run.before_end is None else 0
         if dropped > 0:
             stream.forget(dropped)
@@ -239,8 +243,9 @@ class EventRows:
         solution = run.solution(code)
         known = is_followed(run.problem)
         prediction = predictability_of_events(self.rows.columns("start", "amplification"), run.options.rtol) if known else None
-        proven = proof_from(run.problem, run.state.largest_residual, run.count.unproven, run.count.undecided).text
-        self.rows.publish(origin(solution) | {"proven": proven} | attributes_of(prediction), run.problem.load_unit)
+        residual = max(float(run.state.largest_residual), self.residual or 0.0, proven(run.history()).residual)
+        proof = Proven(residual, unproven=int(run.count.unproven)).proof(run.problem, int(run.count.undecided)).text
+        self.rows.publish(origin(solution) | {"proven": proof} | attributes_of(prediction), run.problem.load_unit)
         self.save(run, code)
         self.rows.tidy()
         notes = {
@@ -249,7 +254,7 @@ class EventRows:
             "creep": creep_note(run.creep),
             "lumping": run.lumping_note,
             "rounding": run.rounding_note,
-            "proven": proven,
+            "proven": proof,
         }
         return Catalogue(self.rows, stream.told, solution.status, {name: note for name, note in notes.items() if note})
 

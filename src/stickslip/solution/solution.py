@@ -14,7 +14,7 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief, html_table
 from stickslip.observables.event_table import events_table
-from stickslip.observables.rule_influence import Proof, proof_of
+from stickslip.observables.proof import Proof, proven
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_event_rate
 from stickslip.solution.accessors import Exports, SolutionPlots, to_netcdf
@@ -196,7 +196,7 @@ class Solution(Exports):
     @cached_property
     def proven(self) -> Proof:
         """A proven bound of how far the run misses the contact equation at any moment: see `Proof`."""
-        return proof_of(self.history, self.undecided)
+        return proven(self.history).proof(self.problem, self.undecided)
 
     @cached_property
     def horizon_note(self) -> str:

@@ -36,6 +36,7 @@ from stickslip.engine.contact_step.certificate import (
     ROUGH_SLOPE,
     SMALLEST,
     begin_step,
+    force_of_slope,
     force_on_disc,
     imbalance,
     load_at_end,
@@ -285,7 +286,7 @@ def calculate(rows: Block, degree: int) -> None:
 def check_end(rows: Block, values: int, moves: bool, degree: int) -> int:
     """Return the lanes whose step is sound: slip rate and friction stay above zero, and rounding hides nothing at the end.
 
-    The end is put into the contact equation, as `certificate.measure_rounding` does.
+    The end is put into the contact equation, as `certificate.measure_end` does.
     """
     k, rate, place, value = rows.k, rows.rate, rows.at_end, rows.value
     place[0], place[1] = k.slip + k.chi * rows.grown, rows.rate_end
@@ -293,8 +294,10 @@ def check_end(rows: Block, values: int, moves: bool, degree: int) -> int:
     missing = imbalance(k, load_at_end(rows.load_along_slip, rows.powers, degree), value, rows.rate_end, rows.state.unbalanced)
     if moves:
         missed, rough = missed_by_motion(k, missing, rate, rows.length, rows.grown), ROUGH_SLOPE
+        missing = missed * force_of_slope(k, rows.length)
     else:
         missed, rough = missed_by_rate(k, missing, value), ROUGH
+    rows.state.residual = rows.state.residual + abs(missing) + abs(rows.state.unbalanced)
     sound = (missed <= rough * rows.tolerance * size_at_end(rate, rows.rate_end)) & (abs(rows.rate_end) < math.inf)
     sound &= (rate[0] > 0.0) & (bound_below(rate) > 0.0)
     return sound & ~(rows.reference + k.normal * (value.mu + k.offset) < -NEGLIGIBLE * k.normal)

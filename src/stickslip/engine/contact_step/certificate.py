@@ -9,9 +9,11 @@ g is analytic on the disc |xi| <= r, and |g| <= M there, then |g(xi)| <= M (xi /
 the law's formula in ball arithmetic (`engine.codegen.balls`). Whatever a law hides, a singularity, a narrow feature, a number that
 overflows, makes M large or infinite, wherever it lies in the disc.
 
-A bound counts as a share: the slip rate that it makes, in units of the tolerance times the slip rate of the step. Rounding is no
-part of the proof. It is measured where the step ends, and noted where it exceeds the tolerance. Bounds are calculated in floats:
-the rounding of a few hundred operations is far below MARGIN.
+A bound counts as a share: the slip rate that it makes, in units of the tolerance times the slip rate of the step. That the first
+coefficients of g vanish is taken from the series. What g is where the step ends is measured and added to the bound: if one
+coefficient does not vanish, by rounding or by a fault, g is nowhere on the step larger than it is there. It is noted where it
+exceeds the tolerance. `observables.proof` proves finished steps without the series. Bounds are calculated in floats: the rounding
+of a few hundred operations is far below MARGIN.
 """
 
 from __future__ import annotations
@@ -150,6 +152,12 @@ def missed_by_motion(k: SeriesInput, missing: float, rate: Floats, length: float
     """Return by how much the slope of the slip rate (m/s per step) is wrong at the end of a step, for a contact with inertia."""
     pace = (k.speed + k.bend * length) * length / k.inertia
     return abs((missing - k.stiffness * grown) * pace - slope_at_end(rate))
+
+
+@inlined
+def force_of_slope(k: SeriesInput, length: float) -> float:
+    """Return the force of inertia (Pa or N) per slope of the slip rate (m/s per step) at the end of a step."""
+    return k.inertia / (length * abs(k.speed + k.bend * length))
 
 
 @inlined
@@ -327,19 +335,21 @@ def missing_at_end(run: Run, grown: float, rate_end: float) -> float:
 
 
 @inlined
-def measure_rounding(run: Run, rate: Floats, length: float, grown: float, rate_end: float) -> None:
-    """Put the end of a step into the contact equation, and note what it lacks if that exceeds the tolerance: it is rounding.
+def measure_end(run: Run, rate: Floats, length: float, grown: float, rate_end: float) -> float:
+    """Put the end of a step into the contact equation, and return what it lacks there and ignores at its start (Pa or N).
 
-    `rate` is the slip rate on [0, 1], `length` the length of the step (in guesses), `grown` the slip in it (m) and `rate_end` the
-    slip rate at its end (m/s). Friction there is left in run.value.
+    A miss that exceeds the tolerance is noted. `rate` is the slip rate on [0, 1], `length` the length of the step (in guesses),
+    `grown` the slip in it (m) and `rate_end` the slip rate at its end (m/s). Friction there is left in run.value.
     """
     missing, size = missing_at_end(run, grown, rate_end), size_at_end(rate, rate_end)
     if run.counts.has_inertia == 1:
         missed = missed_by_motion(run.k, missing, rate, length, grown)
+        missing = missed * force_of_slope(run.k, length)
     else:
         missed = missed_by_rate(run.k, missing, run.value)
     if missed > rough(run) * run.params.tolerance * size:
         note_rounding(run, missed, size, length)
+    return abs(missing) + abs(run.state.unbalanced)
 
 
 @kernel

@@ -14,7 +14,7 @@ from stickslip.engine.contact.contact_equation import TIE, constants_of, load_ah
 from stickslip.engine.contact.law_knots import settle_piece
 from stickslip.engine.contact.pieces import note_jump
 from stickslip.engine.contact.stiffness import judge_stiffness
-from stickslip.engine.contact_step.certificate import begin_step, bound_straight_bit, is_negative, measure_rounding, proven_length
+from stickslip.engine.contact_step.certificate import begin_step, bound_straight_bit, is_negative, measure_end, proven_length
 from stickslip.engine.contact_step.keep_step import move
 from stickslip.engine.contact_step.negative_friction import goes_below_zero
 from stickslip.engine.contact_step.step_events import cut_at_first_event, growth, resolve, stretch
@@ -134,6 +134,7 @@ def take_planned_step(run: Run, plan: StepPlan, guess: float) -> None:
     length, reached = choose_length(run, plan.target, guess, usable_length(run.jet, run.params.tolerance))
     kept = run.history[run.counts.length]
     begin_step(run)
+    bound = run.state.residual
     for halving in range(HALVINGS + 1):
         stretch(run, length, kept.rate)
         cut = cut_at_first_event(run, kept.rate, length)
@@ -141,7 +142,7 @@ def take_planned_step(run: Run, plan: StepPlan, guess: float) -> None:
         if is_straight(run):
             bound_straight_bit(run, length, grown, rate_end)
             break
-        measure_rounding(run, kept.rate, length * cut.end, grown, rate_end)
+        run.state.residual = bound + measure_end(run, kept.rate, length * cut.end, grown, rate_end)
         if not (is_negative(run) or goes_below_zero(run, kept.rate, length * cut.end)):
             break
         if halving == HALVINGS:

@@ -85,8 +85,8 @@ def prove_step(run: Run, h: float, force: float) -> float:
     """Return a bound of what the step of h seconds lacks, as slip rate (m/s), and leave those of the states in run.state_error.
 
     The polynomials are in run.jet and run.state_jet. At rest, run.jet is the strength, and the bound is one of its error (Pa or N).
-    The bound of the load that the contact equation lacks is left in run.state.residual. `force` (Pa or N) is the force that the
-    step ignores.
+    The bound of the load that the contact equation lacks is added to what was measured of it (`stages.defects`) in
+    run.state.residual. `force` (Pa or N) is the force that the step ignores.
     """
     slips, rate, load = run.counts.mode != 0, run.part, run.spare
     restrict(run.jet, 0.5, 1.0, rate)
@@ -127,7 +127,7 @@ def prove_step(run: Run, h: float, force: float) -> float:
             run.state_error[n] = min(run.state_error[n], lacking)
     for n in range(run.counts.states):
         run.state_error[n] *= yielding_of_state(run, h, n)
-    run.state.residual = least
+    run.state.residual += least
     return least * yielding(run, h) if slips else least
 
 

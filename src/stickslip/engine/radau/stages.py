@@ -290,9 +290,10 @@ def yielding_of_state(run: Run, h: float, n: int) -> float:
 def defects(run: Run, h: float, force: float) -> float:
     """Return by how much the polynomials through the stages miss the equations halfway between the points.
 
-    The result is in units of slip rate; that of each state is left in run.state_error, in units of the state.
+    The result is in units of slip rate; that of each state is left in run.state_error, in units of the state. The load (Pa or N)
+    that the contact equation lacks in slip is left in run.state.residual.
     """
-    params, value, missed = run.params, run.value, 0.0
+    params, value, missed, lacking = run.params, run.value, 0.0, 0.0
     fill(run.state_error, 0.0)
     for i in range(STAGES):
         middle = between(run, i)
@@ -300,9 +301,11 @@ def defects(run: Run, h: float, force: float) -> float:
         resisted = params.damping * middle.rate + params.normal * value.mu + params.stiffness * h * middle.walked
         missing = evaluate(run.load_along_slip, MIDDLE[i]) - force - resisted - params.inertia / h * middle.acceleration
         missed = larger(missed, abs(missing) * yielding(run, h))
+        lacking = max(lacking, abs(missing))
         for n in range(run.counts.states):
             missing = abs(value.change[n] - middle.evolved[n] / h) * yielding_of_state(run, h, n)
             run.state_error[n] = larger(run.state_error[n], missing)
+    run.state.residual = lacking + abs(force) if run.counts.mode != 0 else 0.0
     return missed
 
 

@@ -1,0 +1,247 @@
+"""Prove, from a history alone, how far its polynomials miss the contact equation; nothing that made them is used.
+
+The engine's own bound of a step (`engine.contact_step.certificate`) rests on its series: their first coefficients are those of the
+solution. Here the same is shown of a finished step without that premise. Let g be what the contact equation lacks, y the place in
+the step minus 1/2, and |g| <= M for |y| <= R, by the formula of the law on discs (`friction.formula.discs`). The ellipse with the
+ends of the step as its foci and the larger half-axis R lies in that disc, and has the parameter q = 2 R + sqrt(4 R^2 - 1). Let p be
+the polynomial of degree n through the values of g at n + 1 Chebyshev points of the step. Then (Trefethen 2019, Approximation Theory
+and Approximation Practice, ch. 8)
+
+    |g - p| <= 4 M q^-n / (q - 1),    |p| <= sum of the sizes of its coefficients
+
+on the whole step. If rounding matters, the largest of the values themselves says more than that sum: a polynomial of half that
+degree is nowhere more than sqrt(2) times as large as at these points (Ehlich and Zeller 1964), and g differs from one by at most
+2 M q^(-n / 2) / (q - 1).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.fft import dct
+from scipy.special import comb
+
+from stickslip.engine.state.layout import TERMS
+from stickslip.foundation.arrays import Floats
+from stickslip.foundation.brief_repr import brief_repr
+from stickslip.foundation.formatting import brief
+from stickslip.friction.formula.discs import Disc, largest, on_discs
+from stickslip.friction.formula.expression import VARIABLES, Expression
+from stickslip.problem.problem import Problem
+from stickslip.trajectory.history import History
+
+Places = NDArray[np.intp]
+
+ORDER = 32
+"""Degree n of the polynomial through the values of g (1)."""
+RADII = np.array([8.0, 5.6, 4.0, 2.8, 2.0, 1.5, 1.2, 1.0, 0.85, 0.75])
+"""Radii R of the discs that are tried, in lengths of the step (1)."""
+FIRST, SHARE, LARGEST = 32, 4096, 512
+"""Numbers of steps that are proven anew: the first of each kind, an even share of all, and those with the largest bounds."""
+AT_ONCE = 128
+"""Number of steps that are proven together: it keeps the memory bounded."""
+POLYNOMIAL = 3e-15
+"""Rounding of the value of a polynomial (1), relative to the sum of the sizes of its terms but for the first."""
+SUM = 5e-16
+"""Rounding of a sum of four terms (1), relative to the sum of their sizes."""
+
+
+@dataclass(frozen=True)
+class Proof:
+    """Bounds of how far a run's polynomials miss the contact equation at any moment, the rounding of numbers included.
+
+    Of `steps` steps of slip, `anew` are proven from the history and the law's formula alone, whatever made them: all of them in a
+    short run, else the first of each kind, a share of the others, and those with the largest bounds. The bounds of the others are
+    the engine's, with what was measured where each of them ends. Leaps over creep have error bounds of their own
+    (`Solution.creep`). Method and proof: docs/theory/certificate.md.
+    """
+
+    residual: float
+    """Largest bound (Pa; block: N) of |Z v + S mu(u, v) - load|, with inertia and damping where the contact has them."""
+    relative: float
+    """The same as a share (1) of the normal stress, or force."""
+    steps: int
+    """Number of steps of slip that have a bound."""
+    anew: int
+    """Number of them that are proven without the series, or the stages, from which the engine made them."""
+    unproven: int
+    """Number of pieces of the history that are checked at places only: the law is not analytic where the slip rate passes zero."""
+    undecided: int
+    """Number of steps in which the selection rule is checked at places only: where folds move, it is not decided whether another
+    solution that the rule prefers comes and goes between them."""
+    unit: str
+    """Unit of the residual: Pa or N."""
+
+    units: ClassVar = {"relative": "1"}
+    __repr__ = brief_repr
+
+    @property
+    def text(self) -> str:
+        """One line on the bound."""
+        share = f"{self.relative:.1g} of the normal {'stress' if self.unit == 'Pa' else 'force'}"
+        found = f"the contact equation holds to {brief(self.residual, self.unit)} at every moment, {share}"
+        if self.steps:
+            found += f"; proven from the law's formula alone: {self.anew} of {self.steps} steps"
+        if self.unproven:
+            pieces = "1 piece" if self.unproven == 1 else f"{self.unproven} pieces"
+            found += f", except in {pieces} next to a slip rate of zero, checked at places and not proven"
+        if self.undecided:
+            steps = "1 step" if self.undecided == 1 else f"{self.undecided} steps"
+            found += f"; in {steps} the selection rule is checked at places only"
+        return found
+
+
+class Proven(NamedTuple):
+    """What is proven of some pieces of a history: the largest bound (Pa or N), and numbers of steps."""
+
+    residual: float = 0.0
+    steps: int = 0
+    anew: int = 0
+    unproven: int = 0
+
+    def proof(self, problem: Problem, undecided: int) -> Proof:
+        """Return it as a `Proof`, with the number of steps in which the selection rule is not proven to hold."""
+        relative = self.residual / problem.normal
+        return Proof(self.residual, relative, self.steps, self.anew, self.unproven, undecided, problem.load_unit)
+
+
+def proven(history: History) -> Proven:
+    """Return what is proven of a history."""
+    store = history.store
+    bound = store.residual + _rounding_of_terms(history)
+    moving = np.flatnonzero((store.mode != 0) & np.isfinite(bound) & ~np.isin(store.trip, history.creep[:, 0]))
+    chosen, anew = _chosen(store, moving), 0
+    for some in np.array_split(chosen, len(chosen) // AT_ONCE + 1):
+        found, hidden = _bounds(history, some)
+        known = hidden <= bound[some]
+        bound[some[known]] = found[known]
+        anew += int(np.count_nonzero(known))
+    return Proven(float(np.nanmax(bound, initial=0.0)), len(moving), anew, int(np.count_nonzero(np.isnan(bound))))
+
+
+def _chosen(store: Any, moving: Places) -> Places:
+    """Return the steps that are proven anew, of those given: a kind is a piece of the law, a direction and a form of step."""
+    if len(moving) <= SHARE:
+        return moving
+    kind = np.stack([store.law_piece[moving], store.mode[moving], store.bend[moving] != 0.0, _degree(store, moving)])
+    _, of = np.unique(kind, axis=1, return_inverse=True)
+    order = np.argsort(of, kind="stable")
+    rank = np.arange(len(order)) - np.searchsorted(of[order], of[order])
+    first = order[rank < FIRST]
+    largest_ones = np.argsort(store.residual[moving])[-LARGEST:]
+    even = np.linspace(0, len(moving) - 1, SHARE).astype(int)
+    return moving[np.unique(np.concatenate([first[:SHARE], largest_ones, even]))]
+
+
+def _degree(store: Any, n: Places) -> Places:
+    """Return the degree of the slip rate's polynomial in pieces n: a series, an implicit step, or a straight line."""
+    return np.asarray((store.rate[n] != 0.0).cumsum(axis=1).argmax(axis=1))
+
+
+def _rounding_of_terms(history: History) -> Floats:
+    """Return the rounding (Pa or N) of the terms of the contact equation, for each piece of a history."""
+    store, problem = history.store, history.problem
+    size = problem.strength + np.abs(store.load).sum(axis=1) + problem.body.damping * np.abs(store.rate).sum(axis=1)
+    return np.asarray(POLYNOMIAL * np.where(store.mode != 0, size, 0.0))
+
+
+# ---- one step after the other, from the history and the formula alone ------------------------------------------------------------
+
+DEGREE = TERMS + 2
+"""Number of coefficients (1) of the slip of a step, whose time is a parabola next to a fold."""
+_POINT = 0.5 - 0.5 * np.cos(np.pi * np.arange(ORDER + 1) / ORDER)
+_POWERS = _POINT ** np.arange(DEGREE)[:, None]
+"""Powers of the Chebyshev points of a step, its two ends among them."""
+_SHIFT = np.array([[comb(n, k) * 0.5 ** (n - k) if k <= n else 0.0 for k in range(DEGREE)] for n in range(DEGREE)])
+"""Matrix from coefficients in xi to those in y = xi - 1/2."""
+_RATIO = 2.0 * RADII + np.sqrt(4.0 * RADII**2 - 1.0)
+"""q, by which the Chebyshev coefficients of a function that is bounded on each disc fall from order to order."""
+
+
+def _at_points(c: Floats) -> Disc:
+    """Return the values of polynomials, one per row, at the Chebyshev points."""
+    first, rest, powers = c[:, :1], c[:, 1:], _POWERS[1:]
+    return Disc.of(first + rest @ powers, POLYNOMIAL * (np.abs(rest) @ powers) + SUM * np.abs(first))
+
+
+def _around_middle(c: Floats) -> Disc:
+    """Return what polynomials, one per row, are on the discs of RADII around the middle of the step."""
+    middle, orders = c @ _SHIFT, np.arange(1, DEGREE)[:, None]
+    radius = np.abs(middle[:, 1:]) @ RADII**orders
+    rounding = POLYNOMIAL * (np.abs(c) @ (0.5 + RADII) ** np.arange(DEGREE)[:, None])
+    return Disc.of(middle[:, :1], radius + rounding)
+
+
+class Motion(NamedTuple):
+    """The motion in some steps, seen in the direction of slip: coefficients in xi, a row for each step, or discs of values."""
+
+    slip: Any  # m: as the law counts it
+    rate: Any  # m/s
+    load: Any  # Pa or N
+    thrust: Any  # Pa or N: the force of inertia
+    states: list[Any]  # units of the states
+
+    def on(self, places: Callable[[Floats], Disc]) -> Motion:
+        """Return the discs of values that `places` makes of each polynomial."""
+        return Motion(*(places(each) for each in self[:4]), [places(state) for state in self.states])
+
+    @classmethod
+    def of(cls, history: History, n: Places) -> Motion:
+        """Return the polynomials of pieces n of a history."""
+        store, problem = history.store, history.problem
+        way = store.mode[n, None].astype(float)
+        rate, load, slip, thrust = (np.zeros((len(n), DEGREE)) for _ in range(4))
+        rate[:, :TERMS], load[:, :TERMS] = way * store.rate[n], way * store.load[n]
+        load[:, :1] += way * problem.strength
+        order = np.arange(1, DEGREE)
+        slip[:, 1:] = store.speed[n, None] * rate[:, :-1] / order
+        slip[:, 2:] += 2.0 * store.bend[n, None] * rate[:, :-2] / order[1:]
+        slip *= way if problem.friction.counts == "net" else 1.0
+        slip[:, 0] = problem.law_slip + store.law_slip[n]
+        if problem.body.has_inertia:
+            thrust[:, :-1] = problem.body.inertia / store.speed[n, None] * order * rate[:, 1:]
+        states = [np.pad(store.state[n, i], ((0, 0), (0, 2))) for i in range(len(problem.friction.states))]
+        for i in problem.friction.reverses:
+            states[i] *= way
+        return cls(slip, rate, load, thrust, states)
+
+
+def _bounds(history: History, n: Places) -> tuple[Floats, Floats]:
+    """Return a bound (Pa or N) of g on each of some steps, and the part of it that its values at the points do not show."""
+    bound, hidden = np.full(len(n), np.inf), np.full(len(n), np.inf)
+    piece = history.store.law_piece[n]
+    for i in np.unique(piece).tolist():
+        own = np.flatnonzero(piece == i)
+        motion = Motion.of(history, n[own])
+        at_points = _lacking(history.problem, i, motion.on(_at_points))
+        everywhere = largest(_lacking(history.problem, i, motion.on(_around_middle)))
+        with np.errstate(over="ignore", invalid="ignore"):
+            bound[own], hidden[own] = _from_points(at_points, everywhere)
+    return bound, hidden
+
+
+def _lacking(problem: Problem, piece: int, motion: Motion) -> Disc:
+    """Return g = Z v + S mu + m dv/dt - load (Pa or N) where the motion is in discs, by the formula of a piece of the law."""
+    law, damping, (slip, rate, load, thrust, states) = problem.friction, problem.body.damping, motion
+    variables: dict[Expression, Disc] = dict(zip(VARIABLES, (slip, rate, *states), strict=False))
+    mu = on_discs(law.trees()[piece], law.numbers(piece), variables)
+    centre = damping * rate.centre + problem.normal * mu.centre + thrust.centre - load.centre
+    radius = damping * rate.radius + problem.normal * mu.radius + thrust.radius + load.radius
+    terms = damping * rate.most + problem.normal * mu.most + thrust.most + load.most
+    return Disc(centre, radius + SUM * terms, 0.0)
+
+
+def _from_points(values: Disc, everywhere: Floats) -> tuple[Floats, Floats]:
+    """Return the bound of g on each step, and its hidden part, from its values at the points and bounds M on each of RADII."""
+    rounding, highest = values.radius.max(axis=1), np.abs(values.centre).max(axis=1)
+    parts = np.abs(dct(values.centre, type=1, axis=1)) / ORDER
+    parts[:, [0, -1]] *= 0.5
+    hidden = (4.0 * everywhere * _RATIO**-ORDER / (_RATIO - 1.0)).min(axis=1)
+    half = (2.0 * everywhere * _RATIO ** (-0.5 * ORDER) / (_RATIO - 1.0)).min(axis=1)
+    by_sum = parts.sum(axis=1) + (ORDER + 1) ** 0.5 * 2.0 * rounding + hidden
+    by_values = 2.0**0.5 * (highest + rounding + half) + half
+    return np.asarray(np.fmin(by_sum, by_values)), np.asarray(hidden)
