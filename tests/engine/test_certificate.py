@@ -227,7 +227,7 @@ def test_bounds_hold_for_a_long_formula() -> None:
 
 
 def test_the_residual_bounds_the_error_of_slip() -> None:
-    """Under friction of the slip rate alone |e'| <= |g| / q, where q is the smallest Z + S dmu/dv on the way: 1.5e-19 m (10 %)."""
+    """Under friction of the slip rate alone |e'| <= |g| / q, where q is the smallest Z + S dmu/dv on the way: 1.7e-13 m (10 %)."""
     scenario = ss.load_scenario("fig6-slab")
     problem, run = scenario.problem, ss.simulate(scenario.problem, scenario.duration)
     event = run.events.iloc[0]
@@ -235,5 +235,5 @@ def test_the_residual_bounds_the_error_of_slip() -> None:
     slopes = [problem.friction.slopes(0.0, rate)[1] for rate in np.unique(rates)]
     q = problem.body.impedance + problem.normal * min(slopes)
     assert q == pytest.approx(0.804 * problem.body.impedance, rel=0.01, abs=0.0)
-    assert run.proven.residual * event.duration / q == pytest.approx(1.5e-19, rel=0.1, abs=0.0)
+    assert run.proven.residual * event.duration / q == pytest.approx(1.7e-13, rel=0.1, abs=0.0)
     assert event.slip == pytest.approx(23.44, rel=1e-3, abs=0.0)

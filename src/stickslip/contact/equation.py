@@ -19,6 +19,8 @@ from stickslip.friction.formula.differences import difference
 from stickslip.friction.formula.expression import Expression, evaluate
 from stickslip.problem.problem import Problem
 
+_LOADS = 2.0
+"""Largest load at which many solutions are told apart (1), as a multiple of the largest friction."""
 _FASTEST = 1e9
 """Largest scale of a law that is kept, as a multiple of S (variation of mu)/Z; at faster rates Z s dominates g."""
 _FLAT = 1e-9
@@ -80,17 +82,16 @@ class Resistance:
     def _by_formula(self, piece: NDArray[np.intp], rate: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return excess and slope from the formulas of the pieces; pieces that share a formula are evaluated together."""
         step, slope = np.empty(rate.shape), np.empty(rate.shape)
-        first = int(self.law.piece_at(self.law_slip))
-        home = self._at_rest(self.trees[first], self.law.numbers(first))
+        first, home = self._home
         used, place = np.unique(piece, return_inverse=True)
         values = np.array([self.law.piece_values(i) for i in used.tolist()])
         for tree in dict.fromkeys(self.trees[i] for i in used.tolist()):
             own = np.array([self.trees[i] is tree for i in used.tolist()])
             chosen = own[place].reshape(rate.shape)
             numbers = dict(zip(self.law.parameters(), values[place.reshape(rate.shape)[chosen]].T, strict=True))
-            change, slope[chosen] = difference(tree, numbers, self.law_slip, 0.0, rate[chosen])
-            offset = np.where(piece[chosen] == first, 0.0, self._at_rest(tree, numbers) - home)
-            step[chosen] = change + offset
+            step[chosen], slope[chosen] = difference(tree, numbers, self.law_slip, 0.0, rate[chosen])
+            if (piece[chosen] != first).any():
+                step[chosen] += np.where(piece[chosen] == first, 0.0, self._at_rest(tree, numbers) - home)
         return self.damping * rate + self.normal * step + self.start, self.damping + self.normal * slope
 
     @cached_property
@@ -141,6 +142,12 @@ class Resistance:
         """The law's formulas, one for each piece."""
         return self.law.trees()
 
+    @cached_property
+    def _home(self) -> tuple[int, Any]:
+        """The piece of the law that applies at s = 0, and its friction coefficient there."""
+        first = int(self.law.piece_at(self.law_slip))
+        return first, self._at_rest(self.trees[first], self.law.numbers(first))
+
     def _at_rest(self, tree: Expression, numbers: Mapping[str, Any]) -> Any:
         """Evaluate the formula of a piece at s = 0, even if the piece applies only at higher rates."""
         return evaluate(tree, numbers, np.float64(self.law_slip), np.float64(0.0))
@@ -163,6 +170,22 @@ class Resistance:
         own = self.normal * self.law.variation / self.damping if self.damping else math.inf
         found = (own, *(scale for scale in self.law.rate_scales if scale <= _FASTEST * own))
         return tuple(scale for scale in found if scale > 0.0 and np.isfinite(scale)) or (1.0,)
+
+    @cached_property
+    def largest_friction(self) -> float:
+        """The largest friction at rest and in slip (Pa): an estimate for a law whose friction has no upper bound."""
+        high = float(self.law.range()[1])
+        return max(self.normal * high, self.strength) if np.isfinite(high) else self.normal * self.law.variation + self.strength
+
+    @property
+    def largest_load(self) -> float:
+        """The largest load (Pa) for which solutions are told apart under a law whose friction rises and falls for ever."""
+        return _LOADS * self.largest_friction
+
+    @property
+    def reach(self) -> float:
+        """A slip rate (m/s) so fast that g exceeds `largest_load` from far below it on."""
+        return (self.largest_load + 2.0 * self.normal * self.law.variation) / self.damping
 
     def fastest(self, excess: float) -> float:
         """Return a slip rate (m/s) at which g certainly exceeds the given excess (Pa), because friction is bounded below."""

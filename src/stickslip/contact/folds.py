@@ -29,6 +29,8 @@ _TOLERANCE, _NEAR = 1e-12, 1e3
 of it by which rounding may keep them apart while the smallest g' still counts as proven."""
 _ROUNDING = 8.0 * float(np.finfo(float).eps)
 """Relative rounding error allowed for three operations."""
+MOST_FOLDS = 1024
+"""Largest number of folds that a contact may have. Friction that rises and falls with the slip rate for ever has any number."""
 _MOST_SHOWN = 6
 """Largest number of folds that a sentence names; more would make it unreadable."""
 
@@ -48,7 +50,7 @@ class Fold:
 
 @dataclass(frozen=True)
 class Certificate:
-    """A proof of the turns of g at slip rates from 0 to 1e30 m/s, ascending; intervals are of slip rates (m/s)."""
+    """A proof of the turns of g at slip rates from 0 to `reach`, ascending; intervals are of slip rates (m/s)."""
 
     verdict: Verdict
     rates: tuple[float, ...] = ()
@@ -61,6 +63,8 @@ class Certificate:
     """True if g rises at 0+, None if that is not decided."""
     evaluations: int = 0
     """Number of cells and single rates at which g' was bounded."""
+    reach: float = FASTEST
+    """Slip rate (m/s) up to which g was searched: 1e30, or less if it turns more than MOST_FOLDS times."""
 
     @property
     def regime(self) -> Literal["regular", "irregular"] | None:
@@ -108,14 +112,17 @@ def certificate(g: Resistance, budget: int = turns.MOST_EVALUATIONS) -> Certific
 
     Raises InputError if friction falls at least as fast as Z v rises even at the fastest rate of the search, unless Z is 0.
     """
-    bounds, room = bounds_of(g), 64
-    while True:
-        table = room_for_turns(room)
-        found = find_turns(bounds, g.law_slip, FASTEST, budget, table)
-        if found.intervals >= 0:
-            break
-        room *= 8
-    if found.at_end < 0 and g.damping:
+    bounds, reach = bounds_of(g), FASTEST
+    found, table = _turns(bounds, g, reach, budget)
+    if found.intervals < 0:
+        reach = g.reach if g.damping else FASTEST
+        found, table = _turns(bounds, g, reach, budget)
+    if found.intervals < 0:
+        raise InputError(
+            f"{type(g.law).__name__}: g = Z v + S mu(v) turns more than {MOST_FOLDS} times up to {reach:.3g} m/s: friction that "
+            "rises and falls so often with the slip rate cannot be followed; make its features wider, or their height smaller"
+        )
+    if found.at_end < 0 and reach == FASTEST and g.damping:
         raise InputError(f"{type(g.law).__name__}: friction still falls at least as fast as Z v rises at {FASTEST:.3g} m/s")
     intervals = zip(*(column[: found.intervals].tolist() for column in (table.low, table.high, table.proven)), strict=True)
     sure: list[Interval] = []
@@ -123,9 +130,21 @@ def certificate(g: Resistance, budget: int = turns.MOST_EVALUATIONS) -> Certific
     for low, high, proven in intervals:
         (sure if proven == 1 else open_).append((low, high))
     at_rest = None if found.at_rest == 0 else found.at_rest > 0
-    folds = np.empty(2 * room)
+    folds = np.empty(2 * MOST_FOLDS)
     rates = tuple(folds[: folds_of(table, found.intervals, folds)].tolist())
-    return Certificate("not decided" if open_ else "proven", rates, tuple(sure), tuple(open_), at_rest, found.evaluations)
+    if reach < FASTEST and rates and g.slope(reach) <= 0.0:
+        rates, sure = rates[:-1], sure[:-1]  # the last branch counts as endless, and its end is at a load that is never reached
+    return Certificate("not decided" if open_ else "proven", rates, tuple(sure), tuple(open_), at_rest, found.evaluations, reach)
+
+
+def _turns(bounds: turns.Resistance, g: Resistance, reach: float, budget: int) -> tuple[turns.Account, turns.Turns]:
+    """Return the turns of g up to a slip rate (m/s); the number of intervals is -1 if there are more than MOST_FOLDS."""
+    for room in (64, MOST_FOLDS):
+        table = room_for_turns(room)
+        found = find_turns(bounds, g.law_slip, reach, budget, table)
+        if found.intervals >= 0:
+            break
+    return found, table
 
 
 @lru_cache(maxsize=64)
@@ -159,7 +178,9 @@ def sentence(g: Resistance, proof: Certificate, folds: tuple[Fold, ...]) -> str:
     if proof.verdict == "not decided":
         places = _listed([f"between {low:.6g} and {high:.6g} m/s" for low, high in proof.undecided])
         return f" Interval arithmetic does not decide whether g = Z v + S mu(v) turns {places}; elsewhere its turns are proven."
-    reach = f"up to {FASTEST:g} m/s"
+    reach = f"up to {proof.reach:.3g} m/s"
+    if proof.reach < FASTEST:
+        reach += f", which loads up to {g.largest_load:.3g} Pa do not exceed; at faster ones it goes on turning"
     if not proof.turns:
         return f" Proven by interval arithmetic: g = Z v + S mu(v) rises at every slip rate above 0, {reach}."
     places = _listed([_place(fold) for fold in folds])

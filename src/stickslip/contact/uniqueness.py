@@ -19,6 +19,7 @@ from stickslip.contact.equation import Plateau, Resistance, resistance
 from stickslip.contact.folds import Certificate, Fold, Verdict, certificate, critical_stress_between, sentence
 from stickslip.contact.rules.loop import Jump, Loop, jumps_of, loop_of
 from stickslip.contact.rules.selection import table_of
+from stickslip.engine.folds.turns import FASTEST
 from stickslip.foundation.arguments import NamesAttributes
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
@@ -29,7 +30,9 @@ from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SELECTION_RULES
 
 MOST_SHOWN = 6
-"""Largest number of folds, and of jumps, that `repr` shows."""
+"""Largest number of folds, and of jumps, that `repr` and `summary` show."""
+MOST_LEFT = 16
+"""Number of branches whose jumps are worked out if there is no end of folds."""
 
 
 Regime = Literal["regular", "irregular", "continuum"]
@@ -69,8 +72,12 @@ class Uniqueness(NamesAttributes):
     resistance: Resistance | None = None
     """The contact equation; None if the slip rate depends on inertia or on a state of the law, and not on the load alone."""
     branches: tuple[Branch, ...] = ()
+    known_to: float | None = None
+    """Largest load (Pa) at which all solutions are known, under a law whose friction rises and falls with the slip rate for ever:
+    `jumps` are then those from stick and from the slowest branches. None if all solutions are known at any load."""
     loop: Loop | None = None
-    """Loop that the rule follows as the load slowly rises past all folds and comes back; None if the slip rate is a state."""
+    """Loop that the rule follows as the load slowly rises past all folds and comes back; None if the slip rate is a state, or if
+    there is no end of folds (`known_to`)."""
 
     def __str__(self) -> str:
         return self.summary
@@ -155,6 +162,8 @@ class Uniqueness(NamesAttributes):
 
     def _solutions(self, load: float) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
         g, flat, plateau = self._equation(), self.continuum(load), self._plateau(load)
+        if self.known_to is not None and abs(load) > self.known_to:
+            raise InputError(f"admissible slip rates: they are known for loads up to {self.known_to:.6g} Pa, got {load:.6g} Pa")
         # the plateau's own excess is exact, while load - strength carries the rounding of the load
         level = {} if plateau is None else {load >= 0.0: plateau.excess}
         forward, stable = rates_at(g, self.branches, level.get(True, load - g.strength))
@@ -212,8 +221,8 @@ def _determined(problem: Problem, slip: float | None) -> Uniqueness:
     table, folds = table_of(problem, g, stable), _folds(g, stable, proof)
     between = critical_stress_between(g)
     check_critical(problem, g.damping, between)
-    window, critical = _window(stable), _critical(problem, g)
-    jumps = jumps_of(g, stable, table) if window else ()
+    window, critical, endless = _window(stable), _critical(problem, g), proof.reach < FASTEST
+    jumps = jumps_of(g, stable, table, MOST_LEFT if endless else len(stable)) if window else ()
     return Uniqueness(
         regime=_regime(g, window),
         rule=problem.rule,
@@ -229,7 +238,8 @@ def _determined(problem: Problem, slip: float | None) -> Uniqueness:
         window=window,
         resistance=g,
         branches=stable,
-        loop=loop_of(g, stable, table),
+        known_to=g.largest_load if endless else None,
+        loop=None if endless else loop_of(g, stable, table),
     )
 
 
@@ -301,8 +311,9 @@ def _summary(
     if window[0] < window[1]:
         sizes.append(f"a window of {window[1] - window[0]:.6g} Pa that ends {_side(window[1])} the static strength")
     steps = "; ".join(
-        f"{j.direction} from {j.rate_before:.6g} to {j.rate_after:.6g} m/s at a load of {j.load:.9g} Pa" for j in jumps
+        f"{j.direction} from {j.rate_before:.6g} to {j.rate_after:.6g} m/s at a load of {j.load:.9g} Pa" for j in jumps[:MOST_SHOWN]
     )
+    steps += f"; and {len(jumps) - MOST_SHOWN} more" if len(jumps) > MOST_SHOWN else ""
     moves = f"jumps {steps}" if steps else "makes no jump"
     several = f"Several slip rates solve the contact equation in {' and in '.join(sizes)}."
     return f"{law}: {'continuum' if flat else 'irregular'}. {several}{bound} The rule '{problem.rule}' {moves}."

@@ -46,6 +46,8 @@ AT_ONCE = 128
 """Number of steps that are proven together: it keeps the memory bounded."""
 POLYNOMIAL = 3e-15
 """Rounding of the value of a polynomial (1), relative to the sum of the sizes of its terms but for the first."""
+OF_DURATION = 5e-16
+"""Rounding of the duration of a step (1), relative to the round trip."""
 SUM = 5e-16
 """Rounding of a sum of four terms (1), relative to the sum of their sizes."""
 
@@ -111,16 +113,25 @@ class Proven(NamedTuple):
 
 def proven(history: History) -> Proven:
     """Return what is proven of a history."""
+    bound, steps, anew = bounds_of_pieces(history)
+    return Proven(float(np.nanmax(bound, initial=0.0)), steps, anew, int(np.count_nonzero(np.isnan(bound))))
+
+
+def bounds_of_pieces(history: History) -> tuple[Floats, int, int]:
+    """Return a bound (Pa or N) for each piece of a history, the number of steps of slip, and that of those proven anew.
+
+    The bound is not a number for a piece that is not proven.
+    """
     store = history.store
     bound = store.residual + _rounding_of_terms(history)
     moving = np.flatnonzero((store.mode != 0) & np.isfinite(bound) & ~np.isin(store.trip, history.creep[:, 0]))
     chosen, anew = _chosen(store, moving), 0
     for some in np.array_split(chosen, len(chosen) // AT_ONCE + 1):
-        found, hidden = _bounds(history, some)
-        known = hidden <= bound[some]
-        bound[some[known]] = found[known]
+        seen, hidden, found = _bounds(history, some)
+        known = hidden <= bound[some] + seen
+        bound[some] = np.where(known, found, bound[some] + seen)
         anew += int(np.count_nonzero(known))
-    return Proven(float(np.nanmax(bound, initial=0.0)), len(moving), anew, int(np.count_nonzero(np.isnan(bound))))
+    return bound, len(moving), anew
 
 
 def _chosen(store: Any, moving: Places) -> Places:
@@ -210,18 +221,31 @@ class Motion(NamedTuple):
         return cls(slip, rate, load, thrust, states)
 
 
-def _bounds(history: History, n: Places) -> tuple[Floats, Floats]:
-    """Return a bound (Pa or N) of g on each of some steps, and the part of it that its values at the points do not show."""
-    bound, hidden = np.full(len(n), np.inf), np.full(len(n), np.inf)
+def _bounds(history: History, n: Places) -> Floats:
+    """Return the largest |g| (Pa or N) at the points of each of some steps, what they do not show, and a bound of both."""
+    found = np.full((3, len(n)), np.inf)
     piece = history.store.law_piece[n]
     for i in np.unique(piece).tolist():
         own = np.flatnonzero(piece == i)
-        motion = Motion.of(history, n[own])
-        at_points = _lacking(history.problem, i, motion.on(_at_points))
-        everywhere = largest(_lacking(history.problem, i, motion.on(_around_middle)))
+        motion, unsure = Motion.of(history, n[own]), _unsure_duration(history, n[own])
+        there, around = motion.on(_at_points), motion.on(_around_middle)
+        values = _with_duration(_lacking(history.problem, i, there), there.thrust, unsure)
+        everywhere = largest(_lacking(history.problem, i, around)) + unsure * largest(around.thrust)
         with np.errstate(over="ignore", invalid="ignore"):
-            bound[own], hidden[own] = _from_points(at_points, everywhere)
-    return bound, hidden
+            found[:, own] = _from_points(values, everywhere)
+    return found
+
+
+def _unsure_duration(history: History, n: Places) -> Floats:
+    """Return the share (1) of the duration of each of some steps that rounding makes of it: it is the difference of two times."""
+    return OF_DURATION * history.round_trip_time / np.abs(history.store.speed[n, None])
+
+
+def _with_duration(lacking: Disc, thrust: Disc, unsure: Floats) -> Disc:
+    """Return g for the duration, within its rounding, that suits the force of inertia best: it goes with its inverse."""
+    square = (thrust.centre**2).sum(axis=1, keepdims=True)
+    better = -(lacking.centre * thrust.centre).sum(axis=1, keepdims=True) / np.where(square > 0.0, square, 1.0)
+    return lacking._replace(centre=lacking.centre + np.clip(np.nan_to_num(better), -unsure, unsure) * thrust.centre)
 
 
 def _lacking(problem: Problem, piece: int, motion: Motion) -> Disc:
@@ -235,8 +259,8 @@ def _lacking(problem: Problem, piece: int, motion: Motion) -> Disc:
     return Disc(centre, radius + SUM * terms, 0.0)
 
 
-def _from_points(values: Disc, everywhere: Floats) -> tuple[Floats, Floats]:
-    """Return the bound of g on each step, and its hidden part, from its values at the points and bounds M on each of RADII."""
+def _from_points(values: Disc, everywhere: Floats) -> tuple[Floats, Floats, Floats]:
+    """Return the largest of the values at the points of each step, what they do not show, and a bound, from bounds M on RADII."""
     rounding, highest = values.radius.max(axis=1), np.abs(values.centre).max(axis=1)
     parts = np.abs(dct(values.centre, type=1, axis=1)) / ORDER
     parts[:, [0, -1]] *= 0.5
@@ -244,4 +268,4 @@ def _from_points(values: Disc, everywhere: Floats) -> tuple[Floats, Floats]:
     half = (2.0 * everywhere * _RATIO ** (-0.5 * ORDER) / (_RATIO - 1.0)).min(axis=1)
     by_sum = parts.sum(axis=1) + (ORDER + 1) ** 0.5 * 2.0 * rounding + hidden
     by_values = 2.0**0.5 * (highest + rounding + half) + half
-    return np.asarray(np.fmin(by_sum, by_values)), np.asarray(hidden)
+    return np.nan_to_num(highest + rounding), np.nan_to_num(hidden, nan=np.inf), np.fmin(by_sum, by_values)

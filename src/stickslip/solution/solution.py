@@ -56,7 +56,7 @@ class Solution(Exports):
     lumping_note: str = ""
     """One line on automatic lumping; empty if it did not begin."""
     rounding_note: str = ""
-    """One line on steps in which rounding in the law's formula exceeds the tolerance; empty if there are none."""
+    """One line on steps that miss the contact equation by more than the tolerance, by rounding; empty if there are none."""
     undecided: int = 0
     """Number of steps in which it is not decided whether the selection rule would have left the branch between two looks."""
     title: str = ""

@@ -61,13 +61,14 @@ class Status:
 
 
 def rounding_note(steps: int, share: float) -> str:
-    """Return one line on steps in which rounding in the law's formula exceeds the tolerance; empty if there are none."""
+    """Return one line on steps that miss the contact equation by more than the tolerance, by rounding; empty if there are none."""
     if steps == 0:
         return ""
     where = "in 1 step" if steps == 1 else f"in {steps} steps"
     return (
-        f"{where} rounding in the law's formula is larger than rtol allows, up to {share:.1g} of the slip rate: the formula loses"
-        " digits far from where slip began; write it without differences of nearly equal numbers, or expect no more digits"
+        f"{where} the contact equation is missed by more than rtol allows, up to {share:.1g} of the slip rate, which is part of what"
+        " is proven: as a rule the formula loses digits far from where slip began; write it without differences of nearly equal"
+        " numbers, or expect no more digits"
     )
 
 

@@ -55,13 +55,13 @@ class Loop:
     __repr__ = brief_repr
 
 
-def jumps_of(g: Resistance, stable: tuple[Branch, ...], table: SelectionTable) -> tuple[Jump, ...]:
-    """Return every jump that the rule can make from stick and from each branch that it keeps.
+def jumps_of(g: Resistance, stable: tuple[Branch, ...], table: SelectionTable, slowest: int) -> tuple[Jump, ...]:
+    """Return every jump that the rule can make from stick and from each of the slowest branches that it keeps.
 
     A change of branch at which the slip rate is continuous does not count as a jump.
     """
     found: list[Jump] = []
-    for i in range(-1, len(stable)):
+    for i in range(-1, slowest):
         low, high = (-math.inf, table.stick_to) if i < 0 else (table.keep_from[i], table.keep_to[i])
         if low > high:
             continue

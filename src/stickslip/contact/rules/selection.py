@@ -19,12 +19,16 @@ import numpy as np
 
 from stickslip.contact.branches import Branch, branches_of, rate_on
 from stickslip.contact.equation import Resistance, resistance
-from stickslip.contact.folds import bounds_of
+from stickslip.contact.folds import MOST_FOLDS, bounds_of, certificate
 from stickslip.contact.roots import bracketed_newton
 from stickslip.engine.folds.panels import MOST_PANELS, NODES, WEIGHTS, panels_between
+from stickslip.engine.folds.turns import FASTEST
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SelectionRule, SelectionTable, registered
+
+MOST_COMPARED = 150
+"""Largest number of branches that Maxwell's rule compares: a minute's work."""
 
 _STICK = Branch(0.0, 0.0, -math.inf, 0.0)
 
@@ -113,6 +117,11 @@ def maximal(g: Resistance, stable: Branches, /) -> SelectionTable:
 @lru_cache(maxsize=16)  # it takes some hundredths of a second, and a run and its tables ask for it in turn
 def maxwell(g: Resistance, stable: Branches, /) -> SelectionTable:
     """Take the stable slip rate with the smallest integral of (g - load) ds: branches change at loads of equal areas."""
+    if len(stable) > MOST_COMPARED:
+        raise InputError(
+            f"selection rule 'maxwell': it compares all branches with each other, at most {MOST_COMPARED}, and there "
+            f"are {len(stable)}: take 'perfect-delay', 'minimal' or 'maximal'"
+        )
     kept = best_branches(g, stable)
     never = (math.inf, -math.inf)
     intervals = [kept.get(i, never) for i in range(len(stable))]
@@ -136,11 +145,34 @@ def rule_of(problem: Problem) -> SelectionRule:
 def selection_table(problem: Problem, law_slip: float | None = None) -> tuple[Branches, SelectionTable]:
     """Return the branches of the problem's contact at a law slip (m; default: the initial one), and the table of its rule.
 
-    Raises InputError for a block, which has no contact equation, and for a rule whose table cannot be followed.
+    Raises InputError for a block, which has no contact equation, for a rule whose table cannot be followed, and for loads at which
+    not all branches are known.
     """
     g = resistance(problem, law_slip)
     stable = branches_of(g)
+    if g.law.depends_on_rate and certificate(g).reach < FASTEST and not load_bound(problem, g) <= g.largest_load:
+        raise InputError(
+            f"{type(g.law).__name__}: g = Z v + S mu(v) turns more than {MOST_FOLDS} times, and its branches are known up to a "
+            f"load of {g.largest_load:.3g} Pa only, which the load of this problem may exceed"
+        )
     return stable, table_of(problem, g, stable)
+
+
+def load_bound(problem: Problem, g: Resistance) -> float:
+    """Return a bound (Pa) of the load's magnitude at any time of a run, infinite if none is known.
+
+    With r <= 1 the share of a wave that the driver sends back, the load of one round trip follows from that before by
+    load' = r (2 Z v - load) + c, with a constant c: see paper eq. (13). Let V be the slip rate without friction, Z V = c / (1 - r).
+    Then load' - Z V = r (Z (v - V) - friction), where Z (v - V) + friction = load - Z V, and v has the sign of friction: the
+    distance |load - Z V| does not grow, or is at most |Z V| plus the largest friction, if v lies between 0 and V.
+    """
+    body, far = problem.body, problem.load if problem.far_stress is None else problem.far_stress
+    if problem.varies or problem.far_stress_rate != 0.0 or body.reflection >= 1.0:
+        return math.inf
+    rigid = math.isinf(body.driver_impedance)
+    freely = problem.first_pull_rate + (0.0 if rigid else float(far) / body.driver_impedance)
+    apart = abs(problem.load) + 3.0 * body.impedance * max(abs(problem.first_pull_rate), abs(freely))
+    return body.impedance * abs(freely) + max(apart, body.impedance * abs(freely) + g.largest_friction)
 
 
 def table_of(problem: Problem, g: Resistance, stable: Branches) -> SelectionTable:

@@ -243,7 +243,7 @@ def turns_between(find: Finder, piece: int, begin: float, end: float, first: int
     """
     low, before = begin, first
     for _ in range(DEPTH):
-        if not low < end:
+        if not low < end or find.tally[COUNT] < 0:
             break
         high = next_edge(find.g, low, end)
         if high < end:
@@ -260,7 +260,7 @@ def turns_in(find: Finder, piece: int, first: Cell) -> None:
     """Find the turns in a cell."""
     g, waiting = find.g, push(find.g.cells, 0, first)
     for _ in range(find.budget + DEPTH):
-        if waiting == 0:
+        if waiting == 0 or find.tally[COUNT] < 0:
             break
         waiting -= 1
         low, high = g.cells[waiting, 0], g.cells[waiting, 1]

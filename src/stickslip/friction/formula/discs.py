@@ -15,15 +15,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from stickslip.foundation.arrays import Floats
-from stickslip.friction.formula.denominators import harmless_overflows
 from stickslip.friction.formula.expression import Expression, nodes_of
 
 ROUNDING = 1.2e-16
 """Relative rounding (1) of a sum, product or quotient."""
 OF_FUNCTION = 8.0 * ROUNDING
 """The same of a function of the mathematical library: four units in the last place."""
-LARGEST_EXPONENT = 300.0
-"""Exponent (1) that replaces a larger one where the overflow of exp is harmless: a quotient over e^300 is negligible."""
+LARGEST_EXPONENT = 700.0
+"""Exponent (1) beyond which nothing is known of exp but that it is larger than e^700: enough where it is a denominator."""
 
 
 class Disc(NamedTuple):
@@ -51,19 +50,16 @@ class Disc(NamedTuple):
         """Return the disc with a radius that contains a relative rounding of its centre, and with a better lower bound."""
         size = np.abs(self.centre)
         radius = self.radius + by * size
-        return Disc(self.centre, radius, np.fmax(size - radius, np.multiply(least, 1.0 - 1e-14)))
+        return Disc(self.centre, radius, np.fmax(np.fmax(size - radius, np.multiply(least, 1.0 - 1e-14)), 0.0))
 
 
 def on_discs(tree: Expression, numbers: Mapping[str, ArrayLike], variables: Mapping[Expression, Disc]) -> Disc:
     """Return a formula on the discs of its variables, which broadcast; `numbers` holds the law's parameters by name."""
-    found, harmless = dict(variables), harmless_overflows(nodes_of(tree))
+    found = dict(variables)
     with np.errstate(all="ignore"):
         for node in nodes_of(tree):
             if node.arguments:
-                arguments = [found[argument] for argument in node.arguments]
-                if node in harmless and node.operation in ("exp", "expm1"):
-                    arguments[0] = arguments[0]._replace(centre=np.minimum(arguments[0].centre, LARGEST_EXPONENT))
-                found[node] = _RULES[node.operation](*arguments)
+                found[node] = _RULES[node.operation](*(found[argument] for argument in node.arguments))
             elif node not in found:
                 found[node] = Disc.of(np.asarray(numbers[node.name] if node.operation == "parameter" else node.value, float))
     return found[tree]
@@ -110,12 +106,14 @@ def _pow(a: Disc, b: Disc) -> Disc:
 
 
 def _exp(a: Disc) -> Disc:
-    centre = np.exp(a.centre)
-    return Disc(centre, centre * np.expm1(a.radius), 0.0).rounded(OF_FUNCTION, np.exp(a.centre - a.radius))
+    centre = np.exp(np.minimum(a.centre, LARGEST_EXPONENT))
+    radius = np.where(a.centre > LARGEST_EXPONENT, np.inf, centre * np.expm1(a.radius))
+    return Disc(centre, radius, 0.0).rounded(OF_FUNCTION, np.exp(np.minimum(a.centre - a.radius, LARGEST_EXPONENT)))
 
 
 def _expm1(a: Disc) -> Disc:
-    return Disc(np.expm1(a.centre), np.exp(a.centre) * np.expm1(a.radius), 0.0).rounded(OF_FUNCTION)
+    power = _exp(a)
+    return Disc(np.expm1(np.minimum(a.centre, LARGEST_EXPONENT)), power.radius, 0.0).rounded(OF_FUNCTION, power.least - 1.0)
 
 
 def _log(a: Disc) -> Disc:
