@@ -145,7 +145,7 @@ def _chosen(store: Any, moving: Places) -> Places:
     first = order[rank < FIRST]
     largest_ones = np.argsort(store.residual[moving])[-LARGEST:]
     even = np.linspace(0, len(moving) - 1, SHARE).astype(int)
-    return moving[np.unique(np.concatenate([first[:SHARE], largest_ones, even]))]
+    return np.asarray(moving[np.unique(np.concatenate([first[:SHARE], largest_ones, even]))])
 
 
 def _degree(store: Any, n: Places) -> Places:
@@ -198,7 +198,8 @@ class Motion(NamedTuple):
 
     def on(self, places: Callable[[Floats], Disc]) -> Motion:
         """Return the discs of values that `places` makes of each polynomial."""
-        return Motion(*(places(each) for each in self[:4]), [places(state) for state in self.states])
+        states = [places(state) for state in self.states]
+        return Motion(places(self.slip), places(self.rate), places(self.load), places(self.thrust), states)
 
     @classmethod
     def of(cls, history: History, n: Places) -> Motion:
@@ -238,7 +239,7 @@ def _bounds(history: History, n: Places) -> Floats:
 
 def _unsure_duration(history: History, n: Places) -> Floats:
     """Return the share (1) of the duration of each of some steps that rounding makes of it: it is the difference of two times."""
-    return OF_DURATION * history.round_trip_time / np.abs(history.store.speed[n, None])
+    return np.asarray(OF_DURATION * history.round_trip_time / np.abs(history.store.speed[n, None]))
 
 
 def _with_duration(lacking: Disc, thrust: Disc, unsure: Floats) -> Disc:

@@ -66,8 +66,8 @@ def rounding_note(steps: int, share: float) -> str:
         return ""
     where = "in 1 step" if steps == 1 else f"in {steps} steps"
     return (
-        f"{where} the contact equation is missed by more than rtol allows, up to {share:.1g} of the slip rate, which is part of what"
-        " is proven: as a rule the formula loses digits far from where slip began; write it without differences of nearly equal"
+        f"{where} the contact equation is missed by more than rtol allows, up to {share:.1g} of the slip rate, which the bound"
+        " contains: as a rule the formula loses digits far from where slip began; write it without differences of nearly equal"
         " numbers, or expect no more digits"
     )
 

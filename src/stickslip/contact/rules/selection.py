@@ -170,7 +170,7 @@ def load_bound(problem: Problem, g: Resistance) -> float:
     if problem.varies or problem.far_stress_rate != 0.0 or body.reflection >= 1.0:
         return math.inf
     rigid = math.isinf(body.driver_impedance)
-    freely = problem.first_pull_rate + (0.0 if rigid else float(far) / body.driver_impedance)
+    freely = problem.first_pull_rate + (0.0 if rigid else float(far) / body.driver_impedance)  # type: ignore[arg-type] # constant here
     apart = abs(problem.load) + 3.0 * body.impedance * max(abs(problem.first_pull_rate), abs(freely))
     return body.impedance * abs(freely) + max(apart, body.impedance * abs(freely) + g.largest_friction)
 
