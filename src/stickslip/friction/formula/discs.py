@@ -164,4 +164,4 @@ _RULES: dict[str, Callable[..., Disc]] = {
 
 def largest(values: Disc) -> Floats:
     """Return an upper bound of the magnitude on each disc; infinite where nothing is known."""
-    return np.nan_to_num(np.asarray(values.most, float), nan=np.inf, posinf=np.inf)
+    return np.asarray(np.nan_to_num(values.most, nan=np.inf, posinf=np.inf))
