@@ -74,7 +74,7 @@ def test_too_many_folds_and_too_many_for_maxwell_are_one_line() -> None:
 
 @pytest.mark.parametrize("seed", range(12))
 def test_no_load_exceeds_its_bound(seed: int) -> None:
-    """Random drivers, pull rates up to some m/s and starts, under a law whose load rises and falls: a fiftieth of the bound is reached."""
+    """Random drivers, pull rates up to some m/s and starts, of loads that rise and fall: a fiftieth of the bound is reached."""
     rng = np.random.default_rng(seed)
     driver = np.inf if seed % 3 == 0 else float(9.8e6 * 10.0 ** rng.uniform(-1.5, 1.5))
     law = F.HyperbolicRate(0.8, 0.3, float(rng.uniform(0.1, 2.0)))

@@ -21,7 +21,7 @@ FUNCTIONS = ("sin", "cos", "exp", "log", "sqrt", "tanh", "arcsinh", "expm1", "lo
 """Elementary functions that a formula may use; each has a compiled Taylor recurrence."""
 LARGEST_SIZE = 10_000
 """Largest number of nodes of a formula, shared parts counted at each use: n repeated squarings make 2^n of them."""
-LARGEST_POWER = 16
+LARGEST_POWER = 100
 """Largest whole exponent whose power is written as a product, because a product has a Taylor series at base 0 too."""
 
 
