@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.foundation.columns import read_text
 from stickslip.foundation.headings import COLUMNS, find
+from stickslip.foundation.text_columns import read_text
 from tests.studies.laboratory import correlated
 
 Record = ss.studies.Record

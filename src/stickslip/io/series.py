@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from stickslip.foundation.columns import read_file
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.headings import example, has_unit
+from stickslip.foundation.text_columns import read_file
 from stickslip.schemes.contract import Series
 
 LARGEST_FILE = 200_000_000
@@ -24,7 +24,7 @@ IN_MPA = ("shear-stress", "h-shear-stress")
 def read_series(path: str | Path, *, cells: int = 0) -> Series:
     """Read a series, named after the file; `cells` is the number of cells in the thickness, if it is known.
 
-    Columns and units are understood as those of records (`stickslip.foundation.columns.read_text`): time, slip, slip rate, and
+    Columns and units are understood as those of records (`stickslip.foundation.text_columns.read_text`): time, slip, slip rate, and
     traction or shear stress, which is in MPa under the headings of the SCEC benchmarks. Slip counts from t = 0. Of two lines with
     the same time, as at a shock, the last one counts. Raises InputError if the file cannot be read, if a column is missing, if a
     value is not a finite number, or if times do not ascend.

@@ -10,7 +10,6 @@ from typing import Any, NamedTuple
 
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.atomic_write import read_bounded
-from stickslip.foundation.columns import read_text
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.headings import missing
 from stickslip.foundation.quantities import (
@@ -25,6 +24,7 @@ from stickslip.foundation.quantities import (
     Text,
     fields_of,
 )
+from stickslip.foundation.text_columns import read_text
 
 
 class Source(NamedTuple):
@@ -150,7 +150,7 @@ def read_points(
 
     `columns` maps headings to fields. The last belongs to the dependent variable; exactly one other column must be there, or be
     named by `along`, and holds the ascending slips, slip rates or times at which the values are given. Blank lines, lines that
-    begin with #, notes before the headings and unknown columns are ignored; headings may carry units (`foundation.columns`). Raises
+    begin with #, notes before the headings and unknown columns are ignored; headings may carry units (`foundation.headings`). Raises
     InputError with a message of one line that names the file and the line.
     """
     *others, value = columns

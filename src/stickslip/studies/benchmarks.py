@@ -24,7 +24,7 @@ from stickslip.friction import HyperbolicRate, LinearSlipWeakening, SinusoidalSl
 from stickslip.friction.laws.of_rate import Coulomb
 from stickslip.problem.problem import Problem
 from stickslip.run.simulate import simulate
-from stickslip.scenarios import Scenario, load_scenario
+from stickslip.scenarios import Scenario, library, load_scenario
 from stickslip.studies.judgement import TOLERANCE
 from stickslip.studies.schemes import Schemes, judge_series
 from stickslip.studies.study import TextProgress
@@ -115,6 +115,17 @@ def benchmark_of(name: str) -> Benchmark:
     if name not in BENCHMARKS:
         raise InputError(f"benchmark: there is no problem {ascii(name)[:60]}; {nearest(name, BENCHMARKS)}")
     return BENCHMARKS[name]
+
+
+def scenario_named(name: str) -> Scenario:
+    """Return the benchmark or the bundled scenario of a name. Raises InputError if there is none."""
+    if name in BENCHMARKS:
+        return BENCHMARKS[name].scenario
+    if name in library.names():
+        return load_scenario(name)
+    hint = nearest(name, [*BENCHMARKS, *library.names()])
+    hint = hint if hint.startswith("did") else 'name it, as in judge_series(FILE, "fig4-loop")'
+    raise InputError(f"judge_series: of which problem is {ascii(name)[:60]}? {hint}")
 
 
 def exact_series(name: str) -> xr.Dataset:

@@ -20,7 +20,7 @@ import stickslip
 from stickslip.foundation.arguments import for_users, shown
 from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.conversion import WithUnit
-from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.errors import InputError
 from stickslip.foundation.netcdf_file import write
 from stickslip.problem.problem import Problem
 from stickslip.scenarios.source import read_duration_and_problem, read_source
@@ -286,6 +286,7 @@ def judge_series(
         If the user presses Ctrl-C.
     """
     from stickslip.io.series import read_series
+    from stickslip.studies.benchmarks import scenario_named
 
     given_series = [series] if isinstance(series, Series | str | Path) else list(series)
     several = tuple(one if isinstance(one, Series) else read_series(one) for one in given_series)
@@ -293,7 +294,7 @@ def judge_series(
         raise InputError("judge_series: needs a series or more")
     if not 0.0 < tolerance < 1.0:
         raise InputError(f"judge_series: tolerance must lie between 0 and 1, got {shown(tolerance)}")
-    source = read_source("judge_series", _named(several[0].name) if problem is None else problem)
+    source = read_source("judge_series", scenario_named(several[0].name) if problem is None else problem)
     ends = max(float(one.time[-1]) for one in several) if isinstance(source, Problem) else None
     lasts, given = read_duration_and_problem("judge_series", source, ends)
     check_suitable(given)
@@ -304,17 +305,3 @@ def judge_series(
     for one in several:
         check_units(one, exact[given.rule], given)
     return Schemes(given, exact, several, tolerance=tolerance)
-
-
-def _named(name: str) -> Scenario:
-    """Return the benchmark or the bundled scenario of a name. Raises InputError if there is none."""
-    from stickslip.scenarios import library, load_scenario
-    from stickslip.studies.benchmarks import BENCHMARKS
-
-    if name in BENCHMARKS:
-        return BENCHMARKS[name].scenario
-    if name in library.names():
-        return load_scenario(name)
-    hint = nearest(name, [*BENCHMARKS, *library.names()])
-    hint = hint if hint.startswith("did") else 'name it, as in judge_series(FILE, "fig4-loop")'
-    raise InputError(f"judge_series: of which problem is {ascii(name)[:60]}? {hint}")

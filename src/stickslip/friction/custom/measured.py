@@ -13,9 +13,10 @@ from numpy.typing import ArrayLike
 
 from stickslip.foundation.arguments import CheckedArguments, as_path, shown
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.columns import Table, read_file, read_mapping, read_text
+from stickslip.foundation.columns import Table, read_mapping
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.headings import COLUMNS, missing
+from stickslip.foundation.text_columns import read_file, read_text
 from stickslip.friction.piecewise import PiecewiseLaw, note_percent
 
 Along = Literal["slip", "slip_rate"]

@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 
 from stickslip.foundation.arguments import as_path, shown
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.columns import Table, read_file, read_mapping
+from stickslip.foundation.columns import Table, read_mapping
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.headings import find, missing, quoted
 from stickslip.foundation.quantities import Quantity
+from stickslip.foundation.text_columns import read_file
 from stickslip.scenarios.entries import typed_number
 from stickslip.studies.inference.doubts import checked
 from stickslip.studies.inference.record import LOADING, MEASURED, Record
