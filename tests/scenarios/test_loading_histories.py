@@ -222,7 +222,8 @@ def test_check_does_not_take_the_first_pull_rate_for_all_of_it() -> None:
     tides = load_scenario("tides-block")
     assert examine(tides).warnings == []
     steps = examine(load_scenario("velocity-steps-block"))
-    assert steps.stability.startswith("steady sliding at the first pull rate is stable")
+    assert steps.stability.endswith("of steady sliding at the first pull rate")
+    assert steps.steady.lines()[0].startswith("at the first pull rate, 1 um/s, traction 30 kN: stable")
     meanings = {fact.name: fact.meaning for fact in steps.derived}
     assert meanings["K V"] == "rate of loading while stuck, at first"
     assert meanings["steady friction"].endswith("at the first pull rate")

@@ -87,8 +87,14 @@ class SteadySlidings:
     """True if a driver of finite impedance does not pull hard enough to free a contact that rests."""
     proven: bool
     """True if interval arithmetic shows that there are no other changes."""
+    varies: bool = False
+    """True if the pull rate or the far stress varies in time: all this is then about its value at the start."""
+    is_damped: bool = True
+    """False if neither body nor driver takes energy from a disturbance, so that only friction can."""
     why_none: str = ""
     """Why nothing slides steadily; "" if something does."""
+    traction_at_pull_rate: float = math.nan
+    """Friction (Pa or N) in steady sliding at the pull rate: the far stress with which a driver that gives way keeps its rate."""
     unit: str = "Pa"
     """Unit of tractions."""
 
@@ -105,8 +111,11 @@ class SteadySlidings:
         """Return sentences for users, without a capital and without a full stop."""
         if self.why_none:
             return [f"none: {self.why_none}"]
-        found = [f"at {brief(one.rate, 'm/s')}, traction {brief(one.traction, self.unit)}: {one}" for one in self.slidings]
+        at = "at the first pull rate, " if self.varies else "at "
+        found = [f"{at}{brief(one.rate, 'm/s')}, traction {brief(one.traction, self.unit)}: {one}" for one in self.slidings]
         found += [self._given_way(), "at rest: the driver does not pull hard enough to free a contact that sticks" * self.can_rest]
+        if not self.is_damped and any(one.stable is False for one in self.slidings):
+            found.append("neither body nor driver damps: it is unstable wherever friction falls with the slip rate, however gently")
         return [line for line in [*found, self._changes()] if line]
 
     def _given_way(self) -> str:
@@ -114,10 +123,10 @@ class SteadySlidings:
         others = [one for one in self.slidings if not math.isclose(one.rate, self.pull_rate, rel_tol=1e-9, abs_tol=0.0)]
         if self.far_stress is None or not others:
             return ""
-        far = brief(self.far_stress, "Pa")
+        far, pull = brief(self.far_stress, "Pa"), brief(self.pull_rate, "m/s")
         return (
-            f"not at the pull rate of {brief(self.pull_rate, 'm/s')}, because the driver gives way: the far stress, which is the"
-            f" initial load unless given, is {far}, and friction is {brief(others[0].traction, 'Pa')}"
+            f"not at the pull rate of {pull}, because the driver gives way: the far stress, which is the initial load unless given,"
+            f' is {far}; far_stress = "{brief(self.traction_at_pull_rate, "Pa", 9)}" makes it slide at the pull rate'
         )
 
     def _changes(self) -> str:

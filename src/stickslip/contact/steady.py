@@ -92,7 +92,20 @@ class _Steady:
             far = slidings[0].traction
         strength = problem.strength if problem.friction.sticks else 0.0
         rests = self.far_stress is not None and abs(self.drive) <= strength
-        return SteadySlidings(problem.first_pull_rate, far, slidings, changes, rests and not why, proven, why, problem.load_unit)
+        damped = bool(problem.friction.states) or self.taken_away > 0.0
+        return SteadySlidings(
+            pull_rate=problem.first_pull_rate,
+            far_stress=far,
+            slidings=slidings,
+            changes=changes,
+            can_rest=rests and not why,
+            proven=proven,
+            varies=problem.varies,
+            is_damped=damped,
+            traction_at_pull_rate=self._at_pull_rate() if slidings else math.nan,
+            why_none=why,
+            unit=problem.load_unit,
+        )
 
     def why_none(self) -> str:
         """Return why nothing slides steadily, "" if something may."""
@@ -112,6 +125,10 @@ class _Steady:
         formulas = [(law.trees()[i], law.numbers(i)) for i in self.pieces]
         formulas += [(tree, law.numbers(self.pieces[0])) for tree in law.state_trees()]
         return any(value_and_slopes(tree, numbers, slips, 1.0, *states)[1][0].any() for tree, numbers in formulas)
+
+    def _at_pull_rate(self) -> float:
+        pull = self.problem.first_pull_rate
+        return math.copysign(self.traction(abs(pull)), pull) if pull else math.nan
 
     # ---- the law --------------------------------------------------------------------------------------------------------------
 
@@ -201,7 +218,7 @@ class _Steady:
         law = self.problem.friction
         if law.states:
             return tuple(self._change(rate, above, None) for rate, above in self._searched()), False
-        taken = self.taken_away()
+        taken = self.taken_away
         if not law.depends_on_rate or not math.isfinite(taken):
             return (), True
         proof, g = self.turns(taken), self.resistance(taken)
@@ -211,6 +228,7 @@ class _Steady:
             found.append(self._change(rate, bool(g.slope(beyond) > 0.0), proof.enclosure(rate)))
         return tuple(found), proof.verdict == "proven"
 
+    @cached_property
     def taken_away(self) -> float:
         """Return how steeply friction may fall with the slip rate before steady sliding is unstable (Pa s/m or N s/m)."""
         body = self.problem.body

@@ -11,6 +11,8 @@ import numpy as np
 from stickslip.bodies import ElasticSlab, as_slab
 from stickslip.contact.critical import critical_normal_stress
 from stickslip.contact.regime_map import regimes_along_slip
+from stickslip.contact.sliding import SteadySlidings
+from stickslip.contact.steady import steady_slidings
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
 from stickslip.engine_input.limits import MOST_PIECES, PATIENCE, automatic_length, creep_tolerance, lumps_by_itself
 from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, Text, fields_of, in_units
@@ -55,6 +57,8 @@ class Examination:
     derived: list[Fact]
     start: str
     stability: str
+    """Static stability; "" where there is none to speak of."""
+    steady: SteadySlidings
     uniqueness: Uniqueness
     critical: list[Fact]
     """Values of single parameters at which the regime changes while all others stay as they are."""
@@ -71,6 +75,7 @@ def examine(scenario: Scenario) -> Examination:
         derived=_derived(problem),
         start=start_of(problem),
         stability=stability_of(problem),
+        steady=steady_slidings(problem),
         uniqueness=contact,
         critical=_critical(problem, contact),
         along_slip=_along_slip(problem, contact),

@@ -5,12 +5,9 @@ from __future__ import annotations
 import cmath
 import math
 
-import numpy as np
-
 from stickslip.bodies import SpringBlock, as_block, as_slab
 from stickslip.contact.rules.loop import first_rate, resolved
-from stickslip.friction import FrictionLaw, RateAndState
-from stickslip.friction.formula.differences import value_and_slopes
+from stickslip.friction import RateAndState
 from stickslip.problem.problem import Problem
 from stickslip.reference.rate_and_state import SteadySliding
 from stickslip.reference.slab.growth_rate import growth_rate
@@ -72,12 +69,15 @@ def wait_of(problem: Problem) -> float:
 
 
 def stability_of(problem: Problem) -> str:
-    """Return a sentence on static stability at the start, and on the rate (1/s) at which a small disturbance grows."""
+    """Return a sentence on static stability at the start, and on the rate (1/s) at which a small disturbance grows.
+
+    Under a law with states there is only steady sliding to speak of, and under rate-and-state friction its critical stiffness.
+    """
     body, law = problem.body, problem.friction
     if isinstance(law, RateAndState):
-        return _steady_sliding(problem, law)
+        return _critical_stiffness(problem, law)
     if law.states:
-        return _sliding_with_states(problem)
+        return ""
     by_slip, by_rate = law.slopes(problem.law_slip)
     if not body.has_waves:
         return _block_stability(as_block(body), by_slip, by_rate)
@@ -104,51 +104,16 @@ def _block_stability(body: SpringBlock, by_slip: float, by_rate: float) -> str:
     return f"statically stable: {values}"
 
 
-def _sliding_with_states(problem: Problem) -> str:
-    """Return a sentence on the stability of sliding at the pull rate, of a block under any law with states."""
-    law, rate, pull = problem.friction, problem.first_pull_rate, "first pull rate" if problem.varies else "pull rate"
-    states = law.steady_state(rate) if rate > 0.0 else None
-    if problem.body.has_waves or states is None:
-        return "not calculated: growth in steady sliding is known for a pulled block, and for slabs under rate-and-state friction"
-    growth = sliding_growth(as_block(problem.body), law, rate, law.inner_states(np.ravel(states).tolist()))
-    if growth == 0.0:
-        return f"steady sliding at the {pull}: a small disturbance neither grows nor fades"
-    if growth < 0.0:
-        return f"steady sliding at the {pull} is stable: a small disturbance fades at {-growth:.6g} /s"
-    return f"steady sliding at the {pull} is unstable: a small disturbance grows at {growth:.6g} /s"
-
-
-def sliding_growth(body: SpringBlock, law: FrictionLaw, rate: float, states: tuple[float, ...]) -> float:
-    """Return the rate (1/s) at which a small disturbance of steady sliding at a slip rate (m/s) grows; below 0 if it fades.
-
-    It is the largest real part of the eigenvalues of the equations of slip, slip rate and states (as the formulas use them),
-    linearised.
-    """
-    piece = int(law.piece_at(0.0, rate))
-    numbers, at = law.numbers(piece), (0.0, rate, *states)
-    slopes = [value_and_slopes(tree, numbers, *at)[1] for tree in (law.trees()[piece], *law.state_trees())]
-    force = -body.normal_force * slopes[0] - np.array([body.stiffness, body.damping, *(0.0 for _ in states)])
-    matrix = np.array([[0.0, 1.0, *(0.0 for _ in states)], force / body.mass, *slopes[1:]])
-    return float(np.linalg.eigvals(matrix).real.max())
-
-
-def _steady_sliding(problem: Problem, law: RateAndState) -> str:
-    """Return a sentence on the stability of sliding at the pull rate: the stiffness, the critical one, and the growth rate."""
+def _critical_stiffness(problem: Problem, law: RateAndState) -> str:
+    """Return a sentence on the stiffness of the body and the critical one, above which sliding at the pull rate is stable."""
     body, rate, pull = problem.body, problem.first_pull_rate, "first pull rate" if problem.varies else "pull rate"
     if rate <= 0.0:
         return "not pulled at first" if problem.varies else "not pulled: it creeps to a halt, ever more slowly"
     sliding = SteadySliding(problem.normal, law.a, law.b, law.distance, rate)
     if not body.has_waves:
-        critical = sliding.critical_stiffness(body.inertia, body.damping)
-        growth = sliding.block_growth(body.stiffness, body.inertia, body.damping)
-        text, unit = f"stiffness K = {body.stiffness:.6g}", "N/m"
+        critical, text, unit = sliding.critical_stiffness(body.inertia, body.damping), "stiffness K", "N/m"
     elif body.is_driven_rigidly and not body.has_inertia:
-        critical = sliding.critical_stiffness()
-        growth = sliding.slab_growth(body.impedance, 0.5 * body.round_trip_time)
-        text, unit = f"stiffness G/h = {body.stiffness:.6g}", "Pa/m"
+        critical, text, unit = sliding.critical_stiffness(), "stiffness G/h", "Pa/m"
     else:
         return f"critical stiffness of slow sliding S (b - a) / Dc = {sliding.critical_stiffness():.6g} Pa/m"
-    against = f"{text} against the critical {critical:.6g} {unit}"
-    if growth.real <= 0.0:
-        return f"steady sliding at the {pull} is stable: {against}; a small disturbance fades at {-growth.real:.6g} /s"
-    return f"steady sliding at the {pull} is unstable: {against}; a small disturbance grows at {growth.real:.6g} /s"
+    return f"{text} = {body.stiffness:.6g} against the critical {critical:.6g} {unit} of steady sliding at the {pull}"

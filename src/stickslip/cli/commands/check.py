@@ -39,10 +39,11 @@ def check(
 
     The command shows every value as it understands it, with units (SI); what
     follows from the values (impedance, travel time, strength, excess); whether
-    the contact slips at once; static stability and growth; whether the slip
-    rate is unique, the critical values, the folds with what is proven of them,
-    and the jumps; and warnings. Numbers marked with * depend on the selection
-    rule.
+    the contact slips at once; static stability and growth; steady sliding at
+    the pull rate: its slip rate and traction, whether it is stable, and from
+    which pull rate on; whether the slip rate is unique, the critical values,
+    the folds with what is proven of them, and the jumps; and warnings. Numbers
+    marked with * depend on the selection rule.
 
     --figure draws the set K: every pair of slip rate and load that solves the
     contact equation. With --map twice it draws the regime over two numbers.
@@ -126,7 +127,10 @@ def show_examination(scenario: Scenario, found: Examination) -> None:
 def _findings(found: Examination) -> Iterator[tuple[str, str]]:
     """Yield the name and the text of each finding but the warnings."""
     yield "start", found.start
-    yield "stability", found.stability
+    if found.stability:
+        yield "stability", found.stability
+    for line in found.steady.lines():
+        yield "steady sliding", line
     yield "uniqueness", found.uniqueness.summary
     if found.along_slip:
         yield "along slip", found.along_slip
