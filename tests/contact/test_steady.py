@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -115,6 +116,42 @@ def test_routh_agrees_with_the_roots():
         roots = np.polynomial.polynomial.polyroots(equation)
         if abs(roots.real).min() > 1e-6:
             assert _all_left(equation) is bool((roots.real < 0.0).all())
+
+
+def swings(run: ss.Solution, found: Any, start: float) -> np.ndarray:
+    """The factors by which a disturbance of the slip rate grows in a period (or 1 / growth), from a time on."""
+    step = found.period if math.isfinite(found.period) else 1.0 / abs(found.growth)
+    times = np.arange(start, run.duration, step)
+    apart = run.slip_rate(times) - found.rate
+    return (apart[1:] / apart[:-1]) / math.exp(found.growth * step)
+
+
+GROWING = {
+    "block": (ss.SpringBlock(1.0, 1e3, 10.0, damping=5.0), STRIBECK, 0.08),
+    "fading block": (ss.SpringBlock(1.0, 1e3, 10.0, damping=5.0), STRIBECK, 0.12),
+    "slab": (slab(), ss.friction.HyperbolicRate(0.8, 0.3, 0.05), 1.0),
+    "slab on a half-space": (slab(3.0), ss.friction.HyperbolicRate(0.8, 0.3, 0.15), 1.0),
+    "slab with a mass": (slab(mass=3e7), ss.friction.HyperbolicRate(0.8, 0.3, 0.1), 1.0),
+    "block, rate and state": (ss.SpringBlock(1e3, 4e8, 1e6), ss.friction.RateAndState(**AGEING, distance=1e-5), 1e-4),
+    "slab, rate and state": (slab(mass=1e5), ss.friction.RateAndState(**AGEING, distance=0.1), 0.1),
+}
+
+
+@pytest.mark.parametrize("name", GROWING)
+def test_a_small_disturbance_of_an_exact_run_grows_as_it_is_said_to(name: str):
+    """From a slip rate that is 1e-7 off, after other modes have faded: to 1e-3 in each period."""
+    body, law, rate = GROWING[name]
+    found = steady_slidings(ss.Problem(body, law, pull_rate=rate, initial_rate="steady")).slidings[0]
+    problem = ss.Problem(
+        body,
+        law,
+        pull_rate=rate,
+        initial_rate=rate * (1.0 + 1e-7),
+        far_stress=found.traction if not body.is_driven_rigidly else None,
+    )
+    step = found.period if math.isfinite(found.period) else 1.0 / abs(found.growth)
+    run = ss.simulate(problem, 10.3 * step, rtol=1e-12)
+    assert swings(run, found, 3.1 * step) == pytest.approx(1.0, rel=1e-3)
 
 
 # ---- a block ----------------------------------------------------------------------------------------------------------------

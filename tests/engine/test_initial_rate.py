@@ -1,4 +1,4 @@
-"""A contact with inertia that never sticks starts in steady sliding, where load and friction balance, or at a given rate."""
+"""A contact that starts in motion: in steady sliding, where load and friction balance, or at a given rate."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ LAW = ss.friction.RateAndState(0.6, 0.01, 0.015, 1e-5, 1e-6)
 BLOCK = ss.SpringBlock(1e3, 1e10, NORMAL, damping=1e6)
 SLAB = ss.ElasticSlab(2800, 3500, 3.0, NORMAL, contact_mass=2e3)
 IMPEDANCE = SLAB.impedance
+STICKING = ss.friction.HyperbolicRate(0.8, 0.3, 0.01)
 BODIES = {
     "block": BLOCK,
     "slab, rigid": SLAB,
@@ -208,9 +209,22 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
         {"body": replace(SLAB, contact_mass=0.0), "initial_rate": 1e-3, "initial_load": 6e7, "initial_state": 1.0},
         "a contact without mass has no slip rate of its own",
     ),
-    "rest": (
-        {"friction": ss.friction.Coulomb(0.6, 0.3), "initial_rate": 1e-3, "initial_load": 6e7},
-        "under Coulomb the contact starts from rest: leave out initial_rate",
+    "a branch that falls": (
+        {"body": replace(SLAB, contact_mass=0.0), "friction": ss.friction.HyperbolicRate(0.8, 0.3, 1.0), "initial_rate": 1e-3},
+        "at 1 mm/s friction falls faster with the slip rate than waves carry away",
+    ),
+    "steady with a load": (
+        {"initial_rate": "steady", "pull_rate": SPEED, "initial_load": 6e7, "initial_state": 1.0},
+        "leave them out",
+    ),
+    "steady at rest": ({"initial_rate": "steady"}, STEADY),
+    "driven too little": (
+        {"body": BODIES["slab, half-space"], "initial_rate": "steady", "friction": STICKING, "far_stress": 1e6},
+        "the driver does not keep the contact sliding",
+    ),
+    "driven too much": (
+        {"body": BODIES["slab, half-space"], "initial_rate": "steady", "pull_rate": SPEED, "far_stress": 1e12},
+        "the driver drives the contact ever faster",
     ),
     "no unit": ({"initial_rate": "3 kg", "pull_rate": SPEED}, "initial_rate must be a number in m/s"),
 }
@@ -223,6 +237,63 @@ def test_what_cannot_start_is_refused_in_one_line(name: str) -> None:
         ss.Problem(**({"body": BLOCK, "friction": LAW} | given))
     assert message in str(error.value)
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("name", BODIES)
+@pytest.mark.parametrize("mass", [0.0, 2e3])
+@BOTH_WAYS
+def test_a_contact_that_can_stick_may_start_in_steady_sliding(name: str, mass: float, way: int) -> None:
+    """It slides on at the pull rate, to 1e-9 for ten round trips, under a load below its static strength."""
+    body = BODIES[name]
+    body = replace(body, contact_mass=mass) if isinstance(body, ss.ElasticSlab) else replace(body, mass=2e3, damping=5e5)
+    problem = ss.Problem(body, STICKING, pull_rate=0.3 * way, initial_rate="steady")
+    friction = body.normal_load * float(STICKING.coefficient(0.0, 0.3))
+    assert problem.rate == 0.3 * way
+    assert problem.load == pytest.approx(way * (friction + 0.3 * body.damping), rel=1e-15)
+    run = ss.simulate(problem, 10.0 * problem.round_trip_time)
+    times = np.linspace(0.0, run.duration, 200)
+    assert run.slip_rate(times) == pytest.approx(0.3 * way, rel=1e-9)
+    assert run.traction(times) == pytest.approx(way * friction, rel=1e-9)
+    assert float(run.slip_rate(0.0, side="left")) == 0.3 * way
+    assert np.abs(run.energy(times).balance).max() < 1e-9 * float(run.energy(times).heat[-1])
+
+
+@pytest.mark.parametrize("driver", [0.3, 3.0])
+def test_a_driver_that_gives_way_determines_the_rate_of_steady_sliding(driver: float) -> None:
+    """Zd v + S mu(v) = far stress + Zd V, to 1e-13 of it; the contact then keeps the rate, to 1e-9."""
+    body = replace(SLAB, contact_mass=0.0, driver_impedance=driver * IMPEDANCE)
+    problem = ss.Problem(body, STICKING, pull_rate=0.3, far_stress=9e7, initial_rate="steady")
+    drive = 9e7 + 0.3 * body.driver_impedance
+    friction = NORMAL * float(STICKING.coefficient(0.0, problem.rate))
+    assert body.driver_impedance * problem.rate + friction == pytest.approx(drive, rel=1e-13)
+    assert problem.rate > 0.5
+    run = ss.simulate(problem, 5.0 * problem.round_trip_time)
+    assert run.slip_rate(np.linspace(0.0, run.duration, 100)) == pytest.approx(problem.rate, rel=1e-9)
+
+
+def test_a_contact_with_mass_that_can_stick_may_start_out_of_balance() -> None:
+    """Thrown at 1 m/s against Coulomb friction without a pull, a block on a soft spring stops after m v / (S mu), to 1e-6."""
+    block = ss.SpringBlock(2.0, 1e-9, 10.0)
+    problem = ss.Problem(block, ss.friction.Coulomb(0.6, 0.5), initial_load=0.0, initial_rate=1.0)
+    (event,) = ss.simulate(problem, 1.0).events.itertuples()
+    assert event.start == 0.0
+    assert event.end == pytest.approx(2.0 / 5.0, rel=1e-6)
+    assert event.slip == pytest.approx(0.5 * 2.0 / 5.0, rel=1e-6)
+    assert ss.Problem(block, ss.friction.Coulomb(0.6, 0.5), initial_load=0.0, initial_rate=0.0).rate == 0.0
+
+
+def test_scenario_command_line_and_file_know_steady_sliding(tmp_path: Path) -> None:
+    scenario = ss.scenarios["fig6-slab"].with_values({"initial.rate": "steady", "pull_rate": 10.0, "duration": 10.0})
+    assert 'rate = "steady"' in scenario.to_toml()
+    path = tmp_path / "steady.toml"
+    path.write_text(scenario.to_toml())
+    assert ss.load_scenario(path).problem == scenario.problem
+    assert "initial.rate" not in scenario.problem.parameters
+    run = ss.simulate(scenario)
+    run.to_netcdf(tmp_path / "run.nc")
+    assert ss.open_solution(tmp_path / "run.nc").problem == scenario.problem
+    assert float(run.slip_rate(3.0)) == pytest.approx(10.0, rel=1e-12)
+    assert "a batch starts from rest" in why_not(scenario, [], ["slip"])
 
 
 SCENARIO = """

@@ -216,6 +216,8 @@ def _of_law(scenario: Scenario, parameters: Sequence[str]) -> Iterator[str]:
         yield f"{name} is not made of plain numbers alone"
     if law.memory != "all":
         yield f"{name}: memory '{law.memory}' is not followed by a batch"
+    if problem.initial_rate is not None or "initial.rate" in parameters:
+        yield "[initial] rate: a batch starts from rest"
     if not law.sticks and (problem.body.has_inertia or "body.contact_mass" in parameters):
         yield f"{name}: a contact with mass that never sticks starts at a slip rate of its own"
     if folds_move(problem):

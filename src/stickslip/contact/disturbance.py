@@ -15,22 +15,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import polynomial as poly
 from numpy.typing import NDArray
 
 from stickslip.bodies import BodyOnCharacteristics
-from stickslip.contact.wave_modes import MOST_STEPS, Growth, WaveModes, first_of
-from stickslip.foundation.arrays import Floats
+from stickslip.contact.wave_modes import MOST_STEPS, Growth, Polynomial, WaveModes, first_of
 
 
 class Response(NamedTuple):
     """Hold friction's response Phi(s) to a disturbance of the slip rate (s/m) as two polynomials in s, lowest order first."""
 
-    numerator: Floats
-    denominator: Floats
+    numerator: Polynomial
+    denominator: Polynomial
 
 
 @dataclass(frozen=True)
@@ -61,7 +60,7 @@ class Disturbed:
         a = poly.polytrim(poly.polyadd(own, self.normal * above))
         return WaveModes(a, body.impedance * below, float(body.reflection), body.round_trip_time)
 
-    def _of_block(self) -> Floats:
+    def _of_block(self) -> Polynomial:
         """Return the polynomial in s (lowest order first) whose roots are those of a block."""
         body, (above, below) = self.body, self.response
         spring = np.array([body.stiffness, body.damping, body.inertia])
@@ -76,7 +75,7 @@ class Disturbed:
         return first_of(_roots(equation))
 
 
-def _all_left(equation: Floats) -> bool | None:
+def _all_left(equation: Polynomial) -> bool | None:
     """Return True if all roots of a polynomial have Re s < 0, False if one has Re s > 0, None if the farthest are on Re s = 0.
 
     This is Routh's array, in which no root is worked out: roots of very different sizes do not spoil each other.
@@ -95,7 +94,7 @@ def _all_left(equation: Floats) -> bool | None:
     return None if 0.0 in first else True
 
 
-def _roots(equation: Floats) -> NDArray[np.complex128]:
+def _roots(equation: Polynomial) -> NDArray[Any]:
     """Return the roots of a polynomial, the small ones and the large ones with all their digits."""
     slope = poly.polyder(equation)
     with np.errstate(all="ignore"):

@@ -151,7 +151,8 @@ class _Steady:
     def states(self, rate: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Return the states of steady sliding at a slip rate (m/s): as users see them, and as formulas use them."""
         law = self.problem.friction
-        seen = tuple(np.ravel(law.steady_state(rate)).tolist()) if law.states else ()
+        found = law.steady_state(rate) if law.states else None
+        seen = () if found is None else tuple(np.ravel(found).tolist())
         return seen, law.inner_states(seen)
 
     def traction(self, rate: float) -> float:
@@ -199,7 +200,10 @@ class _Steady:
         fastest = min(2.0 * load / slope, RATES[-1]) if slope > 0.0 else RATES[-1]
         turns = self.turns(slope).rates if not self.problem.friction.states else RATES.tolist()
         places = [RATES[0] * 1e-6, *(rate for rate in turns if rate < fastest), fastest]
-        miss = lambda rate: slope * rate + self.traction(rate) - load  # noqa: E731 - read beside its uses
+
+        def miss(rate: float) -> float:
+            return slope * rate + self.traction(rate) - load
+
         misses = [miss(place) for place in places]
         ends = zip(places[:-1], places[1:], misses[:-1], misses[1:], strict=True)
         return [sign_change(miss, low, high) for low, high, one, other in ends if (one < 0.0) != (other < 0.0)]

@@ -13,14 +13,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import polynomial as poly
 from numpy.typing import NDArray
 
-from stickslip.foundation.arrays import Floats
-
+Polynomial = NDArray[Any]
+"""Coefficients of a polynomial in s, lowest order first."""
 _HALVINGS = 200
 """Largest number of halvings of an interval of growth rates, after which its ends are neighbours."""
 MOST_STEPS = 50
@@ -40,7 +40,7 @@ class Growth(NamedTuple):
     frequency: float
 
 
-def first_of(roots: NDArray[np.complex128]) -> Growth:
+def first_of(roots: NDArray[Any]) -> Growth:
     """Return the root that lies farthest to the right; without one, a disturbance is gone at once."""
     root = max(roots.tolist(), key=lambda one: one.real, default=-math.inf)
     return Growth(float(root.real), float(abs(root.imag)))
@@ -50,8 +50,8 @@ def first_of(roots: NDArray[np.complex128]) -> Growth:
 class WaveModes:
     """The characteristic equation of a slab: a (1 + r E) + z (1 - r E) = 0, with polynomials a and z in s (lowest order first)."""
 
-    a: Floats
-    z: Floats
+    a: Polynomial
+    z: Polynomial
     reflection: float
     round_trip: float
 
@@ -71,7 +71,7 @@ class WaveModes:
         """True if no echo comes back, or friction and waves cancel in it."""
         return self.reflection == 0.0 or not poly.polysub(self.a, self.z).any()
 
-    def _ring(self, line: float) -> Floats:
+    def _ring(self, line: float) -> Polynomial:
         """Return the polynomial in y = frequency^2 that is negative where abs(L) > 1 on the line Re s = `line` (1/s)."""
         (ar, ai), (zr, zi) = (_parts(_shifted(one, line)) for one in (self.a, self.z))
         # log of the share of a wave that comes back, which may be exactly 1
@@ -100,7 +100,7 @@ class WaveModes:
         return count
 
     @staticmethod
-    def _edges(ring: Floats) -> Floats:
+    def _edges(ring: Polynomial) -> Polynomial:
         """Return the frequencies (rad/s, > 0) at which abs(L) = 1, ascending."""
         trimmed = np.trim_zeros(ring, "b")
         if len(trimmed) < 2:
@@ -155,7 +155,8 @@ class WaveModes:
 
     def _frequencies(self, line: float) -> list[float]:
         """Return frequencies (rad/s) near which a root may lie on a line that bounds them all."""
-        p, q = poly.polyadd(self.a, self.z), poly.polysub(self.a, self.z)
+        p: Polynomial = poly.polyadd(self.a, self.z)
+        q: Polynomial = poly.polysub(self.a, self.z)
         found = [0.0, *self._edges(self._ring(line)), *np.abs(poly.polyroots(poly.polytrim(p)).imag)]
         ratio = float(p[-1] * q[-1] * self.reflection)
         first = (0.0 if ratio < 0.0 else math.pi) / self.round_trip
@@ -184,7 +185,7 @@ class WaveModes:
 class _Phase:
     """The phase of L on a vertical line, continuous in the frequency."""
 
-    def __init__(self, waves: WaveModes, p: Floats, q: Floats, line: float) -> None:
+    def __init__(self, waves: WaveModes, p: Polynomial, q: Polynomial, line: float) -> None:
         self.waves, self.line = waves, line
         self.zeros, self.poles = (poly.polyroots(one) if len(one) > 1 else np.zeros(0, complex) for one in (q, p))
         self.turned = 0.0 if q[-1] * p[-1] > 0.0 else math.pi
@@ -200,7 +201,7 @@ class _Phase:
         return math.floor((exact - frequency * self.waves.round_trip - self.level) / (2.0 * math.pi)) + whole
 
 
-def _winding(roots: Floats, line: float, frequency: float) -> float:
+def _winding(roots: Polynomial, line: float, frequency: float) -> float:
     """Return the phase of the product of (s - root) at s = line + i frequency, continuous in the frequency (rad)."""
     left, up = line - roots.real, frequency - roots.imag
     angle = np.arctan2(up, np.abs(left))
@@ -216,16 +217,16 @@ def _between(low: float, high: float) -> float:
     return 2.0 * low + 1.0 if math.isinf(high) else 0.5 * (low + high)
 
 
-def _shifted(p: Floats, by: float) -> Floats:
+def _shifted(p: Polynomial, by: float) -> Polynomial:
     """Return the polynomial p(by + x) in x."""
-    found = np.zeros(len(p))
+    found: Polynomial = np.zeros(len(p))
     for coefficient in p[::-1]:
         found = poly.polymul(found, [by, 1.0])[: len(p)]
         found = poly.polyadd(found, [coefficient])
     return found
 
 
-def _parts(p: Floats) -> tuple[Floats, Floats]:
+def _parts(p: Polynomial) -> tuple[Polynomial, Polynomial]:
     """Return the polynomials in y with p(i w) = even(w^2) + i w odd(w^2)."""
     signs = (-1.0) ** (np.arange(len(p)) // 2)
     signed = p * signs

@@ -15,7 +15,7 @@ from stickslip.engine.codegen.compiler import CompiledFormula, compile_formula
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, FirstLoad, Integers, LawPiece, LoadingSegment, Params, Setup, State
 from stickslip.engine.state.workspace import counts_in, lend_problem, memory_of, params_in
-from stickslip.engine_input.branch_table import folds_move, is_algebraic, table_of_branches
+from stickslip.engine_input.branch_table import branch_of, folds_move, is_algebraic, table_of_branches
 from stickslip.engine_input.forcing import inflow_of, steady_inflow, wave_before
 from stickslip.engine_input.limits import set_length, set_lumping
 from stickslip.foundation.errors import InputError
@@ -59,7 +59,10 @@ def _of_problem(problem: Problem, _: SelectionRule) -> tuple[Setup, State, Count
     setup = Setup(params, *law_tables(problem), branches, first, loading_of(problem))
     for shared in (params.numbers, *setup[1:]):
         shared.flags.writeable = False
-    return setup, *start_of(problem)
+    state, counts = start_of(problem)
+    if counts.is_algebraic and counts.mode != 0:
+        counts.branch = branch_of(at.Branch.of(branches), abs(problem.rate))
+    return setup, state, counts
 
 
 def parameters_of(problem: Problem) -> Params:
@@ -114,10 +117,10 @@ SAFETY = 0.1
 
 def first_load(problem: Problem) -> at.Floats:
     """Return the load of the first round trip (minus the reference), linear between its breaking points."""
-    body, excess, pull = problem.body, problem.excess, problem.first_pull_rate
+    body, excess = problem.body, problem.excess
     if not body.has_waves:
-        return _pieces([0.0, problem.round_trip_time], [excess], [body.stiffness * pull])
-    slope = body.impedance * (pull - problem.rate) / (0.5 * body.round_trip_time)  # G (V - v0) / h
+        return _pieces([0.0, problem.round_trip_time], [excess], [body.stiffness * problem.first_pull_rate])
+    slope = body.impedance * problem.initial_shear / (0.5 * body.round_trip_time)  # G (V - v0) / h
     if body.is_driven_rigidly:
         return _pieces([0.0, body.round_trip_time], [excess], [slope])
     r, half = body.reflection, 0.5 * body.round_trip_time
@@ -138,7 +141,7 @@ def first_load_varying(problem: Problem) -> at.Floats:
     if not body.has_waves:
         return _parts(problem, _pieces([0.0, problem.round_trip_time], [excess], [0.0]))
     r, half = body.reflection, 0.5 * body.round_trip_time
-    slope = body.impedance * (problem.first_pull_rate - problem.rate) / half
+    slope = body.impedance * problem.initial_shear / half
     before, back, comes = (
         excess + slope * half,
         r * (slope * half - wave_before(problem)),
@@ -252,10 +255,9 @@ def functions_of(formulas: Sequence[CompiledFormula], problem: Problem) -> at.In
 
 
 def start_of(problem: Problem) -> tuple[State, Counts]:
-    """Return the state and counts at t = 0, before the first piece of load: the contact is at rest.
+    """Return the state and counts at t = 0, before the first piece of load: the contact is at rest, or has an initial rate.
 
-    Under a law that never sticks there is no rest. The contact slips at its initial rate if it has a mass, and otherwise in the
-    direction of the load.
+    Under a law that never sticks there is no rest: without an initial rate the contact slips in the direction of the load.
     """
     state, count = State(np.zeros(State.total)), Counts(np.zeros(Counts.total, np.int64))
     state.last_step = math.inf
@@ -266,7 +268,7 @@ def start_of(problem: Problem) -> tuple[State, Counts]:
     count.is_algebraic = is_algebraic(problem)
     count.states, count.sticks = len(problem.friction.states), problem.friction.sticks
     count.reverses = sum(2**n for n in problem.friction.reverses)
-    if not problem.friction.sticks:
+    if problem.has_initial_rate or not problem.friction.sticks:
         state.rate_now = problem.rate
         count.mode = 1 if (problem.rate or problem.load) >= 0.0 else -1
     for n, value in enumerate(problem.states):

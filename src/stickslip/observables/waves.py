@@ -57,7 +57,7 @@ class Waves:
         self.history, self.body = history, body
         self.reference, self.excess = history.problem.strength, history.problem.excess
         self.round, self.half = body.two_way_time, 0.5 * body.two_way_time
-        self.slope = body.impedance * (history.problem.first_pull_rate - history.problem.rate) / self.half  # G (V - v0) / h
+        self.slope = body.impedance * history.problem.initial_shear / self.half  # G (V - v0) / h
         self.before: float = wave_before(history.problem)
         self.inflow = inflow_of(history.problem)
         self._seen: tuple[Epoch, Sampled, Sampled] | None = None  # the waves at the last moment that was asked for

@@ -91,7 +91,7 @@ class Parameters(Mapping[str, Parameter]):
         return {
             one.name: Parameter(one.name, one.value, one.declared, one.put)
             for one in entries
-            if isinstance(one.declared, Quantity) and one.value is not None
+            if isinstance(one.declared, Quantity) and one.value is not None and not isinstance(one.value, str)  # "steady"
         }
 
     def __getitem__(self, name: str) -> Parameter:
@@ -137,8 +137,7 @@ def _of_start(problem: Problem) -> Iterator[Entry]:
     for name, state in zip(STATE_NAMES, problem.friction.states, strict=False):
         put = _field_of(problem, f"initial_{name}")
         yield Entry(f"initial.{name}", Quantity(state.unit, state.meaning), given.get(name), put)
-    if problem.has_initial_rate:
-        yield Entry("initial.rate", declared["initial_rate"], problem.initial_rate, _field_of(problem, "initial_rate"))
+    yield Entry("initial.rate", declared["initial_rate"], problem.initial_rate, _field_of(problem, "initial_rate"))
 
 
 def _derived(problem: Problem) -> Iterator[Parameter]:

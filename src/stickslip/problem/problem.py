@@ -24,7 +24,7 @@ from stickslip.loading import LoadingHistory
 from stickslip.loading.contract import SILENT, VARYING
 from stickslip.problem.parameters import Parameters
 from stickslip.problem.selection_rule import SelectionRule, checked, name_of
-from stickslip.problem.start import INITIAL_STATES, STEADY, Start, check_rate, start_of
+from stickslip.problem.start import INITIAL_STATES, STEADY, Start, check_rate, start_of, starts_steadily
 
 MAY_VARY = ("pull_rate", "far_stress")
 """Fields of a problem that may be a loading history instead of a number."""
@@ -71,9 +71,11 @@ class Problem(CheckedArguments):
     initial_second_state
         The same for the second state of a law with two states.
     initial_rate
-        Slip rate v0 at the start (m/s), of a contact with inertia under a law that never sticks. The default is the rate at which
-        the initial load and friction in the initial state balance. If neither load nor state is given, the contact starts in
-        steady sliding at this rate, by default at the pull rate.
+        Slip rate v0 at the start (m/s), or "steady". If neither load nor state is given, the contact starts in steady sliding at
+        this rate, and "steady" is the pull rate, or the rate that a driver of finite impedance keeps under the far stress given. A
+        contact with inertia may also start out of balance, under a load that is given. The default is rest under a law that
+        sticks. A contact with inertia that never sticks starts by default at the rate at which the initial load and friction in
+        the initial state balance, and in steady sliding at the pull rate if neither load nor state is given.
     far_stress
         Shear stress (Pa) far beyond a driver of finite impedance, or a loading history of it. The default is the initial load,
         minus Z v0 if the contact starts at an initial rate.
@@ -93,11 +95,13 @@ class Problem(CheckedArguments):
     is 0 and slips at t = 0+ if the pull rate is positive. With an initial load above the strength the contact slips at once; the
     left limit at t = 0 is then the initial state at rest.
 
-    A contact with inertia that never sticks (`has_initial_rate`) starts at its initial rate; any other starts at rest, and a
-    contact without mass then slips at once at the rate that load and friction determine. `Problem.rate` is this rate.
+    A contact with inertia that never sticks, or with an `initial_rate`, starts at a rate of its own (`has_initial_rate`), which is
+    `Problem.rate`. Any other starts at rest, and a contact without mass that never sticks then slips at once at the rate that load
+    and friction determine.
 
     At most one of `pull_rate` and `far_stress` may be a loading history (`stickslip.loading`). The initial velocity in a slab is
-    linear in x, from the initial rate, or rest, at the contact to the pull rate at 0 s at the driver.
+    linear in x, from the initial rate, or rest, at the contact to the pull rate at 0 s at the driver. With initial_rate="steady" it
+    is the same everywhere.
     """
 
     body: BodyOnCharacteristics
@@ -112,7 +116,7 @@ class Problem(CheckedArguments):
     initial_state: OptionalNumber = field(default=None)  # type: ignore[arg-type] # the annotation is that of a converted value
     initial_second_state: OptionalNumber = field(default=None)  # type: ignore[arg-type] # as for the one before
     initial_rate: OptionalNumber = quantity(
-        "m/s", "slip rate v0 at the start, of a contact with inertia that never sticks", default=None
+        "m/s", 'slip rate v0 at the start, or "steady": that of steady sliding at the pull rate', default=None
     )
     far_stress: Converted[float | LoadingHistory | None, float | str | WithUnit | LoadingHistory | None] = quantity(
         "Pa", "shear stress far beyond a driver of finite impedance", default=None
@@ -128,11 +132,12 @@ class Problem(CheckedArguments):
         check_type("Problem: body", self.body, bodies, "an ElasticSlab or a SpringBlock")
         object.__setattr__(self, "friction", as_law("Problem: friction", self.friction))
         self._check_varying()
-        check_fields(self, but=self._varying, units={LOAD: self.body.load_unit})
+        steady = ("initial_rate",) if str(self.initial_rate) == STEADY else ()
+        check_fields(self, but=(*self._varying, *steady), units={LOAD: self.body.load_unit})
         self._check_load()
         self._check_state()
-        check_rate(self)
         _ = self.rate  # refuses a start at which nothing balances
+        check_rate(self)
         object.__setattr__(self, "selection", checked(self.selection))
         self._check_far_side()
 
@@ -195,7 +200,7 @@ class Problem(CheckedArguments):
         if not law.sticks and self.initial_excess is not None:
             raise InputError(f"Problem: initial_excess: {name} has no static strength to exceed, give initial_load")
         healed = law.sticks or (law.reverses and self.initial_load is not None)
-        steady = self.has_initial_rate and self.initial_load is None and not healed and not self.given_states
+        steady = self.has_initial_rate and starts_steadily(self)
         for i, state in enumerate(() if steady else law.states):
             field_name = INITIAL_STATES[i]
             value = getattr(self, field_name)
@@ -294,8 +299,10 @@ class Problem(CheckedArguments):
 
     @property
     def has_initial_rate(self) -> bool:
-        """True if the contact starts at a slip rate of its own: it never sticks, and has inertia, so that the rate cannot jump."""
-        return not self.friction.sticks and self.body.has_inertia
+        """True if the contact starts at a slip rate of its own: one that is given, or because it has inertia and never sticks."""
+        if self.friction.sticks:
+            return self.initial_rate is not None and self.initial_rate != 0.0
+        return self.body.has_inertia or self.initial_rate is not None
 
     @cached_property
     def _start(self) -> Start:
@@ -305,6 +312,11 @@ class Problem(CheckedArguments):
     def rate(self) -> float:
         """The slip rate v0 at t = 0 (m/s): 0 unless the contact `has_initial_rate`."""
         return self._start.rate if self.has_initial_rate else 0.0
+
+    @property
+    def initial_shear(self) -> float:
+        """How much faster a slab moves at its driver than at its contact at t = 0 (m/s): V - v0, and 0 in steady sliding."""
+        return 0.0 if isinstance(self.initial_rate, str) else self.first_pull_rate - self.rate
 
     @property
     def stress(self) -> float:

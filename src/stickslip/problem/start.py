@@ -1,7 +1,7 @@
-"""Find the slip rate, load and state at the start of a contact that has a mass and never sticks.
+"""Find the slip rate, load and state at the start of a contact that starts in motion.
 
-Such a contact cannot start from rest. What the problem leaves out follows from the balance of forces at the start,
-load = damping v + S mu(u, v, state), or from steady sliding.
+A contact that has a mass and never sticks cannot start from rest; any other may start at a rate. What the problem leaves out
+follows from the balance of forces at the start, load = damping v + S mu(u, v, state), or from steady sliding.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief
 from stickslip.friction.contract import STATE_NAMES, one_argument
+from stickslip.loading import LoadingHistory
 
 if TYPE_CHECKING:
     from stickslip.problem.problem import Problem
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 FASTEST, SLOWEST = 1e3, 1e-300
 """Slip rates (m/s) between which load and friction must balance; a contact that would be slower starts at rate 0."""
 STEADY = "steady"
-"""Initial state that stands for the one of steady sliding at the pull rate."""
+"""Initial state, or initial rate, that stands for the one of steady sliding at the pull rate."""
 INITIAL_STATES = tuple(f"initial_{name}" for name in STATE_NAMES)
 """Names of the initial states in a `Problem`."""
 AT_ONCE, ROUNDS = 304, 8
@@ -39,34 +40,60 @@ class Start(NamedTuple):
     states: tuple[float, ...]  # those that reverse: in the forward direction
 
 
+def starts_steadily(problem: Problem) -> bool:
+    """Return True if a problem gives neither load nor state: a contact that starts in motion then starts in steady sliding."""
+    return problem.initial_load is None and problem.initial_excess is None and not problem.given_states
+
+
 def check_rate(problem: Problem) -> None:
     """Raise InputError if a problem has an initial rate that it cannot have."""
-    if problem.initial_rate is None or problem.has_initial_rate:
+    given = problem.initial_rate
+    if given is None or problem.body.has_inertia:
         return
-    if problem.friction.sticks:
-        name = type(problem.friction).__name__
-        raise InputError(f"Problem: initial_rate: under {name} the contact starts from rest: leave out initial_rate")
-    why = "a contact without mass has no slip rate of its own, load and friction determine it"
-    raise InputError(f"Problem: initial_rate: {why}: leave it out, or give the contact a mass")
+    if not starts_steadily(problem):
+        why = "a contact without mass has no slip rate of its own, load and friction determine it"
+        raise InputError(
+            f"Problem: initial_rate: {why}: leave it out, or leave out load and state, so that it starts in steady sliding"
+        )
+    if problem.has_initial_rate and resistance_slope(problem) <= 0.0:
+        raise InputError(
+            f"Problem: initial_rate: at {brief(problem.rate, 'm/s')} friction falls faster with the slip rate than waves carry"
+            " away, so that a contact without mass leaves this rate at once: give another rate, or the contact a mass"
+        )
+
+
+def resistance_slope(problem: Problem) -> float:
+    """Return how damping v + S mu grows with the slip rate at the start (Pa s/m or N s/m)."""
+    law, rate, tiny = problem.friction, abs(problem.rate), 1e-100
+    piece = int(law.piece_at(problem.law_slip, rate))
+    value = law.piece_coefficient(
+        piece, np.complex128(problem.law_slip), np.complex128(complex(rate, tiny)), one_argument(problem.states)
+    )
+    return problem.body.damping + problem.normal * float(np.imag(value)) / tiny
 
 
 def written_out(problem: Problem) -> Problem:
     """Return a problem with its initial load and state as numbers, where they followed from steady sliding."""
-    if not problem.has_initial_rate or problem.initial_load is not None or problem.initial_excess is not None:
+    if not problem.has_initial_rate or not starts_steadily(problem):
         return problem
-    law = problem.friction
-    if not law.states:
-        return replace(problem, initial_load=problem.load)
-    seen = np.ravel(law.outer_state(np.array(one_argument(problem.states))))
+    law, rate = problem.friction, problem.initial_rate
+    if not problem.body.has_inertia:
+        rate = None  # it follows from load and state
+    elif law.sticks or isinstance(rate, str):
+        rate = problem.rate
+    seen = np.ravel(law.outer_state(np.array(one_argument(problem.states)))) if law.states else np.zeros(0)
     states: dict[str, Any] = dict(zip(INITIAL_STATES, seen.tolist(), strict=False))
-    return replace(problem, initial_load=problem.load, **states)
+    return replace(problem, initial_load=problem.load, initial_rate=rate, **states)
 
 
 def start_of(problem: Problem) -> Start:
     """Return the start of a problem that `has_initial_rate`. Raises InputError if it lacks something, or if nothing balances."""
     rate = problem.initial_rate
     if problem.initial_load is None and problem.initial_excess is None:
-        return _steady(problem, problem.first_pull_rate if rate is None else rate)
+        given = problem.first_pull_rate if rate is None else rate
+        return _steady(problem, _steady_rate(problem) if isinstance(given, str) else given)
+    if isinstance(rate, str):
+        raise InputError(f"Problem: initial_rate '{STEADY}': load and state are those of steady sliding: leave them out")
     load = problem.strength + problem.initial_excess if problem.initial_load is None else problem.initial_load  # type: ignore[operator]
     states = problem.friction.inner_states(problem.given_states)
     if rate is None and problem.friction.reverses:
@@ -76,11 +103,36 @@ def start_of(problem: Problem) -> Start:
     return Start(rate, load, states)
 
 
+def _steady_rate(problem: Problem) -> float:
+    """Return the slip rate (m/s) of steady sliding: the pull rate, unless the driver gives way and its far stress is given.
+
+    It then is the fastest at which friction and a driver of impedance Zd balance, Zd v + S mu(v) = far stress + Zd V.
+    """
+    pull, driver, far = problem.first_pull_rate, problem.body.driver_impedance, problem.far_stress
+    if problem.body.is_driven_rigidly or far is None:
+        return pull
+    drive = (far.first if isinstance(far, LoadingHistory) else far) + driver * pull
+
+    def short(rate: float) -> bool:
+        return driver * rate + _steady(problem, rate).load - problem.body.damping * rate < abs(drive)
+
+    rates = np.geomspace(SLOWEST, FASTEST, AT_ONCE).tolist()
+    high = next((k for k in range(AT_ONCE - 1, 0, -1) if short(rates[k - 1])), 0)
+    if high == 0 or short(rates[high]):
+        what = "does not keep the contact sliding" if high == 0 else "drives the contact ever faster"
+        raise InputError(f"Problem: initial_rate '{STEADY}': the driver {what}: there is no steady sliding")
+    low, beyond = rates[high - 1], rates[high]
+    while low < 0.5 * (low + beyond) < beyond:
+        middle = 0.5 * (low + beyond)
+        low, beyond = (middle, beyond) if short(middle) else (low, middle)
+    return math.copysign(beyond, drive)
+
+
 def _steady(problem: Problem, rate: float) -> Start:
     """Return steady sliding at a slip rate (m/s) of either sign."""
     law, states = problem.friction, tuple[float, ...]()
     if rate == 0.0:
-        none = "the pull rate is 0 at first" if problem.initial_rate is None else "initial_rate is 0"
+        none = "initial_rate is 0" if problem.initial_rate == 0.0 else "the pull rate is 0 at first"
         raise InputError(
             f"Problem: needs initial_load, and initial_state if the law has a state: {none}, so nothing slides steadily"
         )

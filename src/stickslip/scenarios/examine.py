@@ -91,7 +91,8 @@ def _given(scenario: Scenario) -> dict[str, list[Fact]]:
         facts[table] = []
         for name, (declared, _) in quantities_in(table, type(problem.body), problem.friction.states).items():
             value = getattr(owner, prefix + name)
-            value = problem.given_states[STATE_NAMES.index(name)] if value == STEADY else value
+            if value == STEADY:
+                value = problem.rate if name == "rate" else problem.given_states[STATE_NAMES.index(name)]
             off = owner is scenario and value == 0.0  # an option of a run
             unfelt = name.startswith("far_stress") and problem.body.is_driven_rigidly
             if value is not None and not (off or unfelt):
@@ -242,7 +243,8 @@ def warnings_of(scenario: Scenario, contact: Uniqueness) -> list[str]:
     problem = scenario.problem
     found = doubts(problem) + _noise(problem.friction, contact)
     steady = problem.body.is_driven_rigidly
-    held = problem.friction.sticks and -problem.strength <= problem.load and problem.excess <= 0
+    rests = problem.friction.sticks and not problem.has_initial_rate
+    held = rests and -problem.strength <= problem.load and problem.excess <= 0
     if held and steady and not problem.varies and wait_of(problem) > scenario.duration:
         found.append("the run ends before loading reaches the static strength: nothing will slip")
     if problem.body.has_waves:

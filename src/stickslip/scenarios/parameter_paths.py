@@ -14,11 +14,13 @@ from typing import Any
 
 from stickslip.foundation.errors import InputError, full_name
 from stickslip.foundation.quantities import Choice, Quantity, quantities_of
+from stickslip.friction.contract import STATE_NAMES
 from stickslip.planar.nodes import varying
 from stickslip.problem.parameters import PRESSING, entries_of, pressed, pressing_of
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import DURATION
 from stickslip.problem.selection_rule import names as rules
+from stickslip.problem.start import STEADY
 from stickslip.scenarios.contact import LOCKED, Contact
 from stickslip.scenarios.contact_table import PLACES, TAPER
 from stickslip.scenarios.entries import Source
@@ -34,6 +36,8 @@ EXCLUDE_EACH_OTHER = {"initial.load": "excess", "initial.excess": "load"}
 """A scenario has either an initial load or an initial excess. The one that is given another value replaces the other."""
 TOGETHER = (("initial.load", "initial.excess"), *((PRESSING, f"body.{name}") for name in ("normal_stress", "normal_force")))
 """Pairs of which one alone can be given another value."""
+MAY_BE_STEADY = ("initial.rate", *(f"initial.{name}" for name in STATE_NAMES))
+"""Parameters for which "steady" stands for steady sliding; as initial rate it takes the place of load and states, too."""
 _STEP = re.compile(r"(?P<name>[^\[]+)(?:\[(?P<index>\d+)\])?")
 
 
@@ -57,6 +61,8 @@ class ParameterPath:
         Raises InputError, whose message begins with `where`.
         """
         value = value.strip() if isinstance(value, str) else value
+        if value == STEADY and self.name in MAY_BE_STEADY:
+            return STEADY
         value = str(value).lower() if isinstance(value, bool) and self.declared is YES_OR_NO else value
         return self.declared.check(where, self.name, value)
 
@@ -134,6 +140,9 @@ def _put(document: dict[str, Any], changes: Changes) -> None:
         if parameter.name == PRESSING:
             raise KeyError(PRESSING)
         document["initial"].pop(EXCLUDE_EACH_OTHER.get(parameter.name), None)
+        if parameter.name == "initial.rate" and value == STEADY:
+            for excluded in ("load", "excess", *STATE_NAMES):
+                document["initial"].pop(excluded, None)
         parameter.put(document, value)
 
 

@@ -125,7 +125,7 @@ def keys_of(table: str, kind: type, states: tuple[StateVariable, ...] = ()) -> M
 
 def _read_entry(declared: Declared, value: Any, place: DocumentPlace) -> Any:
     """Return a value converted and checked for its field; a table in place of a number that may vary is a loading history."""
-    if value == STEADY and place.table == "initial" and place.key in STATE_NAMES:
+    if value == STEADY and place.table == "initial" and place.key in (*STATE_NAMES, "rate"):
         return value
     varies = place.table == "loading" and place.key in MAY_VARY
     if varies and isinstance(value, dict):

@@ -39,7 +39,8 @@ class GridContact:
     """The friction of a problem, for one run of a scheme; `search`, one of SEARCHES, says how a root is looked for.
 
     Friction that is regularised by `smoothing`, a slip rate v0 (m/s), is mu tanh(v/v0) and never sticks; 0 stands for friction with
-    stick. Raises InputError if the search is unknown, or the law has a state or remembers slip since the last arrest only.
+    stick. Raises InputError if the search is unknown, or the law has a state or remembers slip since the last arrest only, and
+    if the contact starts in motion.
     """
 
     def __init__(self, problem: Problem, search: str = "stick-first", smoothing: float = 0.0) -> None:
@@ -50,6 +51,8 @@ class GridContact:
             raise InputError(
                 f"schemes: {law.kind} friction remembers more than slip, or never sticks: the schemes have no such contact"
             )
+        if problem.has_initial_rate:
+            raise InputError("schemes: the schemes start from rest: leave out initial_rate")
         self.law, self.normal, self.search, self.smoothing = law, problem.normal, search, smoothing
         self._path = law.counts == "path"
         self._law_slip, self._slip = problem.law_slip, problem.initial_slip

@@ -16,7 +16,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.observables.event_table import catalogue_statistics
 from stickslip.observables.predictability import LOST
 from stickslip.problem.problem import Problem
-from stickslip.problem.start import written_out
+from stickslip.problem.start import resistance_slope, written_out
 from stickslip.solution.solution import Solution
 
 LEAST_DISTURBANCE, LARGEST_DISTURBANCE = 1e-15, 1e-2
@@ -28,7 +28,9 @@ MOST_MEMBERS = 1000
 def disturbed(problem: Problem, push: float) -> Problem:
     """Return the problem with `push` (Pa; block: N) added to its initial load, and with the same far stress."""
     far = problem.stress if problem.far_stress is None and is_lossy(problem) else problem.far_stress
-    if not problem.friction.sticks:
+    if problem.has_initial_rate and not problem.body.has_inertia:  # the load follows from the rate
+        return replace(problem, initial_rate=problem.rate + push / resistance_slope(problem), far_stress=far)
+    if problem.has_initial_rate or not problem.friction.sticks:
         return replace(written_out(problem), initial_load=problem.load + push, far_stress=far)
     return replace(problem, initial_load=None, initial_excess=problem.excess + push, far_stress=far)
 

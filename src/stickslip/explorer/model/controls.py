@@ -278,7 +278,8 @@ class _Tables:
     def number(self, path: str, label: str, entry: Quantity, default: Any, rare: bool) -> Control:
         given = self.setting.value(path)
         if given == STEADY:
-            given = self.problem.given_states[STATE_NAMES.index(path.partition(".")[2])]
+            name = path.partition(".")[2]
+            given = self.problem.rate if name == "rate" else self.problem.given_states[STATE_NAMES.index(name)]
         value = default if given is None and default is not MISSING else None if given is None else entry.check(label, "it", given)
         unit, size = unit_of(given, value, entry.unit)
         empty = "" if default is MISSING or path in ("initial.load", "initial.excess") else self._empty(path, default, entry)
