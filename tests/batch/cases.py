@@ -134,6 +134,15 @@ def one(case: Case, values: Values, n: int) -> Scenario:
     return member(case.scenario, {key: float(value[n]) for key, value in values.items()})
 
 
+def sticking(solution: Solution) -> float:
+    """The share of the last third of a run in which the slip rate is 0, from the mode between neighbouring breaks."""
+    history, end = solution.history, solution.history.duration
+    edges = np.union1d([2.0 / 3.0 * end, end], history.breaks)
+    edges = edges[(edges >= 2.0 / 3.0 * end) & (edges <= end)]
+    rests = history.mode(history.find(0.5 * (edges[:-1] + edges[1:]), "right")) == 0
+    return float(np.sum(np.diff(edges)[rests]) / (end - 2.0 / 3.0 * end))
+
+
 def by_solution(solution: Solution) -> dict[str, float]:
     """What a batch folds, from the tables of a solution."""
     events, history = solution.events, solution.history
@@ -147,6 +156,7 @@ def by_solution(solution: Solution) -> dict[str, float]:
         "recurrence_cv": events.recurrence.std() / events.recurrence.mean(),
         "end_time": history.duration,
         "arrested": history.mode(end)[0] == 0,
+        "sticking": sticking(solution) if solution.status.ok else math.nan,
     }
     first = {f"first_{name}": events[name].iloc[0] if len(events) else math.nan for name in COLUMNS_OF_FIRST}
     fastest = events.loc[events.peak_rate.idxmax()] if len(events) else {"peak_rate": math.nan, "peak_time": math.nan}

@@ -12,12 +12,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stickslip.batch.kernels.reduction import Reduced, fold_end
-from stickslip.engine.state.layout import Floats, Integers, Store
+from stickslip.engine.state.layout import Floats, Integers, Stop
 from stickslip.observables.event_stream import EventStream
 from stickslip.run.options import RunOptions
 from stickslip.run.run_loop import Interrupts, run_loop
 from stickslip.run.session import Session
 from stickslip.scenarios.scenario import Scenario
+from stickslip.trajectory.slip_events import LAST_THIRD, time_creeping, time_slipping_in
 from stickslip.trajectory.status import INTERRUPTED
 
 if TYPE_CHECKING:
@@ -51,7 +52,9 @@ class Folding:
     deviations: float = 0.0
     """Sum of the squared deviations of the recurrence times from their mean (s^2)."""
     counted: int = 0
-    """Number of pieces whose shocks have been counted."""
+    """Number of pieces whose shocks, and whose time in slip, have been counted."""
+    slips: float = 0.0
+    """Time (s) in which the contact slips in the last third of the run, so far."""
 
     def look(self, run: Any, *, now: bool) -> int | None:
         """End the run if the batch is to stop: see `run_loop.Watch`."""
@@ -62,7 +65,7 @@ class Folding:
 
         Returns False if that does not make enough room, and the history cannot grow any more either.
         """
-        self.count_shocks(run.store, run.length)
+        self.count(run)
         look = self.stream.look(run.history())
         self.add(look.table())
         look.tell()
@@ -76,10 +79,20 @@ class Folding:
             return False
         return run.length < len(run.store.pieces) // 2 or run.grow(LARGEST_HISTORY)
 
-    def count_shocks(self, store: Store, length: int) -> None:
-        """Count the shocks of the pieces that were added since the last count."""
-        self.out.shocks += np.count_nonzero(store.cause[self.counted : length])
-        self.counted = length
+    def count(self, run: Any) -> None:
+        """Count the shocks, and the time in slip, of the pieces that were added since the last count."""
+        self.out.shocks += np.count_nonzero(run.store.cause[self.counted : run.length])
+        added, end = run.store.pieces[self.counted : run.length], run.options.duration
+        self.slips += time_slipping_in(added, run.problem.round_trip_time, LAST_THIRD * end, end)
+        self.counted = run.length
+
+    def set_sticking(self, run: Any, code: int) -> None:
+        """Write the share of the last third in which the contact sticks; NaN if the run has not reached its end."""
+        if code in (Stop.FINISHED, Stop.LOCKED):
+            end, creep = run.options.duration, run.history().creep
+            begin = LAST_THIRD * end
+            slips = self.slips + time_creeping(creep, run.problem.round_trip_time, begin, end)
+            self.out.sticking = 1.0 - slips / (end - begin)
 
     def add(self, rows: pd.DataFrame) -> None:
         """Add events, in order of time."""
@@ -121,7 +134,8 @@ def run_alone(scenario: Scenario, capacity: int, stop: Integers, out: Floats) ->
     watch = Folding(stream, stop, reduced)
     with Interrupts() as interrupts:
         code = run_loop(run, watch, interrupts)
-        watch.count_shocks(run.store, run.length)
+        watch.count(run)
+        watch.set_sticking(run, code)
         watch.add(stream.look(run.history()).table(unknown=True))
         fold_end(run.store.pieces[: run.length], problem.round_trip_time, scenario.duration, code, out)
         return code

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from stickslip.engine.codegen.compiler import kernel
 from stickslip.engine.codegen.records import Record, record_at
 from stickslip.engine.series.polynomial import MOST_CROSSINGS, evaluate
-from stickslip.engine.state.layout import Floats, Integers
+from stickslip.engine.state.layout import Floats, HistoryPiece, Integers
 from stickslip.engine.state.workspace import pieces_in
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.history import History, Positions
@@ -79,6 +79,51 @@ def find_aftermath(table: Integers, piece: Integers, xi: Floats, by: Integers) -
             if pieces[k].mode != mode or rises_over(pieces[k].rate, rate):
                 by[n] = k
                 break
+
+
+@kernel
+def time_slipping(pieces: HistoryPiece, length: int, round_trip_time: float, begin: float, end: float) -> float:
+    """Return the time (s) between two others in which the contact slips, in the first `length` pieces."""
+    total = 0.0
+    for n in range(length):
+        if pieces[n].mode != 0:
+            start = pieces[n].trip * round_trip_time
+            low, high = max(start + pieces[n].phase_from, begin), min(start + pieces[n].phase_to, end)
+            total += max(high - low, 0.0)
+    return total
+
+
+@kernel
+def time_slipping_in(table: Integers, round_trip_time: float, begin: float, end: float) -> float:
+    """Do what `time_slipping` does for the table of a history."""
+    return time_slipping(pieces_in(table), len(table), round_trip_time, begin, end)
+
+
+LAST_THIRD = 2.0 / 3.0
+"""Share of a run (1) after which what is transient at its start counts as over."""
+HARDLY = 0.01
+"""Share of the mean slip rate (1) below which a contact that never rests counts as sticking."""
+
+
+def time_creeping(creep: Floats, round_trip_time: float, begin: float, end: float) -> float:
+    """Return the time (s) between two others that leaps over creep take beyond their first, recorded round trips."""
+    low, high = (creep[:, 0] + 1.0) * round_trip_time, (creep[:, 0] + creep[:, 1]) * round_trip_time
+    return float(np.sum(np.maximum(np.minimum(high, end) - np.maximum(low, begin), 0.0)))
+
+
+def share_sticking(history: History) -> float:
+    """Return the share (1) of the last third of a run in which the contact sticks.
+
+    It sticks while it rests, or, under a law that never does, while it is slower than HARDLY times its mean slip rate there.
+    """
+    begin, end, trip = LAST_THIRD * history.duration, history.duration, history.round_trip_time
+    if history.problem.friction.sticks:
+        slips = time_slipping_in(history.store.pieces, trip, begin, end) + time_creeping(history.creep, trip, begin, end)
+        return 1.0 - slips / (end - begin)
+    mean = abs(float(np.diff(history.slipped(history.find(np.array([begin, end]), "right")))[0])) / (end - begin)
+    events = SlipEvents.of(history, HARDLY * mean)
+    low, high = (history.seconds(*history.placed(at)) for at in (events.begin, events.end))
+    return 1.0 - float(np.sum(np.maximum(np.minimum(high, end) - np.maximum(low, begin), 0.0))) / (end - begin)
 
 
 def walk(history: History, threshold: float, begin: int = 0) -> Integers:

@@ -17,7 +17,7 @@ from stickslip.engine.series.polynomial import evaluate, integral
 from stickslip.engine.state.layout import Floats, HistoryPiece, Integers, Stop
 from stickslip.engine.state.workspace import Run, pieces_in
 from stickslip.trajectory.history import OFFSET_ROUNDING
-from stickslip.trajectory.slip_events import EventTurns, rises_over
+from stickslip.trajectory.slip_events import LAST_THIRD, EventTurns, rises_over, time_slipping
 from stickslip.trajectory.turning_points import Known, Turn, starts_from_rest
 
 
@@ -40,6 +40,7 @@ class Reduced(Record):
     recurrence_cv: float
     end_time: float
     arrested: float
+    sticking: float
     irregular: float
     branches: float
 
@@ -298,15 +299,17 @@ def fold_whole(history: HistoryPiece, length: int, round_trip_time: float, end: 
     out.shocks, out.end_time = shocks, end
     out.arrested = 1.0 if rests_at(history, length, round_trip_time, end) else 0.0
     out.slip = slipped(history, length, round_trip_time, end)
+    begin = LAST_THIRD * end
+    out.sticking = 1.0 - time_slipping(history, length, round_trip_time, begin, end) / (end - begin)
 
 
 @kernel
 def fold_end(table: Integers, round_trip_time: float, duration: float, code: int, numbers: Floats) -> None:
-    """Do what `fold_whole` does for a history of which only the last pieces are known, but keep the number of shocks.
+    """Do what `fold_whole` does for a history of which only the last pieces are known, but keep what all pieces determine.
 
     The run was to last `duration` s and ended with the given code.
     """
     out, history = reduced_at(numbers), pieces_in(table)
-    shocks = out.shocks
+    shocks, sticking = out.shocks, out.sticking
     fold_whole(history, len(table), round_trip_time, reached(duration, code, round_trip_time, history, len(table)), out)
-    out.shocks = shocks
+    out.shocks, out.sticking = shocks, sticking

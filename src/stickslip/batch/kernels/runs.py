@@ -303,7 +303,10 @@ def fold_run(lane: Lane, members: Members) -> None:
     members.codes[n] = lane.code[0] if run.counts.length > 0 else BAD_PARAMETERS
     if run.counts.length > 0:
         end = reached(members.duration[n], members.codes[n], run.params.round_trip_time, run.history, run.counts.length)
-        fold_whole(run.history, run.counts.length, run.params.round_trip_time, end, reduced_of(lane, members))
+        out = reduced_of(lane, members)
+        fold_whole(run.history, run.counts.length, run.params.round_trip_time, end, out)
+        if members.codes[n] not in (Stop.FINISHED, Stop.LOCKED):
+            out.sticking = math.nan
     lane.stage[0] = Stage.FREE
 
 

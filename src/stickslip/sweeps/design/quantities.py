@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from stickslip.foundation.errors import InputError, nearest_and_all
 from stickslip.problem.problem import Problem
+from stickslip.trajectory.slip_events import share_sticking
 
 if TYPE_CHECKING:
     from stickslip.contact.uniqueness import Uniqueness
@@ -90,6 +91,11 @@ def _slip(solution: Solution) -> float:
     return float(solution.slip(solution.history.duration)) - solution.problem.initial_slip
 
 
+def _sticking(solution: Solution) -> float:
+    """Return the share of the last third of a run in which the contact sticks; NaN if the run has not reached its end."""
+    return share_sticking(solution.history) if solution.status.ok else np.nan
+
+
 def _uniqueness(solution: Solution) -> Uniqueness:
     from stickslip.contact.uniqueness import uniqueness_of
 
@@ -103,6 +109,7 @@ def _irregular(solution: Solution) -> bool:
 
 
 IRREGULAR = "several slip rates solve the contact equation at some load, at the initial slip"
+STICKING = "share of the last third of the run in which the contact rests, or is slower than a hundredth of its mean slip rate"
 _ALL = (
     Summary("events", "1", "slip events", lambda solution: len(solution.events)),
     Summary("pulses", "1", "pulses of all slip events", lambda solution: solution.events.pulses.sum()),
@@ -125,6 +132,7 @@ _ALL = (
     ),
     Summary("end_time", "s", "end of the run", lambda solution: solution.history.duration),
     Summary("arrested", "1", "at rest at the end of the run", lambda s: s.slip_rate(s.history.duration) == 0.0, is_flag=True),
+    Summary("sticking", "1", STICKING, _sticking),
     Summary("irregular", "1", IRREGULAR, _irregular, is_flag=True),
     Summary(
         "branches",
