@@ -18,7 +18,7 @@ from stickslip.run.options import RunOptions
 from stickslip.run.run_loop import Interrupts, run_loop
 from stickslip.run.session import Session
 from stickslip.scenarios.scenario import Scenario
-from stickslip.trajectory.slip_events import LAST_THIRD, time_creeping, time_slipping_in
+from stickslip.trajectory.slip_events import LAST_THIRD, rest_of, time_creeping, time_slipping_in
 from stickslip.trajectory.status import INTERRUPTED
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ class Folding:
             end, creep = run.options.duration, run.history().creep
             begin = LAST_THIRD * end
             slips = self.slips + time_creeping(creep, run.problem.round_trip_time, begin, end)
-            self.out.sticking = 1.0 - slips / (end - begin)
+            self.out.sticking = rest_of(slips, end - begin)
 
     def add(self, rows: pd.DataFrame) -> None:
         """Add events, in order of time."""

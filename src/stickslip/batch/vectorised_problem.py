@@ -196,7 +196,7 @@ def why_not(scenario: Scenario, parameters: Sequence[str], quantities: Sequence[
         if name not in QUANTITIES:
             return f"quantity {ascii(name)[:60]} is not one that a batch can keep; {nearest(str(name), QUANTITIES)}"
     if "sticking" in quantities and not scenario.problem.friction.sticks:
-        return f"sticking: {type(scenario.problem.friction).__name__} never rests, so that it is a matter of the mean slip rate"
+        return f"sticking: {type(scenario.problem.friction).__name__} never rests, so that it is a matter of the slip rate"
     return next((reason for find in (_of_run, _of_law, _of_parameters) for reason in find(scenario, parameters)), "")
 
 

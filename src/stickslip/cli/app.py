@@ -18,6 +18,7 @@ from stickslip.cli.commands.doctor import doctor
 from stickslip.cli.commands.ensemble import ensemble
 from stickslip.cli.commands.explore import explore
 from stickslip.cli.commands.export import export
+from stickslip.cli.commands.find import find
 from stickslip.cli.commands.fit import fit
 from stickslip.cli.commands.infer import infer
 from stickslip.cli.commands.new import new
@@ -101,7 +102,7 @@ What happens at a frictional contact once inertia and waves matter: how it slips
 GROUPS: dict[str, tuple[Callable[..., None], ...]] = {
     "A scenario and its run": (new, check, run, show, export, explore),
     "Measured friction": (fit, infer),
-    "Questions that need many runs": (compare, sweep, analogy, ensemble, regularise, schemes),
+    "Questions that need many runs": (compare, find, sweep, analogy, ensemble, regularise, schemes),
     "For other programs": (benchmark,),
     "The source paper": (paper,),
     "This installation": (doctor,),

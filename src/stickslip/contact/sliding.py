@@ -87,6 +87,8 @@ class SteadySlidings:
     """True if a driver of finite impedance does not pull hard enough to free a contact that rests."""
     proven: bool
     """True if interval arithmetic shows that there are no other changes."""
+    sticks: bool = False
+    """True if the law lets the contact rest."""
     varies: bool = False
     """True if the pull rate or the far stress varies in time: all this is then about its value at the start."""
     is_damped: bool = True
@@ -137,8 +139,9 @@ class SteadySlidings:
             return ""
         texts = [f"{'unstable' if self.changes[0].stable_above else 'stable'} below"]
         texts += [f"{_place(one)}, {'stable' if one.stable_above else 'unstable'} above" for one in self.changes]
+        hint = "; from rest it may stick at a higher rate all the same: stickslip find" * self.sticks
         how = "proven by interval arithmetic" if self.proven else f"found between {RATES[0]:g} and {RATES[-1]:g} m/s, not proven"
-        return f"{' '.join(texts)} ({how})"
+        return f"{' '.join(texts)} ({how}){hint}"
 
 
 def _place(change: StabilityChange) -> str:

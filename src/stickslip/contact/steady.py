@@ -100,6 +100,7 @@ class _Steady:
             changes=changes,
             can_rest=rests and not why,
             proven=proven,
+            sticks=problem.friction.sticks,
             varies=problem.varies,
             is_damped=damped,
             traction_at_pull_rate=self._at_pull_rate() if slidings else math.nan,

@@ -1,16 +1,18 @@
 from .analogy import Analogy, analogy
 from .compare import Comparison, compare
 from .ensemble import Ensemble, ensemble
+from .find import Edge, find
 from .inference.infer import infer, ranking
 from .inference.inference import Inference
 from .inference.record import Record
-from .one_run import catalogue_statistics, critical_value, predictability
+from .one_run import catalogue_statistics, critical_value, predictability, steady
 from .regularise import Regularisation, regularise
 from .schemes import Schemes, judge_series, schemes
 
 __all__ = [
     "Analogy",
     "Comparison",
+    "Edge",
     "Ensemble",
     "Inference",
     "Record",
@@ -21,10 +23,12 @@ __all__ = [
     "compare",
     "critical_value",
     "ensemble",
+    "find",
     "infer",
     "judge_series",
     "predictability",
     "ranking",
     "regularise",
     "schemes",
+    "steady",
 ]

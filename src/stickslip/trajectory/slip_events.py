@@ -16,6 +16,12 @@ from stickslip.problem.problem import Problem
 from stickslip.trajectory.history import History, Positions
 from stickslip.trajectory.turning_points import FULL, Known, Spare, Turn, search_history, turns_in
 
+LAST_THIRD = 2.0 / 3.0
+"""Share of a run (1) after which what is transient at its start counts as over."""
+HARDLY = 0.01
+"""Share of the pull rate (1) below which a contact that never rests counts as sticking."""
+NEGLIGIBLE = 1e-9
+"""Share of a run (1) that may be the rounding of its parts."""
 NOT_YET = -1
 """Marks an event whose aftermath is not known within the history."""
 
@@ -99,10 +105,11 @@ def time_slipping_in(table: Integers, round_trip_time: float, begin: float, end:
     return time_slipping(pieces_in(table), len(table), round_trip_time, begin, end)
 
 
-LAST_THIRD = 2.0 / 3.0
-"""Share of a run (1) after which what is transient at its start counts as over."""
-HARDLY = 0.01
-"""Share of the mean slip rate (1) below which a contact that never rests counts as sticking."""
+@kernel
+def rest_of(slipping: float, length: float) -> float:
+    """Return the share (1) of a length of time (s) that slip leaves to rest; what may be rounding counts as 0."""
+    share = 1.0 - slipping / length
+    return share if share > NEGLIGIBLE else 0.0
 
 
 def time_creeping(creep: Floats, round_trip_time: float, begin: float, end: float) -> float:
@@ -114,16 +121,19 @@ def time_creeping(creep: Floats, round_trip_time: float, begin: float, end: floa
 def share_sticking(history: History) -> float:
     """Return the share (1) of the last third of a run in which the contact sticks.
 
-    It sticks while it rests, or, under a law that never does, while it is slower than HARDLY times its mean slip rate there.
+    It sticks while it rests, or, under a law that never does, while it is slower than HARDLY times the pull rate, or times its mean
+    slip rate there if that is larger.
     """
     begin, end, trip = LAST_THIRD * history.duration, history.duration, history.round_trip_time
     if history.problem.friction.sticks:
         slips = time_slipping_in(history.store.pieces, trip, begin, end) + time_creeping(history.creep, trip, begin, end)
-        return 1.0 - slips / (end - begin)
+        return float(rest_of(slips, end - begin))
     mean = abs(float(np.diff(history.slipped(history.find(np.array([begin, end]), "right")))[0])) / (end - begin)
-    events = SlipEvents.of(history, HARDLY * mean)
+    pulled = abs(float(history.problem.pull_rate_at(end)))
+    events = SlipEvents.of(history, HARDLY * max(mean, pulled))
     low, high = (history.seconds(*history.placed(at)) for at in (events.begin, events.end))
-    return 1.0 - float(np.sum(np.maximum(np.minimum(high, end) - np.maximum(low, begin), 0.0))) / (end - begin)
+    slips = float(np.sum(np.maximum(np.minimum(high, end) - np.maximum(low, begin), 0.0)))
+    return float(rest_of(slips, end - begin))
 
 
 def walk(history: History, threshold: float, begin: int = 0) -> Integers:

@@ -17,7 +17,7 @@ from stickslip.engine.series.polynomial import evaluate, integral
 from stickslip.engine.state.layout import Floats, HistoryPiece, Integers, Stop
 from stickslip.engine.state.workspace import Run, pieces_in
 from stickslip.trajectory.history import OFFSET_ROUNDING
-from stickslip.trajectory.slip_events import LAST_THIRD, EventTurns, rises_over, time_slipping
+from stickslip.trajectory.slip_events import LAST_THIRD, EventTurns, rest_of, rises_over, time_slipping
 from stickslip.trajectory.turning_points import Known, Turn, starts_from_rest
 
 
@@ -300,7 +300,7 @@ def fold_whole(history: HistoryPiece, length: int, round_trip_time: float, end: 
     out.arrested = 1.0 if rests_at(history, length, round_trip_time, end) else 0.0
     out.slip = slipped(history, length, round_trip_time, end)
     begin = LAST_THIRD * end
-    out.sticking = 1.0 - time_slipping(history, length, round_trip_time, begin, end) / (end - begin)
+    out.sticking = rest_of(time_slipping(history, length, round_trip_time, begin, end), end - begin)
 
 
 @kernel

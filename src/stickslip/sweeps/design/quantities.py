@@ -109,7 +109,7 @@ def _irregular(solution: Solution) -> bool:
 
 
 IRREGULAR = "several slip rates solve the contact equation at some load, at the initial slip"
-STICKING = "share of the last third of the run in which the contact rests, or is slower than a hundredth of its mean slip rate"
+STICKING = "share of the last third of the run in which the contact rests, or under a law without rest hardly moves"
 _ALL = (
     Summary("events", "1", "slip events", lambda solution: len(solution.events)),
     Summary("pulses", "1", "pulses of all slip events", lambda solution: solution.events.pulses.sum()),

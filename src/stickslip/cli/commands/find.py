@@ -1,0 +1,63 @@
+"""`stickslip find`: find where stick-slip, a slip event or a number of pulses changes along one parameter."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from stickslip.cli.options import Changes, ScenarioName, option, table_of
+from stickslip.cli.output.files import Target, announce, check_targets, write_files
+from stickslip.cli.output.show import print_sentences, titled
+from stickslip.foundation.errors import InputError
+
+ALONG = "NAME=LOW..HIGH: what to vary, and between which values. Default: pull_rate, upwards from where steady sliding is stable."
+
+
+def find(
+    scenario: ScenarioName,
+    *,
+    changes: Changes = None,
+    along: Annotated[str, option(ALONG)] = "pull_rate",
+    what: Annotated[str, option("What changes: sticking, events or pulses.")] = "sticking",
+    duration: Annotated[str | None, option("Duration of the runs: s, or with a unit.")] = None,
+    within: Annotated[float, typer.Option(help="Width of the last bracket, as a share of its upper end.")] = 1e-3,
+    out: Annotated[Path | None, table_of("run")] = None,
+) -> None:
+    r"""Find an edge along one number of a scenario, by bisection on exact runs.
+
+    At which pull rate does stick-slip vanish? From which stiffness on is there
+    no event, or one pulse less? The answer is the last bracket, with what the
+    runs at its two ends did. "sticking" asks whether the contact rests in the
+    last third of a run: let the run last long enough. What happens from rest
+    may differ from what is stable: `stickslip check` says from which rate on
+    steady sliding is.
+
+    \b
+      stickslip find mine.toml --duration "60 s"
+      stickslip find mine.toml --along body.stiffness=1e6..1e8 --what events
+
+    Exit code: 0 done, 2 unusable input, 130 interrupted.
+    """
+    from stickslip.cli.overrides import load_with
+    from stickslip.run.progress import progress_line
+    from stickslip.studies.find import find as study
+
+    check_targets(Target("--out", out, (".csv",)))
+    name, given, ends = along.partition("=")
+    low, dots, high = ends.partition("..")
+    if given and not (low and dots and high):
+        raise InputError(f'find: --along must be NAME or NAME=LOW..HIGH, as "pull_rate=1 mm/s..1 m/s", got {ascii(along)[:60]}')
+    chosen = load_with("find", scenario, changes, duration=duration)
+    values = (_typed(low), _typed(high)) if given else (None, None)
+    with progress_line(f"{chosen.name}:") as report:
+        found = study(chosen, name.strip(), *values, what=what, within=within, progress=report)
+    print_sentences(titled(chosen), found.text)
+    announce(*write_files((out, found.to_csv)))
+
+
+def _typed(text: str) -> float | str:
+    from stickslip.scenarios.entries import typed_number
+
+    return typed_number(text)

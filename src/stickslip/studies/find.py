@@ -1,0 +1,231 @@
+"""Find an edge along one parameter by bisection on exact runs: where stick-slip, a slip event or a number of pulses changes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from stickslip.contact.steady import steady_slidings
+from stickslip.foundation.atomic_write import write_table
+from stickslip.foundation.conversion import WithUnit
+from stickslip.foundation.errors import InputError, nearest_and_all
+from stickslip.foundation.formatting import brief
+from stickslip.foundation.quantities import Quantity
+from stickslip.problem.problem import Problem
+from stickslip.problem.run_quantities import DURATION
+from stickslip.run.simulate import simulate
+from stickslip.scenarios.parameter_paths import find_parameter
+from stickslip.scenarios.scenario import Scenario
+from stickslip.scenarios.source import read_source
+from stickslip.solution.solution import Solution
+from stickslip.studies.study import TextProgress, telling, uninterrupted
+from stickslip.trajectory.slip_events import share_sticking
+
+WHAT: dict[str, Callable[[Solution], bool | int]] = {
+    "sticking": lambda run: share_sticking(run.history) > 0.0,
+    "events": lambda run: len(run.events),
+    "pulses": lambda run: int(run.events.pulses.sum()),
+}
+"""What may change along a parameter: whether the contact sticks in the last third of a run, how many events or pulses it has."""
+WITHIN = 1e-3
+"""Default width of the last bracket, as a share of its upper end."""
+MOST_DOUBLINGS = 12
+"""Largest number of times that a range is doubled where no upper end is given."""
+
+What = str | Callable[[Solution], Any]
+"""A name in WHAT, or a function of a solution that returns True or False, or a whole number."""
+
+
+@dataclass(frozen=True, repr=False)
+class Edge:
+    """The result of `find`: the last bracket, between whose ends what was looked for changes."""
+
+    parameter: str
+    """Full name of the parameter."""
+    unit: str
+    what: str
+    low: float
+    high: float
+    """Values of the parameter (SI) at the two ends."""
+    at_low: bool | int
+    at_high: bool | int
+    """What the exact runs gave there."""
+    table: pd.DataFrame = field(compare=False)
+    """The runs, in the order in which they were made: the parameter (SI), and what they gave."""
+    duration: float = math.nan
+    """Duration of the runs (s)."""
+
+    @property
+    def runs(self) -> int:
+        """The number of runs."""
+        return len(self.table)
+
+    @property
+    def text(self) -> str:
+        """Say in one sentence where the edge is."""
+        ends = f"{brief(self.low, self.unit, 9)} and {brief(self.high, self.unit, 9)}"
+        changes = f"{self.what}: {_word(self.at_low)} below, {_word(self.at_high)} above"
+        return f"between {self.parameter} = {ends} ({changes}), by {self.runs} exact runs of {brief(self.duration, 's')}"
+
+    def to_csv(self, path: str | Path) -> Path:
+        """Write the runs as CSV and return the path; a comment line (#) before them says what was found."""
+        return write_table(Path(path), self.table, (self.text,))
+
+    def __repr__(self) -> str:
+        return f"stickslip Edge\n  {self.text}"
+
+
+def _word(value: bool | int) -> str:
+    return ("yes" if value else "no") if isinstance(value, bool) else str(value)
+
+
+def find(
+    problem: Problem | Scenario | str | Path,
+    along: str = "pull_rate",
+    low: float | str | WithUnit | None = None,
+    high: float | str | WithUnit | None = None,
+    *,
+    what: What = "sticking",
+    duration: float | str | WithUnit | None = None,
+    within: float = WITHIN,
+    progress: TextProgress | bool | None = None,
+) -> Edge:
+    """Find where something changes along one parameter, by bisection on exact runs.
+
+    Parameters
+    ----------
+    problem : Problem, Scenario, str or Path
+        The problem, its scenario, the name of a bundled scenario, or a scenario file.
+    along : str
+        The parameter that is varied, as in a sweep: "pull_rate", "body.stiffness", "friction.alpha", "initial.excess" ...
+    low, high : float or str, optional
+        Its two ends (SI, or texts with units). Without them the search along the pull rate begins at the rate at which steady
+        sliding becomes stable, and goes up from there.
+    what : str or callable
+        "sticking": whether the contact rests in the last third of a run (or nearly does, see the quantity of that name in sweeps).
+        "events", "pulses": how many there are. A function of a `Solution` that returns True or False, or a whole number.
+    duration : float or str, optional
+        Duration of the runs (s), long enough for what happens at the start to be over; that of the scenario by default.
+    within : float
+        Width of the last bracket, as a share of its upper end.
+    progress : bool or callable, optional
+        True shows the progress in one line; a function is called with a line of text after each run.
+
+    Returns
+    -------
+    Edge
+        The two ends of the last bracket, what the runs gave there, and all runs. Between two positive ends the search halves the
+        ratio, otherwise the distance. If there are several changes, it is one of them.
+
+    Raises
+    ------
+    InputError
+        If both ends give the same, if a run does not reach its end, or if a name is unknown.
+    KeyboardInterrupt
+        If the user presses Ctrl-C.
+
+    Examples
+    --------
+    >>> import stickslip as ss
+    >>> law = ss.friction.FromExpression("0.3 + 0.2*exp(-v/v1)", {"v1": "50 mm/s"})
+    >>> body = ss.SpringBlock(mass=1.0, stiffness=1e3, normal_force=10.0, damping=2.0)
+    >>> axis = ss.Problem(body, law, pull_rate=0.1, initial_load=0.0)
+    >>> edge = ss.studies.find(axis, "pull_rate", 0.05, 1.0, duration=20.0, within=0.01)
+    >>> edge.at_low, edge.at_high
+    (True, False)
+    """
+    if isinstance(what, str) and what not in WHAT:
+        raise InputError(f"find: what: {ascii(what)[:60]} is unknown; {nearest_and_all(what, WHAT)}, or a function of a solution")
+    if not 0.0 < within < 1.0:
+        raise InputError(f"find: within must lie between 0 and 1, got {within!r}")
+    found = read_source("find", problem)
+    lasts = found.duration if isinstance(found, Scenario) and duration is None else DURATION.check("find", "duration", duration)
+    scenario = Scenario(found, lasts) if isinstance(found, Problem) else found
+    parameter = find_parameter(scenario, along, "find")
+    if not isinstance(parameter.declared, Quantity):
+        raise InputError(f"find: {parameter.name} is no number that could be halved")
+    ends = [None if end is None else parameter.declared.check("find", parameter.name, end) for end in (low, high)]
+    with telling(progress, "find") as tell:
+        search = _Search(scenario, parameter.name, parameter.unit, what, lasts, tell)
+        return search.edge(*search.ends(*ends), within)
+
+
+@dataclass(frozen=True)
+class _Search:
+    """A search for an edge along one parameter of a scenario; `seen` collects the runs."""
+
+    scenario: Scenario
+    parameter: str
+    unit: str
+    what: What
+    duration: float
+    tell: TextProgress
+    seen: dict[float, bool | int] = field(default_factory=dict)
+
+    @property
+    def name(self) -> str:
+        return self.what if isinstance(self.what, str) else getattr(self.what, "__name__", "what")
+
+    def at(self, value: float) -> bool | int:
+        """Return what a run with a value (SI) of the parameter gives."""
+        if value not in self.seen:
+            run = uninterrupted(simulate(self.scenario.with_values({self.parameter: value}).problem, self.duration))
+            place = f"{self.parameter} = {brief(value, self.unit)}"
+            if not run.status.ok:
+                raise InputError(f"find: the run at {place} did not reach its end: {run.status}")
+            self.seen[value] = _plain(WHAT[self.what](run) if isinstance(self.what, str) else self.what(run), place)
+            self.tell(f"{place}: {self.name} {_word(self.seen[value])}")
+        return self.seen[value]
+
+    def ends(self, low: float | None, high: float | None) -> tuple[float, float]:
+        """Return the two ends of the search, in ascending order; where they are left out, from steady sliding."""
+        if low is not None and high is not None:
+            if low == high:
+                raise InputError(f"find: the two ends of {self.parameter} must differ, got {low:g} twice")
+            return min(low, high), max(low, high)
+        if self.parameter != "loading.pull_rate" or (low is None) != (high is None):
+            raise InputError(f"find: give two values of {self.parameter} between which to look")
+        gained = [one.pull_rate for one in steady_slidings(self.scenario.problem).changes if one.stable_above and one.pull_rate]
+        if not gained:
+            raise InputError(
+                "find: give two pull rates between which to look: there is none at which steady sliding becomes stable"
+            )
+        least = 0.9 * abs(gained[-1])
+        most = 2.0 * least
+        for _ in range(MOST_DOUBLINGS):
+            if self.at(most) != self.at(least):
+                return least, most
+            most *= 2.0
+        return least, most
+
+    def edge(self, low: float, high: float, within: float) -> Edge:
+        """Return the edge between two values (SI)."""
+        at_low, at_high = self.at(low), self.at(high)
+        if at_low == at_high:
+            ends = f"{brief(low, self.unit)} and {brief(high, self.unit)}"
+            raise InputError(f"find: at both {self.parameter} = {ends} it is {self.name}: {_word(at_low)}; give ends that differ")
+        while high - low > within * abs(high):
+            middle = math.sqrt(low) * math.sqrt(high) if low > 0.0 else 0.5 * (low + high)
+            if not low < middle < high:
+                break
+            if self.at(middle) != at_low:
+                high, at_high = middle, self.at(middle)
+            else:
+                low = middle
+        table = pd.DataFrame({self.parameter: list(self.seen), self.name: list(self.seen.values())})
+        return Edge(self.parameter, self.unit, self.name, low, high, at_low, at_high, table, self.duration)
+
+
+def _plain(value: Any, place: str) -> bool | int:
+    """Return what a user's function gave as True, False or a whole number. Raises InputError for anything else."""
+    plain = value.item() if hasattr(value, "item") else value
+    if isinstance(plain, bool | int):
+        return plain
+    if isinstance(plain, float) and plain.is_integer():
+        return int(plain)
+    raise InputError(f"find: what must be True, False or a whole number, got {ascii(plain)[:60]} at {place}")

@@ -1,0 +1,111 @@
+"""Edges along one parameter: against an independent integration, against closed forms, and what is refused."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import stickslip as ss
+from stickslip.trajectory.slip_events import share_sticking
+
+BODY = ss.SpringBlock(mass=1.0, stiffness=1e3, normal_force=10.0, damping=5.0)
+STRIBECK = ss.friction.FromExpression("0.3 + 0.2*exp(-v/v1)", {"v1": "50 mm/s"})
+AXIS = ss.Problem(BODY, STRIBECK, pull_rate=0.05, initial_load=0.0)
+
+
+def stops_again(pull: float) -> bool:
+    """Whether the block, released at its strength, comes to rest again: then each cycle is like the first. By scipy."""
+
+    def derivative(_: float, y: Any) -> list[float]:
+        stretch, rate = y
+        friction = 10.0 * (0.3 + 0.2 * math.exp(-max(rate, 0.0) / 0.05))
+        return [pull - rate, 1e3 * stretch - 5.0 * rate - friction]
+
+    def at_rest(_: float, y: Any) -> float:
+        return float(y[1])
+
+    at_rest.terminal, at_rest.direction = True, -1.0  # type: ignore[attr-defined]
+    begin = [5.0 / 1e3 + 1e-6 * pull, 1e3 * pull * 0.5e-12]  # 1 us after the release
+    return bool(solve_ivp(derivative, (0.0, 2.0), begin, events=at_rest, rtol=1e-11, atol=1e-14).t_events[0].size)
+
+
+def test_the_edge_of_stick_slip_from_rest_is_that_of_an_independent_integration():
+    """Hysteresis: from rest it sticks up to 0.155 m/s, while steady sliding is stable from 0.104 m/s on."""
+    edge = ss.studies.find(AXIS, duration=20.0)
+    assert (edge.at_low, edge.at_high) == (True, False)
+    assert edge.high - edge.low <= 1e-3 * edge.high
+    assert stops_again(edge.low)
+    assert not stops_again(edge.high)
+    assert ss.studies.steady(AXIS).changes[0].pull_rate < 0.7 * edge.low
+    assert edge.runs == len(edge.table) == len(set(edge.table["loading.pull_rate"]))
+
+
+def test_the_load_at_which_slip_begins_is_the_strength():
+    """S mu(0) = 5 N; a block that is not pulled has one event above it and none below, to 1e-6."""
+    rest = ss.Problem(BODY, STRIBECK, initial_load=4.0)
+    edge = ss.studies.find(rest, "initial.load", "4 N", "6 N", what="events", duration=1.0, within=1e-6)
+    assert edge.low <= 5.0 <= edge.high
+    assert edge.high - edge.low < 6e-6
+    assert (edge.at_low, edge.at_high) == (0, 1)
+
+
+def test_a_function_may_say_what_to_look_for_and_ends_may_be_negative():
+    edge = ss.studies.find(AXIS, "initial.slip", -1.0, 2.0, what=lambda run: run.problem.initial_slip > 0.3, duration=1e-3)
+    assert edge.low <= 0.3 <= edge.high
+
+
+def test_sticking_of_coulomb_friction_is_what_its_cycle_says():
+    """A cycle lasts 2 (muS - muD) S/(K V) at rest and about half a period in slip, in the limit of slow pull: to 2 %."""
+    body = ss.SpringBlock(mass=1.0, stiffness=1e3, normal_force=10.0)
+    problem = ss.Problem(body, ss.friction.Coulomb(0.5, 0.4), pull_rate=1e-3, initial_load=5.0)
+    rest, slip = 2 * 0.1 * 10.0 / (1e3 * 1e-3), math.pi * math.sqrt(1.0 / 1e3)
+    swept = ss.sweep(ss.scenarios["fig6-block-printed"], {"alpha": [1.0]}, quantities=["sticking"])
+    assert float(swept.sticking[0]) == 1.0
+        assert share_sticking(ss.simulate(problem, 300.0).history) == pytest.approx(rest / (rest + slip), rel=0.02)
+
+
+def test_a_law_that_never_rests_sticks_where_it_is_slow_against_its_mean():
+    law = ss.friction.RateAndState(0.6, 0.01, 0.015, 1e-5, 1e-6)
+    block = ss.SpringBlock(1.0, 1e8, 1e6)  # a fifth of the critical stiffness
+    kicked = ss.Problem(block, law, pull_rate=1e-4, initial_rate=2e-4)
+    steady = ss.Problem(ss.SpringBlock(1.0, 1e9, 1e6), law, pull_rate=1e-4, initial_rate=2e-4)
+    assert share_sticking(ss.simulate(kicked, 10.0).history) > 0.5
+    assert share_sticking(ss.simulate(steady, 10.0).history) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"along": "pull_rate", "low": 0.3, "high": 0.4}, "at both loading.pull_rate = 0.3 m/s and 0.4 m/s it is sticking: no"),
+        ({"what": "stickin"}, "what: 'stickin' is unknown; did you mean 'sticking'?"),
+        ({"along": "pul_rate", "low": 0.1, "high": 0.2}, "did you mean"),
+        ({"along": "body.mass"}, "give two values of body.mass between which to look"),
+        ({"low": 0.1, "high": 0.1}, "the two ends of loading.pull_rate must differ"),
+        ({"within": 0.0}, "within must lie between 0 and 1"),
+        ({"along": "run.selection", "low": 0.0, "high": 1.0}, "no number that could be halved"),
+        ({"low": 0.1, "high": 0.2, "what": lambda run: 0.5}, "what must be True, False or a whole number, got 0.5"),
+        ({"along": "body.damping", "low": "1 kg", "high": 2.0}, "body.damping must be a number in N s/m"),
+    ],
+)
+def test_what_cannot_be_found_is_refused_in_one_line(given: dict[str, Any], message: str):
+    with pytest.raises(ss.InputError) as error:
+        ss.studies.find(AXIS, **({"duration": 5.0} | given))
+    assert str(error.value).startswith("find: ")
+    assert message in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_an_edge_tells_and_saves_its_runs(tmp_path: Path):
+    edge = ss.studies.find(AXIS, "pull_rate", 0.05, 0.4, duration=5.0, within=0.3)
+    assert repr(edge).startswith("stickslip Edge\n  between loading.pull_rate = ")
+    assert "(sticking: yes below, no above), by" in edge.text
+    lines = edge.to_csv(tmp_path / "edge.csv").read_text().splitlines()
+    assert lines[0] == f"# {edge.text}"
+    assert lines[1] == "loading.pull_rate,sticking"
+    assert len(lines) == 2 + edge.runs
+    assert np.isfinite(edge.table["loading.pull_rate"]).all()
