@@ -66,7 +66,7 @@ def test_sticking_of_coulomb_friction_is_what_its_cycle_says():
     rest, slip = 2 * 0.1 * 10.0 / (1e3 * 1e-3), math.pi * math.sqrt(1.0 / 1e3)
     swept = ss.sweep(ss.scenarios["fig6-block-printed"], {"alpha": [1.0]}, quantities=["sticking"])
     assert float(swept.sticking[0]) == 1.0
-        assert share_sticking(ss.simulate(problem, 300.0).history) == pytest.approx(rest / (rest + slip), rel=0.02)
+    assert share_sticking(ss.simulate(problem, 300.0).history) == pytest.approx(rest / (rest + slip), rel=0.02)
 
 
 def test_a_law_that_never_rests_sticks_where_it_is_slow_against_its_mean():
