@@ -71,7 +71,7 @@ class StabilityChange:
     __repr__ = brief_repr
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class SteadySlidings:
     """All steady sliding motions of a problem at its pull rate, and the rates at which their stability changes."""
 
@@ -105,6 +105,9 @@ class SteadySlidings:
         """The stable steady sliding, if there is exactly one, and rest is not possible: what every slow motion ends in."""
         stable = [one for one in self.slidings if one.stable]
         return stable[0] if len(stable) == 1 and not self.can_rest else None
+
+    def __repr__(self) -> str:
+        return "\n".join(["stickslip SteadySlidings", *(f"  {line}" for line in self.lines())])
 
     def __str__(self) -> str:
         return " ".join(f"{line[0].upper()}{line[1:]}." for line in self.lines())
