@@ -42,7 +42,7 @@ def test_find_prints_the_bracket_and_writes_the_runs(command: Command, axis: str
     assert shown.code == 0, shown.err
     assert "Between loading.pull_rate = " in shown.out
     assert "sticking: yes below, no above" in " ".join(shown.out.split())
-    assert (tmp_path / "runs.csv").read_text().startswith("# between loading.pull_rate")
+    assert "\n# between loading.pull_rate" in (tmp_path / "runs.csv").read_text()
 
 
 @pytest.mark.parametrize(

@@ -105,7 +105,8 @@ def test_an_edge_tells_and_saves_its_runs(tmp_path: Path):
     assert repr(edge).startswith("stickslip Edge\n  between loading.pull_rate = ")
     assert "(sticking: yes below, no above), by" in edge.text
     lines = edge.to_csv(tmp_path / "edge.csv").read_text().splitlines()
-    assert lines[0] == f"# {edge.text}"
-    assert lines[1] == "loading.pull_rate,sticking"
-    assert len(lines) == 2 + edge.runs
+    assert f"# {edge.text}" in lines
+    rows = [line for line in lines if not line.startswith("#")]
+    assert rows[0] == "loading.pull_rate,sticking"
+    assert len(rows) == 1 + edge.runs
     assert np.isfinite(edge.table["loading.pull_rate"]).all()

@@ -142,7 +142,9 @@ class SteadySlidings:
             return ""
         texts = [f"{'unstable' if self.changes[0].stable_above else 'stable'} below"]
         texts += [f"{_place(one)}, {'stable' if one.stable_above else 'unstable'} above" for one in self.changes]
-        hint = "; from rest it may stick at a higher rate all the same: stickslip find" * self.sticks
+        hint = "; from rest it may stick at a higher rate all the same: stickslip find" * (
+            self.sticks and self.changes[-1].stable_above
+        )
         how = "proven by interval arithmetic" if self.proven else f"found between {RATES[0]:g} and {RATES[-1]:g} m/s, not proven"
         return f"{' '.join(texts)} ({how}){hint}"
 

@@ -73,7 +73,7 @@ class Edge:
         return f"between {self.parameter} = {ends} ({changes}), by {self.runs} exact runs of {brief(self.duration, 's')}"
 
     def to_csv(self, path: str | Path) -> Path:
-        """Write the runs as CSV and return the path; a comment line (#) before them says what was found."""
+        """Write the runs as CSV and return the path; comment lines (#) before them say what was found."""
         return write_table(Path(path), self.table, (self.text,))
 
     def __repr__(self) -> str:
