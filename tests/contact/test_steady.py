@@ -258,6 +258,14 @@ def test_a_dead_load_has_no_critical_pull_rate():
     assert found.changes == ()
 
 
+def test_friction_that_turns_without_end_has_an_answer_without_critical_rates():
+    """dmu/dv = 0.05 cos v, which keeps changing its sign: stable or not at the pull rate, and nothing is proven of the rest."""
+    for rate, stable in ((1.0, True), (3.0, False)):
+        found = steady_slidings(ss.Problem(slab(), "0.5 + 0.05*sin(v)", pull_rate=rate, initial_load=0.0))
+        assert found.slidings[0].stable is stable
+        assert (found.changes, found.proven) == ((), False)
+
+
 # ---- what does not slide steadily -------------------------------------------------------------------------------------------
 
 

@@ -28,6 +28,7 @@ from stickslip.contact.equation import Resistance
 from stickslip.contact.folds import Certificate, certificate
 from stickslip.contact.roots import sign_change
 from stickslip.contact.sliding import RATES, Sliding, StabilityChange, SteadySlidings
+from stickslip.foundation.errors import InputError
 from stickslip.friction.contract import one_argument
 from stickslip.friction.formula.differences import value_and_slopes
 from stickslip.loading import LoadingHistory
@@ -199,7 +200,8 @@ class _Steady:
             return [abs(self.drive)]
         load, slope = abs(self.drive), self.gives_way
         fastest = min(2.0 * load / slope, RATES[-1]) if slope > 0.0 else RATES[-1]
-        turns = self.turns(slope).rates if not self.problem.friction.states else RATES.tolist()
+        proof = None if self.problem.friction.states else self.turns(slope)
+        turns = RATES.tolist() if proof is None else proof.rates
         places = [RATES[0] * 1e-6, *(rate for rate in turns if rate < fastest), fastest]
 
         def miss(rate: float) -> float:
@@ -211,9 +213,12 @@ class _Steady:
 
     # ---- stability ------------------------------------------------------------------------------------------------------------
 
-    def turns(self, damping: float) -> Certificate:
-        """Return where `damping` v + S mu(v) turns, for a law without states."""
-        return certificate(self.resistance(damping))
+    def turns(self, damping: float) -> Certificate | None:
+        """Return where `damping` v + S mu(v) turns, for a law without states; None if it turns too often to be followed."""
+        try:
+            return certificate(self.resistance(damping))
+        except InputError:
+            return None
 
     def resistance(self, damping: float) -> Resistance:
         return Resistance(self.problem.friction, damping, self.problem.normal, self.slip)
@@ -227,6 +232,8 @@ class _Steady:
         if not law.depends_on_rate or not math.isfinite(taken):
             return (), True
         proof, g = self.turns(taken), self.resistance(taken)
+        if proof is None:
+            return (), False
         found, rates = [], proof.rates
         for k, rate in enumerate(rates):
             beyond = 0.5 * (rate + rates[k + 1]) if k + 1 < len(rates) else 2.0 * rate
