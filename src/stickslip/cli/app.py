@@ -39,6 +39,8 @@ except ImportError as error:
 
 WIDEST_TERM = 28
 """Largest width (columns) of the terms of a list; the explanation of a longer one begins below it."""
+_OF_SEVERAL = re.compile(r"<list\[(\w+)\]>")
+"""What typer shows for a value that may be given several times."""
 LEAST_WIDTH = 20
 """Smallest width (columns) of explanations."""
 
@@ -68,6 +70,7 @@ def sections_of(command: Any, ctx: Any, formatter: Any) -> None:
         heading = "Arguments" if isinstance(one, TyperArgument) else getattr(one, "rich_help_panel", None) or "Options"
         record = one.get_help_record(ctx)
         if record is not None:
+            record = _OF_SEVERAL.sub(r"<\1>", record[0]), record[1]  # one is typed at a time
             sections.setdefault(heading, []).append(record)
     for heading, records in sections.items():
         if records:

@@ -14,10 +14,10 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip.bodies import ElasticSlab
 from stickslip.contact.uniqueness import regime_of
 from stickslip.foundation.arguments import CheckedArguments, shown
-from stickslip.foundation.conversion import Number, OptionalNumber
+from stickslip.foundation.conversion import Number, OptionalNumber, has_unit, without_unit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, check_fields, declare, quantity
-from stickslip.planar.nodes import NodeValues, node_values
+from stickslip.planar.nodes import NodeValues, full_names, node_values, varying
 from stickslip.problem.problem import Problem, check_problem
 
 Profile = ArrayLike | Callable[..., Any]
@@ -60,8 +60,9 @@ class PlanarSlab(CheckedArguments):
         Number of nodes along z: even; for a plane only.
     along
         Parameters that vary along the contact, by name: those of `problem.parameters` that belong to friction ("friction.static"),
-        "body.normal_stress", "initial.slip", "initial.load", "initial.excess" and "initial.state". Each is an array of SI values
-        with one entry for each node, or a function of y, or of y and z (m, 0 in the middle), that returns such an array.
+        "body.normal_stress", "initial.slip", "initial.load", "initial.excess" and "initial.state". Each is an array with one entry
+        for each node, in SI or as texts with units, or a function of y, or of y and z (m, 0 in the middle), that returns such an
+        array.
     barrier
         Where the contact is locked and never slips: an array of booleans, or a function of y, or y and z, that returns one.
     replicas
@@ -259,13 +260,14 @@ class PlanarSlab(CheckedArguments):
         return large, tuple(slice(before, before + count) for (before, _), count in zip(room, self.shape, strict=True))
 
     def at_nodes(self, name: str, given: Profile, kind: type = float) -> NDArray[Any]:
-        """Return the values of a profile at the nodes, with the shape `shape`.
+        """Return the values of a profile at the nodes in SI, with the shape `shape`.
 
         Raises InputError if they do not fit the nodes, or are not finite numbers; `name` begins the message.
         """
         where = (self.y,) if not self.is_plane else tuple(np.meshgrid(self.y, self.z, indexing="ij"))
         try:
-            values = np.asarray(given(*where) if callable(given) else given)
+            values = given(*where) if callable(given) else given
+            values = np.asarray(values if kind is bool else self._in_si(name, values))
             values = np.array(np.broadcast_to(values, self.shape), kind)
         except InputError:
             raise
@@ -274,6 +276,18 @@ class PlanarSlab(CheckedArguments):
         if not np.isfinite(values).all():
             raise InputError(f"PlanarSlab: {name} must be finite at every node")
         return values
+
+    def _in_si(self, name: str, values: Any) -> Any:
+        """Return values without units, which texts and quantities of pint may have. Raises InputError."""
+        listed = np.asarray(values, object) if isinstance(values, str | list | tuple) else None
+        if not has_unit(values) and (listed is None or not any(isinstance(one, str) for one in listed.flat)):
+            return values
+        full = full_names(self.problem, [name], "PlanarSlab: along")[name]
+        declared = varying(self.problem)[full][0]
+        if listed is None:
+            return without_unit(values, declared.unit)
+        read = [declared.check("PlanarSlab", f"along {name}", one) for one in listed.flat]
+        return np.reshape(np.array(read), listed.shape)
 
     @cached_property
     def values(self) -> NodeValues:

@@ -209,10 +209,13 @@ class Problem(CheckedArguments):
             signed = state.signed or state.reverses
             above = None if law.sticks or signed else 0.0
             declared = Quantity(state.unit, state.meaning, above=above, at_least=None if signed else 0.0)
-            if value == STEADY:
+            if isinstance(value, str) and value == STEADY:
                 _ = self._steady_states  # refuses where there is none
                 continue
             value = float(np.ravel(law.healed_state)[i]) if value is None else value
+            if isinstance(value, tuple | list | np.ndarray) and len(law.states) > 1:
+                both = " and ".join(INITIAL_STATES)
+                raise InputError(f"Problem: {field_name} must be one number, got {shown(value)}: each state has its own, {both}")
             object.__setattr__(self, field_name, declared.check("Problem", field_name, value))
 
     def _check_far_side(self) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.foundation.arrays import Floats
+from stickslip.friction import FrictionLaw
 from stickslip.schemes.contract import Energies, Series
 from stickslip.solution.solution import Solution
 from stickslip.studies.scheme_shocks import Shock, shadow, shocks_of
@@ -29,7 +30,8 @@ COLUMNS = {
     "rate_order": ("", "order of convergence of rate_error, from the mesh before"),
     "final_slip": ("m", "slip at the end, since t = 0"),
     "peak_rate": ("m/s", "largest slip rate"),
-    "pulses": ("", "maxima of |v| separated by minima below half the lower one"),
+    "pulses": ("", "maxima of |v| separated by minima below half the lower one; ringing of the scheme makes some, too"),
+    "periods": ("", "largest slip since t = 0, in periods of friction along slip; NaN if friction has none"),
     "arrest": ("s", "time from which on the contact stays at rest; NaN if it slips at the end"),
     "shocks": ("", "how many of the exact shocks the series makes"),
     "own_shocks": ("", "shocks that the series makes and the exact solution does not"),
@@ -62,6 +64,12 @@ def pulses_in(rate: Floats, threshold: float) -> int:
         else:
             low = min(low, value)
     return count
+
+
+def period_of(law: FrictionLaw) -> float:
+    """Return the slip (m) after which friction, or its part that depends on slip, repeats itself; NaN if it does not."""
+    wavenumber = getattr(getattr(law, "slip", law), "wavenumber", None)
+    return 2.0 * math.pi / abs(wavenumber) if wavenumber else math.nan
 
 
 def arrest_in(time: Floats, rate: Floats, threshold: float) -> float:
@@ -194,6 +202,7 @@ class Measured:
             "final_slip": float(self.series.slip[self._kept][-1]),
             "peak_rate": float(np.abs(self.rate).max()),
             "pulses": pulses_in(self.rate, self.threshold),
+            "periods": float(self.series.slip[self._kept].max()) / period_of(self.exact.problem.friction),
             "arrest": arrest_in(self.time, self.rate, self.threshold),
             "shocks": sum(not math.isnan(shock.time) for shock in exact),
             "own_shocks": len(self.shocks) - len(exact),

@@ -7,7 +7,7 @@ physical hypothesis". With the exact solution of every rule this can be measured
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 import stickslip
-from stickslip.foundation.arguments import for_users, shown
+from stickslip.foundation.arguments import check_whole, for_users, shown
 from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
@@ -188,7 +188,7 @@ def schemes(
     problem: Problem | Scenario | str | Path,
     duration: float | str | WithUnit | None = None,
     scheme: str | Scheme | Sequence[str | Scheme] = "central-differences",
-    cells: Sequence[int] = CELLS,
+    cells: int | Sequence[int] = CELLS,
     *,
     search: str = "stick-first",
     courant: float | None = None,
@@ -206,7 +206,7 @@ def schemes(
         Duration of each run (s, or a text with a unit); by default the scenario's.
     scheme : str, Scheme or sequence of them
         Names in `stickslip.schemes.registry.SCHEMES`, or objects like `stickslip.schemes.contract.Scheme`.
-    cells : sequence of int
+    cells : int or sequence of int
         Number of cells in the thickness, for each mesh.
     search : str
         How the contact looks for a root: a name in `stickslip.schemes.run.SEARCHES`.
@@ -232,7 +232,8 @@ def schemes(
     lasts, given = read_duration_and_problem("schemes", problem, duration)
     several = [scheme] if isinstance(scheme, str) or not isinstance(scheme, Sequence) else scheme
     chosen = [scheme_of(one) for one in several]
-    meshes = sorted({int(count) for count in cells})
+    counts = cells if isinstance(cells, Iterable) and not isinstance(cells, str) else [cells]
+    meshes = sorted({check_whole("schemes: cells", count) for count in counts})
     if not meshes or not chosen:
         raise InputError("schemes: needs a scheme and a mesh or more")
     check_runs(given, lasts, chosen, meshes, search=search, courant=courant)

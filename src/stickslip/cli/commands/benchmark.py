@@ -20,7 +20,7 @@ def benchmark(
     what: Annotated[str | None, typer.Argument(help="The name of a problem (get), or a file (judge).", show_default=False)] = None,
     *,
     name: Annotated[str | None, option("Judge: the problem; by default it has the name of the file.")] = None,
-    folder: Annotated[Path, typer.Option(help="Get: where the files go.")] = Path(),
+    folder: Annotated[Path | None, option("Get: where the files go (by default here).")] = None,
     out: Annotated[Path | None, option("Judge: save the table (.csv, shocks in NAME-shocks.csv; .nc: all).", "--out", "-o")] = None,
     tolerance: Annotated[float, option("Judge: the largest share by which a series that passes may be off.")] = 0.05,
     figure: FigureFile = None,
@@ -46,6 +46,12 @@ def benchmark(
     """
     if action not in ACTIONS:
         raise InputError(f"benchmark: there is nothing called {ascii(action)[:60]}; {nearest(action, ACTIONS)}")
+    of_judge = {"--name": name, "--out": out, "--figure": figure}
+    of_others = (of_judge if action != "judge" else {}) | ({"--folder": folder} if action != "get" else {})
+    wrong = next((typed for typed, value in of_others.items() if value is not None), None)
+    if wrong is not None:
+        cure = "get writes files to --folder" if action == "get" else "leave it out"
+        raise InputError(f"benchmark: {wrong} does not belong to {action}: {cure}")
     if action == "list":
         _list()
         return
@@ -54,7 +60,7 @@ def benchmark(
     if action == "get":
         from stickslip.studies.benchmarks import write_benchmark
 
-        announce(*write_benchmark(what, folder))
+        announce(*write_benchmark(what, folder or Path()))
         return
     look = Look(dpi, size)
     check_targets(Target("--out", out, (".csv", ".nc")), Target("--figure", figure))

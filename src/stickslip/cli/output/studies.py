@@ -184,16 +184,31 @@ def tables_of(study: Schemes, out: Path | None) -> list[tuple[Path | None, Calla
 
 def show_schemes(scenario: Scenario, study: Schemes) -> None:
     """Print errors, orders, pulses and the rule that each run follows on standard output."""
+    from stickslip.studies.scheme_measures import period_of
+
     screen = titled(scenario)
     own = study.own
     slip = float(own.slip(study.until)) - study.problem.initial_slip
-    say(screen, f"exact, {study.problem.rule}: slip {number(slip, 6)} m after {number(study.until, 6)} s\n")
-    headings: tuple[str, ...] = ("\nscheme", "\ncells", "mean slip\nerror m", "\norder", "rate error\nm/s", "\npulses", "arrest\ns")
-    headings = (*headings, "final slip\nm", "own\nshocks", "heat\nerror", "damped,\nof heat", "oscil-\nlation", "follows\nthe rule")
+    is_periodic = bool(study.table.periods.notna().any())
+    periods = f", {number(slip / period_of(study.problem.friction), 3)} periods of friction," if is_periodic else ""
+    say(screen, f"exact, {study.problem.rule}: slip {number(slip, 6)} m{periods} after {number(study.until, 6)} s\n")
+    headings: tuple[str, ...] = ("\nscheme", "\ncells", "mean slip\nerror m", "\norder", "rate error\nm/s", "\npulses")
+    headings = (
+        *headings,
+        *["periods\nof slip"] * is_periodic,
+        "arrest\ns",
+        "final slip\nm",
+        "own\nshocks",
+        "heat\nerror",
+        "damped,\nof heat",
+        "oscil-\nlation",
+        "follows\nthe rule",
+    )
     rows = []
     for row in study.table.to_dict("records"):
         errors = [number(row["slip_error"], 3), _short(row["slip_order"]), number(row["rate_error"], 3)]
-        results = [str(row["pulses"]), number(row["arrest"], 6), number(row["final_slip"], 6), str(row["own_shocks"])]
+        periods = [number(row["periods"], 3)] * is_periodic
+        results = [str(row["pulses"]), *periods, number(row["arrest"], 6), number(row["final_slip"], 6), str(row["own_shocks"])]
         damped = row["damped"] / row["heat"] if row["heat"] else math.nan
         shares = [number(row["heat_error"], 2), number(damped, 2), number(row["oscillation"], 2), str(row["rule"])]
         rows.append([clean(row["scheme"]), str(row["cells"] or "-"), *errors, *results, *shares])

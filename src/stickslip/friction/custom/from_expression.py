@@ -29,6 +29,8 @@ MOST_PARAMETERS = 50
 """Largest number of parameters of an expression, which comes from an untrusted scenario file."""
 AtReversal = Literal["keeps-sign", "changes-sign", "first-changes-sign"]
 """What states do where slip reverses; in the last case the first of two changes its sign, and the second keeps it."""
+STATE_UNITS = {"s": "s", "m": "m", "m/s": "m s^-1", "1/s": "s^-1", "1/m": "m^-1"}
+"""Units that a state often has, as they are typed and as `si_base` writes them."""
 LONGEST_NAME = 40
 """Largest number of characters in the name of a parameter, so that messages and tables stay readable."""
 
@@ -123,11 +125,30 @@ class FromExpression(RemembersSlip):
         try:
             tree = parse(text, (*self.parameters(), *names))
             if any(units.values()):
-                check_dimensions(tree, units, self._units[number] if is_change else None)
+                try:
+                    check_dimensions(tree, units, self._units[number] if is_change else None)
+                except InputError as error:
+                    raise InputError(f"{error}{self._unit_hint()}") from None
             self._check_exponents(tree)
             check_samples(tree, self.numbers(), self.counts == "net", names, is_change)
         except InputError as error:
             raise InputError(f"FromExpression: {which}: {error}") from None
+
+    def _unit_hint(self) -> str:
+        """Return which unit of the state, if none is given, would make all units agree; "" if none of a few does."""
+        names = tuple(self._equations)
+        if self.state_unit or len(names) != 1:
+            return ""
+        given = {value.name: value.unit for value in self.values}
+        for shown, unit in STATE_UNITS.items():
+            units = given | {names[0]: unit}
+            try:
+                check_dimensions(parse(self.expression, (*self.parameters(), *names)), units)
+                check_dimensions(parse(self._equations[names[0]], (*self.parameters(), *names)), units, unit)
+            except InputError:
+                continue
+            return f'; with state_unit = "{shown}" the units agree'
+        return ""
 
     def _check_at_zero(self) -> None:
         """Check that friction at rest in state 0 is a number: loads are kept as differences from it."""
@@ -154,8 +175,9 @@ class FromExpression(RemembersSlip):
     @property
     def tree(self) -> Expression:
         """The formula as an expression tree."""
+        states = tuple(self._equations)  # whose faults have their own place
         try:
-            return parse(self.expression, self.parameters(), tuple(self._equations))
+            return parse(self.expression, self.parameters(), states)
         except InputError as error:
             raise InputError(f"FromExpression: expression: {error}") from None
 
@@ -179,8 +201,9 @@ class FromExpression(RemembersSlip):
 
     @property
     def _changes(self) -> tuple[Expression, ...]:
+        equations = self._equations
         try:
-            return tuple(parse(text, self.parameters(), tuple(self._equations)) for text in self._equations.values())
+            return tuple(parse(text, self.parameters(), tuple(equations)) for text in equations.values())
         except InputError as error:
             raise InputError(f"FromExpression: evolution: {error}") from None
 

@@ -33,7 +33,7 @@ def check_samples(
     u, v = (grid.ravel() for grid in np.meshgrid(slip, rate, indexing="ij"))
     with np.errstate(all="ignore"):
         found = evaluate_nodes(tree, dict(numbers) | dict.fromkeys(states, 0.0), u, v)
-        _check_constants(found)
+        _check_constants(found, states)
         with_state = {node for node in found for state in states if depends_on(node, Parameter(state))}
         found = {node: value for node, value in found.items() if node not in with_state}
         values = np.broadcast_to(found.get(tree, 0.0), u.shape)
@@ -58,11 +58,17 @@ def samples(largest: float) -> NDArray[np.float64]:
     return np.unique(np.concatenate(([0.0], np.geomspace(1e-9 * largest, largest, 55), np.linspace(0.0, largest, 51))))
 
 
-def _check_constants(found: Mapping[Expression, Any]) -> None:
-    """Raise InputError for a part without u and v that is not finite, such as 0/0, even if the formula's value is finite."""
+def _check_constants(found: Mapping[Expression, Any], states: Sequence[str]) -> None:
+    """Raise InputError for a part without u and v that is not finite, such as 0/0, even if the formula's value is finite.
+
+    Parts that depend on states have the values of the state 0, from which a law must be able to start.
+    """
     for node, value in found.items():
         if np.ndim(value) == 0 and not np.isfinite(value):
-            raise InputError(f"the part {quoted(node)} is not a finite number: it is {value:g}")
+            at = " and ".join(f"{name} = 0" for name in states if depends_on(node, Parameter(name)))
+            cure = f": write log(1 + {quoted(node.arguments[0])[1:-1]})" if node.operation == "log" else ""
+            where = f" at {at}, the healed state, in which friction must be finite{cure}" if at else ""
+            raise InputError(f"the part {quoted(node)} is not a finite number: it is {value:g}{where}")
 
 
 def _check_argument(node: Expression, values: NDArray[np.float64], u: NDArray[np.float64], v: NDArray[np.float64]) -> None:

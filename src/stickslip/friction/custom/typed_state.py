@@ -15,6 +15,8 @@ from stickslip.friction.formula.parse import RESERVED
 
 EXAMPLE = '"dz/dt = (1 - z)/tau"'
 _EQUATION = re.compile(r"\s*d\s*([A-Za-z_]\w{0,39})\s*/\s*dt\s*=(?!=)(.*)", re.DOTALL)
+_NEXT = re.compile(r",\s*d\s*[A-Za-z_]\w*\s*/\s*dt\s*=")
+"""The beginning of a second equation after a comma."""
 SIZES = np.geomspace(1e-18, 1e18, 145)
 """Magnitudes between which a steady state is looked for, in the unit of the state."""
 STATES = np.concatenate((-SIZES[::-1], [0.0], SIZES))
@@ -36,6 +38,8 @@ def read_evolution(text: str, taken: tuple[str, ...]) -> dict[str, str]:
         found = _EQUATION.fullmatch(part)
         if found is None:
             raise InputError(f"evolution: {ascii(part)[:60]} must be an equation such as {EXAMPLE}")
+        if _NEXT.search(found[2]):
+            raise InputError('evolution: two equations are separated by a semicolon, as in "dz/dt = -z*v/d; dy/dt = -y*v/e"')
         name = found[1]
         if name in RESERVED or name in taken or name in equations:
             raise InputError(f"evolution: the state cannot be called {name}, which is taken; name it as in {EXAMPLE}")

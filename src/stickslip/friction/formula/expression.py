@@ -128,14 +128,33 @@ class Expression:
         if self == RATE:  # the slip rate in a formula is never negative
             return self
         if self == SLIP:
-            raise InputError('formula: abs has a kink and cannot be traced; counts="path" makes u a length that is never negative')
-        raise InputError("formula: abs has a kink and cannot be traced; v is a magnitude already, np.sqrt(x**2 + small) is smooth")
+            return _Magnitude(self, 'counts="path" makes u a length that is never negative')  # type: ignore[return-value] # it refuses all
+        return _Magnitude(self, "v is a magnitude already, np.sqrt(x**2 + small) is smooth")  # type: ignore[return-value] # likewise
 
     def __float__(self) -> float:
         cure = "use numpy's: np.exp instead of math.exp; points make a FromTable law"
         raise InputError(f"formula: math functions and float() cannot be traced; {cure}")
 
     __int__ = __float__
+
+
+class _Magnitude:
+    """The magnitude of a formula: it can neither be compared, as in `if abs(y) < 1`, nor be a part of another formula."""
+
+    __array_priority__ = 1000.0
+
+    def __init__(self, inner: Expression, cure: str) -> None:
+        self.inner, self._cure = inner, cure
+
+    def _compared(self, *others: Any) -> NoReturn:
+        self.inner._refuse(*others)
+
+    def refuse(self, *_: Any, **__: Any) -> NoReturn:
+        raise InputError(f"formula: abs has a kink and cannot be traced; {self._cure}")
+
+    __bool__ = __lt__ = __le__ = __gt__ = __ge__ = _compared
+    __add__ = __radd__ = __sub__ = __rsub__ = __mul__ = __rmul__ = __truediv__ = __rtruediv__ = refuse
+    __pow__ = __rpow__ = __neg__ = __pos__ = __abs__ = __float__ = __int__ = __array_ufunc__ = __array_function__ = refuse
 
 
 def _instead(*parts: Any) -> str:
@@ -176,6 +195,8 @@ def Parameter(name: str) -> Expression:  # noqa: N802 - reads as the node it mak
 
 def as_expression(value: Any) -> Expression:
     """Wrap a plain number as a constant node; a node stays what it is."""
+    if isinstance(value, _Magnitude):
+        value.refuse()
     return value if isinstance(value, Expression) else Expression("constant", value=float(value))
 
 

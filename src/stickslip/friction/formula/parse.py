@@ -132,7 +132,10 @@ class _Reader:
         if node.id in FUNCTIONS:
             raise InputError(f"{self.part(node)} is a function: write {node.id}(...)")
         known = [*self.names, *self.states, "u", "v"]
-        raise InputError(f"{self.part(node)} {UNDECLARED}; {nearest(node.id, known)}")
+        hint = nearest(node.id, known)
+        is_state = not self.states and not hint.startswith("did")
+        more = f'; a state: give evolution = "d{node.id}/dt = ..."' if is_state else ""
+        raise InputError(f"{self.part(node)} {UNDECLARED}; {hint}{more}")
 
     def signed(self, node: ast.UnaryOp, depth: int) -> Expression:
         inner = self.read(node.operand, depth + 1)

@@ -303,12 +303,15 @@ def ranking(*found: Inference) -> pd.DataFrame:
 
     There is one row for each. Columns: law, free (number of free numbers), fit and prediction (root mean square residual of the
     part that was fitted and of the part that was left out, in standard deviations of the least noise that any of them found), and
-    bic (Schwarz's criterion of the fitted part, smaller is better). Raises InputError if no part was left out, or if the records
-    differ.
+    bic (Schwarz's criterion of the fitted part, smaller is better). Raises InputError for none, if no part was left out, or if the
+    records differ.
     """
+    if not found or not all(isinstance(one, Inference) for one in found):
+        got = ", ".join(shown(one) for one in found) or "none"
+        raise InputError(f"ranking: needs inferences, as in ranking(infer(..., held_out=0.3), infer(..., held_out=0.3)), got {got}")
     if len({(one.model.samples, tuple(len(part.record) for part in one.parts)) for one in found}) > 1:
         raise InputError("ranking: the inferences are of different records or leave out different parts")
-    least = {name: min(one.model.sizes[name] for one in found) for name in found[0].model.sizes} if found else {}
+    least = {name: min(one.model.sizes[name] for one in found) for name in found[0].model.sizes}
     rows = []
     for one in found:
         if one.prediction is None:

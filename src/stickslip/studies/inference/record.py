@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
-from stickslip.foundation.arguments import CheckedArguments
+from stickslip.foundation.arguments import CheckedArguments, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief
@@ -42,6 +43,12 @@ class Record(CheckedArguments):
     name: str = "record"
     notes: tuple[str, ...] = ()
     relative: Floats | None = None
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.measured, Mapping) or not set(self.measured) <= set(MEASURED):
+            names = f"a mapping of arrays by name ({', '.join(MEASURED)})"
+            example = 'Record.read({"time": t, "friction": x}) makes a record of columns'
+            raise InputError(f"Record: measured must be {names}, got {shown(self.measured)}; {example}")
 
     @classmethod
     def read(
