@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import copy
+import inspect
 import math
+import pickle
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -11,10 +15,12 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from stickslip.studies.study import Study
 
 SLAB = ss.ElasticSlab(density=2800, wave_speed=3500, thickness=1e4, normal_stress=1e8)
 LAW = ss.friction.HyperbolicRate(static=0.8, dynamic=0.3, alpha=1.0)
 PROBLEM = ss.Problem(SLAB, LAW, pull_rate=1.0, initial_excess=0.0)
+LINE = ss.Problem(SLAB, ss.friction.LinearSlipWeakening(0.7, 0.5, 0.4), initial_load=6e7)
 
 
 def refused(call: Callable[[], Any], message: str) -> None:
@@ -23,8 +29,15 @@ def refused(call: Callable[[], Any], message: str) -> None:
         call()
     text = str(caught.value)
     assert text.startswith(message), text
+    assert not places_twice(text), text
     assert "\n" not in text
     assert len(text) < 250
+
+
+def places_twice(text: str) -> set[str]:
+    """Return the places before the colons of a message that it names twice, as "Problem" in "Problem: friction: Problem: ..."."""
+    places = re.findall(r"(?:^|: )([A-Za-z_][\w.-]{2,40})(?=: )", text)
+    return {one for one in places if places.count(one) > 1}
 
 
 NO_PROBLEM = [
@@ -217,6 +230,101 @@ def test_studies_of_one_run_are_checked() -> None:
 )
 def test_arguments_that_a_class_does_not_have_are_refused(call: Callable[[], Any], message: str) -> None:
     refused(call, message)
+
+
+PUBLIC = {
+    f"{module.__name__}.{name}": getattr(module, name)
+    for module in (ss, ss.friction, ss.studies, ss.loading, ss.figures)
+    for name in module.__all__
+    if callable(getattr(module, name))
+}
+"""What users call, by name."""
+MADE_BY_RUNS = (ss.Solution, ss.friction.Fit, ss.friction.Smooth, Study)
+"""Results, which nobody makes by hand."""
+
+
+def takes_arguments(one: Any) -> bool:
+    if not isinstance(one, type):
+        return True
+    return not issubclass(one, (tuple, Exception, *MADE_BY_RUNS)) and not inspect.isabstract(one)
+
+
+@pytest.mark.parametrize("name", [name for name, one in PUBLIC.items() if takes_arguments(one)])
+def test_everything_public_refuses_wrong_and_missing_arguments_in_one_line(name: str) -> None:
+    call, who = PUBLIC[name], PUBLIC[name].__name__
+    taken = inspect.signature(call).parameters.values()
+    if not any(one.kind is one.VAR_KEYWORD for one in taken):
+        refused(lambda: call(nonsense=1), f"{who}: unknown argument 'nonsense'; ")
+        with pytest.raises(TypeError):  # Python's own error, too
+            call(nonsense=1)
+    several = (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
+    needed = [one.name for one in taken if one.default is one.empty and one.kind not in several]
+    if needed:
+        refused(lambda: call(), f"{who}: {', '.join(needed)} must be given")
+
+
+def test_copies_and_pickles_of_checked_objects_are_equal() -> None:
+    for one in (PROBLEM, SLAB, LAW, ss.scenarios["fig6-slab"], ss.loading.Steps([0.0, 1.0], [1.0, 2.0])):
+        assert copy.copy(one) == copy.deepcopy(one) == pickle.loads(pickle.dumps(one)) == one
+
+
+@pytest.mark.parametrize(
+    ("owner", "attribute", "hint"),
+    [
+        (PROBLEM, "pullrate", "Problem has no attribute 'pullrate'; did you mean 'pull_rate'?"),
+        (LAW, "alfa", "HyperbolicRate has no attribute 'alfa'; did you mean 'alpha'?"),
+        (ss.simulate(PROBLEM, 1.0), "plott", "Solution has no attribute 'plott'; did you mean 'plot'?"),
+        (ss.simulate(PROBLEM, 1.0), "velocity", "Solution has no attribute 'velocity'; it has "),
+        (ss.PlanarSlab(LINE, nodes=8, length=1e4), "node", "PlanarSlab has no attribute 'node'; did you mean 'nodes'?"),
+    ],
+)
+def test_an_attribute_that_is_not_there_is_answered_with_those_that_are(owner: Any, attribute: str, hint: str) -> None:
+    with pytest.raises(AttributeError) as caught:
+        getattr(owner, attribute)
+    assert str(caught.value).startswith(hint)
+    assert not hasattr(owner, attribute)
+
+
+def test_an_error_in_a_property_is_not_hidden_by_the_hint() -> None:
+    class Odd(type(SLAB)):  # type: ignore[misc]
+        @property
+        def broken(self) -> float:
+            return self.density.missing  # type: ignore[no-any-return]
+
+    odd = Odd(2800, wave_speed=3500, thickness=1e4, normal_stress=1e8)
+    with pytest.raises(AttributeError, match="'float' object has no attribute 'missing'"):
+        _ = odd.broken
+
+
+TWO_STATES = ss.friction.FromExpression("0.6 + z + y", {"d": 1e-5}, evolution="dz/dt = -v*z/d; dy/dt = -y*v/d")
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: ss.studies.ranking(), "ranking: needs inferences, as in ranking(infer(..., held_out=0.3),"),
+        (lambda: ss.studies.ranking([3]), "ranking: needs inferences"),
+        (lambda: ss.studies.Record([0.0], [1.0]), "Record: measured must be a mapping of arrays by name (friction, "),
+        (lambda: ss.studies.schemes("fig6-slab", cells="20"), "schemes: cells must be a whole number above 0, got '20'"),
+        (
+            lambda: ss.Problem(ss.SpringBlock(1, 1, 1), TWO_STATES, initial_load=0, initial_state=(1, 2)),
+            "Problem: initial_state must be one number, got (1, 2): each state has its own, initial_state and initial_second_state",
+        ),
+        (
+            lambda: ss.PlanarSlab(LINE, nodes=8, length=1e4, along={"initial.load": ["60 m"] * 8}).values,
+            "PlanarSlab: along initial.load must be a number in Pa or a text with a unit",
+        ),
+    ],
+)
+def test_clumsy_calls_are_told_what_is_wanted(call: Callable[[], Any], message: str) -> None:
+    refused(call, message)
+
+
+def test_values_along_a_contact_may_have_units() -> None:
+    given = ["60 MPa"] * 7 + [7e7]
+    for along in (given, lambda y: given):
+        slab = ss.PlanarSlab(LINE, nodes=8, length=1e4, along={"load": along})
+        assert slab.values.load.tolist() == [6e7] * 7 + [7e7]
 
 
 def test_times_may_have_units() -> None:

@@ -10,6 +10,7 @@ import pytest
 import stickslip as ss
 from stickslip.scenarios.templates import template
 from stickslip.trajectory.status import STATUSES
+from tests.test_wrong_arguments import places_twice
 
 BAD = template("slab").replace("thickness =", "thicknes =")
 FOUR_KEYS = [word for name in ("alpha", "static", "dynamic", "thickness") for word in ("-v", f"{name}=0.1,0.2")]
@@ -147,6 +148,11 @@ CASES = [
     (["export", "fig6-slab", "a.txt", "-r", "0"], "sampling rate must be a positive number of samples a second, got 0.0"),
     (["export", "second-event-maxwell", "a.txt"], "1.51e+12 samples are too many: use a lower rate, or a single event"),
     (["export", "fig6-slab", "a.txt", "--event", "1"], "window: no event 1: the run has 1, 0 to 0"),
+    (["benchmark", "get", "loop", "--out", "a.csv"], "benchmark: --out does not belong to get: get writes files to --folder"),
+    (["benchmark", "list", "--folder", "x"], "benchmark: --folder does not belong to list: leave it out"),
+    (["check", "planar-patch", "--set", "duration=1e20 years"], "check: --set: [contact] 3.15576e+27 s are 1.41e+29 time steps"),
+    (["check", "planar-patch", "--set", "thickness=1e-40"], "check: --set: [contact] 8 s are 1.4e+44 time steps, allowed are"),
+    (["run", "planar-patch", "--set", "wave_speed=1e40"], "run: --set: [contact] "),
     (["benchmark", "get", "lop"], "benchmark: there is no problem 'lop'; did you mean 'loop'?"),
     (["benchmark", "gte"], "benchmark: there is nothing called 'gte'; did you mean 'get'?"),
     (["benchmark", "judge"], "benchmark: judge needs a file"),
@@ -192,6 +198,7 @@ def test_bad_input_gives_one_line_and_writes_nothing(command, tmp_path: Path, ar
     assert shown.err.startswith(f"stickslip: {message}")
     assert shown.err.count("\n") == 1
     assert shown.err.strip().isprintable()
+    assert not places_twice(shown.err)
     assert sorted(tmp_path.iterdir()) == before
 
 

@@ -169,6 +169,8 @@ def test_only_the_page_and_the_bundled_files_are_answered() -> None:
                 "favicon.ico",
                 "static/",
                 "static/js/",
+                "static/%00",
+                "static/js/%0a",
                 "static/%2e%2e/%2e%2e/bokeh/settings.py",
                 "autoload.js?bokeh-autoload-element=a",
                 "metadata",

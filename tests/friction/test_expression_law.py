@@ -92,6 +92,7 @@ HOSTILE = [
     ("1e999", "the number '1e999' is too large"),
     ("9" * 400, "is too large"),
     ("mu_dd", "'mu_dd' is neither u, v, pi nor a declared parameter; did you mean 'mu_d'?"),
+    ("z", "'z' is neither u, v, pi nor a declared parameter; allowed: "),
     ("inf", "'inf' is neither"),
     ("nan", "'nan' is neither"),
     ("e", "'e' is neither"),
@@ -265,3 +266,31 @@ def test_counts_is_path_or_net() -> None:
     assert FromExpression("0.5 + 0.01*u", counts="path").counts == "path"
     with pytest.raises(InputError, match=r"counts 'nett' is unknown; did you mean 'net'\?"):
         FromExpression("0.5", counts="nett")  # type: ignore[arg-type]
+
+
+AGEING = "dtheta/dt = 1 - theta*v/D_c"
+
+
+@pytest.mark.parametrize(
+    ("text", "evolution", "said"),
+    [
+        ("0.6 + a*z", "", """; a state: give evolution = "dz/dt = ...\""""),
+        ("0.6 + z + y", "dz/dt = -v*z/D_c, dy/dt = -v*y/D_c", "evolution: two equations are separated by a semicolon, as in"),
+        ("0.6 + z", "-z", "FromExpression: evolution: '-z' must be an equation such as"),
+        ("0.6 + a*log(1 + theta*v_0/D_c)", AGEING, """; with state_unit = "s" the units agree"""),
+        (
+            "0.6 + a*log(theta*v_0/D_c)",
+            AGEING,
+            "it is -inf at theta = 0, the healed state, in which friction must be finite: write",
+        ),
+        ("0.6 + a*tanh(z/u)", "dz/dt = -v*z/D_c", "at u = 0, v = 0 and z = 0 friction must be a finite number"),
+        ("0.6 + a*z + v/u", "dz/dt = -v*z/D_c", "at u = 0, v = 0 and z = 0 friction must be a finite number"),
+    ],
+)
+def test_what_a_law_with_a_state_lacks_is_said(text: str, evolution: str, said: str) -> None:
+    values = {"a": "0.01", "D_c": "10 um", "v_0": "1 um/s"} if "theta" in text else {"a": 0.01, "D_c": 1e-5}
+    values = {name: 0.01 if name == "a" else value for name, value in values.items() if name in f"{text} {evolution}"}
+    with pytest.raises(InputError) as error:
+        FromExpression(text, values, evolution=evolution, state_unit="s" if "log(theta" in text else "")
+    assert said in str(error.value)
+    assert str(error.value).count("FromExpression: ") == 1

@@ -203,12 +203,28 @@ def test_a_function_a_text_and_the_built_in_law_give_one_run() -> None:
         assert events.end[0] == pytest.approx(2e4 / 3500.0, rel=1e-12, abs=0)
 
 
+@pytest.mark.parametrize(
+    ("formula", "said"),
+    [
+        (lambda u: 0.6 if abs(u - 0.5) < 1 else 0.5, "a branch on the value of u, v or a parameter cannot be traced; for a kink"),
+        (lambda u: 0.6 + abs(u - 0.5), "abs has a kink and cannot be traced; v is a magnitude already, np.sqrt(x**2 + small)"),
+        (lambda u: np.exp(abs(u)), 'abs has a kink and cannot be traced; counts="path" makes u a length'),
+        (lambda u: np.abs(u - 1.0), "abs has a kink and cannot be traced"),
+        (lambda u: 0.6 + max(abs(u - 1.0), 0.1), "a branch on the value of u"),
+    ],
+)
+def test_a_magnitude_is_refused_as_what_it_is_used_for(formula: Any, said: str) -> None:
+    with pytest.raises(ss.InputError) as error:
+        FromFunction(formula)
+    assert said in str(error.value)
+
+
 TEXTS = [
     ("coulomb", "'coulomb' is not a formula; the laws of the package are classes, such as ss.friction.Coulomb(...)"),
     ("data/points.csv", "'data/points.csv' is not a formula; measured points make a law with ss.friction.FromTable(file)"),
     (
         "mu_d + 0.5/(1 + v)",
-        "'mu_d' is neither u, v, pi nor a declared parameter; allowed: u, v; parameters get values in ss.friction.",
+        "'mu_d' is neither u, v, pi nor a declared parameter; allowed: u, v; a state: give evolution =",
     ),
     ("0.3 + v^2", "the operator in '0.3 + v^2' is not allowed; a power is written **"),
     ("0.5 - v", "friction must be a number >= 0, but at u = 0 m, v = 10 m/s it is -9.5"),

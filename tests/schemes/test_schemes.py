@@ -16,7 +16,7 @@ from stickslip.schemes.finite_elements import Elements
 from stickslip.schemes.registry import SCHEMES, scheme_of
 from stickslip.schemes.run import SEARCHES, GridContact, grid_of, run_scheme
 from stickslip.schemes.sbp import NORMS, difference
-from stickslip.studies.scheme_measures import arrest_in, pulses_in
+from stickslip.studies.scheme_measures import arrest_in, period_of, pulses_in
 from stickslip.studies.schemes import judge_series, schemes
 
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)
@@ -100,6 +100,19 @@ def test_a_contact_that_is_pushed_backwards_slips_backwards() -> None:
     forward, backward = (contact.meet(Meeting(load, SLAB.impedance, 0.0), 0.0) for load in (90e6, -90e6))
     assert forward.rate == -backward.rate > 0.0
     assert forward.traction == -backward.traction > 0.0
+
+
+def test_periods_of_friction_say_how_far_slip_went_where_ringing_makes_pulses() -> None:
+    """The slip law of Fig. 5 repeats itself every 2 pi/50 m: the exact contact enters the fourth period."""
+    study = schemes("fig5-slab-reconstructed", cells=20)
+    law = study.problem.friction
+    row = study.table.iloc[0]
+    assert period_of(law) == pytest.approx(2.0 * np.pi / law.wavenumber, rel=1e-15, abs=0.0)
+    assert row.periods == pytest.approx(float(study.series[0].slip.max()) * law.wavenumber / (2.0 * np.pi), rel=1e-12, abs=0.0)
+    assert row.periods > 100.0
+    assert float(study.own.slip(study.until)) / period_of(law) < 4.0
+    assert np.isnan(period_of(ss.friction.HyperbolicRate(0.8, 0.3, 1.0)))
+    assert period_of(ss.friction.SlipTimesRate(law, ss.friction.HyperbolicRate(1.0, 0.5, 1.0))) == period_of(law)
 
 
 def test_pulses_and_arrest_are_counted_as_in_the_events() -> None:

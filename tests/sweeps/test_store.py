@@ -206,7 +206,7 @@ def test_a_full_disk_gives_one_line_and_leaves_a_store_that_continues(
     monkeypatch.setattr(Path, "replace", replace)
     with pytest.raises(ss.InputError) as told:
         sweep(path)
-    assert str(told.value).startswith(f"{path}: cannot be written: No space left on device; the results so far can be read")
+    assert str(told.value).startswith(f"{path}: cannot be written: No space left on device; the members so far are kept, and")
     with xr.open_zarr(path) as found:
         assert 0 < int((found.status != NOT_RUN).sum()) < MEMBERS
     monkeypatch.undo()

@@ -118,14 +118,15 @@ def _taken(cls: type) -> tuple[inspect.Parameter, ...]:
 
 def check_names(who: str, taken: Sequence[inspect.Parameter], given: Sequence[Any], named: Mapping[str, Any]) -> None:
     """Raise ArgumentError, which begins with `who`, for arguments that are unknown, too many, given twice or missing."""
-    if any(one.kind in (one.VAR_POSITIONAL, one.VAR_KEYWORD) for one in taken):
-        return
+    kinds = {one.kind for one in taken}
+    any_number, any_name = inspect.Parameter.VAR_POSITIONAL in kinds, inspect.Parameter.VAR_KEYWORD in kinds
+    taken = [one for one in taken if one.kind not in (one.VAR_POSITIONAL, one.VAR_KEYWORD)]
     names = [one.name for one in taken]
     by_place = [one.name for one in taken if one.kind is not one.KEYWORD_ONLY]
-    wrong = next((name for name in named if name not in names), None)
+    wrong = None if any_name else next((name for name in named if name not in names), None)
     if wrong is not None:
         raise ArgumentError(f"{who}: unknown argument '{wrong}'; {nearest(wrong, names)}")
-    if len(given) > len(by_place):
+    if len(given) > len(by_place) and not any_number:
         named_only = f" and by name {', '.join(names[len(by_place) :])}" if len(by_place) < len(names) else ""
         most = f"takes at most {len(by_place)} arguments, {', '.join(by_place)}{named_only}" if names else "takes no arguments"
         raise ArgumentError(f"{who}: {most}; got {len(given)}")

@@ -276,6 +276,11 @@ def check_replaceable(path: Path, where: str) -> None:
         raise InputError(f"{where}: exists, and stickslip did not write it: choose another name, or remove it")
 
 
+def _no_formula(cell: Any) -> Any:
+    """Return a cell of a table so that no spreadsheet takes a text, such as the name of a file, for a formula."""
+    return f"'{cell}" if isinstance(cell, str) and cell.startswith(("=", "+", "-", "@", "\t", "\r")) else cell
+
+
 def write_table(path: Path, table: pd.DataFrame, about: Iterable[str]) -> Path:
     """Write a table as CSV with all digits, after comment lines (`#`) that say where it comes from, and return the path.
 
@@ -284,5 +289,7 @@ def write_table(path: Path, table: pd.DataFrame, about: Iterable[str]) -> Path:
     lines = [line for text in about for line in text.splitlines()]
     lines = lines if any(line.startswith("stickslip ") for line in lines) else ["written by stickslip", *lines]
     comment = "".join(f"# {line}".rstrip() + "\n" for line in lines)
+    texts = table.select_dtypes(exclude="number").columns
+    table = table.assign(**{name: table[name].map(_no_formula) for name in texts})
     text = comment + table.to_csv(index=False, lineterminator="\n")
     return write_atomically(path, lambda draft: draft.write_text(text, encoding="utf-8", newline="\n"))

@@ -54,9 +54,20 @@ class Compiled(NamedTuple):
     """Turn what was sent in a round trip into what arrives in the next."""
 
 
-@lru_cache(maxsize=16)
+MOST_FORMS = 16
+"""Number of compiled forms of runs that are kept at a time; each takes some 7 MB."""
+
+
+@lru_cache(maxsize=MOST_FORMS)
 def functions_of(contact: Contact, layout: Layout, parameters: tuple[str, ...]) -> Compiled:
-    """Return the functions of runs with these formulas, this number of nodes and these names of parameters."""
+    """Return the functions of runs with these formulas, this number of nodes and these names of parameters.
+
+    JAX keeps what it has compiled of functions that are gone, so all is forgotten when there are too many forms. A run that goes on
+    is then compiled once more.
+    """
+    if functions_of.cache_info().currsize >= MOST_FORMS:
+        functions_of.cache_clear()
+        jax.clear_caches()
     step, spread = Step(contact, layout), Spread.of(layout, parameters)
 
     def march(motion: Motion, waves: Waves, constants: Constants, loading: Any, between: Any) -> Any:

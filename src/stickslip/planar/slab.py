@@ -26,6 +26,8 @@ FEWEST_NODES = 8
 """Smallest number of nodes along an axis of the contact."""
 COUNTS = ("nodes", "width_nodes")
 """The fields that count nodes."""
+MOST_STEPS = 1e12
+"""Largest number of time steps of a run: the fastest take some years."""
 MOST_NODES = 2**22
 """Largest number of nodes: more do not fit into the memory that a run may take."""
 WIDEST_STEP = 2.5
@@ -207,7 +209,7 @@ class PlanarSlab(CheckedArguments):
         reach
             Slip (m) from the start up to which strength is looked at.
         """
-        fall = self.values.steepest_fall(reach, self.body.impedance)
+        fall = self.values.steepest_fall(reach, self.body.impedance) if reach > 0.0 else 0.0  # no slip, no front
         return PROCESS_ZONE * self.body.shear_modulus / fall / max(self.spacing) if fall > 0.0 else math.nan
 
     @cached_property
@@ -219,10 +221,21 @@ class PlanarSlab(CheckedArguments):
         """
         steep = max(self.values.slopes(self.reach)) if self.reach > 0.0 else 0.0
         waves = 2.0 * self.body.thickness / (self.courant * min(self.spacing))
-        return math.ceil(max(waves, self.body.two_way_time * steep / (STEEPEST * self.body.impedance)) - 1e-9)
+        needed = max(1.0, waves, self.body.two_way_time * steep / (STEEPEST * self.body.impedance))
+        if not needed <= MOST_STEPS:
+            raise InputError(f"PlanarSlab: a round trip needs {needed:.3g} time steps, allowed are {MOST_STEPS:g}")
+        return math.ceil(needed - 1e-9)
+
+    def steps(self, duration: float) -> int:
+        """Return the number of time steps of a run of this duration (s). Raises InputError for more than a run can take."""
+        needed = duration / self.body.two_way_time * self.steps_per_round_trip
+        if not needed <= MOST_STEPS:
+            raise InputError(f"PlanarSlab: {duration:g} s are {needed:.3g} time steps, allowed are {MOST_STEPS:g}")
+        return max(1, math.ceil(needed - 1e-9))
 
     def round_trips(self, duration: float) -> int:
-        """Return the number of round trips that a run of this duration (s) begins."""
+        """Return the number of round trips that a run of this duration (s) begins. Raises InputError as `steps` does."""
+        _ = self.steps(duration)
         return max(1, math.ceil(duration / self.body.two_way_time - 1e-9))
 
     def alone_for(self, duration: float) -> tuple[PlanarSlab, tuple[slice, ...]]:
@@ -244,12 +257,11 @@ class PlanarSlab(CheckedArguments):
         from scipy.fft import next_fast_len  # takes a tenth of a second to load, which other runs do not need
 
         reach = self.body.wave_speed * duration
-        counts = [
-            2 * next_fast_len(math.ceil((count + reach / step) / 2)) for count, step in zip(self.shape, self.spacing, strict=True)
-        ]
-        if math.prod(counts) > MOST_NODES:
-            needed = " x ".join(map(str, counts))
+        wanted = [count + reach / step for count, step in zip(self.shape, self.spacing, strict=True)]
+        if not math.prod(wanted) <= MOST_NODES:
+            needed = " x ".join(f"{one:.3g}" for one in wanted)
             raise InputError(f"PlanarSlab: {duration:g} s without replicas need {needed} nodes, allowed are {MOST_NODES}")
+        counts = [2 * next_fast_len(math.ceil(one / 2)) for one in wanted]
         more = [large - count for large, count in zip(counts, self.shape, strict=True)]
         room = [(extra // 2, extra - extra // 2) for extra in more]
         along = {name: np.pad(self.at_nodes(name, given), room, mode="edge") for name, given in self.along.items()}

@@ -61,7 +61,7 @@ def _place(patch: Patch) -> str:
 
 def _derived(slab: PlanarSlab, duration: float) -> Iterator[Fact]:
     step = slab.body.two_way_time / slab.steps_per_round_trip
-    yield Fact("time step", step, "s", f"{math.ceil(duration / step - 1e-9)} steps, {slab.steps_per_round_trip} in R")
+    yield Fact("time step", step, "s", f"{slab.steps(duration)} steps, {slab.steps_per_round_trip} in R")
     for axis, distance in zip("yz", slab.spacing, strict=False):
         yield Fact(f"d{axis}", distance, "m", f"distance of nodes along {axis}")
     nodes = slab.nodes_per_process_zone(slab.reach)

@@ -224,7 +224,7 @@ def _with_contact(plain: Scenario, document: Mapping[str, Any], source: Source) 
         raise InputError(f"{source.file}: [contact] has {nodes} nodes, {source.most_nodes:g} are the most that can be used here")
     found = replace(plain, contact=contact, title=document["title"], description=document["description"])
     try:
-        _ = found.planar_slab
+        _ = found.planar_slab.steps(found.duration)
     except InputError as error:
         raise InputError(f"{source.file}: [contact] {without_owner(error)}") from None
     return found

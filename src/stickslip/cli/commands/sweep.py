@@ -145,6 +145,11 @@ def sweep(
             return
         else:
             found, spent = _found(plan, out, resources)
+    if out is not None:
+        from stickslip.sweeps.results.layout import reading
+
+        with reading(out):  # its chunks may have been damaged since they were written
+            found = found.load()
     if figure is not None:
         _draw(found, refine or plan.work.names[0], figure, look)
     code = show_sweep(chosen.title or chosen.name, found)

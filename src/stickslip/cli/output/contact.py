@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 from stickslip.cli.output.files import file_size
@@ -29,9 +28,8 @@ def size_of(scenario: Scenario, *, streamed: bool = False) -> str:
 def announce_run(scenario: Scenario, *, streamed: bool) -> None:
     """Print on standard output what is about to be run, with its frames `streamed` to a folder or kept in memory."""
     slab, size = scenario.planar_slab, size_of(scenario, streamed=streamed)
-    step = slab.body.two_way_time / slab.steps_per_round_trip
     apart = " and ".join(brief(one, "m") for one in slab.spacing)
-    steps = f"{math.ceil(scenario.duration / step - 1e-9)} steps up to {brief(scenario.duration, 's')}"
+    steps = f"{slab.steps(scenario.duration)} steps up to {brief(scenario.duration, 's')}"
     screen = titled(scenario)
     say(screen, f"{_shape(slab.shape)} nodes, {apart} apart; {steps}; needs {size}")
     say(screen, *(f"warning: {one}" for one in doubts(scenario.problem)))

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from html import escape
 from secrets import token_urlsafe
 from typing import Any
-from urllib.parse import urlencode, urlsplit
+from urllib.parse import unquote, urlencode, urlsplit
 
 from tornado.httputil import HTTPHeaders, HTTPServerRequest
 from tornado.routing import Matcher, Rule
@@ -79,7 +79,7 @@ class Access:
         kept = request.cookies.get(cookie_name(request.host))
         if given is not None or kept is None or not self._is_token(kept.value.encode()):
             return Reply(403, NO_TOKEN)
-        if request.path not in PATHS and not request.path.startswith(STATIC):
+        if request.path not in PATHS and not (request.path.startswith(STATIC) and unquote(request.path).isprintable()):
             return Reply(404, NOTHING_HERE)
         if request.path == "/ws":
             return None if self._may_connect(request) else Reply(403, "Another site's page may not connect to the explorer.")

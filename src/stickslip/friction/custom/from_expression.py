@@ -152,7 +152,8 @@ class FromExpression(RemembersSlip):
 
     def _check_at_zero(self) -> None:
         """Check that friction at rest in state 0 is a number: loads are kept as differences from it."""
-        value = float(evaluate(self.tree, self.numbers(), 0.0, 0.0))
+        with np.errstate(all="ignore"):
+            value = float(evaluate(self.tree, self.numbers(), 0.0, 0.0))
         if not math.isfinite(value):
             where = f"at u = 0, v = 0 and {' and '.join(f'{name} = 0' for name in self._equations)}"
             raise InputError(f"FromExpression: expression: {where} friction must be a finite number, but it is {value:g}")

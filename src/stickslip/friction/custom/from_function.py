@@ -13,7 +13,7 @@ from stickslip.foundation.arguments import for_users, shown
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.friction.custom.from_expression import AtReversal, FromExpression
-from stickslip.friction.formula.expression import RATE, SLIP, Expression, Parameter, as_expression, nodes_of
+from stickslip.friction.formula.expression import RATE, SLIP, Expression, Magnitude, Parameter, as_expression, nodes_of
 from stickslip.friction.formula.parse import UNDECLARED
 from stickslip.friction.formula.text import to_text
 from stickslip.friction.law import FrictionLaw
@@ -193,7 +193,7 @@ def _formula(value: Any) -> Expression:
     """Return what the function returned as a formula. Raises InputError if it is neither a formula nor a number."""
     if isinstance(value, np.ndarray) and value.ndim == 0:
         value = value.item()
-    if isinstance(value, Expression) or (isinstance(value, Real) and not isinstance(value, bool)):
+    if isinstance(value, Expression | Magnitude) or (isinstance(value, Real) and not isinstance(value, bool)):
         return as_expression(value)
     if value is None:
         raise InputError("it returns nothing: end it with return and the friction coefficient")

@@ -128,8 +128,8 @@ class Expression:
         if self == RATE:  # the slip rate in a formula is never negative
             return self
         if self == SLIP:
-            return _Magnitude(self, 'counts="path" makes u a length that is never negative')  # type: ignore[return-value] # it refuses all
-        return _Magnitude(self, "v is a magnitude already, np.sqrt(x**2 + small) is smooth")  # type: ignore[return-value] # likewise
+            return Magnitude(self, 'counts="path" makes u a length that is never negative')  # type: ignore[return-value] # it refuses all
+        return Magnitude(self, "v is a magnitude already, np.sqrt(x**2 + small) is smooth")  # type: ignore[return-value] # likewise
 
     def __float__(self) -> float:
         cure = "use numpy's: np.exp instead of math.exp; points make a FromTable law"
@@ -138,7 +138,7 @@ class Expression:
     __int__ = __float__
 
 
-class _Magnitude:
+class Magnitude:
     """The magnitude of a formula: it can neither be compared, as in `if abs(y) < 1`, nor be a part of another formula."""
 
     __array_priority__ = 1000.0
@@ -195,7 +195,7 @@ def Parameter(name: str) -> Expression:  # noqa: N802 - reads as the node it mak
 
 def as_expression(value: Any) -> Expression:
     """Wrap a plain number as a constant node; a node stays what it is."""
-    if isinstance(value, _Magnitude):
+    if isinstance(value, Magnitude):
         value.refuse()
     return value if isinstance(value, Expression) else Expression("constant", value=float(value))
 
@@ -268,17 +268,21 @@ def evaluate(tree: Expression, numbers: Mapping[str, Any], u: Any, v: Any, *stat
 
 def evaluate_nodes(tree: Expression, numbers: Mapping[str, Any], u: Any, v: Any, *states: Any) -> dict[Expression, Any]:
     """Return the values of all nodes of the formula, with the arguments of `evaluate`."""
-    found: dict[Expression, Any] = dict.fromkeys(STATES, 0.0) | dict(zip(VARIABLES, (u, v, *states), strict=False))
+    given = dict.fromkeys(STATES, 0.0) | dict(zip(VARIABLES, (u, v, *states), strict=False))
+    found: dict[Expression, Any] = {variable: _of_numpy(value) for variable, value in given.items()}
     for node in nodes_of(tree):
         if node.operation == "parameter":
-            number = numbers[node.name]
-            # numpy's numbers give inf or nan on division by zero, where Python's raise an error
-            found[node] = np.float64(number) if isinstance(number, int | float) else number
+            found[node] = _of_numpy(numbers[node.name])
         elif node.operation == "constant":
             found[node] = np.float64(node.value)
         elif node.arguments:
             found[node] = OPERATIONS[node.operation](*(found[argument] for argument in node.arguments))
     return found
+
+
+def _of_numpy(number: Any) -> Any:
+    """Return a number of Python as one of numpy, which gives inf or nan on division by zero, where Python's raises an error."""
+    return np.float64(number) if isinstance(number, int | float) else number
 
 
 def depends_on(node: Expression, variable: Expression) -> bool:

@@ -202,7 +202,9 @@ class ResultStore:
 
 def writing(place: Path | MemoryStore) -> AbstractContextManager[None]:
     """Turn an error of the file system in the `with` block into an InputError with a message of one line."""
-    return zarr_folder.writing(place, "the results so far can be read, and the same command continues when there is room")
+    begun = isinstance(place, Path) and is_vouched_for(place, LAYOUT)
+    kept = "the members so far are kept, and the same command continues when there is room" if begun else "nothing was kept"
+    return zarr_folder.writing(place, kept)
 
 
 def check_store(path: Path) -> set[str]:
