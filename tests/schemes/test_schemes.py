@@ -103,7 +103,7 @@ def test_a_contact_that_is_pushed_backwards_slips_backwards() -> None:
 
 
 def test_periods_of_friction_say_how_far_slip_went_where_ringing_makes_pulses() -> None:
-    """The slip law of Fig. 5 repeats itself every 2 pi/50 m: the exact contact enters the fourth period."""
+    """The slip law of Fig. 5 repeats itself every 2 pi/50 m: the exact contact slips through three periods."""
     study = schemes("fig5-slab-reconstructed", cells=20)
     law = study.problem.friction
     row = study.table.iloc[0]

@@ -207,8 +207,8 @@ def show_schemes(scenario: Scenario, study: Schemes) -> None:
     rows = []
     for row in study.table.to_dict("records"):
         errors = [number(row["slip_error"], 3), _short(row["slip_order"]), number(row["rate_error"], 3)]
-        periods = [number(row["periods"], 3)] * is_periodic
-        results = [str(row["pulses"]), *periods, number(row["arrest"], 6), number(row["final_slip"], 6), str(row["own_shocks"])]
+        of_slip = [number(row["periods"], 3)] * is_periodic
+        results = [str(row["pulses"]), *of_slip, number(row["arrest"], 6), number(row["final_slip"], 6), str(row["own_shocks"])]
         damped = row["damped"] / row["heat"] if row["heat"] else math.nan
         shares = [number(row["heat_error"], 2), number(damped, 2), number(row["oscillation"], 2), str(row["rule"])]
         rows.append([clean(row["scheme"]), str(row["cells"] or "-"), *errors, *results, *shares])

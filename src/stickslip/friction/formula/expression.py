@@ -150,6 +150,7 @@ class Magnitude:
         self.inner._refuse(*others)
 
     def refuse(self, *_: Any, **__: Any) -> NoReturn:
+        """Refuse to be a part of a formula. Raises InputError."""
         raise InputError(f"formula: abs has a kink and cannot be traced; {self._cure}")
 
     __bool__ = __lt__ = __le__ = __gt__ = __ge__ = _compared
