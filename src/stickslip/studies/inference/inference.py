@@ -98,7 +98,7 @@ class Inference(Study):
         if profile is not None and np.isfinite([profile.low, profile.high]).all():
             low, high, source = profile.low, profile.high, "profile"
             uncertainty = (high - low) / (2.0 * self.certainty.factor)
-        if self.samples is not None:
+        if self.samples is not None and np.isfinite(width):  # samples of a number without influence only show its limits
             low, high = np.quantile(self.samples[one.label], [0.025, 0.975]).tolist()
             source = "samples"
             uncertainty = float(self.samples[one.label].std())

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import product
 
 import numpy as np
 import pandas as pd
 
+from stickslip.foundation.formatting import brief
 from stickslip.studies.inference.estimate import Estimate
 from stickslip.studies.inference.loading import loading_of
 from stickslip.studies.inference.part import Part
@@ -55,11 +56,11 @@ def _cut(part: Part, found: Estimate, before: float, after: float) -> Part | Non
     return replace(part, record=record, loading=None if loading is None else loading.rate)
 
 
-def told(table: pd.DataFrame, labels: list[str], intervals: pd.DataFrame) -> Iterator[str]:
+def told(table: pd.DataFrame, units: Mapping[str, str], intervals: pd.DataFrame) -> Iterator[str]:
     """Yield sentences on the spread of numbers over windows, and on those that it makes more unsure than their intervals."""
-    spread = [f"{name} {table[name].min():.4g} to {table[name].max():.4g}" for name in labels]
+    spread = [f"{name} {brief(table[name].min(), unit, 4)} to {brief(table[name].max(), unit, 4)}" for name, unit in units.items()]
     lasts = table.end - table.begin
-    yield f"over {len(table)} windows of {lasts.min():.3g} to {lasts.max():.3g} s: {', '.join(spread)} (SI)"
-    wide = [n for n in labels if np.ptp(table[n]) > intervals.high[n] - intervals.low[n]]
+    yield f"over {len(table)} windows of {lasts.min():.3g} to {lasts.max():.3g} s: {', '.join(spread)}"
+    wide = [n for n in units if np.ptp(table[n]) > intervals.high[n] - intervals.low[n]]
     if wide:
         yield f"{' and '.join(wide)} depend more on the window than the intervals say: give that spread beside the interval"

@@ -39,7 +39,7 @@ def notes_of(study: Inference) -> Iterator[str]:
     if study.prediction is not None:
         yield f"what was left out is predicted with an error of {study.prediction:.3g} times the noise"
     if study.windows is not None:
-        yield from told(study.windows, [one.label for one in study.free if one.part is None], study.table)
+        yield from told(study.windows, {one.label: one.declared.unit for one in study.free}, study.table)
     yield from record_of(study)
     yield from study.about_samples
     yield from study.about
