@@ -283,6 +283,7 @@ def _inferred(model: Model, whole: tuple[Part, ...], wishes: Wishes, notes: list
             profiles.extend(profile_of(found, sure, i, tell) for i in shared)
         if finished and wishes.samples:
             drawn, said = sample(found, sure, wishes.samples, wishes.seed, tell)
+            finished = len(drawn) == wishes.samples
     except KeyboardInterrupt:
         finished = False
     found = replace(found, finished=finished)
