@@ -17,7 +17,10 @@ if TYPE_CHECKING:
 
 FREE = 'The numbers to find, with commas: "a,b,body.stiffness".'
 BY = "What is fitted: samples, or features of slip events."
-OBSERVE = "Which of them: friction, shear_stress, shear_force, slip, slip_rate; drop, recurrence, duration, event_slip, peak_rate."
+OBSERVE = (
+    "Which of them: friction, shear_stress, shear_force, slip, slip_rate; peak, rest, drop, recurrence, duration, event_slip, "
+    "peak_rate."
+)
 START = "How the run begins: steady, record (load of the first samples) or problem."
 PRIOR = 'What is known before: "friction.a=normal(0.01, 0.002)"; lognormal and uniform too.'
 BOUND = 'Limits of a number: "friction.a=0.001..0.1".'

@@ -117,7 +117,7 @@ def by_features(parts: Sequence[Part], observe: Sequence[str] | str | None) -> t
     wanted = [one.strip() for one in observe.split(",")] if isinstance(observe, str) else observe
     found, notes = list[Part](), list[str]()
     for part in parts:
-        record, said = _record_of(part)
+        record, said = events_of(part)
         names = _chosen(wanted, record)
         if len(record) < len(names) + SPARE:
             raise InputError(
@@ -143,7 +143,7 @@ def _chosen(wanted: Sequence[str] | None, record: Record) -> list[str]:
     return names
 
 
-def _record_of(part: Part) -> tuple[Record, list[str]]:
+def events_of(part: Part) -> tuple[Record, list[str]]:
     """Return the features of the events of a record at the times of these, and sentences on what was left out."""
     record, shear = part.record, part.record.shear
     if shear is None:

@@ -12,7 +12,18 @@ from stickslip.foundation.arrays import Floats
 from stickslip.studies.inference.memory import Block, Memory, memory_of
 from stickslip.studies.inference.model import Model
 from stickslip.studies.inference.noise import GAUSSIAN, cost_of
-from stickslip.studies.inference.search import COMPETES, Best, Tell, is_rough, light, polished, searched_minima, solved
+from stickslip.studies.inference.search import (
+    COMPETES,
+    Best,
+    Tell,
+    is_far,
+    is_rough,
+    light,
+    polished,
+    searched_minima,
+    sharp_cost,
+    solved,
+)
 
 FEW = 1500
 """Number of samples of a part with which starts are compared and followed."""
@@ -76,7 +87,8 @@ def _at_jumps(model: Model, minima: list[Floats], loss: str, tell: Tell) -> Floa
     if not any(model.with_jumps(x).unsure for x in minima):
         return minima[0]
     for x in minima:
-        for width in NARROWING:
+        near = not is_far(model, sharp_cost(model, x, loss))
+        for width in NARROWING[-1:] if near else NARROWING:
             tell(f"fit to jumps that are spread over {width} samples")
             x = solved(model.with_(blur=width).fine(x), x, loss, thorough=True)
         ends.append((cost_of(model.with_(blur=NARROWING[-1]).residual(x), loss), x))

@@ -48,7 +48,8 @@ class Free:
     """A free number, by its full name such as "friction.a", with its limits and the value at which the search begins (SI).
 
     If it is positive (`log`) the search goes along its logarithm; if not, `scale` is the size of a step (SI). `part` is the part of
-    the record to which alone it belongs, or None; `bounded` is True if the user gave the limits.
+    the record to which alone it belongs, or None; `bounded` is True if the user gave the limits. `given` is the value of the
+    problem where the search begins elsewhere.
     """
 
     name: str
@@ -61,6 +62,11 @@ class Free:
     part: int | None = None
     scale: float = 1.0
     bounded: bool = False
+    given: float | None = None
+
+    def begun_at(self, value: float) -> Free:
+        """Return the number with another value at which the search begins; the one it had is a second start."""
+        return replace(self, start=value, given=self.start)
 
     @property
     def label(self) -> str:

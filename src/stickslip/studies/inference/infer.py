@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 
 from stickslip.foundation.arguments import check_whole, for_users, shown
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import Choice, Quantity, fields_of
@@ -22,16 +23,17 @@ from stickslip.studies.inference.by_features import FeatureModel, by_features, s
 from stickslip.studies.inference.certainty import Certainty, Profile, certainty_of, profile_of, unknown
 from stickslip.studies.inference.directions import IDLE
 from stickslip.studies.inference.estimate import Estimate, estimate
-from stickslip.studies.inference.free import read_free, with_scale
+from stickslip.studies.inference.free import Free, read_free, with_scale
 from stickslip.studies.inference.inference import Inference
 from stickslip.studies.inference.model import Model
 from stickslip.studies.inference.noise import LOSSES
 from stickslip.studies.inference.part import Part, first_sizes, share_of, shortened
 from stickslip.studies.inference.record import Record
-from stickslip.studies.inference.resample import resampled
+from stickslip.studies.inference.resample import MOST_FITTED, resampled
 from stickslip.studies.inference.sampling import sample
-from stickslip.studies.inference.search import Tell, Told
-from stickslip.studies.inference.setup import at_rests, hints_of, own_of, parts_of, scales_of
+from stickslip.studies.inference.search import COMPETES, Tell, Told
+from stickslip.studies.inference.setup import at_rests, evenly, hints_of, own_of, parts_of, scales_of, with_parts
+from stickslip.studies.inference.starting import with_starts
 from stickslip.studies.inference.windows import windows_of
 from stickslip.studies.study import TextProgress, telling
 
@@ -42,6 +44,10 @@ WAYS = ("samples", "features")
 """What of a record is fitted: each sample, or features of its slip events."""
 MOST_SAMPLES = 1_000_000
 """Largest number of posterior samples."""
+MOST_PARTS, MOST_SEARCHED = 24, 8
+"""Largest number of parts between rests that are fitted, and among which the first search goes on."""
+LEAST_FITTED = 2000
+"""Number of samples up to which a part is fitted as it is, however many there are."""
 TIME = Quantity("s", "time of the record")
 WEIGHT = Quantity("1", "exponent of the weight of samples after a change of the pull rate", at_least=0.0)
 RTOL = 1e-8
@@ -138,7 +144,8 @@ def infer(
         event.
     observe : str or list of str, optional
         What is fitted: friction, shear_stress or shear_force, slip, slip_rate. By default shear, or else all that is there. Of
-        features: drop, recurrence, duration, event_slip, peak_rate; by default all that the record tells.
+        features: peak, rest, drop (peak minus rest), recurrence, duration, event_slip, peak_rate; by default all that the record
+        tells but the drop.
     start : {"steady", "record", "problem"}, optional
         How the run begins: in steady sliding at the first pull rate (default for a law with a state that never sticks), with the
         load of the first samples (default for others), or as the problem says.
@@ -155,7 +162,7 @@ def infer(
         What is known before, by name: "normal(0.6, 0.05)", "lognormal(10 um, 0.5)", with the standard deviation of the logarithm,
         or "uniform(0, 1)".
     begin_at : mapping, optional
-        Values at which the search begins, by name; by default those of the problem.
+        Values at which the search begins, by name; by default those that the record shows, or else those of the problem.
     loss : {"linear", "soft_l1", "huber", "cauchy"}
         How residuals count: other than linear if some samples lie far off.
     weight : float
@@ -208,10 +215,14 @@ def infer(
     given = source if isinstance(source, Problem) else source.problem
     records = _records(record, begin=begin, end=end)
     observed = wishes.observe if by == "samples" else None
-    whole, notes = parts_of(given, records, observed, wishes.start, wishes.sensor)
+    recorded, notes = parts_of(given, records, observed, wishes.start, wishes.sensor)
+    whole = recorded
     if wishes.parts == "rests":
-        whole = [piece for part in whole for piece in at_rests(part)]
+        between = [piece for part in whole for piece in at_rests(part)]
+        whole = evenly(between, MOST_PARTS)
         notes.append(f"{len(whole)} parts between rests, each with a run of its own")
+        if len(whole) < len(between):
+            notes[-1] += f", evenly spread among {len(between)}; by features all of them are fitted, with their scatter"
     whole, notes = _resampled(whole, notes)
     share = share_of(wishes.held_out, whole)
     fitted = shortened(whole, share)
@@ -220,6 +231,9 @@ def infer(
         whole, said = by_features(whole, wishes.observe)
         notes += said
     model = _model(given, fitted, free, wishes)
+    shared, said = with_starts([one for one in model.free if one.part is None], given, recorded, wishes.begin_at or ())
+    model = model.with_(free=(*shared, *(one for one in model.free if one.part is not None)))
+    notes += said
     with telling(progress, "infer") as tell:
         try:
             found = _inferred(model, tuple(whole), wishes, notes, tell)
@@ -232,9 +246,9 @@ def infer(
 
 def _resampled(parts: list[Part], notes: list[str]) -> tuple[list[Part], list[str]]:
     """Return the parts with a number of samples that can be fitted, and the notes with what was done."""
-    found = []
+    found, most = [], max(MOST_FITTED // len(parts), LEAST_FITTED)
     for part in parts:
-        record, said = resampled(part.record)
+        record, said = resampled(part.record, most)
         found.append(replace(part, record=record))
         notes = [*notes, *said]
     return found, notes
@@ -269,7 +283,7 @@ def _model(problem: Problem, parts: list[Part], names: Sequence[str] | str, wish
 def _inferred(model: Model, whole: tuple[Part, ...], wishes: Wishes, notes: list[str], tell: Tell) -> Inference:
     """Return the result of all that was asked for; Ctrl-C leaves out what was not finished."""
     tell = Told(tell)
-    found = estimate(model.with_(ran=tell.run), wishes.starts, wishes.loss, wishes.seed, tell)
+    found = _estimated(model.with_(ran=tell.run), wishes, tell)
     sure, profiles, windows = unknown(found), list[Profile](), None
     drawn, said, finished = None, tuple[str, ...](), found.finished
     try:
@@ -288,6 +302,26 @@ def _inferred(model: Model, whole: tuple[Part, ...], wishes: Wishes, notes: list
         finished = False
     found = replace(found, finished=finished)
     return Inference(found, sure, whole, tuple(notes), tuple(profiles), drawn, said, windows)
+
+
+def _estimated(model: Model, wishes: Wishes, tell: Tell) -> Estimate:
+    """Return the best fit; of many parts, a few are searched first."""
+    if len(model.parts) <= MOST_SEARCHED:
+        return estimate(model, wishes.starts, wishes.loss, wishes.seed, tell)
+    few = estimate(with_parts(model, MOST_SEARCHED), wishes.starts, wishes.loss, wishes.seed, tell)
+
+    def with_shared(searched: Floats) -> tuple[Free, ...]:
+        values = {one.label: value for one, value in zip(few.model.free, few.model.values(searched), strict=True)}
+        return tuple(one if one.part is not None else replace(one, start=values[one.label], given=None) for one in model.free)
+
+    begun = model.with_(free=with_shared(few.searched))
+    if not few.finished:
+        return Estimate(model, begun.begin, finished=False, loss=wishes.loss)
+    tell(f"all {len(model.parts)} parts")
+    found = estimate(begun, 1, wishes.loss, wishes.seed, tell)
+    others = [begun.with_(free=with_shared(x)).begin for x in few.others]
+    others = [x for x in others if found.cost(x) < found.cost(found.searched) + COMPETES]
+    return replace(found, model=found.model.with_(free=model.free), others=tuple(others))
 
 
 def _idle_as_given(found: Estimate, sure: Certainty) -> Estimate:

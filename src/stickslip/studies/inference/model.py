@@ -115,8 +115,9 @@ class Model:
         return found
 
     def _jumps(self, run: Solution, part: int, name: str) -> Jumps:
-        sensor, least = self.parts[part].sensor, SEEN * self.sizes.get(name, 0.0)
-        return jumps_in(lambda time, side: measured(run, name, sensor, time, side), run.breaks[1:-1], least)
+        this, least = self.parts[part], SEEN * self.sizes.get(name, 0.0)
+        step = self.every * this.record.clock[-1] / max(len(this.record) - 1, 1)
+        return jumps_in(lambda time, side: measured(run, name, this.sensor, time, side), run.breaks[1:-1], least, step)
 
     def with_jumps(self, searched: Floats) -> Model:
         """Return the model in which samples beside a jump of the run are as unsure as the time of the jump makes them."""
@@ -278,6 +279,12 @@ class Model:
         """The searched numbers where the search begins."""
         low, high = self.limits
         return np.clip([one.searched(one.start) for one in self.free], low, high)
+
+    @property
+    def given(self) -> Floats:
+        """The searched numbers as they were given, where the search begins elsewhere."""
+        low, high = self.limits
+        return np.clip([one.searched(one.start if one.given is None else one.given) for one in self.free], low, high)
 
     @property
     def samples(self) -> int:

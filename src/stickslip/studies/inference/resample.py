@@ -24,6 +24,8 @@ UNSURE = 1.0 / math.sqrt(24.0)
 As a ramp over two samples moves by a share x of the time between them, one changes by x/2 and so does the other. With this standard
 deviation they tell x with the standard deviation of a place that may be anywhere between them, 1/sqrt(12).
 """
+STEEP = 0.5
+"""Change of a steep part of a curve in the time between two samples, as a share of the range of the curve, from which it jumps."""
 REACH = 3
 """Number of samples beside the jump of a run among which the one of the data is looked for."""
 
@@ -35,11 +37,21 @@ class Jumps(NamedTuple):
     height: Floats
 
 
-def jumps_in(curve: Callable[[Floats, Side], Floats], breaks: Floats, least: float) -> Jumps:
-    """Return the jumps of a curve that are higher than `least`; `curve` gives its values at times, from the left or the right."""
-    height = curve(breaks, "right") - curve(breaks, "left")
+def jumps_in(curve: Callable[[Floats, Side], Floats], breaks: Floats, least: float, step: float = 0.0) -> Jumps:
+    """Return the jumps of a curve that are higher than `least`; `curve` gives its values at times, from the left or the right.
+
+    So is a part between two breaks that is so steep that samples, which are apart by a time `step` (s), pass it over: it jumps in
+    its middle.
+    """
+    if not len(breaks):
+        return Jumps(breaks, breaks)
+    left, right = curve(breaks, "left"), curve(breaks, "right")
+    height, between = right - left, left[1:] - right[:-1]
+    steep = (np.abs(between) > least) & (step * np.abs(between) > STEEP * float(np.ptp(left)) * np.diff(breaks))
     chosen = np.abs(height) > least
-    return Jumps(breaks[chosen], height[chosen])
+    time = np.concatenate([breaks[chosen], 0.5 * (breaks[1:] + breaks[:-1])[steep]])
+    order = np.argsort(time, kind="stable")
+    return Jumps(time[order], np.concatenate([height[chosen], between[steep]])[order])
 
 
 def spread(values: Floats, time: Floats, jumps: Jumps, width: int) -> Floats:

@@ -12,6 +12,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.studies.inference.model import FAILED, Model
 from stickslip.studies.inference.noise import OUTLYING, cost_of
+from stickslip.studies.inference.resample import RAMP
 
 Tell = Callable[[str], Any]
 
@@ -118,33 +119,50 @@ def light(model: Model) -> Model:
 
 def searched_minima(model: Model, starts: int, loss: str, seed: int, *, tell: Tell, best: Best) -> list[tuple[float, Floats]]:
     """Return the minima that searches from several starts reach, best first. Raises InputError if no run succeeds."""
-    begin = model.begin
-    first = _cost(model, begin, loss)
-    candidates = [(first, begin)]
-    if np.isfinite(first):
-        best.cost, best.searched = first, begin
-    if starts > 1 or not np.isfinite(first):
+    first = [model.begin] if np.array_equal(model.begin, model.given) else [model.begin, model.given]
+    known = sorted(((cost, x) for x in first if np.isfinite(cost := _cost(model, x, loss))), key=lambda one: one[0])
+    screened = []
+    if known:
+        best.cost, best.searched = known[0]
+    if starts > 1 or not known:
         drawn = _drawn(model, SCREENED * max(starts - 1, 2), seed)
         for i, x in enumerate(drawn):
             tell(f"start {i + 1} of {len(drawn)}")
-            candidates.append((_cost(model, x, loss), x))
-    usable = [one for one in candidates if np.isfinite(one[0])]
-    if not usable:
+            screened.append((_cost(model, x, loss), x))
+    screened = sorted((one for one in screened if np.isfinite(one[0])), key=lambda one: one[0])
+    chosen = [*known, *screened][:starts] if starts == 1 else [*known, *screened[: max(starts - len(known), 1)]]
+    if not chosen:
         _refuse(model)
-    screened = sorted(usable[1:] if np.isfinite(first) else usable, key=lambda one: one[0])
-    chosen = ([(first, begin)] if np.isfinite(first) else []) + screened[: max(starts - 1, 0) or (0 if np.isfinite(first) else 1)]
     minima = []
     for i, (_, x) in enumerate(chosen):
         tell(f"search {i + 1} of {len(chosen)}")
-        end = solved(model, x, loss, best, most=FIRST)
-        minima.append((_cost(model, end, loss), end))
-    if starts > 1 and min(minima, key=lambda one: one[0])[0] > max(FAR**2 * model.samples, FAR_SHARE**2 * model.scatter):
-        end = solved(model, _by_evolution(model, seed, tell), loss, best, most=FIRST)
-        minima.append((_cost(model, end, loss), end))
+        minima.append(_followed(model, x, loss, best, FIRST))
     minima.sort(key=lambda one: one[0])
+    if starts > 1 and is_far(model, minima[0][0]):
+        minima.append(_followed(model, _by_evolution(model, seed, tell), loss, best, FIRST))
+        minima.sort(key=lambda one: one[0])
     followed = [one for one in minima[:FOLLOWED] if one[0] < HOPELESS * minima[0][0] + COMPETES]
-    ends = (solved(model, x, loss, best) for _, x in followed)
-    return sorted(((_cost(model, end, loss), end) for end in ends), key=lambda one: one[0])
+    ends = []
+    for i, (_, x) in enumerate(followed):
+        tell(f"search {i + 1} of {len(followed)}, to its end")
+        ends.append(_followed(model, x, loss, best))
+    return sorted(ends, key=lambda one: one[0])
+
+
+def _followed(model: Model, x: Floats, loss: str, best: Best, most: int = 40) -> tuple[float, Floats]:
+    """Return where a search ends, after what is minimised there, or where it begins if jumps that are spread have led it away."""
+    end = solved(model, x, loss, best, most=most)
+    return min(((sharp_cost(model, one, loss), one) for one in (end, x)), key=lambda one: one[0])
+
+
+def sharp_cost(model: Model, x: Floats, loss: str) -> float:
+    """Return what is minimised if jumps of the run are as sharp as they are; those of the record may be some samples away."""
+    return _cost(model.with_(blur=RAMP).with_jumps(x), x, loss)
+
+
+def is_far(model: Model, cost: float) -> bool:
+    """Return True if what is minimised is so large that the run does not come near the record."""
+    return cost > max(FAR**2 * model.samples, FAR_SHARE**2 * model.scatter)
 
 
 def _by_evolution(model: Model, seed: int, tell: Tell) -> Floats:
@@ -155,12 +173,22 @@ def _by_evolution(model: Model, seed: int, tell: Tell) -> Floats:
     """
     from scipy.optimize import differential_evolution, minimize
 
-    def robust(smoothed: Model) -> Callable[[Floats], float]:
-        return lambda x: float(np.log(cost_of(smoothed.residual(np.asarray(x, float)), "cauchy")))
-
     low, high = model.limits
-    box = [(max(one.near[0], low[i]), min(one.near[1], high[i])) for i, one in enumerate(model.free)]
-    box = [(x - 1.0, x + 1.0) if end - begin <= 0.0 else (begin, end) for (begin, end), x in zip(box, model.begin, strict=True)]
+    shared = [i for i, one in enumerate(model.free) if one.part is None] or list(range(len(model.free)))  # others are known nearly
+    begin = model.begin
+
+    def whole(x: Floats) -> Floats:
+        y = begin.copy()
+        y[shared] = x
+        return np.asarray(np.clip(y, low, high))
+
+    def robust(smoothed: Model) -> Callable[[Floats], float]:
+        return lambda x: float(np.log(cost_of(smoothed.residual(whole(np.asarray(x, float))), "cauchy")))
+
+    box = [(max(model.free[i].near[0], low[i]), min(model.free[i].near[1], high[i])) for i in shared]
+    box = [
+        (x - 1.0, x + 1.0) if last - first <= 0.0 else (first, last) for (first, last), x in zip(box, begin[shared], strict=True)
+    ]
     count = iter(range(10**9))
     found = differential_evolution(
         robust(model.with_(smooth=AVERAGED[0])),
@@ -168,13 +196,13 @@ def _by_evolution(model: Model, seed: int, tell: Tell) -> Floats:
         callback=lambda *_, **__: tell(f"search without derivatives: generation {next(count) + 1} of {GENERATIONS} at most"),
         **{"maxiter": GENERATIONS, "popsize": 8, "rng": seed, "polish": False, "tol": 1e-3},
     )
-    x = np.clip(found.x, low, high)
+    x = whole(found.x)[shared]
     for smooth in AVERAGED[1:]:
         tell(f"search without derivatives: residuals averaged over {smooth:.1%} of the record")
-        simplex = np.clip(x + np.vstack([np.zeros(len(x)), 0.01 * np.eye(len(x))]), low, high)
+        simplex = np.clip(x + np.vstack([np.zeros(len(x)), 0.01 * np.eye(len(x))]), low[shared], high[shared])
         options = {"maxfev": 100 * len(x), "initial_simplex": simplex}
         x = np.asarray(minimize(robust(model.with_(smooth=smooth)), x, method="Nelder-Mead", options=options).x)
-    return np.asarray(np.clip(x, low, high))
+    return whole(x)
 
 
 def _cost(model: Model, searched: Floats, loss: str) -> float:

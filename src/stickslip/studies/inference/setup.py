@@ -18,6 +18,7 @@ from stickslip.problem.problem import Problem
 from stickslip.studies.inference.features import arrests_in
 from stickslip.studies.inference.free import DELAY, LOAD, SERVO, STATE, TREND, Free, Prior, known_numbers
 from stickslip.studies.inference.loading import loading_of
+from stickslip.studies.inference.model import Model
 from stickslip.studies.inference.part import Part
 from stickslip.studies.inference.record import HIGHEST, LOWEST, MEASURED, SHEAR, Record
 
@@ -159,6 +160,22 @@ def at_rests(part: Part) -> list[Part]:
         loading = loading_of(piece) if part.loading is not None else None
         found.append(replace(part, record=piece, loading=None if loading is None else loading.rate, start="record"))
     return found
+
+
+def evenly(parts: Sequence[Part], most: int) -> list[Part]:
+    """Return so many parts at most, evenly spread over all."""
+    return [parts[i] for i in _spread(len(parts), most)]
+
+
+def _spread(count: int, most: int) -> list[int]:
+    return [int(i) for i in np.unique(np.linspace(0, count - 1, min(count, most)).round())]
+
+
+def with_parts(model: Model, most: int) -> Model:
+    """Return a model of some of its parts, evenly spread, with the free numbers that all share and those of these parts."""
+    kept = {part: i for i, part in enumerate(_spread(len(model.parts), most))}
+    free = [one if one.part is None else replace(one, part=kept[one.part]) for one in model.free if one.part in (None, *kept)]
+    return model.with_(parts=tuple(model.parts[part] for part in kept), free=tuple(free))
 
 
 def own_of(problem: Problem, parts: Sequence[Part], wanted: Iterable[str] | None) -> list[Free]:
