@@ -21,7 +21,7 @@ LEVELS = ("peak", "rest", "drop")
 """Features of shear, which come after its name, as in "friction_peak": before the fall, after it, and their difference."""
 FEATURES = ("recurrence", "duration", "event_slip", "peak_rate")
 """What else is known of events."""
-DROP, OF_RANGE, ABOVE_NOISE = 0.25, 0.1, 8.0
+DROP, OF_RANGE, ABOVE_NOISE = 0.25, 0.25, 8.0
 """Fall of shear that is a slip event: as a share of the usual fall, of the range of shear, and in standard deviations of noise."""
 BESIDE = 0.15
 """Length of the straight lines before and after an event, as a share of the time to the event on that side."""
