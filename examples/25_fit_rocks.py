@@ -9,13 +9,14 @@ files hold each 10th sample, and each 4th to 80th; their first lines name source
 You learn to fit records as they come from a machine, with a trend that no law explains, and to read what the residual shows.
 """
 
+import sys
 from dataclasses import replace
 from pathlib import Path
 
 import stickslip as ss
 
 problem = ss.load_scenario("velocity-steps-block").problem
-records = Path(__file__).parent / "records"
+records = Path(sys.argv[0]).parent / "records"  # beside this script
 begin = {
     "basalt": {"reference": 0.607, "rate": "3 um/s"},
     "sepiolite": {"reference": 0.535, "rate": "0.2 um/s", "distance": "100 um"},

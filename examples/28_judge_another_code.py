@@ -8,11 +8,12 @@ The file holds what another program says about the loop of Fig. 4: time, slip, s
 You learn to have a series from any code judged: its errors, each of its shocks beside the exact one, and the rule that it follows.
 """
 
+import sys
 from pathlib import Path
 
 import stickslip as ss
 
-file = Path(__file__).parent / "records" / "staggered_grid.csv"
+file = Path(sys.argv[0]).parent / "records" / "staggered_grid.csv"  # beside this script
 study = ss.studies.judge_series(file, "fig4-loop")
 print(study.verdicts)
 print(study.shocks[["exact_time", "time", "delay", "size"]].round(3).to_string(index=False))

@@ -128,12 +128,13 @@ def test_a_table_without_its_checkpoint_is_shown_without_its_origin(command: Com
 
 def test_show_repeats_the_summary_of_a_sweep(command: Command):
     asked = ["sweep", "fig6-slab", "-v", "run.selection=perfect-delay,minimal,maximal", "-v", "friction.alpha=0.1..1:4"]
-    ran = command(*asked, "--out", "map.zarr", "-q", "events", "-q", "slip").out
-    shown = command("show", "map.zarr", "--figure", "map.svg")
+    ran = command(*asked, "--out", "map.zarr", "-q", "slip", "-q", "events", "--figure", "ran.png").out
+    shown = command("show", "map.zarr", "--figure", "shown.png")
     assert (shown.code, shown.err) == (0, "")
     summary, _, made = after_title(shown.out).partition("made by ")
-    assert summary == after_title(ran).removesuffix("written: map.zarr\n")
-    assert made.endswith("written: map.svg\n")
+    assert summary == after_title(ran).removesuffix("written: map.zarr\nwritten: ran.png\n")
+    assert made.endswith("written: shown.png\n")
+    assert Path("shown.png").read_bytes() == Path("ran.png").read_bytes(), "the first quantity of the sweep, in both"
     assert "[run]\n" in command("show", "map.zarr", "--scenario").out
 
 

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import ast
+import pkgutil
 import re
 import runpy
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -45,6 +48,36 @@ def test_every_public_name_is_in_the_reference() -> None:
     assert [
         name for name in sorted(names) if not re.search(rf"^\.\. \S+:: {re.escape(name)}(\(\))?$", reference, re.MULTILINE)
     ] == []
+
+
+def test_every_member_that_the_reference_lists_exists() -> None:
+    missing = []
+    for source in SOURCES:
+        for name, members in re.findall(r"^\.\. auto\w+:: ([\w.]+).*\n((?:   :.*\n)*)", source.read_text("utf-8"), re.MULTILINE):
+            found = pkgutil.resolve_name(name)
+            fields = {one for base in getattr(found, "__mro__", ()) for one in getattr(base, "__annotations__", {})}
+            listed = re.findall(r"[\w.]+", "".join(re.findall(r":members:(.*)", members)))
+            missing += [f"{source.stem}: {name}.{one}" for one in listed if not hasattr(found, one) and one not in fields]
+    assert missing == []
+
+
+UNDERLINE = re.compile(r"^(?:# )?(\S.*)\n(?:# )?(([=~^-])\3{2,})$", re.MULTILINE)
+
+
+@pytest.mark.parametrize("source", [*SOURCES, *(ROOT / "examples").glob("*.*")], ids=lambda path: path.name)
+def test_titles_are_underlined_in_full(source: Path) -> None:
+    titles = UNDERLINE.findall(source.read_text("utf-8"))
+    assert [title for title, line, _ in titles if len(line) < len(title)] == []
+
+
+def test_pages_build_without_a_warning_where_sphinx_is_installed(tmp_path: Path) -> None:
+    """The gallery is not run: `test_gallery.py` runs its scripts."""
+    pytest.importorskip("sphinx_gallery", reason="needs the extra [site], which `make site` installs")
+    asked = ["-b", "html", "-q", "--fail-on-warning", "--keep-going", "-D", "plot_gallery=0", "-d", str(tmp_path / "doctrees")]
+    done = subprocess.run(
+        [sys.executable, "-m", "sphinx", *asked, str(DOCS), str(tmp_path / "html")], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
 
 
 def test_every_independent_solution_is_in_the_reference() -> None:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import ast
 import math
 import re
 import runpy
+import sys
 import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 import matplotlib as mpl
 import numpy as np
@@ -292,10 +295,13 @@ def test_example_computes_what_its_check_says_and_draws_a_figure(path: Path, cap
 
 
 def run_by_blocks(path: Path) -> tuple[Names, list[Figure]]:
-    """Run the blocks between lines `# %%` as the gallery does: at the end of each it draws the figures, and closes them."""
+    """Run the blocks between lines `# %%` as the gallery does, which tells a script its path by `sys.argv` alone.
+
+    At the end of each block the gallery draws the figures, and closes them.
+    """
     names: Names = {"__name__": "__main__"}
     figures = []
-    with warnings.catch_warnings():
+    with warnings.catch_warnings(), patch.object(sys, "argv", [str(path)]):
         warnings.simplefilter("error")
         for block in path.read_text(encoding="utf-8").split("\n# %%\n"):
             exec(compile(block, path.name, "exec"), names)
@@ -304,6 +310,16 @@ def run_by_blocks(path: Path) -> tuple[Names, list[Figure]]:
                 figures[-1].canvas.draw()
             pyplot.close("all")
     return names, figures
+
+
+def test_no_example_needs_a_name_that_the_gallery_does_not_define() -> None:
+    names = {
+        path.name: {node.id for node in ast.walk(ast.parse(path.read_text("utf-8"))) if isinstance(node, ast.Name)}
+        for path in EXAMPLES
+    }
+    assert {
+        name: own for name, used in names.items() if (own := {one for one in used if one.startswith("__")} - {"__name__"})
+    } == {}
 
 
 def test_every_check_belongs_to_an_example() -> None:

@@ -254,6 +254,22 @@ def test_under_a_law_with_a_state_the_panel_of_the_law_shows_the_path_of_the_run
     assert (points <= [view.limits["law_x"][1], view.limits["law_y"][1]]).all()
 
 
+def test_the_path_of_a_run_that_reverses_passes_through_a_slip_rate_of_zero_on_a_linear_axis() -> None:
+    view, motion = view_of(answer("reversing-axis")), answer("reversing-axis").motions[0]
+    path, now = view.columns["visited"], view.columns["motion"]
+    assert "axis:law_powers" in view.hidden
+    at = np.column_stack([now["law_x"], motion.traction / motion.normal_load])[::20]
+    points = np.column_stack([path["x"], path["y"]])
+    points = points[np.isfinite(points).all(axis=1)]
+    assert points[:, 0].min() < -0.9 * points[:, 0].max() < 0.0
+    away = np.abs(points - at[:, None, :]) / np.ptp(points, axis=0)
+    assert away.max(axis=2).min(axis=1).max() < 0.02
+    steps = np.abs(np.diff(np.column_stack([path["x"], path["y"]]), axis=0)) / np.ptp(points, axis=0)
+    assert np.nanmax(steps) < 0.1, "no line across the panel"
+    law = view.columns["law"]
+    np.testing.assert_allclose(np.interp(-law["x"], law["x"], law["y"]), -law["y"], rtol=0.0, atol=1e-12)
+
+
 @pytest.mark.parametrize("name", ["velocity-steps-block", "slide-hold-slide-block"])
 def test_slip_rates_under_a_law_that_never_sticks_have_a_logarithmic_axis_and_friction_is_framed(name: str) -> None:
     view, motion = view_of(answer(name)), answer(name).motions[0]

@@ -183,6 +183,9 @@ def test_the_map_of_regimes_marks_the_problem() -> None:
     points = np.concatenate(curve.get_segments())
     assert points[:, 0] * points[:, 1] * 0.5 == pytest.approx(np.full(len(points), 9.8), rel=1e-13)
     assert figure.axes[0].get_xscale() == "log"
+    edges = np.asarray(figure.axes[0].collections[0].get_coordinates())[0, :, 0]  # type: ignore[attr-defined]
+    ratios = edges[1:] / edges[:-1]
+    assert ratios == pytest.approx(1000.0 ** (np.array([0.5, 1, 1, 1, 1, 0.5]) / 5), rel=1e-12), "halfway in equal ratios"
 
 
 @pytest.fixture(scope="module")

@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import stickslip as ss
+from stickslip.figures.runs.curves import RANGE
 from stickslip.figures.runs.run import draw
 from stickslip.loading import HoldAndSlide, LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
 from tests.figures.legible import size_of
@@ -101,6 +102,48 @@ def test_extremes_of_every_quantity_are_kept_in_every_interval(points: int) -> N
             line = np.concatenate([inside, ends[k : k + 2]])
             assert line.min() <= seen[:, k].min() + reach
             assert line.max() >= seen[:, k].max() - reach
+
+
+LONG = ss.simulate("granite-slab", 100.0)
+"""239 slip events, after each of which the load falls by 1 MPa within an instant."""
+
+
+def test_a_curve_has_both_limits_where_a_rest_begins_although_times_are_rounded() -> None:
+    time, (load,) = LONG.curves_together(("load",))
+    for event in LONG.events[:-1].itertuples():
+        assert load[(time >= event.end) & (time < event.end + 1e-3)].min() <= event.traction_after + 1.0
+        assert LONG.load(event.end) == pytest.approx(event.traction_after, rel=1e-9)
+
+
+@pytest.mark.parametrize("trips", [5.0, 500.0, 5e4])
+def test_a_rest_of_any_length_shows_how_far_the_waves_in_the_body_swing_the_load(trips: float) -> None:
+    """Against 2000 times of the first round trip and of one in the middle of the rest."""
+    run = ss.simulate("fig5-slab-reconstructed", trips * ss.load_scenario("fig5-slab-reconstructed").problem.round_trip_time)
+    trip, end = run.problem.round_trip_time, run.events.end.iloc[-1]
+    time, (load,) = run.curves_together(("load",))
+    for begin in (end, end + trip * (trips // 2 - 2)):
+        seen = run.load(begin + trip * np.linspace(0.0, 1.0, 2000))
+        near = (time >= begin) & (time <= begin + max(trip, 0.02 * run.history.duration))
+        assert load[near].min() == pytest.approx(seen.min(), abs=1e-3 * np.ptp(seen))
+        assert load[near].max() == pytest.approx(seen.max(), abs=1e-3 * np.ptp(seen))
+
+
+def test_swings_too_close_to_draw_are_a_range_between_their_extremes() -> None:
+    figure = draw(LONG)
+    (rate,), (stress,) = (panel.collections for panel in figure.axes[1:3])
+    lows, highs = (np.sort(stress.get_paths()[0].vertices[:, 1])[part] for part in (slice(200), slice(-200, None)))
+    rests = 1e-6 * LONG.events.traction_after
+    assert (rests.min(), rests.max()) == (pytest.approx(2.50005, abs=1e-5), pytest.approx(2.50016, abs=1e-5))
+    assert (lows.min() > 2.4999, lows.max() < rests.max() + 1e-6) == (True, True)
+    assert (highs.min(), highs.max()) == (pytest.approx(3.5, abs=2e-4), pytest.approx(3.5, abs=2e-4))
+    corners = rate.get_paths()[0].vertices
+    assert corners[:, 1].max() == pytest.approx(1e3 * LONG.events.peak_rate.max(), rel=1e-9)
+    assert np.ptp(corners[:, 0]) > 99.0
+    assert [text.get_text() for text in figure.legends[0].get_texts()].count(RANGE) == 1
+    pyplot.close(figure)
+    figure = draw(LONG, 0.0, 19.0)
+    assert [len(panel.collections) for panel in figure.axes] == [0, 0, 0], "46 events can be seen"
+    pyplot.close(figure)
 
 
 def test_the_traction_of_a_block_that_sticks_has_no_notches() -> None:

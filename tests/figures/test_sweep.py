@@ -77,7 +77,7 @@ def legend(figure: Figure) -> list[str]:
     return [text.get_text() for one in figure.legends for text in one.get_texts()]
 
 
-def test_a_map_shows_every_member_at_its_place() -> None:
+def test_a_map_shows_every_member_at_its_place_and_ends_where_its_values_end() -> None:
     values = np.add.outer(np.arange(9.0), np.arange(13.0) // 6)
     figure = ss.figures.plot_sweep(grid(values, ALPHA, THICKNESS), "answer")
     axes, mesh = figure.axes[0], meshes(figure, 1)
@@ -86,8 +86,10 @@ def test_a_map_shows_every_member_at_its_place() -> None:
     assert axes.get_title(loc="left") == "Any scenario"
     assert np.array_equal(mesh.get_array(), values.T)
     edges = np.asarray(mesh.get_coordinates())
-    assert edges[0, :2, 0] == pytest.approx([0.1 - 0.11875, 0.1 + 0.11875], rel=1e-12)
-    assert edges[:2, 0, 1] == pytest.approx([2.0**-0.25, 2.0**0.25], rel=1e-12)  # km, around 1 km in equal ratios
+    alpha, thickness = edges[0, :, 0], edges[:, 0, 1]
+    assert alpha[[0, 1, -1]] == pytest.approx([0.1, 0.1 + 0.11875, 2.0], rel=1e-12)
+    assert thickness[[0, 1, -1]] == pytest.approx([1.0, 2.0**0.25, 64.0], rel=1e-12)  # km, halfway in equal ratios
+    assert (axes.get_xlim(), axes.get_ylim()) == (tuple(alpha[[0, -1]]), tuple(thickness[[0, -1]]))
 
 
 def test_few_whole_numbers_have_a_colour_each_and_a_key() -> None:

@@ -140,8 +140,17 @@ def draw_parameters(axes: Axes, dataset: Mapping[Any, Any]) -> None:
             set_log_ticks(axes, name)
 
 
+def cell_edges(values: NDArray[Any], *, log: bool) -> NDArray[Any]:
+    """Return the edges of the cells of a map around ascending values: halfway between them, on a logarithmic axis in the logarithm.
+
+    A map ends at its first and its last value: nobody asked for the half cells beyond, where a thickness may be below zero.
+    """
+    middle = np.sqrt(values[1:] * values[:-1]) if log else 0.5 * (values[1:] + values[:-1])
+    return np.concatenate([values[:1], middle, values[-1:]])
+
+
 def draw_map(axes: Axes, dataset: Mapping[Any, Any], values: Any, **colours: Any) -> Any:
     """Draw values over the two parameters `x` and `y` as an image, pale where they are not finite, and return the image."""
     axes.set_facecolor(PALE)
-    masked = np.ma.masked_invalid(values)
-    return axes.pcolormesh(shown(dataset["x"]), shown(dataset["y"]), masked, shading="nearest", rasterized=True, **colours)
+    edges = (cell_edges(shown(dataset[name]), log=bool(dataset[name].attrs["log"])) for name in ("x", "y"))
+    return axes.pcolormesh(*edges, np.ma.masked_invalid(values), rasterized=True, **colours)

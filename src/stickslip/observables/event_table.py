@@ -6,7 +6,7 @@ files, summaries and the tables of the paper all follow from it.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -42,14 +42,22 @@ def catalogue_statistics(table: pd.DataFrame) -> pd.DataFrame:
     import pandas as pd
 
     check_type("catalogue_statistics: table", table, pd.DataFrame, "a table of slip events, such as solution.events")
-    finished = table[table.end.notna()]
-    rows = {name: _describe((table if name == "recurrence" else finished)[name]) for name in QUANTITIES if name in table}
+    rows = {name: _describe(pd.Series(that_count(table, name))) for name in QUANTITIES if name in table}
     frame = pd.DataFrame.from_dict(rows, orient="index", columns=list(_describe(table.slip[:0])))
     return frame.astype({"count": int})
 
 
-def _describe(column: pd.Series[float]) -> dict[str, float]:
-    values = column[np.isfinite(column)]
+def that_count(events: Mapping[Any, Any], name: str) -> Floats:
+    """Return the values of a column that count in statistics: finite, and not of an event that the end of the run cuts off.
+
+    The recurrence of such an event does count: it ends where the event begins.
+    """
+    values = np.asarray(events[name], float)
+    over = np.isfinite(np.asarray(events["end"], float))
+    return values[np.isfinite(values) & (over | (name == "recurrence"))]
+
+
+def _describe(values: pd.Series[float]) -> dict[str, float]:
     mean, deviation = values.mean(), values.std()
     return {
         "count": len(values),

@@ -155,7 +155,7 @@ class Readings(NamesAttributes):
         """Return the times of `curve`, and the values of several quantities there: their times are looked for once."""
         start, end = (limit if one is None else float(times_of(one)) for one, limit in zip((start, end), self.shown, strict=True))
         breaks = self.breaks[(self.breaks >= start) & (self.breaks <= end)]
-        breaks = np.union1d(breaks, self.history.echo_edges(start, end, points - len(breaks)))
+        breaks = np.union1d(breaks, self.history.echo_edges(start, end, points))
         many = len(breaks) > points
         inside = np.linspace(breaks[:-1], breaks[1:], 8 if len(breaks) < LONG_HISTORY else 3).ravel() if len(breaks) else breaks
         right = np.unique(np.concatenate([np.linspace(start, end, points), breaks, inside]))

@@ -174,12 +174,25 @@ class History:
         return found
 
     def _find_echoes(self, found: Positions, n: NDArray[np.intp], time: Floats, side: Side) -> None:
-        """Set the piece whose echo is the load, for those times (s) that lie in a rest: entries n of `found`."""
-        trip = (self.store.trip[found.last[n]] - self.epoch.trip).astype(float)
+        """Set the piece whose echo is the load, for those times (s) that lie in a rest: entries n of `found`.
+
+        At its edges a rest has the phase of the piece beside it, which the time in seconds gives but for rounding: rounding could
+        turn the limit from one side into that from the other.
+        """
+        last, store = found.last[n], self.store
+        trip = (store.trip[last] - self.epoch.trip).astype(float)
         trips = trip + np.floor((time + self.epoch.offset - trip * self.round_trip_time) / self.round_trip_time)
         phase = time + self.epoch.offset - trips * self.round_trip_time
+        beside = last if side == "right" else np.minimum(last + 1, len(self) - 1)
+        edge, known = (self.end, store.phase_to) if side == "right" else (self.start, store.phase_from)
+        here = (time == edge[beside]) & ((beside > last) | (side == "right"))
+        trips = np.where(here, store.trip[beside] - self.epoch.trip, trips)
+        phase = np.where(here, known[beside], phase)
         if side == "left":
             trips, phase = np.where(phase <= 0.0, trips - 1.0, trips), np.where(phase <= 0.0, self.round_trip_time, phase)
+        else:
+            past = phase >= self.round_trip_time
+            trips, phase = np.where(past, trips + 1.0, trips), np.where(past, 0.0, phase)
         self._set_echoes(found, n, trips + self.epoch.trip, phase, side)
 
     def _set_echoes(self, found: Positions, n: NDArray[np.intp], trip: Floats, phase: Floats, side: Side) -> None:
@@ -220,21 +233,34 @@ class History:
     def echo_edges(self, begin: float, end: float, most: int) -> Floats:
         """Return the times (s) between `begin` and `end` at which echoes of recorded pieces begin while the contact rests.
 
-        The result is empty if there are more than `most` of them.
+        If there are more than `most` of them, round trips of a rest after the second have only the times of the smallest and the
+        largest load, which show how far it swings, and some of these trips are left out evenly. The result is empty if there are
+        more than `most` rests.
         """
         behind = np.append(self.start[1:], self.span[1])
+        rests = np.flatnonzero(self.rests & (self.end < end) & (behind > begin))
+        if not 0 < len(rests) <= most:
+            return np.empty(0)
+        lows, highs = np.maximum(begin, self.end[rests]), np.minimum(end, behind[rests])
+        phases = [self.phases.standing(int(n))[1] for n in rests]
+        last = np.floor((highs - lows) / self.round_trip_time) + 1.0
+        step = np.ceil(2.0 * last.sum() / most) if last @ [len(one) for one in phases] > most else 0.0
         found: list[Floats] = []
-        for n in np.flatnonzero(self.rests & (self.end < end) & (behind > begin)):
-            low, high = max(begin, float(self.end[n])), min(end, float(behind[n]))
-            _, phase, _ = self.phases.standing(int(n))
-            trips = (high - low) / self.round_trip_time + 1.0
-            most -= int(min(trips * len(phase), 1e18))
-            if most < 0:
-                return np.empty(0)
+        for low, high, phase, past in zip(lows, highs, phases, last, strict=True):
             first = np.floor((low + self.epoch.offset) / self.round_trip_time) + self.epoch.trip
-            edges = self.seconds(first + np.arange(int(trips) + 1)[:, None], phase).ravel()
+            whole = np.arange(2.0 if step else past + 1.0)
+            edges = self.seconds(first + whole[:, None], phase).ravel()
+            if step and past > 2.0:
+                trips = np.append(np.arange(2.0, past, step), past)
+                edges = np.append(edges, self.seconds(first + trips[:, None], self._extreme_phases(first + 1.0, phase)).ravel())
             found.append(edges[(edges > low) & (edges < high)])
-        return np.concatenate([*found, np.empty(0)])
+        return np.concatenate(found)
+
+    def _extreme_phases(self, trip: float, edges: Floats) -> Floats:
+        """Return the offsets (s) of the smallest and largest load in a whole round trip at rest, with echoes at these `edges`."""
+        inside = np.linspace(edges, np.append(edges[1:], self.round_trip_time), 8).T.ravel()
+        left, right = (self.excess(self.find(self.seconds(trip, inside), side)) for side in ("left", "right"))
+        return inside[[int(np.minimum(left, right).argmin()), int(np.maximum(left, right).argmax())]]
 
     @cached_property
     def rests(self) -> NDArray[np.bool_]:

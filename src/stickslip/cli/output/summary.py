@@ -118,13 +118,16 @@ def statistics(events: Mapping[Any, Any]) -> list[str]:
     """Return a line with the mean and the scatter of slips and recurrence times, if there are three of these or more."""
     import numpy as np
 
+    from stickslip.observables.event_table import that_count
+
     lines = []
     for name, unit in (("recurrence", "s"), ("slip", "m")):
-        values = np.asarray(events[name], float)
-        values = values[np.isfinite(values)]
+        values = that_count(events, name)
         if len(values) > 2:
             mean, scatter = float(values.mean()), float(values.std(ddof=1))
             lines.append(f"{name}: mean {with_unit(mean, unit)}, standard deviation {100.0 * scatter / mean:.2g} % of it")
+    if lines and np.isnan(np.asarray(events["end"], float)).any():
+        lines[-1] += ", without the event that the end of the run cuts off"
     return [f"{'; '.join(lines)}\n"] if lines else []
 
 

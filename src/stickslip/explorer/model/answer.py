@@ -32,7 +32,7 @@ class LawPicture:
     `along` says against which. A law of both is drawn against slip rate at the slip of the start. `visited` is the part of the
     horizontal axis that the run passed through: its smallest and its largest value. Under a law with a state the run leaves the
     curve: `path` is where it went, an array of shape (points, 2) with (slip rate, friction coefficient), and NaN between pieces
-    that a jump or a time at rest separates.
+    that a jump or, on a logarithmic axis, a time at rest separates. Of a run that reverses, slip rates and coefficients have signs.
     """
 
     along: Literal["slip", "slip_rate"]
@@ -40,7 +40,7 @@ class LawPicture:
     coefficient: Floats
     visited: tuple[float, float]
     log: bool
-    """True if the horizontal axis is better logarithmic, as for rate-and-state laws."""
+    """True if the horizontal axis is better logarithmic, as for rate-and-state laws in slip that does not reverse."""
     name: CurveName = "law"
     path: Floats | None = None
 

@@ -41,8 +41,8 @@ def law_picture(solution: Solution, motion: Motion) -> LawPicture:
     law = solution.problem.friction
     if law.depends_on_slip and not law.depends_on_rate:
         return _along_slip(solution)
-    picture = _along_rate(solution.problem, np.abs(motion.slip_rate))
-    return picture if not law.states else replace(picture, path=_law_path(solution))
+    picture = _along_rate(solution.problem, motion.slip_rate)
+    return picture if not law.states else replace(picture, path=_law_path(solution, log=picture.log))
 
 
 def _along_slip(solution: Solution) -> LawPicture:
@@ -66,25 +66,29 @@ def _slip_scale(law: FrictionLaw) -> float:
 
 
 def _along_rate(problem: Problem, rates: Floats) -> LawPicture:
+    """Return the law along slip rate; of a run that reverses in both directions, on a linear axis: no logarithm passes zero."""
     law = problem.friction
-    moving = rates[rates > 0.0]
-    visited = (float(rates.min()), float(rates.max()))
+    speeds, mirrored = np.abs(rates), bool(rates.min() < 0.0 and (rates.max() > 0.0 or not law.states))
+    moving, fastest = speeds[speeds > 0.0], float(speeds.max())
     scales = [scale for scale in law.rate_scales if 0.0 < scale < np.inf]
-    log = bool(law.states)
+    log = bool(law.states) and not mirrored
     if log:
-        top = 10.0 * max(visited[1], min(scales, default=1e-6))
+        top = 10.0 * max(fastest, min(scales, default=1e-6))
         bottom = max(0.1 * min(float(moving.min()) if moving.size else top, min(scales, default=top)), top * 10.0**-DECADES)
         rate = np.geomspace(bottom, top, POINTS)
     else:
-        top = max((1.0 + MARGIN) * visited[1], SCALES * min(scales, default=0.0)) or 1.0
+        top = max((1.0 + MARGIN) * fastest, 0.0 if law.states else SCALES * min(scales, default=0.0)) or 1.0
         knots = [knot for knot in law.knots if 0.0 < knot < top and law.knot_variable == "rate"]
         rate = np.unique(np.concatenate([np.linspace(0.0, top, POINTS // 2), np.geomspace(1e-6 * top, top, POINTS // 2), knots]))
     name, coefficient = _coefficient(problem, rate)
-    return LawPicture("slip_rate", rate, coefficient, visited, log, name)
+    if not mirrored:
+        return LawPicture("slip_rate", rate, coefficient, (float(speeds.min()), fastest), log, name)
+    rate, coefficient = (np.concatenate([-values[::-1], values]) for values in (rate, coefficient))
+    return LawPicture("slip_rate", rate, coefficient, (float(rates.min()), float(rates.max())), log, name)
 
 
-def _law_path(solution: Solution) -> Floats:
-    """Return slip rate and friction coefficient along a run, with NaN at jumps and at rest.
+def _law_path(solution: Solution, *, log: bool) -> Floats:
+    """Return slip rate and friction coefficient along a run, with NaN at jumps; for a logarithm magnitudes, with NaN at rest.
 
     The times are those of the pieces of its history, because an event of seconds may lie in a run of years.
     """
@@ -95,16 +99,16 @@ def _law_path(solution: Solution) -> Floats:
     rate, traction = (
         np.concatenate([curve(breaks, side="left"), curve(right)])[order] for curve in (solution.slip_rate, solution.traction)
     )
-    moves = np.where(rate == 0.0, np.nan, np.sign(rate))
+    moves = np.where(rate == 0.0, np.nan, np.sign(rate)) if log else np.ones(len(rate))
     path = np.column_stack([moves * rate, moves * traction / solution.problem.normal])
     is_left = order < len(breaks)
     jumps = np.flatnonzero(is_left[:-1] & (np.abs(np.diff(rate)) > SEEN * np.abs(rate[1:]))) + 1
-    return _thinned(np.insert(path, jumps, np.nan, axis=0))
+    return _thinned(np.insert(path, jumps, np.nan, axis=0), log=log)
 
 
-def _thinned(path: Floats) -> Floats:
+def _thinned(path: Floats, *, log: bool) -> Floats:
     """Return a path without points that a picture would show at the place of the one before."""
-    place = np.column_stack([np.log10(path[:, 0]), path[:, 1]])
+    place = np.column_stack([np.log10(path[:, 0]) if log else path[:, 0], path[:, 1]])
     low, high = np.nanmin(place, axis=0, initial=np.inf), np.nanmax(place, axis=0, initial=-np.inf)
     cell = np.round(CELLS * (place - low) / np.where(high > low, high - low, 1.0))
     moved = (cell[1:] != cell[:-1]).any(axis=1)

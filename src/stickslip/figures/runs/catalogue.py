@@ -36,6 +36,7 @@ from stickslip.figures.style import (
 )
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.observables.event_table import that_count
 from stickslip.observables.predictability import is_followed, predictability
 from stickslip.solution.interval import last_large_event
 from stickslip.solution.place import Place
@@ -103,7 +104,8 @@ def data_of_events(table: pd.DataFrame, title: str = "") -> xr.Dataset:
 
 def _events(table: pd.DataFrame) -> dict[str, xr.Variable]:
     about = {"start": ("start of the event", "s"), "slip": ("slip", "m"), "recurrence": ("recurrence time", "s")}
-    return {name: quantity("event", table[name].to_numpy(float), text, "", unit) for name, (text, unit) in about.items()}
+    found = {name: quantity("event", table[name].to_numpy(float), text, "", unit) for name, (text, unit) in about.items()}
+    return found | {"whole_slip": quantity("whole_event", that_count(table, "slip"), "slip of events that are over", "", "m")}
 
 
 def _title(title: str, table: pd.DataFrame) -> str:
@@ -130,7 +132,7 @@ def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     _draw_zooms(axes, dataset)
     unit, size = time_unit(float(recurrence.max())) if len(recurrence) else ("s", 1.0)
     if "E" in axes:
-        _draw_distribution(axes["E"], slip)
+        _draw_distribution(axes["E"], dataset["whole_slip"].values)
     if "F" in axes:
         _draw_recurrence(axes["F"], recurrence / size, unit, narrow=narrow)
     if "G" in axes:

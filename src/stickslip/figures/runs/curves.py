@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Literal, Unpack
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any, Literal, Unpack
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from numpy.typing import NDArray
 
-from stickslip.figures.panels import finish, set_log_ticks, zero_line
+from stickslip.figures.panels import add_legend, finish, set_log_ticks, zero_line
 from stickslip.figures.sheet import one_panel
 from stickslip.figures.style import (
     BLUE,
@@ -51,6 +53,12 @@ COLOURS: dict[str, str] = {
 """Colour of each curve, the same in all figures."""
 MOST_SHOCKS = 60
 """If there are more shocks than this, they are not marked: the marks would hide the curves."""
+CYCLES, PACKED, SWING = 60, 30, 0.05
+"""Where more than CYCLES swings to and fro follow each other, each shorter than the time that is shown over PACKED, single ones
+could not be seen, and a line through them would show teeth of its own: their range is drawn. A swing has at least the share SWING of
+the range of all values."""
+RANGE = "range of swings too close together to draw"
+"""What a key says of this range."""
 BRIEF = 0.01
 """The start from rest is left out if it takes less than this share of the time that is shown."""
 Span = tuple[float, float]
@@ -83,7 +91,7 @@ def draw_curve(axes: Axes, readings: Readings, name: Curve, span: Span) -> None:
     else:
         unit, size = unit_of(_unit(readings, name), values, log=log)
         text = curve_label(name, unit, readings.problem.load_unit)
-    axes.plot(time / time_unit(span[1] - span[0])[1], values / size, color=COLOURS[name])
+    draw_line(axes, time / time_unit(span[1] - span[0])[1], values / size, log=log, color=COLOURS[name])
     axes.set_ylabel(text)
     if log:
         axes.set_yscale("log")
@@ -128,6 +136,57 @@ def fit_height(axes: Axes, values: Sequence[Floats]) -> None:
         axes.set_ylim(low - room, high + room)
 
 
+def draw_line(axes: Axes, across: Floats, values: Floats, *, log: bool = False, **look: Any) -> None:
+    """Draw a line over ascending numbers, and the range of its swings where they lie too close together to be seen.
+
+    `log` says that the values will have a logarithmic axis. The look is that of the line, and the colour that of the range.
+    """
+    known = np.isfinite(values)
+    place, height = across[known], np.log(values[known]) if log else values[known]
+    turns = _turns(height, SWING * float(np.ptp(height))) if height.size else np.zeros(0, int)
+    rest = np.array(values, float)
+    for first, last in _packed(place[turns], (float(np.ptp(place)) if place.size else 0.0) / PACKED):
+        part = turns[first : last + 1]
+        edges = [np.interp(place[part], place[some], height[some]) for some in (part[::2], part[1::2])]
+        edges = [np.exp(edge) if log else edge for edge in edges]
+        if "linestyle" not in look:  # of two ranges in one panel one is filled
+            axes.fill_between(place[part], *edges, color=look["color"], alpha=0.3, linewidth=0.0, label=RANGE)
+        for edge in edges:
+            axes.plot(place[part], edge, **(look | {"linewidth": 0.8, "label": None}))
+        rest[(across > place[part[0]]) & (across < place[part[-1]])] = np.nan
+    axes.plot(across, rest, **look)
+
+
+def marks_in(*panels: Axes) -> list[Artist]:
+    """Return the entries of a key for panels, each text once."""
+    found = [pair for panel in panels for pair in zip(*panel.get_legend_handles_labels(), strict=True)]
+    return list({text: mark for mark, text in reversed(found)}.values())[::-1]
+
+
+def _turns(values: Floats, least: float) -> NDArray[np.intp]:
+    """Return the places at which values turn between swings of at least `least`."""
+    found, way, end = list[int](), 0, 0
+    low = high = 0
+    numbers = values.tolist()
+    for k, value in enumerate(numbers):
+        low, high = k if value < numbers[low] else low, k if value > numbers[high] else high
+        if way >= 0 and numbers[high] - value > least:
+            end, way, low = high, -1, k
+        elif way <= 0 and value - numbers[low] > least:
+            end, way, high = low, 1, k
+        else:
+            continue
+        found.append(end)
+    return np.array(found, np.intp)
+
+
+def _packed(times: Floats, longest: float) -> Iterator[tuple[int, int]]:
+    """Yield the first and the last place of each stretch of turns with more than CYCLES swings to and fro, none of them longer."""
+    breaks = np.flatnonzero(np.diff(times) > longest)
+    edges = zip([0, *(breaks + 1).tolist()], [*breaks.tolist(), len(times) - 1], strict=True)
+    return ((first, last) for first, last in edges if last - first > 2 * CYCLES)
+
+
 def draw_stress(axes: Axes, readings: Readings, span: Span) -> None:
     """Draw traction and load against time, as changes from the problem's initial load if they hardly change."""
     units = readings.problem.load_unit
@@ -137,8 +196,9 @@ def draw_stress(axes: Axes, readings: Readings, span: Span) -> None:
     offset = readings.problem.load if change else 0.0
     unit, size = unit_of(units, load - offset, traction - offset)
     seconds = time_unit(span[1] - span[0])[1]
-    axes.plot(time / seconds, (load - offset) / size, color=INK, linewidth=1.0, linestyle="--", label=rf"{names[1]} $\beta$")
-    axes.plot(time / seconds, (traction - offset) / size, color=VERMILLION, label=rf"{names[0]} $\tau$")
+    dashes: dict[str, Any] = {"color": INK, "linewidth": 1.0, "linestyle": "--"}
+    draw_line(axes, time / seconds, (load - offset) / size, label=rf"{names[1]} $\beta$", **dashes)
+    draw_line(axes, time / seconds, (traction - offset) / size, label=rf"{names[0]} $\tau$", color=VERMILLION)
     text = f"{names[0]}, {names[1]}".replace("force, ", "and\n")
     axes.set_ylabel(f"change of\n{text.replace(chr(10), ' ')} ({unit})" if change else f"{text} ({unit})")
     if change or min(load.min(), traction.min()) < 0.5 * max(load.max(), traction.max()):
@@ -161,8 +221,13 @@ def draw_friction(axes: Axes, readings: Readings, span: Span, against: Literal["
         axes.set_xlabel(curve_label(moving, unit))
     else:
         name = "spring force" if readings.problem.load_unit == "N" else "load"
-        axes.plot(across, load / normal, color=INK, linewidth=1.0, linestyle="--", label=rf"{name} over normal load, $\beta/S$")
-    axes.plot(across, traction / normal, color=VERMILLION, label=r"friction coefficient $\mu=\tau/S$")
+        dashes: dict[str, Any] = {"color": INK, "linewidth": 1.0, "linestyle": "--"}
+        draw_line(axes, across, load / normal, label=rf"{name} over normal load, $\beta/S$", **dashes)
+    look: dict[str, Any] = {"color": VERMILLION, "label": r"friction coefficient $\mu=\tau/S$"}
+    if against == "time":
+        draw_line(axes, across, traction / normal, **look)
+    else:
+        axes.plot(across, traction / normal, **look)
     axes.set_ylabel(curve_label("friction"))
     fit_height(axes, [traction / normal] if against != "time" else [traction / normal, load / normal])
 
@@ -186,6 +251,7 @@ def draw_alone(
     axes = one_panel((6.4, 3.0), **place)
     draw_curve(axes, readings, name, (start, end))
     set_time(axes, readings, (start, end))
+    add_legend(axes, marks_in(axes), own=place.get("ax") is not None)
     return finish(axes, title_of(readings), **place)
 
 

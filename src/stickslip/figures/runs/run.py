@@ -9,7 +9,16 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from stickslip.figures.panels import add_legend, letter_panels, set_scale, set_title, zero_line
-from stickslip.figures.runs.curves import draw_curve, draw_friction, draw_stress, fit_height, interval, mark_shocks, set_time
+from stickslip.figures.runs.curves import (
+    draw_curve,
+    draw_friction,
+    draw_stress,
+    fit_height,
+    interval,
+    mark_shocks,
+    marks_in,
+    set_time,
+)
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import GREY, INK, PALE, styled, time_unit, title_of, unit_of
 from stickslip.foundation.arrays import Floats
@@ -56,7 +65,7 @@ def draw(readings: Readings, start: float | None = None, end: float | None = Non
     set_time(last, readings, span)
     for panel in panels["slip"]:
         draw_friction(panel, readings, span, "slip")
-    add_legend(stress, [mark for panel in (stress, *panels["loading"]) for mark in panel.get_legend_handles_labels()[0]])
+    add_legend(stress, marks_in(stress, *panels["loading"], *curves))
     letter_panels([panel for group in panels.values() for panel in group])
     set_title(figure, title_of(readings))
     figure.align_ylabels()

@@ -14,8 +14,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FixedFormatter, FixedLocator, NullFormatter
 
-from stickslip.figures.panels import draw_map, draw_parameters, letter_panels, panels, parameter_numbers, set_title
+from stickslip.figures.panels import cell_edges, draw_map, draw_parameters, letter_panels, panels, parameter_numbers, set_title
 from stickslip.figures.style import INK, PALE, TWO, shown, styled
+from stickslip.foundation.arrays import Floats
 from stickslip.solution.place import Place
 from stickslip.studies.analogy import QUANTITIES, Analogy
 
@@ -90,7 +91,7 @@ def _draw_stands(axes: Axes, dataset: xr.Dataset) -> list[Artist]:
     stands = np.where(known, dataset["stands"].values, np.nan)
     draw_map(axes, dataset, stands, cmap=ListedColormap([NOT, STANDS]), vmin=0, vmax=1)
     slab, block = dataset["pulses_slab"].values, dataset["pulses_block"].values
-    x, y = shown(dataset["x"]), shown(dataset["y"])
+    x, y = (_middles(dataset[name]) for name in ("x", "y"))
     differ = list(zip(*np.nonzero(known & (slab != block)), strict=True))
     for i, j in differ:
         axes.text(x[j], y[i], f"{slab[i, j]:g}:{block[i, j]:g}", ha="center", va="center", fontsize=7)
@@ -105,6 +106,13 @@ def _draw_stands(axes: Axes, dataset: xr.Dataset) -> list[Artist]:
             )
         )
     return marks
+
+
+def _middles(parameter: xr.DataArray) -> Floats:
+    """Return the middles of the cells of a map along a parameter; those of the first and the last cell lie beside its value."""
+    log = bool(parameter.attrs["log"])
+    edges = cell_edges(shown(parameter), log=log)
+    return np.asarray(np.sqrt(edges[1:] * edges[:-1]) if log else 0.5 * (edges[1:] + edges[:-1]))
 
 
 def _draw_numbers(axes: Axes, dataset: xr.Dataset) -> None:

@@ -10,7 +10,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from stickslip.figures.names import parameter_name, plain_name, symbol
-from stickslip.figures.panels import set_log_ticks
+from stickslip.figures.panels import cell_edges, set_log_ticks
 from stickslip.figures.style import axis_text, unit_of
 from stickslip.foundation.arrays import Floats
 
@@ -42,13 +42,10 @@ class Scaled:
 
     @property
     def edges(self) -> Floats:
-        """The edges of areas around ascending values: halfway between them, on a logarithmic axis in the logarithm."""
-        place = np.log(self.values) if self.log else self.values
-        if len(place) == 1:
-            return np.asarray(self.values[0] + np.array([-0.5, 0.5]))
-        between = 0.5 * (place[1:] + place[:-1])
-        edges = np.concatenate([[2.0 * place[0] - between[0]], between, [2.0 * place[-1] - between[-1]]])
-        return np.asarray(np.exp(edges) if self.log else edges)
+        """The edges of areas around ascending values, which end at the first and the last of them; words have whole areas."""
+        if self.words or len(self.values) == 1:
+            return np.append(self.values - 0.5, self.values[-1] + 0.5)
+        return cell_edges(self.values, log=self.log)
 
     def show(self, axes: Axes, which: str) -> None:
         """Set label, scale and ticks of the axis named "x" or "y"."""
@@ -65,14 +62,14 @@ class Scaled:
 
 
 def scaled(variable: xr.DataArray) -> Scaled:
-    """Return a varied key in a readable unit; its values decide whether the axis is logarithmic."""
+    """Return a varied key in a readable unit, on a logarithmic axis if ":log" asked for it or its values are so spread."""
     name = parameter_name(str(variable.name), variable.attrs.get("long_name", ""))
     if not np.issubdtype(variable.dtype, np.number):
         given = [str(word) for word in variable.values.tolist()]
         words = tuple(dict.fromkeys(given if variable.name in variable.dims else sorted(given)))  # samples are in no order
         return Scaled(np.array([words.index(word) for word in given], float), name, words=words)
     values = np.asarray(variable.values, float)
-    log = is_logarithmic(values)
+    log = bool(variable.attrs.get("log")) or is_logarithmic(values)
     unit, size = unit_of(variable.attrs.get("units", "1"), values, log=log)
     return Scaled(values / size, axis_text(name, "", unit), size, log)
 

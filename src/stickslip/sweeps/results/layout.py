@@ -113,7 +113,7 @@ def results(plan: Plan) -> dict[str, dict[str, Any]]:
 def attributes(plan: Plan) -> dict[str, Any]:
     """Return the attributes of the store: everything that determines the results, and nothing else."""
     design, scenario = plan.design, plan.scenario
-    about = {"design": design.kind, "keys": list(design.names), "chunk": list(plan.tile)}
+    about = {"design": design.kind, "keys": list(design.names), "chunk": list(plan.tile), "results": list(results(plan))}
     return {
         "Conventions": "CF-1.11",
         "title": f"stickslip sweep: {type(scenario.problem.body).__name__}, {type(scenario.problem.friction).__name__}",
@@ -151,6 +151,13 @@ def read_design(about: Mapping[str, Any]) -> tuple[str, list[str], tuple[int, ..
     if not known:
         raise InputError(f"its design is {shown(about.get('design'))}")
     return kind, keys, tuple(check_whole("the length of a chunk", one) for one in chunk)
+
+
+def in_order(found: xr.Dataset) -> xr.Dataset:
+    """Return the dataset of a store with its results in the order of the sweep: zarr lists arrays in an order of its own."""
+    named = json.loads(found.attrs["design"]).get("results", [])
+    first = [name for name in (named if isinstance(named, list) else []) if isinstance(name, str) and name in found.data_vars]
+    return found[list(dict.fromkeys([*first, *found.data_vars]))]
 
 
 def check_contents(found: xr.Dataset) -> None:

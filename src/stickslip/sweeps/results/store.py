@@ -31,7 +31,7 @@ from stickslip.foundation.atomic_write import held, read_bounded, write_atomical
 from stickslip.foundation.errors import InputError
 from stickslip.sweeps.execution.chunk import NOT_RUN, ChunkResult
 from stickslip.sweeps.execution.plan import Plan
-from stickslip.sweeps.results.layout import REASON, STATUS, array_of, as_begun, check_contents, lay_out, reading
+from stickslip.sweeps.results.layout import REASON, STATUS, array_of, as_begun, check_contents, in_order, lay_out, reading
 
 FOLDER = ".checksums"
 """Name of the folder of lists inside a store."""
@@ -239,7 +239,7 @@ def open_store(path: str | Path) -> xr.Dataset:
         zarr_folder.opened(path)
         found: xr.Dataset = xr.open_zarr(zarr_folder.Folder(path), chunks=None)
         check_contents(found)
-        return found
+        return in_order(found)
 
 
 def publish(path: Path, fill: Callable[[Path], object]) -> None:

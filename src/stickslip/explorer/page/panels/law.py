@@ -25,11 +25,9 @@ def data_of(answer: Answer, units: Units) -> View:
     visited = _visited(law, x, unit)
     label, depends_on_slip = axis_label(name, symbol, unit[0]), answer.scenario.problem.friction.depends_on_slip
     main = answer.motions[0]
-    along = main.slip if law.along == "slip" else np.abs(main.slip_rate)
-    now = {
-        "law_x": np.clip(place(law, along, unit), least, most),
-        "law_y": main.traction / main.normal_load,
-    }
+    along = main.slip if law.along == "slip" else main.slip_rate
+    way = np.where(main.slip_rate < 0.0, -1.0, 1.0) if law.log else 1.0
+    now = {"law_x": np.clip(place(law, along, unit), least, most), "law_y": way * main.traction / main.normal_load}
     return View(
         columns={"law": {"x": x, "y": law.coefficient}, "visited": visited, "motion": now},
         limits={"law_x": (least, most), "law_y": limits(law.coefficient, visited["y"])},
