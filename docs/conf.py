@@ -1,7 +1,7 @@
 """Make the site: `make site` builds it in docs/_build/html, with warnings as errors.
 
 The pages are those of this folder, as a code forge shows them. The rest is made here: the gallery from examples/, the page of the
-lesson from its notebook (site/lesson.py), the reference from docstrings (site/api), and the table of contents (index.rst,
+lessons from their notebooks (site/lesson.py), the reference from docstrings (site/api), and the table of contents (index.rst,
 site/*.rst). Nothing of the site is loaded from another host: formulas become MathML, which browsers draw themselves.
 """
 
@@ -109,9 +109,10 @@ def after_napoleon(*event: Any) -> None:
 
 
 def link_to_gallery(*event: Any) -> None:
-    """Let links to scripts of examples/ and to the notebook lead to their pages in the gallery."""
+    """Let links to scripts of examples/ and to the notebooks lead to their pages in the gallery."""
     source = event[-1]
-    source[0] = source[0].replace(f"]({lesson.NOTEBOOK})", f"](/{lesson.PAGE})")
+    for notebook, page in lesson.LESSONS.items():
+        source[0] = source[0].replace(f"]({notebook})", f"](/{page})")
     source[0] = re.sub(r"\]\((?:\.\./)+examples/(\w+)\.py\)", r"](/gallery/\1.rst)", source[0])
 
 

@@ -47,14 +47,15 @@ def catalogue_statistics(table: pd.DataFrame) -> pd.DataFrame:
     return frame.astype({"count": int})
 
 
-def that_count(events: Mapping[Any, Any], name: str) -> Floats:
+def that_count(events: Mapping[Any, Any] | pd.DataFrame, name: str) -> Floats:
     """Return the values of a column that count in statistics: finite, and not of an event that the end of the run cuts off.
 
     The recurrence of such an event does count: it ends where the event begins.
     """
     values = np.asarray(events[name], float)
     over = np.isfinite(np.asarray(events["end"], float))
-    return values[np.isfinite(values) & (over | (name == "recurrence"))]
+    counted: Floats = values[np.isfinite(values) & (over | (name == "recurrence"))]
+    return counted
 
 
 def _describe(values: pd.Series[float]) -> dict[str, float]:

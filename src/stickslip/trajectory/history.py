@@ -252,11 +252,13 @@ class History:
             edges = self.seconds(first + whole[:, None], phase).ravel()
             if step and past > 2.0:
                 trips = np.append(np.arange(2.0, past, step), past)
-                edges = np.append(edges, self.seconds(first + trips[:, None], self._extreme_phases(first + 1.0, phase)).ravel())
+                edges = np.append(
+                    edges, self.seconds(first + trips[:, None], self._extreme_phases(np.asarray(first + 1.0), phase)).ravel()
+                )
             found.append(edges[(edges > low) & (edges < high)])
         return np.concatenate(found)
 
-    def _extreme_phases(self, trip: float, edges: Floats) -> Floats:
+    def _extreme_phases(self, trip: Floats, edges: Floats) -> Floats:
         """Return the offsets (s) of the smallest and largest load in a whole round trip at rest, with echoes at these `edges`."""
         inside = np.linspace(edges, np.append(edges[1:], self.round_trip_time), 8).T.ravel()
         left, right = (self.excess(self.find(self.seconds(trip, inside), side)) for side in ("left", "right"))

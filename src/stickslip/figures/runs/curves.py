@@ -55,8 +55,8 @@ MOST_SHOCKS = 60
 """If there are more shocks than this, they are not marked: the marks would hide the curves."""
 CYCLES, PACKED, SWING = 60, 30, 0.05
 """Where more than CYCLES swings to and fro follow each other, each shorter than the time that is shown over PACKED, single ones
-could not be seen, and a line through them would show teeth of its own: their range is drawn. A swing has at least the share SWING of
-the range of all values."""
+could not be seen, and a line through them would show teeth of its own: their range is drawn. A swing has at least the share SWING
+of the range of all values."""
 RANGE = "range of swings too close together to draw"
 """What a key says of this range."""
 BRIEF = 0.01
