@@ -55,6 +55,35 @@ def test_a_sound_installation_is_well(command: Command) -> None:
     assert found.out.endswith("\nAll is well.\n")
 
 
+NOTED = """
+import sys
+from stickslip.engine.codegen.sealed_cache import SealedCache
+names, load = set(), SealedCache.load_overload
+def noted(self, *rest):
+    names.add(self._impl.filename_base)
+    return load(self, *rest)
+SealedCache.load_overload = noted
+from stickslip.cli.main import main
+try:
+    main(sys.argv[1:])
+finally:
+    print(*sorted(names), file=sys.stderr)
+"""
+"""Runs a command, and lists on standard error the compiled functions that it takes from the cache, or compiles."""
+
+
+def compiled_for(folder: Path, *arguments: str) -> set[str]:
+    """Return the names of the compiled functions that a command in a new process needs."""
+    done = subprocess.run([sys.executable, "-c", NOTED, *arguments], cwd=folder, capture_output=True, text=True, check=True)
+    return set(done.stderr.splitlines()[-1].split())
+
+
+def test_what_a_first_run_needs_the_self_test_has_compiled(tmp_path: Path) -> None:
+    first = compiled_for(tmp_path, "run", "fig6-slab", "--figure", "first.png")
+    assert len(first) > 10
+    assert first - compiled_for(tmp_path, "doctor") == set()
+
+
 def test_an_extra_that_is_missing_is_told_and_no_fault(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
     versions(monkeypatch, pyarrow=None)
     without_trials(monkeypatch)

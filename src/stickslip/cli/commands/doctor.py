@@ -11,8 +11,9 @@ from stickslip.foundation.errors import InputError
 def doctor() -> None:
     r"""Check this installation: versions, threads, cache, extras, and a self-test against closed forms.
 
-    The self-test takes about a second; on its first run the engine is compiled,
-    which takes some 10 s, once. An extra that is not installed is no fault.
+    The self-test takes about a second; the first time it compiles what a run
+    needs, which takes about half a minute, once. An extra that is not installed
+    is no fault.
 
     \b
       stickslip doctor

@@ -106,11 +106,15 @@ def tidy() -> None:
 
 
 SLOW = {
-    "run_until": "compiling the engine for this machine: about 15 s, once",
-    "implicit_steps": "compiling implicit steps, for stiff contacts and laws with a state: about 5 s, once",
-    "run_group": "compiling what batches add to the engine: a few seconds, once",
+    "run_until": "compiling the engine for this machine: about half a minute until the first summary, once",
+    "implicit_steps": "compiling implicit steps, for stiff contacts and laws with a state: about 6 s, once",
+    "run_group": "compiling what sweeps and batches add to the engine: about 20 s, once",
 }
-"""Messages to show before the compilation of those functions for which a user has to wait."""
+"""Messages to show before the compilation of those functions for which a user has to wait, with all that is compiled after them."""
+OTHERS = "compiling more of the engine for this machine: up to 20 s, once"
+"""Message to show when other functions have taken `NOTICED` s and the next one is compiled."""
+NOTICED = 1.0
+"""Time (s) of compilation without a message that a user hardly notices."""
 announce: Callable[[str], None] = tell
 """Function that shows such a message: on standard error, unless a progress display has replaced it."""
 

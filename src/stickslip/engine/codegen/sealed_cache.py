@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from stickslip.engine.codegen import cache
-from stickslip.engine.codegen.cache import CACHE, SLOW, SOURCES, cache_root, tell, tidy
+from stickslip.engine.codegen.cache import CACHE, NOTICED, OTHERS, SLOW, SOURCES, cache_root, tell, tidy
 from stickslip.engine.codegen.lean_compiler import LeanCompiler
 from stickslip.engine.codegen.numba_privates import (
     CFunc,
@@ -103,6 +103,12 @@ class _Files(CompileResultCacheImpl):
     _locator_classes = (_Locator,)
 
 
+class _Wait:
+    """What this process has spent on compilation (s), and whether its user has been told."""
+
+    spent, began, is_told = 0.0, 0.0, False
+
+
 class SealedCache(FunctionCache):
     """The cache of one function. A file that cannot be read is compiled again; one that cannot be written is left out.
 
@@ -113,7 +119,7 @@ class SealedCache(FunctionCache):
 
     def __init__(self, function: Callable[..., Any]) -> None:
         super().__init__(function)
-        self._name, self._began = function.__name__, 0.0
+        self._name = function.__name__
         locator = self._impl.locator
         self._cache_file = _SealedFile(self._cache_path, self._impl.filename_base, locator.get_source_stamp())
 
@@ -129,15 +135,16 @@ class SealedCache(FunctionCache):
         except Exception as error:  # unpickling may raise anything, and must not make every later start fail
             tell(f"compiled code in {CACHE} cannot be used ({type(error).__name__}): it is compiled again")
             return None
-        if found is None and self._name in SLOW:
-            cache.announce(SLOW[self._name])
-            self._began = time.monotonic()
+        if found is None:
+            if self._name in SLOW or (_Wait.spent > NOTICED and not _Wait.is_told):
+                cache.announce(SLOW.get(self._name, OTHERS))
+                _Wait.is_told = True
+            _Wait.began = time.monotonic()
         return found
 
     def save_overload(self, signature: Any, data: Any) -> None:
-        """Store a compiled function for later starts, and say how long a long wait was, or that the function cannot be written."""
-        if self._began:
-            cache.announce(f"compiled in {time.monotonic() - self._began:.0f} s")
+        """Store a compiled function for later starts, or say that it cannot be written."""
+        _Wait.spent += time.monotonic() - _Wait.began
         if CACHE is None:
             return
         try:
