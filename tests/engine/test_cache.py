@@ -255,7 +255,7 @@ def test_compiling_the_engine_is_announced(monkeypatch: pytest.MonkeyPatch) -> N
     for spent, kernel, message in ((0.0, total, []), (0.0, run_until, [cache.SLOW["run_until"]]), (5.0, total, [cache.OTHERS])):
         said.clear()
         monkeypatch.setattr(_Wait, "spent", spent)
-        monkeypatch.setattr(_Wait, "is_told", False)
+        monkeypatch.setattr(_Wait, "told", set())
         entry = kernel.entry  # type: ignore[attr-defined]
         for _ in range(2 if kernel is total else 1):
             assert entry._cache.load_overload(None, entry.targetctx) is None

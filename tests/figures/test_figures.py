@@ -174,6 +174,18 @@ def test_inertia_leaves_no_set_to_draw(body: ss.SpringBlock | ss.ElasticSlab) ->
         admissible.data(replace(SLAB_PROBLEM, body=body))
 
 
+def test_the_result_of_uniqueness_draws_its_set() -> None:
+    wavy = replace(SLAB_PROBLEM, friction=lambda u, v: (0.5 + 0.2 * np.sin(u)) / (1.0 + v))
+    for problem, slip in ((SLAB_PROBLEM, None), (wavy, 1.0)):
+        contact = ss.uniqueness(problem, slip)
+        figure = contact.plot(dpi=100.0)
+        highest = lines_of(figure)["stick"][:, 1].max()
+        assert 1e6 * highest == pytest.approx(float(contact.g(0.0)), rel=1e-12)
+        pyplot.close(figure)
+    with pytest.raises(ss.InputError, match="inertia"):
+        ss.uniqueness(BLOCK_PROBLEM).plot()
+
+
 def test_the_map_of_regimes_marks_the_problem() -> None:
     found = regime_map(SLAB_PROBLEM, Axis("alpha", 0.01, 10.0, 6, log=True), Axis("normal_stress", 1e7, 5e8, 5))
     figure = regimes.draw(SLAB_PROBLEM, found)

@@ -172,6 +172,13 @@ def test_a_tree_written_as_text_is_read_back(tree: Expression) -> None:
     assert to_text(again) == text
 
 
+@pytest.mark.parametrize(
+    "typed", ["a + v / (1 + (v / mu_s)**4)**0.25", "v**2 * a", "(v * a)**3", "v**7 - u**6 / 3", "0.5 * v**5", "v**a"]
+)
+def test_a_formula_is_shown_as_it_was_typed(typed: str) -> None:
+    assert to_text(parse(typed, ("a", "mu_s"))) == typed
+
+
 def tried(text: str, names: tuple[str, ...]) -> tuple[Expression | None, str]:
     """The tree, or what was said against the text."""
     try:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Literal
+from typing import TYPE_CHECKING, Literal, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,6 +28,12 @@ from stickslip.foundation.quantities import quantities_of
 from stickslip.friction.statements import rises_with_rate
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SELECTION_RULES
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from stickslip.solution.place import Place
 
 MOST_SHOWN = 6
 """Largest number of folds, and of jumps, that `repr` and `summary` show."""
@@ -78,6 +84,9 @@ class Uniqueness(NamesAttributes):
     loop: Loop | None = None
     """Loop that the rule follows as the load slowly rises past all folds and comes back; None if the slip rate is a state, or if
     there is no end of folds (`known_to`)."""
+    problem: Problem | None = None
+    law_slip: float | None = None
+    """The problem, and the slip (m) of its law at which this holds; None stands for that at the start."""
 
     def __str__(self) -> str:
         return self.summary
@@ -106,6 +115,18 @@ class Uniqueness(NamesAttributes):
             yield "jump", f"{jump.direction} {rates} at a load of {brief(jump.load, 'Pa')}"
         if len(self.jumps) > MOST_SHOWN:
             yield "", f"and {len(self.jumps) - MOST_SHOWN} more jumps"
+
+    def plot(self, **place: Unpack[Place]) -> Figure | Axes:
+        """Draw the set K: every pair of slip rate and load that solves the contact equation, and the jumps of the rule.
+
+        The keywords `ax`, `figure`, `size` and `dpi` say where to draw, and how large, as for `solution.plot()`. Raises InputError
+        if the slip rate is a state.
+        """
+        from stickslip.figures.contact import admissible
+        from stickslip.figures.sheet import known_to_pyplot
+
+        assert self.problem is not None
+        return known_to_pyplot(admissible.draw(admissible.data(self.problem, law_slip=self.law_slip), **place), place)
 
     @property
     def loop_area(self) -> float:
@@ -211,10 +232,11 @@ def _determined(problem: Problem, slip: float | None) -> Uniqueness:
     """Determine the uniqueness at a slip (m) of the law; None stands for the initial one."""
     if problem.body.has_inertia:
         mass = "The contact mass" if problem.body.has_waves else "The block"
-        return Uniqueness("regular", problem.rule, _INERTIA.format(body=mass, rule=problem.rule))
+        return Uniqueness("regular", problem.rule, _INERTIA.format(body=mass, rule=problem.rule), problem=problem, law_slip=slip)
     if problem.friction.states:
         text = _STATE if rises_with_rate(problem.friction) else _STATE_FALLS
-        return Uniqueness("regular", problem.rule, text.format(law=type(problem.friction).__name__, rule=problem.rule))
+        said = text.format(law=type(problem.friction).__name__, rule=problem.rule)
+        return Uniqueness("regular", problem.rule, said, problem=problem, law_slip=slip)
     g = resistance(problem, slip)
     proof = _proof(g)
     stable = branches_of(g, proof)
@@ -240,6 +262,8 @@ def _determined(problem: Problem, slip: float | None) -> Uniqueness:
         branches=stable,
         known_to=g.largest_load if endless else None,
         loop=None if endless else loop_of(g, stable, table),
+        problem=problem,
+        law_slip=slip,
     )
 
 
@@ -298,20 +322,23 @@ def _summary(
     bound = ""
     if critical:
         found = problem.parameters[critical[0]]
-        unit = "" if found.unit == "1" else f" {found.unit}"
-        bound = f" The critical value is {critical[0]} = {critical[1]:.9g}{unit}; here {critical[0]} = {found.value:.9g}{unit}."
+        there, here = (brief(value, found.unit, 9) for value in (critical[1], found.value))
+        bound = f" The critical value is {critical[0]} = {there}; here {critical[0]} = {here}."
     if not problem.friction.depends_on_rate:
         reason = "friction does not depend on the slip rate and the impedance Z is positive"
         return f"{law}: regular. The slip rate is unique: {reason}. {idle}{bound}"
     if window is None:
         reason = "the resistance Z v + S mu(v) rises with the slip rate everywhere"
         return f"{law}: regular. The slip rate is unique: {reason}. {idle}{bound}"
-    flat = "; ".join(f"{p.rate_from:.6g} to {p.rate_to:.6g} m/s at a load of {g.strength + p.excess:.9g} Pa" for p in g.plateaus)
+    flat = "; ".join(
+        f"{p.rate_from:.6g} to {p.rate_to:.6g} m/s at a load of {brief(g.strength + p.excess, 'Pa', 9)}" for p in g.plateaus
+    )
     sizes = [f"a continuum of slip rates, {flat}, where no rule picks one"] if flat else []
     if window[0] < window[1]:
-        sizes.append(f"a window of {window[1] - window[0]:.6g} Pa that ends {_side(window[1])} the static strength")
+        sizes.append(f"a window of {brief(window[1] - window[0], 'Pa')} that ends {_side(window[1])} the static strength")
     steps = "; ".join(
-        f"{j.direction} from {j.rate_before:.6g} to {j.rate_after:.6g} m/s at a load of {j.load:.9g} Pa" for j in jumps[:MOST_SHOWN]
+        f"{j.direction} from {j.rate_before:.6g} to {j.rate_after:.6g} m/s at a load of {brief(j.load, 'Pa', 9)}"
+        for j in jumps[:MOST_SHOWN]
     )
     steps += f"; and {len(jumps) - MOST_SHOWN} more" if len(jumps) > MOST_SHOWN else ""
     moves = f"jumps {steps}" if steps else "makes no jump"
@@ -326,4 +353,4 @@ def _named(problem: Problem, g: Resistance) -> str:
 
 
 def _side(excess: float) -> str:
-    return "at" if excess == 0.0 else f"{abs(excess):.6g} Pa {'above' if excess > 0.0 else 'below'}"
+    return "at" if excess == 0.0 else f"{brief(abs(excess), 'Pa')} {'above' if excess > 0.0 else 'below'}"

@@ -10,7 +10,7 @@ from stickslip.foundation.constants import YEAR
 
 _PREFIXES = ((1e12, "T"), (1e9, "G"), (1e6, "M"), (1e3, "k"))
 """SI prefixes with their factors, largest first."""
-_SCALED = ("Pa", "Pa/m", "Pa s/m", "N", "N/m", "N s/m")
+_SCALED = ("Pa", "Pa/m", "Pa s/m", "Pa m/s", "N", "N/m", "N s/m")
 """Units that are shown with a prefix."""
 _TIMES = ((YEAR, "years"), (86_400.0, "days"), (3_600.0, "hours"), (60.0, "min"), (1.0, "s"))
 """Units of time with their lengths in s, longest first."""

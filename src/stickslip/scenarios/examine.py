@@ -15,6 +15,7 @@ from stickslip.contact.sliding import SteadySlidings
 from stickslip.contact.steady import steady_slidings
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
 from stickslip.engine_input.limits import MOST_PIECES, PATIENCE, automatic_length, creep_tolerance, lumps_by_itself
+from stickslip.foundation.formatting import brief
 from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, Text, fields_of, in_units
 from stickslip.friction import FrictionLaw, RateAndState, SinusoidalSlip
 from stickslip.friction.composite import LawOfParts
@@ -218,7 +219,7 @@ def _critical(problem: Problem, contact: Uniqueness) -> list[Fact]:
             one = problem.parameters[name]
             side = "at" if one.value == value else "above" if one.value > value else "below"
             proof = _proof(contact) if one.name == "body.normal_stress" else ""
-            facts.append(Fact(one.name, value, one.unit, f"here {side} it, at {one.value:.9g}{proof}"))
+            facts.append(Fact(one.name, value, one.unit, f"here {side} it, at {brief(one.value, one.unit, 9)}{proof}"))
     return facts
 
 

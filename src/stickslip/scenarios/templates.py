@@ -76,16 +76,17 @@ def check_takes_law(name: str) -> None:
 def with_law(name: str, law: FrictionLaw, about: Sequence[str], values: Mapping[str, Any] = MappingProxyType({})) -> str:
     """Return a starter or a bundled scenario with another friction law without a state, as commented TOML text to the last digit.
 
-    `about` are lines of comments for the head of the text; the first one becomes the title. `values` are other values of its
-    parameters, as for `Scenario.with_values`, but for those of friction. Raises InputError for an unknown name, and for values that
-    the scenario cannot have.
+    `about` are lines of comments for the head of the text. The title is that of the scenario, with the kind of the law. `values` are
+    other values of its parameters, as for `Scenario.with_values`, but for those of friction. Raises InputError for an unknown name,
+    and for values that the scenario cannot have.
     """
     check_takes_law(name)
     example = tomllib.loads(library.text(STARTERS.get(name, name)))
     former = kind_of("friction", example["friction"], name)
     if former.state is not None:  # type: ignore[attr-defined] # registered
         example["initial"] = {"excess": 0.0}
-    example |= {"title": about[0], "description": f"Body, loading and start of {name}.", "friction": _listed(to_table(law))}
+    title = f"{example['title'] or name}, under a law of the kind {law.kind}"
+    example |= {"title": title, "description": f"Body, loading and start of {name}.", "friction": _listed(to_table(law))}
     if values:
         scenario = scenario_of(example, Source(name))
         changes = [(one, one.read(value, name)) for key, value in values.items() for one in (find_parameter(scenario, key, name),)]

@@ -12,7 +12,7 @@ from stickslip.cli.options import Changes, Dpi, ScenarioName, Size, axes_of, opt
 from stickslip.cli.output.files import Look, announce, check_target, drawing, write_files
 from stickslip.cli.output.show import print_words, say, titled
 from stickslip.foundation.errors import InputError, InputWarning
-from stickslip.foundation.formatting import clean, with_unit
+from stickslip.foundation.formatting import brief, clean, with_unit
 
 if TYPE_CHECKING:
     from stickslip.contact.folds import Fold
@@ -135,10 +135,9 @@ def _findings(found: Examination) -> Iterator[tuple[str, str]]:
     if found.along_slip:
         yield "along slip", found.along_slip
     for fact in found.critical:
-        unit = "" if fact.unit == "1" else f" {fact.unit}"
-        yield "critical value", f"{fact.name} = {fact.value:.9g}{unit}; {fact.meaning}"
+        yield "critical value", f"{fact.name} = {brief(fact.value, fact.unit, 9)}; {fact.meaning}"
     for fold in found.uniqueness.folds:
-        yield "fold", f"slip rate {fold.rate:.9g} m/s, load {fold.load:.12g} Pa{_proof(fold)}"
+        yield "fold", f"slip rate {fold.rate:.9g} m/s, load {brief(fold.load, 'Pa', 12)}{_proof(fold)}"
     for low, high in found.uniqueness.undecided[:MOST_UNDECIDED]:
         yield "not decided", f"whether there is a fold between {low:.9g} and {high:.9g} m/s"
     yield from _by_rule(found.uniqueness)
@@ -156,9 +155,9 @@ def _by_rule(contact: Uniqueness) -> Iterator[tuple[str, str]]:
     """Yield what depends on the selection rule: the jumps, and the loop that they enclose."""
     for jump in contact.jumps:
         change = jump.traction_after - jump.traction_before
-        rates = f"slip rate {jump.rate_before:.9g} to {jump.rate_after:.9g} m/s at a load of {jump.load:.12g} Pa"
-        yield f"jump {jump.direction} *", f"{rates}; traction changes by {change:.6g} Pa"
+        rates = f"slip rate {jump.rate_before:.9g} to {jump.rate_after:.9g} m/s at a load of {brief(jump.load, 'Pa', 12)}"
+        yield f"jump {jump.direction} *", f"{rates}; traction changes by {brief(change, 'Pa')}"
     if contact.jumps:
         retraced = ": the path is retraced" if contact.loop_area == 0.0 else " in the plane of load and slip rate"
-        yield "loop *", f"the load going up and down encloses {contact.loop_area:.6g} Pa m/s{retraced}"
+        yield "loop *", f"the load going up and down encloses {brief(contact.loop_area, 'Pa m/s')}{retraced}"
         yield "*", f"depends on the rule '{contact.rule}'; nothing else above does."

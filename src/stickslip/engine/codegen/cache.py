@@ -113,8 +113,8 @@ SLOW = {
 """Messages to show before the compilation of those functions for which a user has to wait, with all that is compiled after them."""
 OTHERS = "compiling more of the engine for this machine: up to 20 s, once"
 """Message to show when other functions have taken `NOTICED` s and the next one is compiled."""
-NOTICED = 1.0
-"""Time (s) of compilation without a message that a user hardly notices."""
+NOTICED = 3.0
+"""Processor time (s) of compilation without a message that a user hardly notices."""
 announce: Callable[[str], None] = tell
 """Function that shows such a message: on standard error, unless a progress display has replaced it."""
 

@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 from stickslip.engine.codegen import cache
 from stickslip.engine.codegen.cache import CACHE, NOTICED, OTHERS, SLOW, SOURCES, cache_root, tell, tidy
@@ -104,9 +104,22 @@ class _Files(CompileResultCacheImpl):
 
 
 class _Wait:
-    """What this process has spent on compilation (s), and whether its user has been told."""
+    """What this process has spent on compilation (processor time, s), and what its user has been told."""
 
-    spent, began, is_told = 0.0, 0.0, False
+    spent, began = 0.0, 0.0
+    told: ClassVar[set[str]] = set()
+
+    @classmethod
+    def begin(cls, name: str) -> None:
+        """Begin to compile a function, and say so if its user has to wait and does not know."""
+        message = SLOW.get(name, "")
+        if not message and cls.spent > NOTICED and not cls.told:
+            is_new = CACHE is None or not any(CACHE.glob("*/loop.run_until-*.nbi"))
+            message = SLOW["run_until"] if is_new else OTHERS
+        if message and message not in cls.told:
+            cls.told.add(message)
+            cache.announce(message)
+        cls.began = time.process_time()
 
 
 class SealedCache(FunctionCache):
@@ -136,15 +149,12 @@ class SealedCache(FunctionCache):
             tell(f"compiled code in {CACHE} cannot be used ({type(error).__name__}): it is compiled again")
             return None
         if found is None:
-            if self._name in SLOW or (_Wait.spent > NOTICED and not _Wait.is_told):
-                cache.announce(SLOW.get(self._name, OTHERS))
-                _Wait.is_told = True
-            _Wait.began = time.monotonic()
+            _Wait.begin(self._name)
         return found
 
     def save_overload(self, signature: Any, data: Any) -> None:
         """Store a compiled function for later starts, or say that it cannot be written."""
-        _Wait.spent += time.monotonic() - _Wait.began
+        _Wait.spent += time.process_time() - _Wait.began
         if CACHE is None:
             return
         try:

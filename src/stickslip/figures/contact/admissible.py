@@ -54,8 +54,8 @@ _ARROWS = 0.3, 14
 """Distance between the arrows on the path, as a share of the axes, and about how many there are at most."""
 
 
-def data(problem: Problem, solution: Solution | None = None, *, title: str = "") -> xr.Dataset:
-    """Return the set K for forward slip at the start of a problem, and the path of a run in it, as a dataset.
+def data(problem: Problem, solution: Solution | None = None, *, title: str = "", law_slip: float | None = None) -> xr.Dataset:
+    """Return the set K for forward slip at the start of a problem, or at `law_slip` (m), and the path of a run in it, as a dataset.
 
     It holds the curve as excess over the static strength at the start (Pa) along `slip_rate` (m/s); `kind` (1 stable, -1 unstable,
     0 continuum); the static strength (Pa); the jumps of the selection rule, shape (jumps, 3): slip rate before and after (m/s),
@@ -68,7 +68,7 @@ def data(problem: Problem, solution: Solution | None = None, *, title: str = "")
     Raises InputError for a block, a contact mass, or a law with a state variable: the slip rate is then a state, or follows from
     one, and there is no such set.
     """
-    contact = uniqueness_of(problem)
+    contact = uniqueness_of(problem, law_slip)
     g = contact.resistance
     if g is None:
         why = "the slip rate does not follow from the load alone (inertia or a state variable)"

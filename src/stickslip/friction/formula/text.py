@@ -27,8 +27,12 @@ def _written(node: Expression) -> tuple[str, int]:
         if node.arguments:
             return f"{node.operation}({to_text(node.arguments[0])})", _ATOM
         if node.operation == "constant":
-            return repr(float(node.value)), _ATOM if str(node.value)[0] != "-" else _MINUS
+            number = repr(float(node.value))
+            return number.removesuffix(".0") if node.value else number, _ATOM if number[0] != "-" else _MINUS
         return node.name, _ATOM
+    base, count = _power_of(node)
+    if count > 1:
+        return f"{_enclosed(base, _ATOM)}**{count}", _RANK["pow"]
     left, right = node.arguments
     rank = _RANK[node.operation]
     if node.operation == "sub" and left == Expression("constant", value=0.0) and right.operation != "constant":
@@ -36,6 +40,20 @@ def _written(node: Expression) -> tuple[str, int]:
     if node.operation == "pow":
         return f"{_enclosed(left, _ATOM)}**{_enclosed(right, _ATOM)}", rank
     return f"{_enclosed(left, rank)}{_SIGNS[node.operation]}{_enclosed(right, rank + 1)}", rank
+
+
+def _power_of(node: Expression) -> tuple[Expression, int]:
+    """Return base and exponent of a product that was typed as a whole power, and the node itself with 1 for any other.
+
+    A power is parsed into products by repeated squaring, so that the tree of the power is that of the product.
+    """
+    if node.operation != "mul":
+        return node, 1
+    left, right = node.arguments
+    base, count = _power_of(left)
+    if left == right:
+        return base, 2 * count
+    return (base, count + 1) if count % 2 == 0 and right == base else (node, 1)
 
 
 def _enclosed(node: Expression, least: int) -> str:
