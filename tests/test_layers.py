@@ -147,6 +147,7 @@ FILES = [path for path in sorted(PACKAGE.rglob("*.py")) if parts(path)[0] not in
 
 UPWARD_FOR_TYPES: dict[str, set[str]] = {
     "batch/kernels/runs.py": {"batch.setups", "batch.workspace"},
+    "contact/uniqueness.py": {"solution"},
     "creep/stepper.py": {"run"},
     "friction/statements.py": {"friction.law"},
     "problem/selection_rule.py": {"contact"},

@@ -76,9 +76,9 @@ def check_takes_law(name: str) -> None:
 def with_law(name: str, law: FrictionLaw, about: Sequence[str], values: Mapping[str, Any] = MappingProxyType({})) -> str:
     """Return a starter or a bundled scenario with another friction law without a state, as commented TOML text to the last digit.
 
-    `about` are lines of comments for the head of the text. The title is that of the scenario, with the kind of the law. `values` are
-    other values of its parameters, as for `Scenario.with_values`, but for those of friction. Raises InputError for an unknown name,
-    and for values that the scenario cannot have.
+    `about` are lines of comments for the head of the text. The title is that of the scenario, with the kind of the law. `values`
+    are other values of its parameters, as for `Scenario.with_values`, but for those of friction. Raises InputError for an unknown
+    name, and for values that the scenario cannot have.
     """
     check_takes_law(name)
     example = tomllib.loads(library.text(STARTERS.get(name, name)))

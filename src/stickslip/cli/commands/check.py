@@ -135,7 +135,7 @@ def _findings(found: Examination) -> Iterator[tuple[str, str]]:
     if found.along_slip:
         yield "along slip", found.along_slip
     for fact in found.critical:
-        yield "critical value", f"{fact.name} = {brief(fact.value, fact.unit, 9)}; {fact.meaning}"
+        yield "critical value", f"{fact.name} = {brief(float(fact.value), fact.unit, 9)}; {fact.meaning}"
     for fold in found.uniqueness.folds:
         yield "fold", f"slip rate {fold.rate:.9g} m/s, load {brief(fold.load, 'Pa', 12)}{_proof(fold)}"
     for low, high in found.uniqueness.undecided[:MOST_UNDECIDED]:
