@@ -241,23 +241,35 @@ def test_a_folder_of_another_user_is_not_private(tmp_path: Path, monkeypatch: py
         private_folder(folder)
 
 
-def test_compiling_the_engine_is_announced(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The engine takes long to compile; of others something is said when they have taken long, and of a small one nothing."""
-    from stickslip.engine.codegen import cache
-    from stickslip.engine.codegen.sealed_cache import _Wait
+@pytest.mark.parametrize(
+    ("spent", "name", "has_engine", "message"),
+    [
+        (0.0, "total", True, ""),
+        (0.0, "run_until", False, "run_until"),
+        (5.0, "total", True, "others"),
+        (5.0, "total", False, "run_until"),
+    ],
+)
+def test_compiling_the_engine_is_announced(
+    spent: float, name: str, has_engine: bool, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The engine takes long to compile; of others something is said once they have taken long, and of a small one nothing."""
+    from stickslip.engine.codegen import cache, sealed_cache
     from stickslip.engine.loop import run_until
     from stickslip.engine.series.polynomial import total
 
     said: list[str] = []
+    (tmp_path / "engine").mkdir()
+    if has_engine:
+        (tmp_path / "engine" / "loop.run_until-65.py311.nbi").touch()
+    monkeypatch.setattr(sealed_cache, "CACHE", tmp_path)
     monkeypatch.setattr(FunctionCache, "_load_overload", lambda *_: None)
     monkeypatch.setattr(FunctionCache, "save_overload", lambda *_: None)
     monkeypatch.setattr(cache, "announce", said.append)
-    for spent, kernel, message in ((0.0, total, []), (0.0, run_until, [cache.SLOW["run_until"]]), (5.0, total, [cache.OTHERS])):
-        said.clear()
-        monkeypatch.setattr(_Wait, "spent", spent)
-        monkeypatch.setattr(_Wait, "told", set())
-        entry = kernel.entry  # type: ignore[attr-defined]
-        for _ in range(2 if kernel is total else 1):
-            assert entry._cache.load_overload(None, entry.targetctx) is None
-            entry._cache.save_overload(None, None)
-        assert said == message
+    monkeypatch.setattr(sealed_cache._Wait, "spent", spent)
+    monkeypatch.setattr(sealed_cache._Wait, "told", set())
+    entry = {"total": total, "run_until": run_until}[name].entry  # type: ignore[attr-defined]
+    for _ in range(2):
+        assert entry._cache.load_overload(None, entry.targetctx) is None
+        entry._cache.save_overload(None, None)
+    assert said == ([(cache.SLOW | {"others": cache.OTHERS})[message]] if message else [])
