@@ -12,8 +12,9 @@ from stickslip.creep.averaged import AveragedCreep, Strength
 from stickslip.creep.landing import Piece, landing
 from stickslip.creep.pattern import Pattern, monotone_parts
 from stickslip.creep.planner import Plan, Planner, hermite
-from stickslip.engine.state.layout import TERMS, Counts, Floats, HistoryPiece, Incoming, State, Stop, Store
-from stickslip.engine_input.limits import PATIENCE
+from stickslip.creep.steady import SHORTEST_LEAP, SteadyLeaps, write
+from stickslip.engine.state.layout import NEVER, TERMS, Counts, Floats, HistoryPiece, Incoming, State, Stop, Store
+from stickslip.engine_input.limits import PATIENCE, leaps_over
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.history import NO_LEAPS
 
@@ -95,8 +96,6 @@ class HistoryWriter:
         store.rate[n] = self.direction * piece.rate
 
 
-SHORTEST_LEAP = 16
-"""Fewest round trips of a leap that is worth its cost."""
 LONGEST_WAIT, LONGEST_FIRST_WAIT = 16, 1024
 """Largest number of round trips between two attempts that found no leap: an attempt takes some milliseconds, as much as thousands
 of pieces.
@@ -131,11 +130,12 @@ class CreepLeaps:
     def __post_init__(self) -> None:
         self.impedance, self.speed = self.problem.body.impedance, abs(self.problem.first_pull_rate)
         self.direction = 1 if self.problem.first_pull_rate > 0.0 else -1
+        self.steady = SteadyLeaps(self.problem, self.tolerance) if leaps_over(self.problem) == "steady sliding" else None
 
     def begin(self, count: Counts) -> None:
-        """Have the engine pause after the first round trip, or when creep has lasted."""
-        if self.patient:
-            count.creep_in, count.pause_for = PATIENCE, 1
+        """Have the engine pause after the first round trip, or when slip has lasted."""
+        if self.patient or self.steady is not None:
+            count.creep_in, count.pause_for = PATIENCE if self.patient else 1, 1
             return
         count.pause_at = count.pause_for = 1
 
@@ -157,6 +157,9 @@ class CreepLeaps:
         The run is at the end of a round trip; round trip `pause_at` comes next.
         """
         count = run.count
+        if self.steady is not None:
+            self._leap_while_steady(run, self.steady)
+            return
         if not self._creeps(run):
             count.pause_at, count.pause_for = count.trip + 1, 1
             return
@@ -174,6 +177,34 @@ class CreepLeaps:
         count.pause_at = count.trip + count.pause_for
         unproven = self.patient and count.creep_leaps == 0
         count.pause_for = min(2 * count.pause_for, LONGEST_FIRST_WAIT if unproven else LONGEST_WAIT)
+
+    def _leap_while_steady(self, run: Session, steady: SteadyLeaps) -> None:
+        """Leap if the contact slides steadily, and set after how many round trips with slip to look again.
+
+        The engine does not pause meanwhile, so that it may pass over echoes under which nothing slips.
+        """
+        count, room = run.count, int(run.last[0] - CHECKED - 2 - run.count.trip)
+        found = steady.leap(run, room) if room >= SHORTEST_LEAP else None
+        if found is not None:
+            leap, deviation = found
+            if leap.trips == room and count.to_the_end == 0:
+                run.cut_at_end()
+            before = run.snapshot()
+            begun = int(count.trip)
+            write(run, leap, deviation)
+            self.taken[count.creep_leaps :] = [(begun, leap.trips, leap.error, leap.error / abs(deviation.rate_there))]
+            count.creep_leaps += 1
+            count.pause_at = count.trip + CHECKED
+            expected, turn = (
+                float(run.state.slip_now) + self.problem.round_trip_time * deviation.rate_there,
+                self.problem.round_trip_time,
+            )
+            allowed = max(leap.error, self.tolerance * abs(expected)) + turn * abs(leap.factor) * deviation.largest_rate
+            if not (self._goes_on(run, int(count.trip) + CHECKED) and abs(float(run.state.slip_now) - expected) <= allowed):
+                run.restore(before)
+                found = None
+        count.pause_at, count.creep_in = NEVER, count.pause_for
+        count.pause_for = 1 if found is not None else min(2 * count.pause_for, LONGEST_FIRST_WAIT)
 
     # ---- before -------------------------------------------------------------------------------------------------------------
 

@@ -16,6 +16,7 @@ sign. No computation can follow that for long, and the events that are lumped th
 from __future__ import annotations
 
 import math
+from typing import Literal
 
 from stickslip.bodies import BodyOnCharacteristics
 from stickslip.engine.state import layout as at
@@ -39,7 +40,22 @@ def creep_tolerance(problem: Problem, creep_rtol: float | None, rtol: float) -> 
     """Return the tolerance of leaps over creep in a run: the given or the automatic one, or 0 if there are no leaps."""
     if creep_rtol is not None:
         return creep_rtol
-    return 0.0 if _missing(problem) else min(max(PER_ROOT_RTOL * math.sqrt(rtol), TIGHTEST), LOOSEST)
+    return min(max(PER_ROOT_RTOL * math.sqrt(rtol), TIGHTEST), LOOSEST) if leaps_over(problem) else 0.0
+
+
+def leaps_over(problem: Problem) -> Literal["creep", "steady sliding", ""]:
+    """Return what a run of a problem may leap over: creep under a law of slip, steady sliding, or nothing."""
+    rigid = problem.body.is_driven_rigidly
+    return _but_pull(problem) if problem.pull_rate != 0.0 or not rigid else ""
+
+
+def _but_pull(problem: Problem) -> Literal["creep", "steady sliding", ""]:
+    """Return the same, whatever the pull rate is, which may differ between the members of a batch."""
+    if not missing_for_creep(problem):
+        return "creep"
+    law = problem.friction
+    changes = problem.varies or (problem.far_stress_rate != 0.0 and not problem.body.is_driven_rigidly)
+    return "" if changes or law.depends_on_slip or not (law.depends_on_rate or law.states) else "steady sliding"
 
 
 def check_creep_rtol(problem: Problem, creep_rtol: float | None, where: str, name: str = "creep_rtol") -> float | None:
@@ -49,18 +65,15 @@ def check_creep_rtol(problem: Problem, creep_rtol: float | None, where: str, nam
     if not 0.0 <= creep_rtol <= LARGEST_RTOL:
         allowed = f"0 (no leaps over creep, every round trip is run) or at most {LARGEST_RTOL:g}"
         raise InputError(f"{where}: {name} must be {allowed}, got {creep_rtol:g}")
-    if creep_rtol > 0.0 and (missing := _missing(problem)):
-        raise InputError(f"{where}: {name} must be 0 here: leaps over creep need {missing}")
+    if creep_rtol > 0.0 and not leaps_over(problem):
+        missing = missing_for_creep(problem) or "a pull rate that is not 0"
+        steady = "over steady sliding a steady loading and a law that does not keep changing with slip"
+        raise InputError(f"{where}: {name} must be 0 here: leaps over creep need {missing}, {steady}")
     return creep_rtol
 
 
-def _missing(problem: Problem) -> str:
-    """Return what a problem lacks for leaps over creep; empty if it lacks nothing."""
-    return missing_but_pull(problem) or ("" if problem.pull_rate != 0.0 else "a pull rate that is not 0")
-
-
-def missing_but_pull(problem: Problem) -> str:
-    """Return what a problem lacks besides a pull rate, which may differ between the members of a batch."""
+def missing_for_creep(problem: Problem) -> str:
+    """Return what a problem lacks for leaps over creep under a law of slip, besides a pull rate; empty if it lacks nothing."""
     body, law = problem.body, problem.friction
     if not body.has_waves:
         return "a slab, which creeps from round trip to round trip"
@@ -123,7 +136,7 @@ def automatic_length(body: BodyOnCharacteristics) -> float:
 
 def wait_for_creep(count: Counts, problem: Problem, creep_rtol: float | None) -> None:
     """Have the engine pause when a run that leaps automatically has had PATIENCE round trips with slip."""
-    if creep_rtol is None and not missing_but_pull(problem):
+    if creep_rtol is None and _but_pull(problem):
         count.creep_in = PATIENCE
 
 

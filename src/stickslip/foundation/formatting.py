@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from itertools import chain, repeat
 
 from stickslip.foundation.constants import YEAR
@@ -59,6 +59,11 @@ def brief(value: float, unit: str, digits: int = DIGITS) -> str:
     sizes = ((f"{value / factor:.{digits}g}", name, abs(value / factor)) for name, factor in units)
     shown, name, _ = min(sizes, key=lambda one: len(one[0] + one[1]) + (0 if 0.1 <= one[2] < 1000.0 else UNHANDY))
     return f"{shown} {name.removesuffix('s') if (shown, name) == ('1', 'years') else name}"
+
+
+def how_long(reached: float, asked: float, text: Callable[[float, str], str] = brief) -> str:
+    """Return the time (s) that a run reached and, if it ended early, the time (s) that was asked for, both written by `text`."""
+    return text(reached, "s") + (f" of {text(asked, 's')} asked for" if reached < asked else "")
 
 
 def in_unit(seconds: float) -> tuple[float, str]:

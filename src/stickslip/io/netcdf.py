@@ -101,6 +101,7 @@ def origin(solution: Solution) -> dict[str, Any]:
         "selection_rule": solution.problem.rule,
         "rtol": solution.rtol,
         "duration": solution.duration,
+        "asked_duration": solution.asked_duration,
         "status": solution.status.name,
         "status_message": solution.status.message,
         "status_ok": int(solution.status.ok),
@@ -223,7 +224,7 @@ def _history(solution: Solution) -> dict[str, Variable]:
     for name, axes in HISTORY_AXES.items():
         meaning = f"{known[name]}, Taylor coefficients" if name in known else f"{name} of a piece of the history"
         variables[f"history_{name}"] = Variable(axes, getattr(store, name), {"units": units.get(name, "1"), "long_name": meaning})
-    end = "end of the run, less than its duration if it failed"
+    end = "end of the run, less than the duration asked for if it ended early"
     variables |= {
         "reached": Variable((), history.duration, {"units": "s", "long_name": end}),
         "round_trip_time": Variable((), history.round_trip_time, {"units": "s", "long_name": "length of a row of the history"}),
@@ -336,7 +337,8 @@ def _solution(dataset: xr.Dataset, path: Path) -> Solution:
     state = _array(dataset, "history_state") if "history_state" in dataset else np.empty((0, 0, at.TERMS))
     if state.ndim == 2:  # a file from before laws of two states
         state = state[:, None]
-    duration, rtol = number(attributes, "duration", path), number(attributes, "rtol", path)
+    asked = number(attributes, "asked_duration" if "asked_duration" in attributes else "duration", path)  # older files: asked alone
+    rtol = number(attributes, "rtol", path)
     store = Store(history_table(columns, path), state)
     creep = _array(dataset, "history_creep") if "history_creep" in dataset else NO_LEAPS
     round_trip_time, ramp, reached = (float(dataset[name].item()) for name in ("round_trip_time", "ramp", "reached"))
@@ -351,7 +353,7 @@ def _solution(dataset: xr.Dataset, path: Path) -> Solution:
     about = scenario.max_events, scenario.creep_rtol, scenario.shortest_event
     lumping, rounding = (printable(str(attributes.get(name, ""))) for name in ("lumping", "rounding"))
     undecided, named = int(attributes.get("undecided", 0)), (scenario.title, scenario.description)
-    return Solution(scenario.problem, duration, rtol, status, history, checkpoint, *about, lumping, rounding, undecided, *named)
+    return Solution(scenario.problem, asked, rtol, status, history, checkpoint, *about, lumping, rounding, undecided, *named)
 
 
 def _array(dataset: xr.Dataset, name: str) -> NDArray[Any]:

@@ -165,6 +165,8 @@ class Catalogue:
     rows: Rows | RowsInMemory
     events: int
     status: Status
+    reached: float
+    """Time at which the run ended, s."""
     notes: Mapping[str, str]
 
     @property
@@ -175,7 +177,7 @@ class Catalogue:
     def read(self) -> pd.DataFrame:
         """Return the table, whose `attrs` hold the status and the notes."""
         table = self.rows.read()
-        table.attrs = {"status": self.status.name, "status_message": self.status.message}
+        table.attrs = {"status": self.status.name, "status_message": self.status.message, "duration": self.reached}
         table.attrs.update(self.notes)
         return table
 
@@ -256,7 +258,9 @@ class EventRows:
             "rounding": run.rounding_note,
             "proven": proof,
         }
-        return Catalogue(self.rows, stream.told, solution.status, {name: note for name, note in notes.items() if note})
+        return Catalogue(
+            self.rows, stream.told, solution.status, solution.duration, {name: note for name, note in notes.items() if note}
+        )
 
     def _remember(self, run: Session, stream: EventStream) -> None:
         if run.before_end is None:

@@ -68,7 +68,7 @@ class RunOptions:
         """
         had_them = stopped.status == STATUSES[ENOUGH_EVENTS]
         return cls(
-            stopped.duration if duration is None else duration,
+            stopped.asked_duration if duration is None else duration,
             stopped.rtol,
             stopped.creep_rtol,
             stopped.shortest_event,

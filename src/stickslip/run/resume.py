@@ -166,7 +166,7 @@ def taken_up(stopped: Solution, path: Path, options: RunOptions) -> Session:
     check_checkpoint(stopped, path)
     run = Session.at_checkpoint(stopped.history, checkpoint, options)
     reached = float(stopped.history.end[run.length - 1])
-    if options.duration != stopped.duration and options.duration < reached:
+    if options.duration != stopped.asked_duration and options.duration < reached:
         wanted = f"a duration of {options.duration:.9g} s lies before that"
         raise InputError(f"{path}: the run has already reached {reached:.9g} s: {wanted}")
     return run

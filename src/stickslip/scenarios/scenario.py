@@ -104,7 +104,7 @@ class Scenario(CheckedArguments):
         """Return the scenario of which a solution is a run."""
         return cls(
             problem=solution.problem,
-            duration=solution.duration,
+            duration=solution.asked_duration,
             rtol=solution.rtol,
             max_events=solution.max_events,
             creep_rtol=solution.creep_rtol,

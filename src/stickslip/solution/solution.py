@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.formatting import brief, html_table
+from stickslip.foundation.formatting import brief, how_long, html_table
 from stickslip.observables.event_table import events_table
 from stickslip.observables.proof import Proof, proven
 from stickslip.problem.problem import Problem
@@ -41,7 +41,8 @@ class Solution(Exports):
     """
 
     problem: Problem
-    duration: float
+    asked_duration: float
+    """Latest end of the run (s), as it was asked for; `duration` is the time that the run reached."""
     rtol: float
     status: Status
     history: History
@@ -63,6 +64,11 @@ class Solution(Exports):
     """Title of the scenario, which figures show; empty for a problem from Python."""
     description: str = ""
     """Description of the scenario; empty for a problem from Python."""
+
+    @property
+    def duration(self) -> float:
+        """The time (s) that the run reached: less than `asked_duration` if it ended early, which `status` explains."""
+        return self.history.duration
 
     @cached_property
     def events(self) -> pd.DataFrame:
@@ -164,6 +170,11 @@ class Solution(Exports):
         """The figures: `plot()` draws the default one, `plot.energy()`, `plot.catalogue()` ... draw others."""
         return SolutionPlots(self)
 
+    @property
+    def span_text(self) -> str:
+        """The time that the run reached and, if it ended early, the time that was asked for."""
+        return how_long(self.duration, self.asked_duration)
+
     def _lines(self) -> list[tuple[str, str]]:
         problem, events = self.problem, self.events
         loading = ", ".join(f"{name.replace('_', ' ')} {text}" for name, text in problem.loading_texts.items())
@@ -173,7 +184,7 @@ class Solution(Exports):
             ("body", repr(problem.body)),
             ("friction", repr(problem.friction)),
             ("loading", f"{loading}, initial load {brief(problem.load, problem.load_unit)}"),
-            ("run", f"{brief(self.duration, 's')}, rtol {self.rtol:g}, {len(self.history)} pieces"),
+            ("run", f"{self.span_text}, rtol {self.rtol:g}, {len(self.history)} pieces"),
             ("status", str(self.status)),
             ("events", f"{len(events)}{largest}"),
             ("shocks", f"{len(self.shocks)}"),

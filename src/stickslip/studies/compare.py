@@ -110,7 +110,7 @@ class Comparison(Study):
             yield f"{name}{f' ({unit})' if unit else ''}: {meaning}"
         for name, solution in self.runs.items():
             yield f"\n---- {name}: {solution.status}"
-            yield Scenario(solution.problem, solution.duration, solution.rtol, max_events=solution.max_events).to_toml()
+            yield Scenario(solution.problem, solution.asked_duration, solution.rtol, max_events=solution.max_events).to_toml()
 
     def __repr__(self) -> str:
         return f"{super().__repr__()}\n{self._shown_table().to_string(float_format='{:.6g}'.format)}"

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from stickslip.cli.output.files import announce
 from stickslip.cli.output.show import console, fits, print_numbers, say, titled
 from stickslip.engine_input.limits import creep_tolerance
-from stickslip.foundation.formatting import clean, number, with_unit
+from stickslip.foundation.formatting import clean, how_long, number, with_unit
 from stickslip.scenarios.scenario import doubts, read_scenario
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ def show_solution(scenario: Scenario, solution: Solution) -> None:
     from stickslip.trajectory.tables import SHOCK_COLUMNS, shock_columns
 
     screen, history = titled(scenario), solution.history
-    _say_how(screen, scenario, solution.status, solution.creep_note, solution.lumping_note)
+    _say_how(screen, scenario, solution.status, solution.duration, (solution.creep_note, solution.lumping_note))
     say(screen, f"selection rule {solution.selection_note}\n")
     _print_events(screen, event_columns(history, SlipEvents.of(history, default_event_rate(solution.problem))), solution.problem)
     shocks = shock_columns(history)
@@ -53,7 +53,7 @@ def show_solution(scenario: Scenario, solution: Solution) -> None:
 def show_catalogue(scenario: Scenario, found: Catalogue) -> None:
     """Print on standard output the summary of a run of which only slip events were kept."""
     screen = titled(scenario)
-    _say_how(screen, scenario, found.status, found.notes.get("creep", ""), found.notes.get("lumping", ""))
+    _say_how(screen, scenario, found.status, found.reached, (found.notes.get("creep", ""), found.notes.get("lumping", "")))
     say(screen, f"{found.events} slip event{'' if found.events == 1 else 's'}")
     for name, what in (
         ("predictability", "predictability"),
@@ -76,7 +76,8 @@ def show_events(name: str, table: Mapping[Any, Any], about: Mapping[str, Any]) -
     say(screen, clean(name), style="bold")
     if "status" in about:
         say(screen, clean(f"{about['status']}: {about['status_message']}"))
-        say(screen, clean(f"duration {with_unit(float(about['duration']), 's')}, rtol {about['rtol']:g}"))
+        reached = float(about["duration"])
+        say(screen, f"duration {how_long(reached, float(about.get('asked_duration', reached)), with_unit)}, rtol {about['rtol']:g}")
         say(screen, clean(f"selection rule {about['selection_rule']}"))
         say(screen, *(clean(str(about[note])) for note in ("lumping", "rounding") if about.get(note)))
     screen.print()
@@ -131,9 +132,14 @@ def statistics(events: Mapping[Any, Any]) -> list[str]:
     return [f"{'; '.join(lines)}\n"] if lines else []
 
 
-def _say_how(screen: Console, scenario: Scenario, status: Status, creep: str, lumping: str) -> None:
-    """Print what ended a run, its duration and tolerances, and requested or automatic leaps over creep and lumping of events."""
-    say(screen, f"{status.name}: {status.message}", f"duration {with_unit(scenario.duration, 's')}, rtol {scenario.rtol:g}")
+def _say_how(screen: Console, scenario: Scenario, status: Status, reached: float, notes: tuple[str, str]) -> None:
+    """Print what ended a run, the time reached (s), tolerances, and requested or automatic leaps and lumping of events.
+
+    `notes` are one line each on leaps and on automatic lumping, or empty.
+    """
+    creep, lumping = notes
+    lasted = how_long(reached, scenario.duration, with_unit)
+    say(screen, f"{status.name}: {status.message}", f"duration {lasted}, rtol {scenario.rtol:g}")
     say(screen, *(f"warning: {one}" for one in doubts(scenario.problem)))
     if scenario.shortest_event:
         say(screen, f"events shorter than {with_unit(scenario.shortest_event, 's')} are lumped")

@@ -27,6 +27,8 @@ LONGEST_SEARCH = 4096
 """Largest number of round trips (1) that are tried one by one: near 2^62, floats are 512 to 1024 apart."""
 NEARLY = 2e-15
 """Share of the reference strength (1), for rounding of the load, by which a piece is met early rather than late."""
+MOMENT_OF_REST = 1e-6
+"""Largest share of a round trip (1) that a contact may rest that slides throughout it: a swing of its slip rate may touch rest."""
 LEAST_PIECES = 16
 """Least number of pieces in a round trip with slip (1) for which the trees pay off; at most one in `LEAST_PIECES // 4` may slip."""
 
@@ -256,8 +258,31 @@ def next_echo(run: Run) -> int:
 
 
 @kernel
+def start_of_slide(run: Run) -> int:
+    """Return the first piece of the round trip that ends, if the contact has slipped throughout it, else NOTHING."""
+    n, rest = run.counts.length - 1, MOMENT_OF_REST * run.params.round_trip_time
+    while n >= 0 and run.history[n].trip == run.counts.trip:
+        piece = run.history[n]
+        rest -= piece.phase_to - piece.phase_from if piece.mode == 0 else 0.0
+        if rest < 0.0:
+            return NOTHING
+        if piece.phase_from == 0.0:
+            return n
+        if n > 0 and run.history[n - 1].phase_to != piece.phase_from:
+            return NOTHING
+        n -= 1
+    return NOTHING
+
+
+@kernel
 def end_trip(run: Run) -> None:
     """Close a round trip, and go to the next one in which the contact may slip; set `is_locked` if there is none."""
+    if run.counts.creep_in > 0:
+        first = start_of_slide(run)
+        run.counts.creep_in -= 1 if first != NOTHING else 0
+        if run.counts.creep_in == 0:
+            leave_queue(run, first)
+            return
     add_new(run)
     whole = join(run.echoes, run.params.ramp, run.counts.behind, run.counts.ahead)
     trip = run.counts.trip + 1 if goes_on(run) else next_trip(run, whole, rest_limit(run))
@@ -267,6 +292,16 @@ def end_trip(run: Run) -> None:
     run.counts.ahead, run.counts.behind = whole, NOTHING
     run.state.new_since = run.state.taken_to = 0.0
     run.counts.moved = 0
+
+
+@kernel
+def leave_queue(run: Run, first: int) -> None:
+    """Meet all echoes again after a round trip of slip, whose first piece is given, and pause for a look at leaps."""
+    run.counts.sparse, run.counts.behind, run.counts.ahead = 0, NOTHING, NOTHING
+    run.counts.trip += 1
+    run.counts.pause_at = run.counts.trip
+    run.counts.previous_from, run.counts.previous_to, run.counts.trip_from = first, run.counts.length, run.counts.length
+    run.counts.source = run.counts.moved = run.counts.trips_at_rest = run.counts.is_locked = 0
 
 
 @kernel

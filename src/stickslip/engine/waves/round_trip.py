@@ -9,7 +9,7 @@ from stickslip.engine.contact.contact_equation import rest_limit
 from stickslip.engine.series.polynomial import maximum, total
 from stickslip.engine.state.layout import NEVER, EnginePart, Stop, Task
 from stickslip.engine.state.workspace import Run
-from stickslip.engine.waves.echo_queue import worth_building
+from stickslip.engine.waves.echo_queue import NOTHING, start_of_slide, worth_building
 from stickslip.engine.waves.varying_forcing import has_faded
 from stickslip.foundation.constants import DEAD_LOAD, RIGID
 
@@ -57,6 +57,12 @@ def swings_for_ever(run: Run) -> bool:
 
 
 @kernel
+def creeps(run: Run) -> bool:
+    """Return True if slip is creep, under a law of slip alone; any other contact must slide throughout a round trip to leap."""
+    return run.counts.is_algebraic == 0 and run.counts.has_inertia == 0 and run.counts.states == 0
+
+
+@kernel
 def close_round_trip(run: Run, last_trip: int) -> int:
     """Close a round trip, and leap over the following ones in which nothing can happen.
 
@@ -87,10 +93,11 @@ def close_round_trip(run: Run, last_trip: int) -> int:
     else:
         run.counts.trips_at_rest = 0
     run.counts.is_locked = 1 if locked else 0
+    counts = run.counts.creep_in > 0 and run.counts.moved == 1 and (creeps(run) or start_of_slide(run) != NOTHING)
     if run.counts.is_block == 1:
         run.state.load_now = total(run.history[run.counts.length - 1].load)
     run.counts.trip += 1 + leap
-    if run.counts.moved == 1:
+    if counts:
         run.counts.creep_in -= 1
         if run.counts.creep_in == 0:
             run.counts.pause_at = run.counts.trip
