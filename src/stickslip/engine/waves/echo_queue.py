@@ -292,6 +292,7 @@ def end_trip(run: Run) -> None:
     run.counts.ahead, run.counts.behind = whole, NOTHING
     run.state.new_since = run.state.taken_to = 0.0
     run.counts.moved = 0
+    run.counts.trip_from = run.counts.length
 
 
 @kernel

@@ -69,11 +69,11 @@ def close_round_trip(run: Run, last_trip: int) -> int:
     `last_trip` is the round trip in which the run ends. Return Stop.NONE, or the code of what the caller must do first: the round
     trip is still open then. It is END_AHEAD if the end of the run would cut the leap and `to_the_end` is not set.
     """
+    if run.counts.lumps == 0 and run.counts.length - run.counts.trip_from > run.counts.lump_above:
+        run.counts.lumps, run.counts.lumped_since = 1, run.counts.trip + 1
     if run.counts.sparse == 1:
         call_part(run.echo_queue, run, Task.END_TRIP, 0.0)
         return Stop.NONE
-    if run.counts.lumps == 0 and run.counts.length - run.counts.trip_from > run.counts.lump_above:
-        run.counts.lumps, run.counts.lumped_since = 1, run.counts.trip + 1
     if worth_building(run):
         if run.echo_queue == 0:
             run.missing = EnginePart.ECHO_QUEUE
