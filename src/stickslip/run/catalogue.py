@@ -253,7 +253,7 @@ class EventRows:
         notes = {
             "predictability": prediction.text if prediction else "",
             "trapped": trapped_note(solution.history),
-            "creep": creep_note(run.creep),
+            "creep": creep_note(solution.history),
             "lumping": run.lumping_note,
             "rounding": run.rounding_note,
             "proven": proof,

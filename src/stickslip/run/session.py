@@ -19,7 +19,7 @@ from stickslip.engine.state.layout import EchoNode, Floats, Integers, Setup, Sto
 from stickslip.engine.state.workspace import counts_in, lend, lend_history, scratch_in, state_in
 from stickslip.engine.waves.echo_queue import rebuild_queue
 from stickslip.engine_input.branch_table import RuleFollower, renewed
-from stickslip.engine_input.limits import creep_tolerance, lumping_note
+from stickslip.engine_input.limits import creep_tolerance, leaps_over, lumping_note, lumps_by_itself
 from stickslip.engine_input.prepare import prepare
 from stickslip.foundation.errors import InputError
 from stickslip.observables.event_stream import EventStream
@@ -29,7 +29,7 @@ from stickslip.solution.solution import Solution
 from stickslip.trajectory.history import NO_LEAPS, History
 from stickslip.trajectory.phase_index import standing_behind
 from stickslip.trajectory.slip_events import default_event_rate
-from stickslip.trajectory.status import ENOUGH_EVENTS, STATUSES, Checkpoint, engine, rounding_note
+from stickslip.trajectory.status import ENOUGH_EVENTS, FULL_HISTORY, STATUSES, Checkpoint, Crowd, Status, engine, rounding_note
 
 FIRST_CAPACITY = 256
 """Pieces of history for which a run has room at first, 0.1 MB; the room grows fourfold when it is full."""
@@ -149,7 +149,7 @@ class Session:
             self.problem,
             options.duration,
             options.rtol,
-            STATUSES[code],
+            self._full() if code == FULL_HISTORY else STATUSES[code],
             history,
             self.checkpoint(),
             max_events=options.max_events,
@@ -161,6 +161,19 @@ class Session:
             rounding_note=self.rounding_note,
             undecided=int(self.count.undecided),
         )
+
+    def _full(self) -> Status:
+        """Return the status of a run whose history is full, with what would help."""
+        options, history = self.options, self.history()
+        cures, stream = [], self.events()
+        stream.look(history).tell()
+        if self.forgotten == 0 and 2 * stream.needed(history) > self.length:
+            cures.append("a catalogue, which keeps events only")
+        if options.creep_rtol == 0.0 and leaps_over(self.problem):
+            cures.append("leaps (leave out creep_rtol = 0)")
+        if options.shortest_event == 0.0 and lumps_by_itself(self.problem):
+            cures.append("lumping of the shortest events (leave out shortest_event = 0)")
+        return Crowd(self.length, history.duration, float(history.start[self.length // 2]), options.duration).status(cures)
 
     def advance(self, budget: int) -> int:
         """Call the engine once or, if it has paused for that, leap over creep: see `Solver.advance`."""

@@ -14,7 +14,7 @@ from stickslip.contact.regime_map import regimes_along_slip
 from stickslip.contact.sliding import SteadySlidings
 from stickslip.contact.steady import steady_slidings
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
-from stickslip.engine_input.limits import MOST_PIECES, PATIENCE, automatic_length, creep_tolerance, lumps_by_itself
+from stickslip.engine_input.limits import MOST_PIECES, PATIENCE, automatic_length, creep_tolerance, leaps_over, lumps_by_itself
 from stickslip.foundation.formatting import brief
 from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, Text, fields_of, in_units
 from stickslip.friction import FrictionLaw, RateAndState, SinusoidalSlip
@@ -107,7 +107,8 @@ def _automatic(scenario: Scenario) -> list[Fact]:
     problem, facts = scenario.problem, list[Fact]()
     tolerance = creep_tolerance(problem, None, scenario.rtol)
     if scenario.creep_rtol is None and tolerance > 0.0:
-        does = f"leaps over creep after {PATIENCE} round trips with slip, error of slip at most this times the slip so far"
+        over, of = leaps_over(problem), "with slip" if leaps_over(problem) == "creep" else "of it"
+        does = f"leaps over {over} after {PATIENCE} round trips {of}, error of slip at most this times the slip so far"
         facts.append(Fact("creep_rtol", tolerance, "1", f"automatic: {does}; 0 runs every round trip"))
     if scenario.shortest_event is None and lumps_by_itself(problem):
         does = f"events shorter than this are lumped once a round trip has more than {MOST_PIECES} pieces"

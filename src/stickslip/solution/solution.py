@@ -127,7 +127,7 @@ class Solution(Exports):
     @property
     def creep_note(self) -> str:
         """One line on the leaps over creep; empty if there are none."""
-        return creep_note(self.history.creep)
+        return creep_note(self.history)
 
     def window(
         self,

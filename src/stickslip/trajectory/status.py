@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass, fields
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
 from functools import cache
 from pathlib import Path
 
 from stickslip.engine.codegen.cache import SOURCES
 from stickslip.engine.state.layout import Counts, Floats, Integers, Stop
+from stickslip.foundation.formatting import brief
 
 DECIDE = (
     *("batch", "bodies", "contact", "creep", "engine", "engine_input"),
@@ -74,6 +77,12 @@ def rounding_note(steps: int, share: float) -> str:
 
 FULL_HISTORY = -2
 """The history has reached its limit of pieces."""
+MOST_WORTH_ASKING = 10_000_000
+"""Largest number of pieces that a message proposes to allow: 4 GB."""
+GROWING = 2.0
+"""Factor by which a history grows faster in its second half than in its first, from which on its size cannot be foretold."""
+SHORTER = 0.98
+"""Share of the time that a run has reached that a run with as many pieces is certain to reach."""
 INTERRUPTED = -3
 """The user stopped the run."""
 ENOUGH_EVENTS = -4
@@ -113,8 +122,7 @@ STATUSES = {
     ),
     FULL_HISTORY: Status(
         "too many pieces",
-        "the history reached its limit of pieces (a million takes 0.42 GB): shorten the duration, loosen rtol or creep_rtol, keep"
-        " events only (a catalogue), or raise max_pieces",
+        "the history reached its limit of pieces (a million takes 0.42 GB)",
         False,
     ),
     INTERRUPTED: Status("interrupted", "stopped by the user: the results are valid up to this time", False),
@@ -128,3 +136,33 @@ STATUSES = {
     UNDER_WAY: Status("under way", "a checkpoint of a run that continued: the results are valid up to this time", False),
 }
 """Status for each code: those of the engine (`layout`) are not negative, the others are defined above."""
+
+
+@dataclass(frozen=True)
+class Crowd:
+    """A history that has reached its limit of pieces."""
+
+    pieces: int
+    reached: float  # time, s
+    at_half: float  # time at which it had half of the pieces, s
+    asked: float  # time that was asked for, s
+
+    def status(self, cures: Sequence[str]) -> Status:
+        """Return the status of its run; `cures` are what else helps in this case, besides more pieces and a shorter run."""
+        later, when = self.reached - self.at_half, f"{brief(self.reached, 's')} of {brief(self.asked, 's')}"
+        said = f"the history reached its limit of {self.pieces} pieces at {when}"
+        shorter = f"a duration of up to {brief(SHORTER * self.reached, 's', 3)}"
+        if later * GROWING < self.at_half:
+            said += ", and comes to more pieces in each round trip"
+            helps = *cures, shorter
+        else:
+            needed = self.pieces + (self.asked - self.reached) * 0.5 * self.pieces / later
+            said += f", and would need {needed:.2g} of them"
+            helps = *cures, *([f"max_pieces = {_rounded_up(needed)}"] if needed <= MOST_WORTH_ASKING else []), shorter
+        return replace(STATUSES[FULL_HISTORY], message=f"{said}; what helps: {', or '.join(helps)}")
+
+
+def _rounded_up(pieces: float) -> int:
+    """Return a number of pieces with two digits and some room."""
+    unit = 10 ** max(int(math.log10(pieces)) - 1, 0)
+    return int(math.ceil(1.1 * pieces / unit) * unit)

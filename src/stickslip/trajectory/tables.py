@@ -6,9 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from stickslip.contact.steady import steady_slidings
 from stickslip.contact.uniqueness import uniqueness_of
-from stickslip.engine.state.layout import Floats
 from stickslip.engine_input.branch_table import folds_move, is_algebraic
+from stickslip.engine_input.limits import leaps_over
+from stickslip.foundation.formatting import brief
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.history import History, Positions
 
@@ -67,13 +69,33 @@ def creep_table(history: History) -> pd.DataFrame:
     return pd.DataFrame(columns).astype({"start_row": int, "round_trips": int})
 
 
-def creep_note(creep: Floats) -> str:
-    """Return one line on the leaps over creep in `History.creep`; empty if there are none."""
-    if not len(creep):
+def creep_note(history: History) -> str:
+    """Return one line on the leaps over creep or steady sliding in a history; empty if there are none."""
+    if not len(history.creep):
         return ""
-    leaps, (_, trips, error, delay) = len(creep), creep.T
-    over = f"{leaps} leap{'s' * (leaps > 1)} over {int(trips.sum())} round trips"
-    return f"{over}, error at most {error.max():.1e} m of slip, {delay.max():.3g} s of time"
+    leaps, (row, trips, error, delay) = len(history.creep), history.creep.T
+    steady = leaps_over(history.problem) == "steady sliding"
+    over = f"{leaps} leap{'s' * (leaps > 1)} over {int(trips.sum())} round trips{' of steady sliding' * steady}"
+    note = f"{over}, error at most {error.max():.1e} m of slip, {delay.max():.3g} s of time"
+    ends = (row[-1] + trips[-1] + NEAR_THE_END) * history.round_trip_time >= history.duration
+    return f"{note}; {_lasts(history.problem)}" if steady and ends else note
+
+
+NEAR_THE_END = 8
+"""Number of round trips after a leap within which the run ends if the leap was cut by its end."""
+
+
+def _lasts(problem: Problem) -> str:
+    """Return a few words on a contact that slides steadily at the end of its run."""
+    found = steady_slidings(problem).slidings
+    if len(found) != 1:
+        return "it slides steadily up to the end"
+    at = "the driver's rate" if problem.body.is_driven_rigidly else brief(abs(found[0].rate), "m/s")
+    return (
+        f"it slides steadily and stably at {at}: no event will come"
+        if found[0].stable
+        else f"it slides steadily at {at} to the end"
+    )
 
 
 def rule_in_force(problem: Problem) -> str:

@@ -169,7 +169,7 @@ def _beside(companion: Solution | None) -> tuple[Motion, ...]:
 
 def notes_of(scenario: Scenario, solution: Solution, contact: Uniqueness) -> tuple[str, ...]:
     """Return warnings on a scenario and its run, one line each."""
-    ended = [] if solution.status.ok else [str(solution.status)]
+    ended = [] if solution.status.ok else [f"{solution.status} (it reached {solution.span_text})"]
     of_run = (solution.creep_note, solution.lumping_note, solution.rounding_note)
     return (*ended, *(note for note in of_run if note), *warnings_of(scenario, contact))
 
