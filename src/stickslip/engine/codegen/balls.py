@@ -16,10 +16,14 @@ Sources: Rump 2010, Verification methods, Acta Numerica 19 (balls); Rudin 1987, 
 from __future__ import annotations
 
 from stickslip.engine.codegen.order_zero import OrderZero, exp_of
+from stickslip.friction.formula.denominators import LARGEST_EXPONENT
 from stickslip.friction.formula.expression import RATE, SLIP, STATES, VARIABLES, Expression, nodes_of
 
 VARIED = ("exp", "expm1", "pow")
 """Operations whose results vary by orders of magnitude without coming near zero."""
+STAYS_LARGE = LARGEST_EXPONENT - 10.0
+"""Exponent that a harmless overflow must not fall below while it counts as constant: lower than where it begins to count, so that
+a step may end there."""
 TINIEST = 1e-300
 """Smallest bound of a magnitude from below. In place of zero it makes radii huge instead of infinite, which proves as little, and
 no division by zero."""
@@ -86,9 +90,9 @@ class Balls:
             first, second = (sine, cosine) if node.operation == "sin" else (cosine, sine)
             return f"sine_radius({first}, {second}, {ra})"
         if node.operation == "exp":
-            return f"exp_radius({self._centre(a)}, {self._centre(node)}, {ra})"
+            return self._exponential(node, f"exp_radius({self._centre(a)}, {self._centre(node)}, {ra})")
         if node.operation == "expm1":
-            return f"exp_radius({self._centre(a)}, {self._centre(exp_of(node))}, {ra})"
+            return self._exponential(exp_of(node), f"exp_radius({self._centre(a)}, {self._centre(exp_of(node))}, {ra})")
         if node.operation == "log1p":
             return f"log_radius(abs(1.0 + {self._centre(a)}), {ra})"
         if node.operation == "tanh":
@@ -99,6 +103,14 @@ class Balls:
             return self._logarithm(a)
         exponent = "0.5" if node.operation == "sqrt" else f"abs({self._centre(node.arguments[1])})"
         return f"power_radius({self._size(node)}, {exponent}, {self._logarithm(a)})"
+
+    def _exponential(self, node: Expression, radius: str) -> str:
+        """Write the radius of an exp; 0 for one that is a constant, if its argument stays large along the step."""
+        if not self._formula.saturates(node):
+            return radius
+        a = node.arguments[0]
+        small = self._formula.below(LARGEST_EXPONENT, self._centre(a)), self._formula.below(STAYS_LARGE, self._least(a))
+        return f"min({radius}, 1e308 * max({small[0]}, {small[1]}))"
 
     def _product(self, a: Expression, b: Expression) -> str:
         ra, rb = self.radius(a), self.radius(b)

@@ -2,7 +2,8 @@
 
 The text uses these names for node number i: c[i] is its value at the reference point, e{i} its difference from that value, and
 n{i}_{k} its k-th Taylor coefficient (`recurrences` writes the orders from 1 on). The k-th coefficients of slip and slip rate are
-x_{k} and s_{k}. The difference of the slip is dx, that of the rate is s_0, and w and w2 are the states.
+x_{k} and s_{k}. The difference of the slip is dx, that of the rate is s_0, and w and w2 are the states. Where an exp of an exp is so
+large that it counts as constant, o{i} is 0, elsewhere 1.
 """
 
 from __future__ import annotations
@@ -10,6 +11,8 @@ from __future__ import annotations
 from stickslip.friction.formula.denominators import LARGEST_EXPONENT, harmless_overflows
 from stickslip.friction.formula.expression import RATE, SLIP, STATES, VARIABLES, Expression, depends_on, nodes_of
 
+STEEP = ("exp", "expm1", "pow")
+"""Operations whose results may be so large that exp of them is far beyond LARGEST_EXPONENT, and their derivatives larger still."""
 NO_LIMIT = 1e308
 """Largest exponent of any other exp, in effect no limit: if exp is infinite, the run ends with a status that says so."""
 
@@ -117,6 +120,21 @@ class OrderZero:
         both = {Expression(name, node.arguments) for name in ("exp", "expm1")} & self._own
         return LARGEST_EXPONENT if both <= self._only_below else NO_LIMIT
 
+    def saturates(self, node: Expression) -> bool:
+        """Return True for an exp of another exp or power whose overflow is harmless.
+
+        Beyond LARGEST_EXPONENT it is a constant with a series of zeros: the derivatives of its argument are too large for numbers,
+        those of the quotient or exp that it leads to are zero to rounding.
+        """
+        if node.operation != "exp" or self.largest_exponent(node) != LARGEST_EXPONENT:
+            return False
+        return any(part.operation in STEEP and self.varies[part] for part in nodes_of(node.arguments[0]))
+
+    @staticmethod
+    def below(limit: float, argument: str) -> str:
+        """Write 1.0 where an argument is below a limit, else 0.0."""
+        return f"min(max(1e300 * ({limit!r} - {argument}), 0.0), 1.0)"
+
     def order_zero(self) -> list[str]:
         """Write the difference from the reference and the value of every varying node, at slip difference dx and rate s_0."""
         lines = [f"x_0 = {self.reference(SLIP)} + dx"]
@@ -130,6 +148,8 @@ class OrderZero:
                 lines += [f"g{j} = sine({turned})", f"h{j} = versine({turned})"]
             lines.append(f"e{i} = {self._difference_rule(node)}")
             lines.append(f"n{i}_0 = {self._value_rule(node)}")
+            if self.saturates(node):
+                lines.append(f"o{i} = {self.below(LARGEST_EXPONENT, self.coefficient(node.arguments[0], 0) or '0.0')}")
         return lines
 
     def _value_rule(self, node: Expression) -> str:
@@ -209,7 +229,7 @@ class OrderZero:
                 rule = {
                     "sin": f"{other} * {da}",
                     "cos": f"-{other} * {da}",
-                    "exp": f"{value} * {da}",
+                    "exp": f"{value} * (o{self.index[node]} * {da})" if self.saturates(node) else f"{value} * {da}",
                     "log": f"{da} / {a0}",
                     "log1p": f"{da} / (1.0 + {a0})",
                     "expm1": f"{self.coefficient(exp_of(node), 0) if node.operation == 'expm1' else ''} * {da}",

@@ -192,7 +192,8 @@ class Recurrences(OrderZero):
         if node.operation == "cos":
             return f"-({ak} * {self.coefficient(sine, 0)}" + self._weighted(a, sine, k) + ")"
         if node.operation == "exp":
-            return f"{ak} * {self.coefficient(node, 0)}" + self._weighted(a, node, k)
+            grows = f"o{self.index[node]} * " if self.saturates(node) else ""
+            return f"{grows}{ak} * {self.coefficient(node, 0)}" + self._weighted(a, node, k)
         if node.operation == "expm1":
             return f"{self.coefficient(exp_of(node), k)}"
         if node.operation in ("log", "log1p"):
