@@ -50,6 +50,8 @@ def check_rate(problem: Problem) -> None:
     given = problem.initial_rate
     if given is None or problem.body.has_inertia:
         return
+    if given == 0.0 and not (starts_steadily(problem) or problem.friction.sticks):
+        return  # the start from rest, which it is without a mass: a sweep over the mass may include 0
     if not starts_steadily(problem):
         why = "a contact without mass has no slip rate of its own, load and friction determine it"
         raise InputError(

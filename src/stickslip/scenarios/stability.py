@@ -54,7 +54,25 @@ def _why_it_slides(problem: Problem) -> str:
     """Return where the initial rate of a contact comes from that has a mass and never sticks."""
     if problem.initial_load is None and problem.initial_excess is None:
         return "steady sliding" if problem.initial_rate is not None else "steady sliding at the pull rate"
-    return "as initial rate" if problem.initial_rate is not None else "there the initial load and friction balance"
+    if problem.initial_rate is not None:
+        return "as initial rate"
+    return "there the initial load and friction balance" + (f"; {OTHER_START}" if starts_otherwise(problem) else "")
+
+
+OTHER_START = (
+    "without contact_mass the slab behind the contact starts from rest, which is another start; with [initial] rate = 0 a mass"
+    " starts from there, too"
+)
+"""Sentence on the start of a contact with mass under a law that never sticks."""
+
+
+def starts_otherwise(problem: Problem) -> bool:
+    """Return True if a slab would start in another way with a contact mass than without, under a law that never sticks.
+
+    A contact without mass takes the slip rate that load and state determine at 0+, and the slab moves as if it had rested before.
+    """
+    loaded = problem.initial_load is not None and problem.initial_rate is None
+    return problem.body.has_waves and not problem.friction.sticks and loaded
 
 
 def wait_of(problem: Problem) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -46,12 +47,26 @@ def show_sweep(title: str, dataset: xr.Dataset) -> int:
     dataset, screen = dataset.load(), console()
     kind, keys, _ = read_design(dataset.attrs)
     say(screen, clean(title), style="bold")
-    say(screen, f"{in_words(kind, dataset.status.shape)} over {', '.join(keys)}")
+    say(screen, f"{in_words(kind, dataset.status.shape)} over {', '.join(keys)}", *_on_starts(dataset, keys))
     status = dataset.status.to_numpy().ravel()
     _show_ends(status, dataset.reason.to_numpy().ravel())
     _show_quantities(dataset)
     _show_changes(dataset, is_grid=kind == GRID)
     return int((status >= FIRST_FAILURE).all())
+
+
+def _on_starts(dataset: xr.Dataset, keys: Sequence[str]) -> list[str]:
+    """Return a line if members without contact mass start in another way than those with one."""
+    from stickslip.scenarios.scenario import read_scenario
+    from stickslip.scenarios.stability import OTHER_START, starts_otherwise
+
+    if MASS not in keys or not 0.0 == float(dataset[MASS].min()) < float(dataset[MASS].max()):
+        return []
+    return [f"note: {OTHER_START}"] if starts_otherwise(read_scenario(dataset.attrs["scenario"], "sweep").problem) else []
+
+
+MASS = "body.contact_mass"
+"""Parameter under which some laws start in another way at 0."""
 
 
 def quantities_of(dataset: xr.Dataset) -> list[str]:
