@@ -226,10 +226,6 @@ def test_leaps_are_stored_and_listed_and_shown(tmp_path) -> None:  # type: ignor
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        (
-            {"friction": F.HyperbolicRate(static=0.8, dynamic=0.3, alpha=1.0)},
-            r"a friction law of slip alone \(HyperbolicRate is not one\)",
-        ),
         ({"body": replace(SLAB, driver_impedance=1e7)}, "a rigid driver"),
         ({"pull_rate": 0.0}, "a pull rate that is not 0"),
     ],

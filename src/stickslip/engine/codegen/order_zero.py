@@ -11,8 +11,6 @@ from __future__ import annotations
 from stickslip.friction.formula.denominators import LARGEST_EXPONENT, harmless_overflows
 from stickslip.friction.formula.expression import RATE, SLIP, STATES, VARIABLES, Expression, depends_on, nodes_of
 
-STEEP = ("exp", "expm1", "pow")
-"""Operations whose results may be so large that exp of them is far beyond LARGEST_EXPONENT, and their derivatives larger still."""
 NO_LIMIT = 1e308
 """Largest exponent of any other exp, in effect no limit: if exp is infinite, the run ends with a status that says so."""
 
@@ -121,14 +119,22 @@ class OrderZero:
         return LARGEST_EXPONENT if both <= self._only_below else NO_LIMIT
 
     def saturates(self, node: Expression) -> bool:
-        """Return True for an exp of another exp or power whose overflow is harmless.
+        """Return True for an exp whose overflow is harmless and whose argument is no straight line, such as another exp.
 
-        Beyond LARGEST_EXPONENT it is a constant with a series of zeros: the derivatives of its argument are too large for numbers,
+        Beyond LARGEST_EXPONENT it is a constant with a series of zeros: the derivatives of its argument may be beyond numbers, and
         those of the quotient or exp that it leads to are zero to rounding.
         """
-        if node.operation != "exp" or self.largest_exponent(node) != LARGEST_EXPONENT:
-            return False
-        return any(part.operation in STEEP and self.varies[part] for part in nodes_of(node.arguments[0]))
+        harmless = node.operation == "exp" and self.largest_exponent(node) == LARGEST_EXPONENT
+        return harmless and not self._is_straight(node.arguments[0])
+
+    def _is_straight(self, node: Expression) -> bool:
+        """Return True if a node is linear in the variables."""
+        if not self.varies[node] or node in VARIABLES:
+            return True
+        fixed = [not self.varies[argument] for argument in node.arguments]
+        straight = node.operation in ("add", "sub") or (node.operation == "mul" and any(fixed))
+        straight |= node.operation == "div" and fixed[-1]
+        return straight and all(self._is_straight(argument) for argument in node.arguments)
 
     @staticmethod
     def below(limit: float, argument: str) -> str:

@@ -17,7 +17,7 @@ def harmless_overflows(nodes: Sequence[Expression]) -> set[Expression]:
     """Return the nodes whose every way into the formula leads to a denominator or into one of SQUASH.
 
     The way may lead through sums, differences, roots and products, but not through a product with a factor that may be as small as
-    the node is large.
+    the node is large, nor over a divisor that may be as large.
     """
     parents: dict[Expression, list[Expression]] = {node: [] for node in nodes}
     for node in nodes:
@@ -38,7 +38,9 @@ def harmless_overflows(nodes: Sequence[Expression]) -> set[Expression]:
 
 def _keeps_large(node: Expression, parent: Expression) -> bool:
     """Return True if the parent of a node is large wherever the node is."""
-    if parent.operation != "mul":
+    if parent.operation not in ("mul", "div"):
         return parent.operation in ("add", "sub", "sqrt")
+    if parent.operation == "div" and parent.arguments[0] != node:
+        return False
     others = [argument for argument in parent.arguments if argument != node]
     return all(part.operation not in ("exp", "expm1", "pow", "div") for other in others for part in nodes_of(other))
