@@ -149,6 +149,8 @@ UPWARD_FOR_TYPES: dict[str, set[str]] = {
     "batch/kernels/runs.py": {"batch.setups", "batch.workspace"},
     "contact/uniqueness.py": {"solution"},
     "creep/stepper.py": {"run"},
+    "creep/steady.py": {"run"},
+    "creep/steady_landing.py": {"run"},
     "friction/statements.py": {"friction.law"},
     "problem/selection_rule.py": {"contact"},
     "scenarios/scenario.py": {"solution"},

@@ -36,7 +36,7 @@ from stickslip.contact.folds import bounds_of
 from stickslip.contact.steady import Sliding, steady_slidings
 from stickslip.creep.pattern import Pattern, monotone_parts
 from stickslip.engine.enclosure.formula import bound_at_slips, bound_friction
-from stickslip.engine.state.layout import TERMS, Branch, Floats, HistoryPiece, Store
+from stickslip.engine.state.layout import TERMS, Branch, Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 
@@ -95,7 +95,7 @@ class Deviation:
         rates[:, 0] -= rate
         loads[:, 0] -= load
         speed, bend = run.store.speed[rows], run.store.bend[rows]
-        slip, area = (float(_integrals(one, speed, bend).sum()) for one in (rates, loads))
+        slip, area = (float(integrals(one, speed, bend).sum()) for one in (rates, loads))
         beyond = run.store.state[rows].copy()
         beyond[..., 0] -= states
         scales = np.maximum(np.abs(states), [state.scale for state in run.problem.friction.states])
@@ -123,7 +123,7 @@ def _largest(p: Floats) -> float:
     return float(np.abs(Pattern(monotone_parts(p, still, still + 1.0, still)).ends).max())
 
 
-def _integrals(p: Floats, speed: Floats, bend: Floats) -> Floats:
+def integrals(p: Floats, speed: Floats, bend: Floats) -> Floats:
     """Return the integrals of polynomials in xi over time: d theta = (speed + 2 bend xi) d xi."""
     powers = np.arange(1, TERMS + 1)
     return np.asarray(speed * (p / powers).sum(axis=1) + 2.0 * bend * (p / (powers + 1)).sum(axis=1))
@@ -318,56 +318,3 @@ class Multiplier(NamedTuple):
     def power(self, n: int) -> float:
         """Return the factor of n round trips."""
         return self.sign ** (n % 2) * math.exp(min(n * self.size, MOST)) if self.size > -math.inf else 0.0
-
-
-def write(run: Session, leap: Leap, deviation: Deviation) -> None:
-    """Write a leap into the history, the way as one piece and then the round trip on which it lands, and set the engine there."""
-    state, count, last = run.state, run.count, deviation.rows.stop - 1
-    rows = range(deviation.rows.start if leap.factor else last, last + 1)
-    run.reserve(run.length + 1 + len(rows))
-    store, way, landed_on = run.store, run.length, int(count.trip) + leap.trips
-    sign, turn = math.copysign(1.0, deviation.rate_there), run.problem.round_trip_time
-    law_sign = sign if run.problem.friction.counts == "net" else 1.0
-    length = leap.trips * turn
-    _write_piece(run, way, last, (int(count.trip), 0.0, length + np.spacing(landed_on * turn)))  # no gap before the next round trip
-    steady = deviation.load_there, sign * leap.slip / length, deviation.states_there
-    _write_steady(store, way, *steady)
-    state.slip_now += sign * leap.slip
-    state.law_slip += law_sign * leap.slip
-    for n, row in enumerate(rows, way + 1):
-        phases = (float(store.phase_from[row]), float(store.phase_to[row])) if leap.factor else (0.0, turn)
-        _write_piece(run, n, row, (landed_on, *phases))
-        _write_steady(store, n, deviation.load_there, deviation.rate_there, deviation.states_there)
-        if leap.factor:
-            kept = row - deviation.rows.start
-            store.load[n] += leap.factor * deviation.load[kept]
-            store.rate[n] += leap.factor * deviation.rate[kept]
-            store.speed[n], store.bend[n], store.jump[n] = store.speed[row], store.bend[row], store.jump[row]
-        grown = float(_integrals(store.rate[n : n + 1], store.speed[n : n + 1], store.bend[n : n + 1])[0])
-        state.slip_now += grown
-        state.law_slip += law_sign * abs(grown)
-    count.length = way + 1 + len(rows)
-    end = count.length - 1
-    state.rate_now, state.load_now = store.rate[end].sum(), store.load[end].sum()
-    for k, value in enumerate(deviation.states_there):
-        state.state_now[k] = value
-    count.previous_from, count.previous_to, count.trip_from, count.trip = way + 1, count.length, count.length, landed_on + 1
-    count.source = count.moved = count.trips_at_rest = count.leaving_rest = count.jump = count.cause = count.stalled = 0
-
-
-def _write_piece(run: Session, n: int, row: int, when: tuple[int, float, float]) -> None:
-    """Write all of piece n but its motion: like another piece, at a round trip and between two phases (s)."""
-    trip, begin, end = when
-    kept, like = HistoryPiece(run.store.pieces[n]), HistoryPiece(run.store.pieces[row])
-    kept.trip, kept.mode, kept.law_piece = trip, like.mode, like.law_piece
-    kept.jump, kept.cause, kept.echo_of = 0, 0, -1
-    kept.phase_from, kept.phase_to, kept.speed, kept.bend = begin, end, end - begin, 0.0
-    kept.slip, kept.law_slip = run.state.slip_now, run.state.law_slip
-    kept.amplified, kept.gain, kept.residual = np.nan, np.nan, 0.0  # a leap has an error bound of its own
-
-
-def _write_steady(store: Store, n: int, load: float, rate: float, states: Floats) -> None:
-    """Write a constant load (Pa or N, minus the reference), a constant rate (m/s) and constant states into piece n."""
-    for row, value in ((store.load[n], load), (store.rate[n], rate), *((store.state[n, k], one) for k, one in enumerate(states))):
-        row[:] = 0.0
-        row[0] = value

@@ -12,7 +12,8 @@ from stickslip.creep.averaged import AveragedCreep, Strength
 from stickslip.creep.landing import Piece, landing
 from stickslip.creep.pattern import Pattern, monotone_parts
 from stickslip.creep.planner import Plan, Planner, hermite
-from stickslip.creep.steady import SHORTEST_LEAP, SteadyLeaps, write
+from stickslip.creep.steady import SHORTEST_LEAP, SteadyLeaps
+from stickslip.creep.steady_landing import write
 from stickslip.engine.state.layout import NEVER, TERMS, Counts, Floats, HistoryPiece, Incoming, State, Stop, Store
 from stickslip.engine_input.limits import PATIENCE, leaps_over
 from stickslip.problem.problem import Problem
