@@ -321,7 +321,7 @@ def problem() -> ss.Problem:
 
 def test_runs_take_times_with_units(problem: ss.Problem, tmp_path: Any) -> None:
     run = ss.simulate(problem, "0.5 min", max_events=1, checkpoint=tmp_path / "run.nc", checkpoint_every="1 hour")
-    assert run.duration == 30.0
+    assert run.asked_duration == 30.0
     assert run.slip(1.0) == ss.simulate(problem, 30 * UREG.s, max_events=1).slip(1.0)
     assert run.catalogue("1 mm/s").equals(run.catalogue(1e-3))
     assert run.window(0, before="0 s", after="500 ms").after == 0.5

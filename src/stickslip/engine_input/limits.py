@@ -67,8 +67,7 @@ def check_creep_rtol(problem: Problem, creep_rtol: float | None, where: str, nam
         raise InputError(f"{where}: {name} must be {allowed}, got {creep_rtol:g}")
     if creep_rtol > 0.0 and not leaps_over(problem):
         missing = missing_for_creep(problem) or "a pull rate that is not 0"
-        steady = "over steady sliding a steady loading and a law that does not keep changing with slip"
-        raise InputError(f"{where}: {name} must be 0 here: leaps over creep need {missing}, {steady}")
+        raise InputError(f"{where}: {name} must be 0 here: leaps over creep need {missing}")
     return creep_rtol
 
 
