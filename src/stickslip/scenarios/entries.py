@@ -150,8 +150,8 @@ def read_points(
 
     `columns` maps headings to fields. The last belongs to the dependent variable; exactly one other column must be there, or be
     named by `along`, and holds the ascending slips, slip rates or times at which the values are given. Blank lines, lines that
-    begin with #, notes before the headings and unknown columns are ignored; headings may carry units (`foundation.headings`). Raises
-    InputError with a message of one line that names the file and the line.
+    begin with #, notes before the headings and unknown columns are ignored; headings may carry units (`foundation.headings`).
+    Raises InputError with a message of one line that names the file and the line.
     """
     *others, value = columns
     if along is not None:

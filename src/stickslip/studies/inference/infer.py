@@ -23,7 +23,7 @@ from stickslip.studies.inference.by_features import FeatureModel, by_features, s
 from stickslip.studies.inference.certainty import Certainty, Profile, certainty_of, profile_of, unknown
 from stickslip.studies.inference.directions import IDLE
 from stickslip.studies.inference.estimate import Estimate, estimate
-from stickslip.studies.inference.free import Free, read_free, with_scale
+from stickslip.studies.inference.free import LOAD, Free, read_free, with_scale
 from stickslip.studies.inference.inference import Inference
 from stickslip.studies.inference.model import Model
 from stickslip.studies.inference.noise import LOSSES
@@ -267,7 +267,11 @@ def _model(problem: Problem, parts: list[Part], names: Sequence[str] | str, wish
         problem, names, hints_of(problem, parts[0]), bounds=wishes.bounds, priors=wishes.priors, start=wishes.begin_at
     )
     chosen = with_scale(chosen, scales_of(parts[0], problem))
-    own = own_of(problem, parts, wishes.each) if wishes.parts == "rests" else []
+    own = list[Free]()
+    if wishes.parts == "rests":
+        own = own_of(problem, parts, wishes.each)
+    elif wishes.by == "samples" and all(part.start == "record" for part in parts):
+        own = own_of(problem, parts, [LOAD])  # the load of the first samples is known to their noise only
     own = [one for one in own if one.name not in {shared.name for shared in chosen}]
     kind = FeatureModel if wishes.by == "features" else Model
     sizes = scatter_of(parts) if wishes.by == "features" else first_sizes(parts)

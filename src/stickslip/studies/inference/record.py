@@ -45,7 +45,7 @@ class Record(CheckedArguments):
     relative: Floats | None = None
 
     def __post_init__(self) -> None:
-        if not isinstance(self.measured, Mapping) or not set(self.measured) <= set(MEASURED):
+        if not isinstance(self.measured, Mapping) or not set(self.measured) <= set(UNITS):
             names = f"a mapping of arrays by name ({', '.join(MEASURED)})"
             example = 'Record.read({"time": t, "friction": x}) makes a record of columns'
             raise InputError(f"Record: measured must be {names}, got {shown(self.measured)}; {example}")
