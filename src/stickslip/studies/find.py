@@ -104,11 +104,11 @@ def find(
     along : str
         The parameter that is varied, as in a sweep: "pull_rate", "body.stiffness", "friction.alpha", "initial.excess" ...
     low, high : float or str, optional
-        Its two ends (SI, or texts with units). Without them the search along the pull rate begins at the rate at which steady
-        sliding becomes stable, and goes up from there.
+        The two values between which to search (SI, or texts with units). Without them the search along the pull rate begins at
+        the rate at which steady sliding becomes stable, and goes up from there.
     what : str or callable
         "sticking": whether the contact rests in the last third of a run (or nearly does, see the quantity of that name in sweeps).
-        "events", "pulses": how many there are. A function of a `Solution` that returns True or False, or a whole number.
+        "events", "pulses": how many there are. Or a function of a `Solution` that returns True or False, or a whole number.
     duration : float or str, optional
         Duration of the runs (s), long enough for what happens at the start to be over; that of the scenario by default.
     within : float
@@ -120,12 +120,12 @@ def find(
     -------
     Edge
         The two ends of the last bracket, what the runs gave there, and all runs. Between two positive ends the search halves the
-        ratio, otherwise the distance. If there are several changes, it is one of them.
+        ratio, otherwise the distance. If there are several changes, it finds one of them.
 
     Raises
     ------
     InputError
-        If both ends give the same, if a run does not reach its end, or if a name is unknown.
+        If the runs at both ends give the same, if a run does not reach its end, or if a name is unknown.
     KeyboardInterrupt
         If the user presses Ctrl-C.
 

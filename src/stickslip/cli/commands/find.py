@@ -30,9 +30,9 @@ def find(
     At which pull rate does stick-slip vanish? From which stiffness on is there
     no event, or one pulse less? The answer is the last bracket, with what the
     runs at its two ends did. "sticking" asks whether the contact rests in the
-    last third of a run: let the run last long enough. What happens from rest
-    may differ from what is stable: `stickslip check` says from which rate on
-    steady sliding is.
+    last third of a run: let the run last long enough. A contact that starts
+    from rest may stick although steady sliding is stable: `stickslip check`
+    says from which rate on steady sliding is stable.
 
     \b
       stickslip find mine.toml --duration "60 s"

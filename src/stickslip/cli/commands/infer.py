@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 FREE = 'The numbers to find, with commas: "a,b,body.stiffness".'
 BY = "What is fitted: samples, or features of slip events."
 OBSERVE = (
-    "Which of them: friction, shear_stress, shear_force, slip, slip_rate; peak, rest, drop, recurrence, duration, event_slip, "
-    "peak_rate."
+    "Which samples or features: friction, shear_stress, shear_force, slip, slip_rate; peak, rest, drop, recurrence, duration, "
+    "event_slip, peak_rate."
 )
 START = "How the run begins: steady, record (load of the first samples) or problem."
-PRIOR = 'What is known before: "friction.a=normal(0.01, 0.002)"; lognormal and uniform too.'
+PRIOR = 'What you know beforehand: "friction.a=normal(0.01, 0.002)"; lognormal and uniform too.'
 BOUND = 'Limits of a number: "friction.a=0.001..0.1".'
 COMPARE = "Another scenario, to compare what both predict of the part left out; may be repeated."
 COMPARE_FREE = "The free numbers of the scenarios of --compare; by default those of --free that they have."
@@ -45,12 +45,12 @@ def infer(
     start: Annotated[str | None, option(START)] = None,
     sensor: Annotated[str, typer.Option(help="Where shear is measured: contact, or spring (load cell of a block).")] = "contact",
     parts: Annotated[str | None, option("rests: a run of its own after each slip event of the record.")] = None,
-    each: Annotated[str | None, option("What is free for each of these parts: initial.load, initial.state.")] = None,
+    each: Annotated[str | None, option("What is free for each part of --parts: initial.load, initial.state.")] = None,
     bound: Annotated[list[str] | None, option(BOUND, panel=SEARCH)] = None,
     prior: Annotated[list[str] | None, option(PRIOR, panel=SEARCH)] = None,
     begin_at: Annotated[list[str] | None, option("Where the search for a number begins: NAME=VALUE.", panel=SEARCH)] = None,
     weight: Annotated[float, typer.Option(help=WEIGHT, rich_help_panel=SEARCH)] = 0.0,
-    windows: Annotated[bool, typer.Option("--windows", help="Fit shorter parts of the record, too, and tell the spread.")] = False,
+    windows: Annotated[bool, typer.Option("--windows", help="Fit shorter parts of the record, too, and show the spread.")] = False,
     loss: Annotated[str, typer.Option(help="linear; soft_l1, huber or cauchy for outliers.", rich_help_panel=SEARCH)] = "linear",
     starts: Annotated[int, typer.Option(help="How many starts the search has.", rich_help_panel=SEARCH)] = 4,
     seed: Annotated[int, typer.Option(help="Seed of starts and samples.", rich_help_panel=SEARCH)] = 0,
@@ -75,9 +75,10 @@ def infer(
     "tau (MPa)" with "sigma (MPa)", or shear_force), slip, slip_rate, and
     load_point (displacement of the machine) or load_rate, which becomes the
     loading. Two files with clocks of their own are one record if they are
-    given as FIRST+SECOND@SECONDS, by which the second clock begins later.
-    Each trial is a full run with inertia and waves, so that machine
-    stiffness, steps of rate, holds and stick-slip are all fitted as they are.
+    given as FIRST+SECOND@SECONDS, where SECONDS says how much later the
+    zero of the second clock is. Each trial is a full run with inertia and
+    waves, so that machine stiffness, steps of rate, holds and stick-slip
+    are all fitted as they are.
 
     For points of friction against slip or slip rate see `stickslip fit`.
 

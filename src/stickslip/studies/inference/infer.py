@@ -133,8 +133,8 @@ def infer(
         The record: a CSV file, or columns by their headings, as `Record.read` describes. Several records share the free numbers.
     free : list of str
         Names of the free numbers: those of `problem.parameters`, such as "friction.a" and "body.stiffness", and "initial.load",
-        "initial.state", "record.trend" (friction per metre of slip), "record.delay" (s, of the record behind the machine) and
-        "record.servo" (s, in which the load point approaches a new rate: it falls behind as exp(-t/servo)).
+        "initial.state", "record.trend" (friction per metre of slip), "record.delay" (s, by which the record is late) and
+        "record.servo" (s: after a step the load point approaches its new rate as exp(-t/servo)).
     begin, end : float or str, optional
         The part of the record that is taken: times (s, as in the record, or texts with a unit).
     progress : bool or callable, optional
@@ -143,9 +143,9 @@ def infer(
         What of the record is fitted: its samples, or features of its slip events (stick-slip), with their scatter from event to
         event.
     observe : str or list of str, optional
-        What is fitted: friction, shear_stress or shear_force, slip, slip_rate. By default shear, or else all that is there. Of
-        features: peak, rest, drop (peak minus rest), recurrence, duration, event_slip, peak_rate; by default all that the record
-        tells but the drop.
+        Which samples are fitted: friction, shear_stress or shear_force, slip, slip_rate; by default shear, or else all that is
+        there. Or which features: peak, rest, drop (peak minus rest), recurrence, duration, event_slip, peak_rate; by default all
+        that the record has but the drop.
     start : {"steady", "record", "problem"}, optional
         How the run begins: in steady sliding at the first pull rate (default for a law with a state that never sticks), with the
         load of the first samples (default for others), or as the problem says.
@@ -156,15 +156,15 @@ def infer(
     each : list of str, optional
         What is free for each of these parts: "initial.load" within its noise (default), and "initial.state" of a law that has one.
     bounds : mapping, optional
-        Lower and upper limits by name; default a factor 1000 to both sides for positive
-        quantities, 30 for pure numbers.
+        Lower and upper limits by name. The default is a factor of 1000 to both sides for positive quantities, and of 30 for pure
+        numbers.
     priors : mapping, optional
-        What is known before, by name: "normal(0.6, 0.05)", "lognormal(10 um, 0.5)", with the standard deviation of the logarithm,
-        or "uniform(0, 1)".
+        What you know beforehand, by name: "normal(0.6, 0.05)", "lognormal(10 um, 0.5)", with the standard deviation of the
+        logarithm, or "uniform(0, 1)".
     begin_at : mapping, optional
         Values at which the search begins, by name; by default those that the record shows, or else those of the problem.
     loss : {"linear", "soft_l1", "huber", "cauchy"}
-        How residuals count: other than linear if some samples lie far off.
+        How residuals count. Choose one other than linear if some samples lie far off.
     weight : float
         Exponent p of the weight (n/j)**p of the j-th of n samples after each change of the pull rate, as in RSFit3000 (Skarbek &
         Savage 2019, Geosphere 15, 1665). Default 0: all samples count alike.
@@ -176,7 +176,7 @@ def infer(
     held_out : float or str, optional
         Share of the record at its end, or time (text with a unit), that is not fitted but predicted.
     profiles : bool
-        If True, intervals follow from profiles of the likelihood in place of its curvature.
+        If True, intervals follow from profiles of the likelihood, and not from its curvature.
     samples : int
         Number of samples of the posterior distribution that are drawn with emcee. Default 0.
     seed : int
