@@ -6,7 +6,6 @@ import copy
 import inspect
 import math
 import pickle
-import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -16,6 +15,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.studies.study import Study
+from tests.messages import places_twice
 
 SLAB = ss.ElasticSlab(density=2800, wave_speed=3500, thickness=1e4, normal_stress=1e8)
 LAW = ss.friction.HyperbolicRate(static=0.8, dynamic=0.3, alpha=1.0)
@@ -32,12 +32,6 @@ def refused(call: Callable[[], Any], message: str) -> None:
     assert not places_twice(text), text
     assert "\n" not in text
     assert len(text) < 250
-
-
-def places_twice(text: str) -> set[str]:
-    """Return the places before the colons of a message that it names twice, as "Problem" in "Problem: friction: Problem: ..."."""
-    places = re.findall(r"(?:^|: )([A-Za-z_][\w.-]{2,40})(?=: )", text)
-    return {one for one in places if places.count(one) > 1}
 
 
 NO_PROBLEM = [

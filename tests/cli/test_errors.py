@@ -10,7 +10,7 @@ import pytest
 import stickslip as ss
 from stickslip.scenarios.templates import template
 from stickslip.trajectory.status import STATUSES
-from tests.test_wrong_arguments import places_twice
+from tests.messages import places_twice
 
 BAD = template("slab").replace("thickness =", "thicknes =")
 FOUR_KEYS = [word for name in ("alpha", "static", "dynamic", "thickness") for word in ("-v", f"{name}=0.1,0.2")]
