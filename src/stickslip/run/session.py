@@ -174,8 +174,8 @@ class Session:
         crowded = np.unique(trips, return_counts=True)[1].max() > MOST_PIECES
         if options.shortest_event == 0.0 and crowded and lumps_by_itself(self.problem):
             cures.append("lumping of the shortest events (leave out shortest_event = 0)")
-        times = history.start[[self.length // 2, max(self.length // 2, self.length - 4 * SPARE)]].tolist()
-        return Crowd(self.length, history.duration, *times, options.duration).status(cures)
+        half, last = history.start[[self.length // 2, max(self.length // 2, self.length - 4 * SPARE)]].tolist()
+        return Crowd(self.length, history.duration, half, last, options.duration).status(cures)
 
     def advance(self, budget: int) -> int:
         """Call the engine once or, if it has paused for that, leap over creep: see `Solver.advance`."""
