@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -15,6 +17,7 @@ from stickslip.batch import run_members
 from stickslip.creep.stepper import CreepLeaps
 from stickslip.engine.state.layout import Stop
 from stickslip.engine_input.limits import AUTOMATIC_SHARE, MOST_PIECES, PATIENCE, creep_tolerance
+from stickslip.foundation.units import to_si
 from stickslip.trajectory.status import STATUSES
 from tests.engine.creep_truth import GROWN, ROUND, printed
 from tests.long_runs.problems import differences
@@ -252,6 +255,54 @@ def test_a_full_history_is_written_only_where_its_size_was_asked_for(tmp_path: P
     assert file.read_bytes() == before
     assert ss.resume(file, max_pieces=20_000).status.name == "finished"
     assert ss.open_solution(file).status.name == "finished"
+
+
+CROWDS: dict[str, tuple[ss.Problem, float, dict[str, Any], set[str]]] = {
+    "cycles of a block": (
+        ss.load_scenario("cycles-block").problem,
+        100 * ss.YEAR,
+        {"max_pieces": 250},
+        {"catalogue", "max_pieces", "duration"},
+    ),
+    "creep": (printed(1), 300 * ROUND, {"max_pieces": 60_000, "creep_rtol": 0.0}, {"leaps", "duration"}),
+    "ever shorter events": (weakening(0.15), 17 * ROUND, {"max_pieces": 60_000, "shortest_event": 0.0}, {"lumping", "duration"}),
+}
+
+
+@pytest.mark.parametrize("name", CROWDS)
+def test_each_cure_that_a_full_history_names_lets_the_run_finish(name: str) -> None:
+    problem, duration, options, expected = CROWDS[name]
+    full = ss.simulate(problem, duration, **options)
+    assert full.status.name == "too many pieces"
+    cures = re.split(", or ", full.status.message.partition("what helps: ")[2].replace(", which keeps events only", ""))
+    tried = set()
+    for cure in cures:
+        word = next(word for word in cure.split() if word in ("catalogue", "leaps", "lumping", "max_pieces", "duration"))
+        tried.add(word)
+        if word == "catalogue":
+            assert ss.catalogue(problem, duration, **options).attrs["status"] == "finished", cure
+            continue
+        left = {key: value for key, value in options.items() if f"leave out {key} = 0" not in cure}
+        if word == "max_pieces":
+            left["max_pieces"] = int(cure.rpartition(" ")[2])
+        number, _, unit = cure.rpartition("up to ")[2].partition(" ")
+        shorter = to_si(float(number), unit, "s") if word == "duration" else duration
+        assert ss.simulate(problem, shorter, **left).status.name == "finished", cure
+    assert tried == expected
+
+
+@pytest.mark.parametrize(
+    ("problem", "trips", "option"),
+    [(printed(1), 150, "creep_rtol"), (weakening(0.15), 11, "shortest_event")],
+    ids=["leaps", "lumping"],
+)
+def test_a_full_history_names_nothing_that_would_begin_later(problem: ss.Problem, trips: int, option: str) -> None:
+    """Leaps begin after 200 round trips with slip, and lumping after one with 4 096 pieces: without the option it is as full."""
+    options: dict[str, Any] = {"max_pieces": 2000}
+    full, without = ss.simulate(problem, trips * ROUND, **options, **{option: 0.0}), ss.simulate(problem, trips * ROUND, **options)
+    assert full.status == without.status
+    assert full.status.name == "too many pieces"
+    assert option not in full.status.message
 
 
 def test_a_file_has_the_size_that_is_documented(tmp_path: Path) -> None:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import gc
 import math
+import sys
+import weakref
 
 import mpmath
 import numpy as np
@@ -13,6 +16,7 @@ import stickslip as ss
 from stickslip.engine.codegen.compiler import compile_formula
 from stickslip.engine.codegen.taylor_series import SIGNATURES, FormulaWriter
 from stickslip.engine.state.layout import TERMS
+from stickslip.engine_input import prepare
 from stickslip.friction.formula import expression as e
 from tests.engine.formulas import FORMULAS, JET, VALUE, compiled, pointer
 
@@ -131,3 +135,19 @@ def test_formulas_that_differ_in_numbers_and_names_alone_share_all_functions_but
     ]
     assert [part for part in texts[0] if texts[0][part] != texts[1][part]] == ["prepare"]
     assert [part for part in texts[0] if texts[0][part] == texts[2][part]] == []
+
+
+def test_a_formula_lives_as_long_as_a_table_that_holds_its_addresses_and_no_longer() -> None:
+    """The caches hold a few; a run that goes on keeps its own, whatever is compiled meanwhile."""
+    problem = ss.Problem(ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8), "0.3 + 0.5/(1 + v)", initial_excess=1e5)
+    setup, memory = prepare.prepare(problem, 1e-10)
+    law = problem.friction
+    formula = weakref.ref(compile_formula(law.trees()[0], law.parameters(), law.state_trees()))
+    for cache in (compile_formula, prepare._prepared, prepare._of_problem):
+        cache.cache_clear()
+    gc.collect()
+    assert formula() is not None
+    assert not [name for name in sys.modules if name.startswith(("value_", "radii_", "rate_jet_", "prepare_"))]
+    del setup, memory
+    gc.collect()
+    assert formula() is None

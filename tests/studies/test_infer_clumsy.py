@@ -216,6 +216,14 @@ def test_a_run_of_equal_samples_without_noise_is_not_saturated() -> None:
     ).all()
 
 
+@pytest.mark.parametrize("steps", [1, 2, 5, 20])
+def test_a_record_of_two_levels_without_noise_is_not_saturated(steps: int) -> None:
+    """Each level is an end of the range, and less than half of the record; both together are nearly all of it."""
+    level = np.where(CLOCK < 49.0, 0.6, 0.61)
+    level[np.abs(CLOCK - 49.0) <= 0.125 * steps] = 0.605 + 1e-4 * np.arange((np.abs(CLOCK - 49.0) <= 0.125 * steps).sum())
+    assert np.isfinite(Record.read({**GOOD, "friction": level}).measured["friction"]).all()
+
+
 def test_a_load_point_in_another_unit_is_doubted() -> None:
     study = ss.studies.infer(GUESS, {**GOOD, "load point (m)": 1e3 * MOVED}, ["reference"], starts=1)
     assert any("the load point moves at 1 mm/s, and at 1 um/s in the problem: are the units" in note for note in study.notes)

@@ -10,7 +10,7 @@ import numpy as np
 from stickslip.batch.kernels.branch_search import MOST_BRANCHES, RULES, Found, Resistances, search_branches
 from stickslip.batch.kernels.runs import fill_constants
 from stickslip.batch.vectorised_problem import Values, member, shared, vectorised_problem
-from stickslip.engine.codegen.compiler import compile_formula
+from stickslip.engine.codegen.compiler import compile_formula, keep_with
 from stickslip.engine.enclosure.formula import formulas_of
 from stickslip.engine.state.layout import Branch, Counts, Floats, Integers, LawPiece, Params, State
 from stickslip.engine_input.branch_table import is_algebraic, table_of_branches
@@ -164,6 +164,7 @@ def formulas(problem: Problem, group: Alike) -> tuple[Floats, Integers]:
     static = shared(law.pieces[home](law, problem.law_slip, 0.0) + law.static_excess)
     references, own = references_of(problem, home, static, lambda i, slip: shared(law.pieces[i](law, slip, 0.0)))
     law_pieces = np.array(np.broadcast_to(group.functions, (len(rows(own)), *group.functions.shape)), order="C")
+    keep_with(law_pieces, [group.functions])
     set_references(law_pieces, own)
     numbers = rows(together([*(getattr(law, name) for name in law.parameters()), *references]))
     constants = np.zeros((len(numbers), pieces, group.size))

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from stickslip.contact.rules.selection import rule_of
-from stickslip.engine.codegen.compiler import CompiledFormula, compile_formula
+from stickslip.engine.codegen.compiler import CompiledFormula, compile_formula, keep_with
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, FirstLoad, Integers, LawPiece, LoadingSegment, Params, Setup, State
 from stickslip.engine.state.workspace import counts_in, lend_problem, memory_of, params_in
@@ -40,7 +40,7 @@ def set_tolerance(params: Params, rtol: Any, shortest: float | None) -> None:
     params.tolerance, params.relative_jump = rtol * SAFETY, np.maximum(1e-10, 10.0 * rtol)
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=32)
 def _prepared(problem: Problem, rule: SelectionRule, rtol: float, shortest: float | None) -> tuple[Setup, Integers]:
     setup, state, counts = _of_problem(problem, rule)
     memory = memory_of(setup.params, state, counts)
@@ -51,7 +51,7 @@ def _prepared(problem: Problem, rule: SelectionRule, rtol: float, shortest: floa
     return setup, memory
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=32)
 def _of_problem(problem: Problem, _: SelectionRule) -> tuple[Setup, State, Counts]:  # keyed by the rule: its name may be reused
     params = parameters_of(problem)
     branches, params.stick_to = table_of_branches(problem, 0.0)
@@ -241,6 +241,7 @@ def functions_of(formulas: Sequence[CompiledFormula], problem: Problem) -> at.In
     A law with a state is always stepped implicitly.
     """
     table = LawPiece.table(len(formulas))
+    keep_with(table, formulas)
     for place, formula in zip(table, formulas, strict=True):
         piece = LawPiece(place)
         if not is_algebraic(problem):

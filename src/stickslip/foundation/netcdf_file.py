@@ -34,6 +34,10 @@ SEAL = len(MARK) + 64 + 1
 AT_A_TIME = 2**20
 """Number of bytes that are read at once for the checksum, so that a large file is never held in memory."""
 
+MOST_TABLES, MOST_ATTRIBUTES = 256, 256
+"""Largest number of tables in a file, and of attributes of the file or of a table; a run's file has some seventy and thirty. The
+libraries take 5 ms for each."""
+
 
 class Variable(NamedTuple):
     """An array of a file, with the names of its dimensions and with its attributes."""
@@ -183,6 +187,7 @@ def attributes(path: Path) -> dict[str, Any]:
 
     try:
         check(path)
+        _check_sizes(path)
         with h5netcdf.File(path, "r") as opened:
             return dict(opened.attrs)
     except Exception:
@@ -190,7 +195,7 @@ def attributes(path: Path) -> dict[str, Any]:
 
 
 def _check_sizes(path: Path) -> None:
-    """Raise InputError for a file with links to other places, or whose tables are larger than the file.
+    """Raise InputError for a file with links to other places, with too many tables, or whose tables are larger than the file.
 
     Files of this package are never compressed, so that a table larger than the file cannot be genuine.
     """
@@ -198,6 +203,8 @@ def _check_sizes(path: Path) -> None:
 
     size, claimed = path.stat().st_size, 0
     with h5py.File(path, "r") as file:
+        _check_number("tables", len(file), MOST_TABLES, path)
+        _check_number("attributes", len(file.attrs), MOST_ATTRIBUTES, path)
         for name in file:
             if not isinstance(file.get(name, getlink=True), h5py.HardLink):
                 raise InputError(f"{path}: not a file of stickslip: '{name}' in it is a link")
@@ -206,12 +213,18 @@ def _check_sizes(path: Path) -> None:
         raise InputError(f"{path}: not a file of stickslip: its tables claim {claimed:.3g} bytes, it has {size}")
 
 
+def _check_number(what: str, count: int, most: int, path: Path) -> None:
+    if count > most:
+        raise InputError(f"{path}: not a file of stickslip: it has {count} {what}, at most {most} are allowed")
+
+
 def _claimed(found: Any, path: Path) -> int:
     """Return the number of bytes that a table claims to hold; a dimension without values claims none."""
     import h5py
 
     if not isinstance(found, h5py.Dataset) or found.external or found.is_virtual:
         raise InputError(f"{path}: not a file of stickslip: '{found.name}' in it is no plain table")
+    _check_number(f"attributes of '{found.name}'", len(found.attrs), MOST_ATTRIBUTES, path)
     if _is_axis(found):
         return 0
     return int(found.size or 0) * int(found.dtype.itemsize)

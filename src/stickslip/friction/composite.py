@@ -32,6 +32,11 @@ class LawOfParts(FrictionLaw):
         """The parts by the name of their field."""
         return {name: getattr(self, name) for name, (declared, _) in fields_of(type(self)).items() if isinstance(declared, Part)}
 
+    @override
+    def check_start(self, slip: float) -> None:
+        for part in self.parts.values():
+            part.check_start(slip)
+
     @property
     @override
     def can_be_negative(self) -> bool:

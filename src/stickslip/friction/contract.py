@@ -129,6 +129,9 @@ class LawContract(Declared, ABC):
     def check(self) -> None:
         """Check conditions that involve several fields. Raise InputError if one is violated."""
 
+    def check_start(self, slip: float) -> None:
+        """Check that a run can begin at a slip (m). Raise InputError if friction is no number >= 0 there, or has no slope."""
+
     @property
     def states(self) -> tuple[StateVariable, ...]:
         """The state variables: none, one or two."""

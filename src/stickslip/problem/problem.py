@@ -134,6 +134,7 @@ class Problem(CheckedArguments):
         self._check_varying()
         steady = ("initial_rate",) if str(self.initial_rate) == STEADY else ()
         check_fields(self, but=(*self._varying, *steady), units={LOAD: self.body.load_unit})
+        self._check_slip()
         self._check_load()
         self._check_state()
         _ = self.rate  # refuses a start at which nothing balances
@@ -189,6 +190,12 @@ class Problem(CheckedArguments):
         if (self.initial_load is None) == (self.initial_excess is None) and not (steady and self.initial_load is None):
             found = "neither" if self.initial_load is None else "both"
             raise InputError(f"Problem: needs either initial_load or initial_excess (load minus static strength), got {found}")
+
+    def _check_slip(self) -> None:
+        try:
+            self.friction.check_start(self.law_slip)
+        except InputError as error:
+            raise InputError(f"Problem: friction: {error}") from None
 
     def _check_state(self) -> None:
         law, name = self.friction, type(self.friction).__name__

@@ -19,7 +19,7 @@ from stickslip.engine.state.layout import EchoNode, Floats, Integers, Setup, Sto
 from stickslip.engine.state.workspace import counts_in, lend, lend_history, scratch_in, state_in
 from stickslip.engine.waves.echo_queue import rebuild_queue
 from stickslip.engine_input.branch_table import RuleFollower, renewed
-from stickslip.engine_input.limits import creep_tolerance, leaps_over, lumping_note, lumps_by_itself
+from stickslip.engine_input.limits import MOST_PIECES, PATIENCE, creep_tolerance, leaps_over, lumping_note, lumps_by_itself
 from stickslip.engine_input.prepare import prepare
 from stickslip.foundation.errors import InputError
 from stickslip.observables.event_stream import EventStream
@@ -163,17 +163,19 @@ class Session:
         )
 
     def _full(self) -> Status:
-        """Return the status of a run whose history is full, with what would help."""
+        """Return the status of a run whose history is full, with what would help: what begins later than the run got, would not."""
         options, history = self.options, self.history()
-        cures, stream = [], self.events()
+        trips, cures, stream = history.store.trip, [], self.events()
         stream.look(history).tell()
         if self.forgotten == 0 and 2 * stream.needed(history) > self.length:
             cures.append("a catalogue, which keeps events only")
-        if options.creep_rtol == 0.0 and leaps_over(self.problem):
+        if options.creep_rtol == 0.0 and leaps_over(self.problem) and np.unique(trips[history.store.mode != 0]).size > PATIENCE:
             cures.append("leaps (leave out creep_rtol = 0)")
-        if options.shortest_event == 0.0 and lumps_by_itself(self.problem):
+        crowded = np.unique(trips, return_counts=True)[1].max() > MOST_PIECES
+        if options.shortest_event == 0.0 and crowded and lumps_by_itself(self.problem):
             cures.append("lumping of the shortest events (leave out shortest_event = 0)")
-        return Crowd(self.length, history.duration, float(history.start[self.length // 2]), options.duration).status(cures)
+        half, last = history.start[[self.length // 2, max(self.length // 2, self.length - 4 * SPARE)]].tolist()
+        return Crowd(self.length, history.duration, half, last, options.duration).status(cures)
 
     def advance(self, budget: int) -> int:
         """Call the engine once or, if it has paused for that, leap over creep: see `Solver.advance`."""

@@ -82,7 +82,7 @@ MOST_WORTH_ASKING = 10_000_000
 GROWING = 2.0
 """Factor by which a history grows faster in its second half than in its first, from which on its size cannot be foretold."""
 SHORTER = 0.98
-"""Share of the time that a run has reached that a run with as many pieces is certain to reach."""
+"""Share of the time at which there was still room that a run with as many pieces is certain to reach; it is shown with 3 digits."""
 INTERRUPTED = -3
 """The user stopped the run."""
 ENOUGH_EVENTS = -4
@@ -145,13 +145,14 @@ class Crowd:
     pieces: int
     reached: float  # time, s
     at_half: float  # time at which it had half of the pieces, s
+    before_last: float  # time at which it had room for more pieces than an event takes, s
     asked: float  # time that was asked for, s
 
     def status(self, cures: Sequence[str]) -> Status:
         """Return the status of its run; `cures` are what else helps in this case, besides more pieces and a shorter run."""
         later, when = self.reached - self.at_half, f"{brief(self.reached, 's')} of {brief(self.asked, 's')}"
         said = f"the history reached its limit of {self.pieces} pieces at {when}"
-        shorter = f"a duration of up to {brief(SHORTER * self.reached, 's', 3)}"
+        shorter = f"a duration of up to {brief(SHORTER * self.before_last, 's', 3)}"
         if later * GROWING < self.at_half:
             said += ", and comes to more pieces in each round trip"
             helps = *cures, shorter

@@ -128,7 +128,10 @@ def announce_by(show: Callable[[str], None]) -> None:
 def load_module(name: str, text: str) -> ModuleType:
     """Return a new module with a given name and source text, which has the name of a file but needs none."""
     module = ModuleType(name)
-    sys.modules[name] = module  # numba finds the module of a cached function by its name; this entry also keeps the code alive
     path = (CACHE or cache_root()) / "formulas" / f"{name}.py"  # numba keeps the functions of a file together
-    exec(compile(text, str(path), "exec"), module.__dict__)
+    sys.modules[name] = module  # numba finds the module of a cached function by its name while it loads it
+    try:
+        exec(compile(text, str(path), "exec"), module.__dict__)
+    finally:
+        del sys.modules[name]
     return module

@@ -9,14 +9,16 @@ from __future__ import annotations
 
 import ctypes
 import hashlib
-from collections.abc import Callable
-from functools import cache
+import weakref
+from collections.abc import Callable, Sequence
+from functools import lru_cache
 from typing import Any, TypeVar
 
 import llvmlite.ir as ir
 import numpy as np
 from numba import types
 from numba.extending import intrinsic
+from numpy.typing import NDArray
 
 from stickslip.engine.codegen.cache import load_module
 from stickslip.engine.codegen.kernels import Kernel
@@ -93,13 +95,19 @@ class CompiledFormula:
 _DOUBLE = ctypes.POINTER(ctypes.c_double)
 
 
-@cache
+@lru_cache(maxsize=32)
 def compile_formula(formula: Expression, parameters: tuple[str, ...], state_rates: tuple[Expression, ...]) -> CompiledFormula:
-    """Return the compiled functions of a formula; equal formulas share one object in all problems.
+    """Return the compiled functions of a formula; equal formulas share one object in problems that follow each other.
 
-    `state_rates` are the formulas of the time derivatives of the law's states.
+    `state_rates` are the formulas of the time derivatives of the law's states. Who hands on an address makes its table the owner
+    of the formula (`keep_with`): each takes 1 MB, which is given back when no table and no later problem needs it.
     """
     return CompiledFormula(formula, parameters, state_rates)
+
+
+def keep_with(table: NDArray[Any], owners: Sequence[CompiledFormula | NDArray[Any]]) -> None:
+    """Keep formulas, or tables that do, alive as long as a table that holds addresses of their functions."""
+    weakref.finalize(table, len, tuple(owners)).atexit = False  # it refers to the owners until the table is gone
 
 
 @intrinsic

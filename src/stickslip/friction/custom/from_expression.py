@@ -33,6 +33,8 @@ STATE_UNITS = {"s": "s", "m": "m", "m/s": "m s^-1", "1/s": "s^-1", "1/m": "m^-1"
 """Units that a state often has, as they are typed and as `si_base` writes them."""
 LONGEST_NAME = 40
 """Largest number of characters in the name of a parameter, so that messages and tables stay readable."""
+UNKNOWN_VARIATION = 0.1
+"""Size by which friction is taken to change (no unit) if the samples do not tell."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,8 @@ class FromExpression(RemembersSlip):
     as soon as the contact slips.
 
     The expression must not be negative and must have all derivatives, also where slip begins, at v = 0. Both are checked on
-    samples up to 10 m and 10 m/s. Units are checked if at least one value has a unit; a value without one is then a pure number.
+    samples up to 10 m/s at the slip at which a problem starts. A run ends where it reaches a slip at which friction is negative.
+    Units are checked if at least one value has a unit; a value without one is then a pure number.
 
     A law may have a state of its own, whose rate of change `evolution` gives: `FromExpression("mu_0 + a*log(1 + v/v_0) + z",
     {"mu_0": 0.6, "a": 0.01, "v_0": "1 um/s", "b": 0.02, "tau": "1 s", "d": "10 um"}, evolution="dz/dt = (b - z)/tau - v*z/d")`. The
@@ -88,7 +91,8 @@ class FromExpression(RemembersSlip):
         if self.evolution:
             for number in range(len(self.states)):
                 self._check_formula("evolution", number)
-            self._check_at_zero()
+            if not depends_on(self.tree, SLIP):
+                self._check_healed(0.0)
         if self.static is not None:
             self._check_static(self.static)
 
@@ -130,9 +134,21 @@ class FromExpression(RemembersSlip):
                 except InputError as error:
                     raise InputError(f"{error}{self._unit_hint()}") from None
             self._check_exponents(tree)
-            check_samples(tree, self.numbers(), self.counts == "net", names, is_change)
+            check_samples(tree, self.numbers(), states=names, negative=is_change)
         except InputError as error:
             raise InputError(f"FromExpression: {which}: {error}") from None
+
+    @override
+    def check_start(self, slip: float) -> None:
+        names = tuple(self._equations)
+        if names:
+            self._check_healed(slip)
+        for which, trees in (("expression", (self.tree,)), ("evolution", self._changes)):
+            for tree in trees:
+                try:
+                    check_samples(tree, self.numbers(), slip, states=names, negative=which == "evolution")
+                except InputError as error:
+                    raise InputError(f"FromExpression: {which}: {error}") from None
 
     def _unit_hint(self) -> str:
         """Return which unit of the state, if none is given, would make all units agree; "" if none of a few does."""
@@ -150,12 +166,12 @@ class FromExpression(RemembersSlip):
             return f'; with state_unit = "{shown}" the units agree'
         return ""
 
-    def _check_at_zero(self) -> None:
-        """Check that friction at rest in state 0 is a number: loads are kept as differences from it."""
+    def _check_healed(self, slip: float) -> None:
+        """Check that friction at rest at a slip (m) in state 0 is a number: loads are kept as differences from it."""
         with np.errstate(all="ignore"):
-            value = float(evaluate(self.tree, self.numbers(), 0.0, 0.0))
+            value = float(evaluate(self.tree, self.numbers(), slip, 0.0))
         if not math.isfinite(value):
-            where = f"at u = 0, v = 0 and {' and '.join(f'{name} = 0' for name in self._equations)}"
+            where = f"at u = {slip:g}, v = 0 and {' and '.join(f'{name} = 0' for name in self._equations)}"
             raise InputError(f"FromExpression: expression: {where} friction must be a finite number, but it is {value:g}")
 
     def _check_exponents(self, tree: Expression) -> None:
@@ -309,7 +325,8 @@ class FromExpression(RemembersSlip):
     def variation(self) -> float:
         """The finite size by which friction changes (no unit).
 
-        If the bounds are not finite, it is the range of the values at slips up to 10 m and slip rates up to 10 m/s.
+        If the bounds are not finite, it is the range of the values at slips up to 10 m and slip rates up to 10 m/s, as far as they
+        are numbers.
         """
         low, high = self.range()
         if math.isfinite(high):
@@ -319,7 +336,8 @@ class FromExpression(RemembersSlip):
         slip, rate = np.linspace(0.0, 10.0, 201)[:, None], np.append(0.0, np.geomspace(1e-9, 10.0, 200))
         with np.errstate(all="ignore"):  # the formula may have a pole there
             values = self.coefficient(slip, rate)
-        return max(float(np.ptp(values[np.isfinite(values)])), self.static_excess)
+        known = values[np.isfinite(values)]
+        return max(float(np.ptp(known)) if known.size else UNKNOWN_VARIATION, self.static_excess)
 
     def _steady_variation(self) -> float:
         """Return the change of friction between steady sliding at slip rates up to 10 m/s, and state 0 at rest; 0.1 if unknown."""
@@ -328,7 +346,8 @@ class FromExpression(RemembersSlip):
         with np.errstate(all="ignore"):
             known = 0.0 if states is None else np.concatenate((states, np.zeros((*states.shape[:-1], 1))), axis=-1)
             values = self.coefficient(0.0, np.append(rates, 0.0), known)
-        return float(np.ptp(values[np.isfinite(values)])) or 0.1
+        known = values[np.isfinite(values)]
+        return (float(np.ptp(known)) if known.size else 0.0) or UNKNOWN_VARIATION
 
     @property
     @override

@@ -1,4 +1,4 @@
-"""Check a formula at many slips and slip rates: it must be finite, not negative, and have derivatives."""
+"""Check a formula at many slip rates, where slip begins: it must be finite, not negative, and have derivatives."""
 
 from __future__ import annotations
 
@@ -12,45 +12,49 @@ from stickslip.foundation.errors import InputError
 from stickslip.friction.formula.expression import RATE, SLIP, Expression, Parameter, depends_on, evaluate_nodes
 from stickslip.friction.formula.text import quoted
 
-LARGEST_SLIP, LARGEST_RATE = 10.0, 10.0
-"""Largest slip (m) and slip rate (m/s) at which a formula is checked: earthquakes and machines hardly exceed them."""
+LARGEST_RATE = 10.0
+"""Largest slip rate (m/s) at which a formula is checked: earthquakes and machines hardly exceed it."""
 TOLERANCE = 1e-12
 """Size of a negative friction coefficient that still counts as rounding of zero (no unit)."""
 
 
 def check_samples(
-    tree: Expression, numbers: Mapping[str, float], backwards: bool, states: Sequence[str] = (), negative: bool = False
+    tree: Expression,
+    numbers: Mapping[str, float],
+    slip: float | None = None,
+    *,
+    states: Sequence[str] = (),
+    negative: bool = False,
 ) -> None:
     """Raise InputError if the formula is negative, is not finite or has no derivative at a sample.
 
-    The message names the slip (m) and slip rate (m/s). `backwards` adds negative slips, for laws of net slip. Parts that contain
-    one of the states, parameters of those names, are left to the run. `negative` allows negative values.
+    The samples are slip rates from 0 to LARGEST_RATE at one `slip` (m), where a run begins: what friction is at other slips is left
+    to the run, which ends where friction falls below zero. Without `slip` parts that contain it are left out, as are those with
+    one of the states, parameters of those names. `negative` allows negative values.
     """
-    slip = samples(LARGEST_SLIP) if depends_on(tree, SLIP) else np.zeros(1)
-    if backwards:
-        slip = np.concatenate((-slip[:0:-1], slip))
-    rate = samples(LARGEST_RATE) if depends_on(tree, RATE) else np.zeros(1)
-    u, v = (grid.ravel() for grid in np.meshgrid(slip, rate, indexing="ij"))
+    v = samples(LARGEST_RATE) if depends_on(tree, RATE) else np.zeros(1)
+    left_out = [*map(Parameter, states), *([SLIP] if slip is None else [])]
+    u = 0.0 if slip is None else slip
     with np.errstate(all="ignore"):
         found = evaluate_nodes(tree, dict(numbers) | dict.fromkeys(states, 0.0), u, v)
-        _check_constants(found, states)
-        with_state = {node for node in found for state in states if depends_on(node, Parameter(state))}
-        found = {node: value for node, value in found.items() if node not in with_state}
-        values = np.broadcast_to(found.get(tree, 0.0), u.shape)
+        _check_constants({node: value for node, value in found.items() if not depends_on(node, SLIP)}, states)
+        found = {node: value for node, value in found.items() if not any(depends_on(node, one) for one in left_out)}
+        values = np.broadcast_to(found.get(tree, 0.0), v.shape)
         if negative:
             values = np.abs(values)
         finite = np.isfinite(values)
         worst = int(np.argmin(values)) if finite.all() else int(np.argmin(finite))
         if not values[worst] >= -TOLERANCE or not finite[worst]:
             what = f"is {values[worst]:.3g}" if finite[worst] else "is not a finite number"
-            place = f"at u = {u[worst]:.4g} m, v = {v[worst]:.4g} m/s it {what}"
+            place = f"at u = {u:.4g} m, v = {v[worst]:.4g} m/s it {what}"
             cure = "; slip begins at v = 0, and friction there is the static strength" if v[worst] == 0.0 else ""
-            if u[worst] < 0.0:
+            if u < 0.0:
                 cure = '; with counts="path" u is the length of the slip path, which is never negative'
-            raise InputError(f"friction must be a number >= 0, but {place}{cure}")
+            wanted = "the rate of change must be a finite number" if negative else "friction must be a number >= 0"
+            raise InputError(f"{wanted}, but {place}{'' if negative else cure}")
     for node in found:
-        if node.operation in ("sqrt", "log", "pow") and np.ndim(found[node.arguments[0]]):
-            _check_argument(node, found[node.arguments[0]], u, v)
+        if node.operation in ("sqrt", "log", "pow") and (depends_on(node, SLIP) or depends_on(node, RATE)):
+            _check_argument(node, np.broadcast_to(found[node.arguments[0]], v.shape), u, v)
 
 
 def samples(largest: float) -> NDArray[np.float64]:
@@ -71,11 +75,11 @@ def _check_constants(found: Mapping[Expression, Any], states: Sequence[str]) -> 
             raise InputError(f"the part {quoted(node)} is not a finite number: it is {value:g}{where}")
 
 
-def _check_argument(node: Expression, values: NDArray[np.float64], u: NDArray[np.float64], v: NDArray[np.float64]) -> None:
+def _check_argument(node: Expression, values: NDArray[np.float64], u: float, v: NDArray[np.float64]) -> None:
     bad = ~(values > 0.0)
     if bad.any():
         i = int(np.argmax(bad))
-        where = f"at u = {u[i]:.4g} m, v = {v[i]:.4g} m/s it is {values[i]:.3g}"
+        where = f"at u = {u:.4g} m, v = {v[i]:.4g} m/s it is {values[i]:.3g}"
         what = "the base of a power" if node.operation == "pow" else f"the argument of {node.operation}"
         raise InputError(
             f"{what}, {quoted(node.arguments[0])}, must stay above 0 to have derivatives, but {where}; add a small number to it"

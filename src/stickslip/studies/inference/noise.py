@@ -92,7 +92,10 @@ MOMENT = 3
 
 
 def saturated(values: Floats) -> NDArray[np.bool_]:
-    """Return True for samples of a run of one value at an end of the range, which is longer than other runs of equal samples."""
+    """Return True for samples of a run of one value at an end of the range, which is longer than other runs of equal samples.
+
+    A record that spends half of its samples or more like this has levels: a sensor at its ends would have measured nothing else.
+    """
     flat = np.zeros(len(values), bool)
     if len(values) < 2 * RAIL:
         return flat
@@ -104,9 +107,9 @@ def saturated(values: Floats) -> NDArray[np.bool_]:
     longest = max(FEW, 2.0 * usual) if noisy and step > 0.0 else max(RAIL, LONE * usual)
     ends = (np.nanmin(values), np.nanmax(values))
     for begin, length in zip(begins.tolist(), lengths.tolist(), strict=True):
-        if length >= longest and length < 0.5 * len(values) and values[begin] in ends:
+        if length >= longest and values[begin] in ends:
             flat[begin : begin + length] = True
-    return flat
+    return flat if flat.sum() < 0.5 * len(values) else np.zeros(len(values), bool)
 
 
 def spikes(values: Floats) -> NDArray[np.bool_]:
