@@ -33,7 +33,8 @@ import numpy as np
 
 from stickslip.contact.equation import Resistance
 from stickslip.contact.folds import bounds_of
-from stickslip.contact.steady import Sliding, steady_slidings
+from stickslip.contact.sliding import Sliding
+from stickslip.contact.steady import steady_slidings
 from stickslip.creep.pattern import Pattern, monotone_parts
 from stickslip.engine.enclosure.formula import bound_at_slips, bound_friction
 from stickslip.engine.state.layout import TERMS, Branch, Floats
