@@ -49,7 +49,7 @@ WAYS: dict[str, tuple[str, ...]] = {
         "show events.csv --catalogue-figure events.png",
     ),
     "teaching": ("paper --out paper", "run fig5-slab-reconstructed --space-time waves.png --animation slab.gif"),
-    "rupture codes": ("benchmark list", "benchmark get loop --out series", "schemes fig4-loop --figure schemes.png"),
+    "rupture codes": ("benchmark list", "benchmark get loop", "schemes fig4-loop --figure schemes.png"),
     "acoustics": (
         "run bowed-string-slab --figure string.png",
         "check bowed-string-slab",

@@ -167,3 +167,17 @@ def test_a_leap_that_lands_wrongly_is_undone(monkeypatch: pytest.MonkeyPatch) ->
     write = stepper.write
     monkeypatch.setattr(stepper, "write", shifted)
     assert len(ss.simulate(CASES["fades at once"], 3.0).creep) == 0
+
+
+def test_an_examination_says_that_no_event_will_come_where_the_run_finds_none() -> None:
+    words = "slides steadily and stably at the driver's rate: no event will come"
+    assert words in ss.studies.steady(CASES["fades"]).lines()
+    run = ss.simulate(CASES["fades"], 1e4)
+    assert float(run.slip_rate(np.linspace(0.0, 1e4, 1001)).max()) <= CASES["fades"].pull_rate * (1.0 + 1e-6)
+
+
+def test_an_examination_does_not_promise_that_no_event_comes_where_rest_is_stronger_than_sliding() -> None:
+    block = ss.SpringBlock(mass=1.0, stiffness=1e3, normal_force=10.0, damping=2.0)
+    problem = ss.Problem(block, ss.friction.Coulomb(0.6, 0.5), pull_rate=0.001, initial_load=0.0)
+    assert len(ss.simulate(problem, 20.0).events) > 1
+    assert not any("no event" in line for line in ss.studies.steady(problem).lines())

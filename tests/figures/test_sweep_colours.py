@@ -10,6 +10,7 @@ from pathlib import Path
 import matplotlib as mpl
 import numpy as np
 import pytest
+import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.colors import to_rgb
@@ -21,8 +22,9 @@ import stickslip as ss
 from stickslip.figures.names import parameter_name, plain_name, symbol
 from stickslip.figures.panels import letter_panels, set_title
 from stickslip.figures.style import UNITS, image, unit_of
-from stickslip.figures.sweeps.colours import FEW, shades
+from stickslip.figures.sweeps.colours import FEW, colours_of, shades
 from stickslip.figures.sweeps.curves import jumps
+from stickslip.figures.sweeps.varied import Shown
 from stickslip.scenarios.library import names
 from stickslip.scenarios.parameter_paths import ParameterPath, parameter_paths
 from tests.figures.legible import SIZES, SLAB_PROBLEM
@@ -250,3 +252,19 @@ def test_missing_members_are_beside_no_jump() -> None:
 
 def test_counts_jump_wherever_they_change() -> None:
     assert jumps(np.array([1.0, 1.0, 2.0, 2.0, np.nan, 3.0, 4.0]), whole=True).tolist() == [False, True, False, False, False, True]
+
+
+def share(*values: float) -> Shown:
+    members = xr.DataArray(np.array(values), dims="member")
+    return Shown(members, xr.zeros_like(members), "share", is_flag=False, ends=("slides", "sticks"))
+
+
+def test_shares_of_0_and_1_have_two_colours_with_words() -> None:
+    assert colours_of(share(0.0, 1.0, np.nan)).key == ((0.0, "slides"), (1.0, "sticks"))
+
+
+def test_a_share_has_a_scale_from_0_to_1_on_which_a_little_differs_from_nothing() -> None:
+    colours = colours_of(share(0.0, 0.001, 0.06))
+    assert (colours.key, colours.norm.vmax) == ((), 1.0)
+    for vision in VISIONS:
+        assert least_distance([mpl.colors.to_hex(colours.of(value)) for value in (0.0, 0.001)], vision) > LEAST

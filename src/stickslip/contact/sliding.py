@@ -99,6 +99,8 @@ class SteadySlidings:
     """Friction (Pa or N) in steady sliding at the pull rate: the far stress with which a driver that gives way keeps its rate."""
     unit: str = "Pa"
     """Unit of tractions."""
+    is_calm: bool = False
+    """True if nothing at the start keeps the contact from the slow motion that ends in `settled`, if no slower rate is unstable."""
 
     @property
     def settled(self) -> Sliding | None:
@@ -118,6 +120,8 @@ class SteadySlidings:
             return [f"none: {self.why_none}"]
         at = "at the first pull rate, " if self.varies else "at "
         found = [f"{at}{brief(one.rate, 'm/s')}, traction {brief(one.traction, self.unit)}: {one}" for one in self.slidings]
+        if self.is_calm and self.settled and all(one.rate > abs(self.settled.rate) for one in self.changes):
+            found.append(slides_on(self.settled.rate, is_driven_rigidly=self.far_stress is None))
         found += [self._given_way(), "at rest: the driver does not pull hard enough to free a contact that sticks" * self.can_rest]
         if not self.is_damped and any(one.stable is False for one in self.slidings):
             found.append("neither body nor driver damps: it is unstable wherever friction falls with the slip rate, however gently")
@@ -147,6 +151,16 @@ class SteadySlidings:
         )
         how = "proven by interval arithmetic" if self.proven else f"found between {RATES[0]:g} and {RATES[-1]:g} m/s, not proven"
         return f"{' '.join(texts)} ({how}){hint}"
+
+
+def driven_at(rate: float, *, is_driven_rigidly: bool) -> str:
+    """Return the words for the slip rate (m/s) of steady sliding: that of the driver, if it does not give way."""
+    return "the driver's rate" if is_driven_rigidly else brief(abs(rate), "m/s")
+
+
+def slides_on(rate: float, *, is_driven_rigidly: bool) -> str:
+    """Return a sentence without its subject, a contact whose steady sliding at this rate (m/s) is stable and not left any more."""
+    return f"slides steadily and stably at {driven_at(rate, is_driven_rigidly=is_driven_rigidly)}: no event will come"
 
 
 def _place(change: StabilityChange) -> str:

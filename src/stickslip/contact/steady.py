@@ -36,6 +36,8 @@ from stickslip.problem.problem import Problem
 
 FAR = (0.0, 0.37, 1e3)
 """Distances (m) over which friction must not change with slip if the contact is to slide steadily."""
+CRAWL, SAME = 1e-300, 1e-9
+"""A slip rate (m/s) that is next to rest; and the relative difference of two tractions that counts as none."""
 
 
 @lru_cache(maxsize=64)
@@ -107,7 +109,21 @@ class _Steady:
             traction_at_pull_rate=self._at_pull_rate() if slidings else math.nan,
             why_none=why,
             unit=problem.load_unit,
+            is_calm=bool(slidings) and self.is_calm(slidings[0], changes),
         )
+
+    def is_calm(self, sliding: Sliding, changes: tuple[StabilityChange, ...]) -> bool:
+        """Return True if a contact that starts like this one comes to the steady sliding at no more than its rate.
+
+        Friction at rest is that of very slow sliding, the load is no larger than that of steady sliding, and the states are those
+        of it. A contact with mass may overshoot: then no rate may be unstable.
+        """
+        problem = self.problem
+        if problem.varies or (problem.friction.states and not self._starts_steadily) or (problem.body.inertia and changes):
+            return False
+        if problem.friction.sticks and not math.isclose(problem.strength, abs(self.traction(CRAWL)), rel_tol=SAME):
+            return False
+        return self._starts_steadily or abs(problem.load) <= max(abs(sliding.traction), problem.strength) * (1.0 + SAME)
 
     def why_none(self) -> str:
         """Return why nothing slides steadily, "" if something may."""

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from stickslip.contact.sliding import driven_at, slides_on
 from stickslip.contact.steady import steady_slidings
 from stickslip.contact.uniqueness import uniqueness_of
 from stickslip.engine_input.branch_table import folds_move, is_algebraic
 from stickslip.engine_input.limits import leaps_over
-from stickslip.foundation.formatting import brief
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.history import History, Positions
 
@@ -90,12 +90,10 @@ def _lasts(problem: Problem) -> str:
     found = steady_slidings(problem).slidings
     if len(found) != 1:
         return "it slides steadily up to the end"
-    at = "the driver's rate" if problem.body.is_driven_rigidly else brief(abs(found[0].rate), "m/s")
-    return (
-        f"it slides steadily and stably at {at}: no event will come"
-        if found[0].stable
-        else f"it slides steadily at {at} to the end"
-    )
+    one, rigid = found[0], problem.body.is_driven_rigidly
+    if one.stable:
+        return f"it {slides_on(one.rate, is_driven_rigidly=rigid)}"
+    return f"it slides steadily at {driven_at(one.rate, is_driven_rigidly=rigid)} to the end"
 
 
 def rule_in_force(problem: Problem) -> str:

@@ -53,6 +53,8 @@ LAW_ROUNDING = 5.0
 LARGEST_ROUNDING, PATIENCE = 1e3, 8
 """Error, in units of the tolerance (1), above which a step is never kept; and number of attempts in a row, each shorter, whose
 error has not halved, after which the error is taken to be rounding."""
+UNSEEN = 1e-3
+"""Share (1) of a step below which the time in which mass settles is far shorter than the step."""
 
 
 @kernel
@@ -352,7 +354,7 @@ def collocate(run: Run, left: float) -> float:
             factor = 0.9 * min(max(error, 1e-12), 1e12) ** (-1.0 / (STAGES + 1.0))
             in_vain = in_vain + 1 if 0.5 * before < error < LARGEST_ROUNDING else 0
             if error <= 1.0 or in_vain >= PATIENCE:
-                if error > 1.0:
+                if error > 1.0 and not settles_unseen(run, error):
                     run.counts.rough += 1
                     run.state.roughest = max(run.state.roughest, error * run.params.tolerance)
                 # Where this step had to shrink, the next one probably has to shrink as well.
@@ -369,6 +371,22 @@ def collocate(run: Run, left: float) -> float:
     for n in range(STATES):
         fill(ahead(run.state_jet, TERMS * n), math.nan)
     return guess
+
+
+@kernel
+def settles_unseen(run: Run, error: float) -> bool:
+    """Return True if the error of a step, in units of the tolerance, is no more than mass makes of the slip rate at its start.
+
+    Where the load bends, mass begins to lag behind it, by M v' over the slope of load against slip rate, within a time far shorter
+    than the step. No polynomial of the step follows that, however short the step; it is no rounding, and the bound contains it.
+    """
+    params, fastest = run.params, 0.0
+    resistance = params.damping + params.normal * run.value.by_rate
+    if run.counts.mode == 0 or resistance <= 0.0 or params.inertia > UNSEEN * run.k.speed * resistance:
+        return False
+    for i in range(POINTS):
+        fastest = max(fastest, abs(run.stage_rate[i]))
+    return error * params.tolerance * fastest <= params.inertia / run.k.speed * abs(run.jet[1]) / resistance
 
 
 @kernel

@@ -35,6 +35,12 @@ FAILED, HATCH = "#EDEDED", "////"
 """Background of a map, and its hatch, where members failed."""
 
 
+SLIDES, NOTHING = "#FFF4B2", 1e-6
+"""Colour of a share of 0 beside other shares, and the share below which it counts as 0."""
+SHARES = ListedColormap(mpl.colormaps["viridis_r"](np.linspace(0.2, 1.0, 256))).with_extremes(under=SLIDES)
+"""Colours of shares: the brightest yellow of "viridis" is left out, which some readers cannot tell from the colour of 0."""
+
+
 @dataclass(frozen=True)
 class Colours:
     """The colours of numbers; `key` holds the numbers with an entry in the key and their texts, none if there is a scale."""
@@ -65,6 +71,8 @@ def colours_of(quantity: Shown, drawn: Floats | None = None) -> Colours:
     known = quantity.known if drawn is None else drawn[np.isfinite(drawn)]
     if quantity.is_flag:
         return _key(np.array([0.0, 1.0]), ("no", "yes"))
+    if quantity.ends:
+        return _share(known, quantity.ends)
     different = np.unique(known)
     if known.size and quantity.is_whole and different.size <= FEW:
         return _key(different, [f"{value:.0f}" for value in different])
@@ -74,6 +82,14 @@ def colours_of(quantity: Shown, drawn: Floats | None = None) -> Colours:
     if low == high:
         low, high = low - abs(low or 1.0), high + abs(high or 1.0)
     return Colours(mpl.colormaps["viridis"], LogNorm(low, high) if quantity.is_wide else Normalize(low, high), ())
+
+
+def _share(known: Floats, ends: Sequence[str]) -> Colours:
+    """Return two colours for shares that are 0 or 1; for others a scale, on which 0 has a colour that is not next to it."""
+    both = np.array([0.0, 1.0])
+    if np.isin(known, both).all():
+        return _key(both, ends)
+    return Colours(SHARES, Normalize(NOTHING, 1.0), ())
 
 
 def _key(different: Floats, texts: Sequence[str]) -> Colours:
@@ -107,14 +123,18 @@ def explain(panels: Sequence[Axes], colours: Colours, quantity: Shown, *more: Ar
     marks += more
     scale = not colours.key and quantity.known.size > 0
     if scale:
-        _add_scale(panels, colours, folded(quantity.title, room))
+        _add_scale(panels, colours, folded(quantity.title, room), quantity.ends)
     add_legend(panels[0], marks, "" if scale else folded(quantity.title, 2 * ROOM), own=own)
 
 
-def _add_scale(panels: Sequence[Axes], colours: Colours, title: str) -> None:
+def _add_scale(panels: Sequence[Axes], colours: Colours, title: str, ends: Sequence[str]) -> None:
     figure: Any = panels[0].figure
-    bar = figure.colorbar(ScalarMappable(**colours.options), ax=list(panels), label=title, pad=0.02, aspect=25)
-    if isinstance(colours.norm, BoundaryNorm):
+    beyond = "min" if ends else "neither"
+    bar = figure.colorbar(ScalarMappable(**colours.options), ax=list(panels), label=title, pad=0.02, aspect=25, extend=beyond)
+    if ends:
+        bar.set_ticks([NOTHING, 0.25, 0.5, 0.75, 1.0], labels=[f"0: {ends[0]}", "0.25", "0.5", "0.75", f"1: {ends[1]}"])
+        bar.minorticks_off()
+    elif isinstance(colours.norm, BoundaryNorm):
         bar.set_ticks(MaxNLocator(8, integer=True))
         bar.minorticks_off()
     elif isinstance(colours.norm, LogNorm):

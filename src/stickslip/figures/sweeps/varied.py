@@ -124,6 +124,8 @@ class Shown:
     state: xr.DataArray
     title: str
     is_flag: bool
+    ends: tuple[str, ...] = ()
+    """Words for 0 and 1, of a share; none of any other quantity."""
 
     @property
     def known(self) -> Floats:
@@ -157,4 +159,4 @@ def shown(dataset: xr.Dataset) -> Shown:
     wide = bool(known.size and known.min() > 0.0 and known.max() > WIDE * known.min())
     unit, size = unit_of(values.attrs.get("units", "1"), known, log=wide)
     title = axis_text(values.attrs.get("long_name", str(values.name)), "", unit)
-    return Shown(values / size, dataset["state"], title, "flag_meanings" in values.attrs)
+    return Shown(values / size, dataset["state"], title, "flag_meanings" in values.attrs, tuple(values.attrs.get("ends", ())))

@@ -28,7 +28,7 @@ class Summary:
     """A number that summarises a whole run: its name and meaning in the dataset of a sweep, its SI unit, and what computes it.
 
     The unit "load" stands for Pa (slab) or N (block), "energy" for J m-2 or J. `of` returns it for a `Solution`, or NaN where the
-    run has no such number. A flag is 1 for yes and 0 for no.
+    run has no such number. A flag is 1 for yes and 0 for no. A share runs from 0 to 1, and `ends` says in words what these are.
     """
 
     name: str
@@ -36,6 +36,7 @@ class Summary:
     meaning: str
     of: Of
     is_flag: bool = False
+    ends: tuple[str, str] | None = None
 
     def unit_for(self, problem: Problem) -> str:
         """Return the unit for the body of a problem."""
@@ -49,7 +50,7 @@ class Summary:
         """Pickle a built-in quantity by its name, so that another process recognises it as built-in; others by their contents."""
         if QUANTITIES.get(self.name) is self:
             return _built_in, (self.name,)
-        return Summary, (self.name, self.unit, self.meaning, self.of, self.is_flag)
+        return Summary, (self.name, self.unit, self.meaning, self.of, self.is_flag, self.ends)
 
 
 def _built_in(name: str) -> Summary:
@@ -132,7 +133,7 @@ _ALL = (
     ),
     Summary("end_time", "s", "end of the run", lambda solution: solution.history.duration),
     Summary("arrested", "1", "at rest at the end of the run", lambda s: s.slip_rate(s.history.duration) == 0.0, is_flag=True),
-    Summary("sticking", "1", STICKING, _sticking),
+    Summary("sticking", "1", STICKING, _sticking, ends=("slides", "sticks")),
     Summary("irregular", "1", IRREGULAR, _irregular, is_flag=True),
     Summary(
         "branches",

@@ -101,7 +101,8 @@ def results(plan: Plan) -> dict[str, dict[str, Any]]:
     found: dict[str, dict[str, Any]] = {}
     for one in plan.work.quantities:
         flags = {"flag_values": [0.0, 1.0], "flag_meanings": "no yes"} if one.is_flag else {}
-        found[one.name] = {"long_name": one.meaning, "units": one.unit_for(problem), **flags}
+        ends = {"ends": list(one.ends)} if one.ends else {}
+        found[one.name] = {"long_name": one.meaning, "units": one.unit_for(problem), **flags, **ends}
     if series is not None:
         units = {"slip": "m", "slip_rate": "m s-1"}
         units |= {name: state.unit for name, state in zip(STATE_NAMES, problem.friction.states, strict=False)}
