@@ -21,7 +21,7 @@ class Outcome:
 def compiled_engine() -> None:
     """Compile the engine and its parts before any test looks at what a command says on standard error."""
     for name in ("fig6-slab", "rate-and-state-block"):
-        ss.simulate(name)
+        repr(ss.simulate(name))  # with events and all else that a summary compiles
     ss.sweep("fig6-slab", {"friction.alpha": [0.5, 1.0]})
 
 

@@ -177,7 +177,7 @@ def test_stick_slip_of_a_block_is_fitted_event_by_event() -> None:
     truth = {"friction.static": 0.65, "friction.dynamic": 0.5, "body.stiffness": 4e6, "body.mass": 2.0}
     check_holds(study, truth, 2.0)
     whole = ss.studies.infer(start, data, free, sensor="spring", starts=1)
-    assert "parts='rests'" in whole.notes[0]
+    check_holds(whole, truth, 2.0)  # events are few, and starting values from the record bring the search near
 
 
 def test_a_load_point_of_a_million_samples_with_noise_a_gap_and_a_jump_is_followed() -> None:

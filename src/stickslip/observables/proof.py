@@ -238,7 +238,12 @@ def _bounds(history: History, n: Places) -> Floats:
 
 
 def _unsure_duration(history: History, n: Places) -> Floats:
-    """Return the share (1) of the duration of each of some steps that rounding makes of it: it is the difference of two times."""
+    """Return the share (1) of the duration of each of some steps that rounding makes of it: it is the difference of two times.
+
+    Only inertia asks for the duration; next to a fold, where time is a parabola, there is none.
+    """
+    if not history.problem.body.has_inertia:
+        return np.zeros((len(n), 1))
     return np.asarray(OF_DURATION * history.round_trip_time / np.abs(history.store.speed[n, None]))
 
 
