@@ -113,16 +113,18 @@ def test_time_is_shown_in_a_unit_that_can_be_read(span: float, unit: str) -> Non
 # ---- sizes, and catalogues of all kinds ------------------------------------------------------------------------------------------
 
 
-def table(starts: object, slips: object) -> pd.DataFrame:
-    """Return a catalogue of events at these times (s) with these slips (m)."""
-    times = np.asarray(starts, float)
-    return pd.DataFrame({"start": times, "slip": np.asarray(slips, float), "recurrence": np.diff(times, prepend=np.nan)})
+def table(starts: object, slips: object, *, cut: bool = False) -> pd.DataFrame:
+    """Return a catalogue of events of no time at these times (s) with these slips (m); `cut` says that the last is cut off."""
+    times, slip = np.asarray(starts, float), np.asarray(slips, float)
+    ends = np.where(np.arange(len(times)) == len(times) - 1, np.nan, times) if cut else times
+    return pd.DataFrame({"start": times, "end": ends, "slip": slip, "recurrence": np.diff(times, prepend=np.nan)})
 
 
 CATALOGUES = {
     "one event at the start": table([0.0], [1.0]),
     "one event": table([3e7], [1.0]),
     "two events": table([0.0, 5.0], [1.0, 2.0]),
+    "two events, the last cut off": table([0.0, 5.0], [1.0, 2.0], cut=True),
     "the same again and again": table(1e8 * np.arange(9), np.full(9, 0.16)),
     "events without slip": table([0.0, 1.0, 2.0], [0.0, 0.0, 0.0]),
     "two events at one time": table([5.0, 5.0, 5.0], [1.0, 1.0, 1.0]),

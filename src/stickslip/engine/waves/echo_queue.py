@@ -261,6 +261,8 @@ def next_echo(run: Run) -> int:
 def start_of_slide(run: Run) -> int:
     """Return the first piece of the round trip that ends, if the contact has slipped throughout it, else NOTHING."""
     n, rest = run.counts.length - 1, MOMENT_OF_REST * run.params.round_trip_time
+    if run.history[n].phase_to != run.params.round_trip_time:  # the last echoes were not met, for the contact rests under them
+        return NOTHING
     while n >= 0 and run.history[n].trip == run.counts.trip:
         piece = run.history[n]
         rest -= piece.phase_to - piece.phase_from if piece.mode == 0 else 0.0

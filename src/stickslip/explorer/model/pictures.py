@@ -41,7 +41,9 @@ def law_picture(solution: Solution, motion: Motion) -> LawPicture:
     law = solution.problem.friction
     if law.depends_on_slip and not law.depends_on_rate:
         return _along_slip(solution)
-    picture = _along_rate(solution.problem, motion.slip_rate)
+    backward = bool((solution.history.store.mode < 0).any())
+    # Forward slip ends at a rate that rounding may put below zero: that is no slip backward.
+    picture = _along_rate(solution.problem, motion.slip_rate if backward else np.maximum(motion.slip_rate, 0.0))
     return picture if not law.states else replace(picture, path=_law_path(solution, log=picture.log))
 
 
@@ -83,7 +85,8 @@ def _along_rate(problem: Problem, rates: Floats) -> LawPicture:
     name, coefficient = _coefficient(problem, rate)
     if not mirrored:
         return LawPicture("slip_rate", rate, coefficient, (float(speeds.min()), fastest), log, name)
-    rate, coefficient = (np.concatenate([-values[::-1], values]) for values in (rate, coefficient))
+    beyond = 0 if coefficient[0] != 0.0 else 1  # both limits at a rate of zero, where friction jumps from one sign to the other
+    rate, coefficient = (np.concatenate([-values[::-1], values[beyond:]]) for values in (rate, coefficient))
     return LawPicture("slip_rate", rate, coefficient, (float(rates.min()), float(rates.max())), log, name)
 
 

@@ -212,11 +212,11 @@ def axes_variables(time: Floats, x: Floats) -> dict[str, xr.Variable]:
 
 def contact_variables(readings: Readings, start: float, end: float, names: Sequence[Curve]) -> dict[str, xr.Variable]:
     """Return the named curves of the contact against `contact_time` (s), in SI, with both limits at every shock."""
-    contents: dict[str, xr.Variable] = {}
-    for name in names:
-        time, values = readings.curve(name, start, end)
+    time, curves = readings.curves_together(names, start, end)
+    contents = {"contact_time": curve_quantity("contact_point", time, "time")}
+    for name, values in zip(names, curves, strict=True):
         contents[f"contact_{name.removeprefix('event_')}"] = curve_quantity("contact_point", values, name)
-    return contents | {"contact_time": curve_quantity("contact_point", time, "time")}
+    return contents
 
 
 class Scales:
