@@ -299,7 +299,7 @@ TWO_STATES = ss.friction.FromExpression("0.6 + z + y", {"d": 1e-5}, evolution="d
         (lambda: ss.studies.ranking(), "ranking: needs inferences, as in ranking(infer(..., held_out=0.3),"),
         (lambda: ss.studies.ranking([3]), "ranking: needs inferences"),
         (lambda: ss.studies.Record([0.0], [1.0]), "Record: measured must be a mapping of arrays by name (friction, "),
-        (lambda: ss.studies.schemes("fig6-slab", cells="20"), "schemes: cells must be a whole number above 0, got '20'"),
+        (lambda: ss.studies.schemes("fig6-slab", cells="20"), "schemes: cells must be a whole number from 12 to 100000, got '20'"),
         (
             lambda: ss.Problem(ss.SpringBlock(1, 1, 1), TWO_STATES, initial_load=0, initial_state=(1, 2)),
             "Problem: initial_state must be one number, got (1, 2): each state has its own, initial_state and initial_second_state",

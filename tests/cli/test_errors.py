@@ -67,8 +67,8 @@ CASES = [
     (["run", "fig6-slab", "--duration", "nan"], "run: --duration must be finite, got nan"),
     (["run", "fig6-slab", "--rtol", "1"], "run: --rtol must be at most 0.01, got 1"),
     (
-        ["run", "fig6-slab", "--creep-rtol", "1e-6"],
-        "run: --creep-rtol must be 0 here: leaps over creep need a friction law of slip",
+        ["run", "block-or-slab", "--creep-rtol", "1e-6"],
+        "run: --creep-rtol must be 0 here: leaps over creep need a friction law of slip alone (FromExpression is not one)",
     ),
     (
         ["run", "fig6-block-printed", "--shortest-event", "1 ms"],
@@ -81,7 +81,10 @@ CASES = [
     ),
     (["run", "fig6-slab", "--shortest-event", "1 s"], "run: --shortest-event must be 0 or at most 0.0571429 s (1 % of the two-way"),
     (["run", "fig6-slab", "--shortest-event", "1 parsec"], "run: --shortest-event"),
-    (["run", "fig6-block-printed", "--creep-rtol", "1e-6"], "run: --creep-rtol must be 0 here: leaps over creep need a slab"),
+    (
+        ["run", "cycles-block", "--creep-rtol", "1e-6"],
+        "run: --creep-rtol must be 0 here: leaps over creep need a slab, which creeps",
+    ),
     (["run", "fig5-slab-printed", "--creep-rtol=-1"], "run: --creep-rtol must be 0 (no leaps over creep, every round trip is run)"),
     (["run", "fig6-slab", "--rtol", "much"], "run: --rtol must be a number, got 'much'"),
     (["run", "fig6-slab", "--selection", "maxwel"], "run: --selection 'maxwel' is unknown; did you mean 'maxwell'?"),

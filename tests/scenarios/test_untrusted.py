@@ -60,7 +60,7 @@ def refusal(text: str) -> str:
         ("0.5 + b/b", {"b": 0.0}, "the part 'b / b' is not a finite number: it is nan"),
         ("a**b + 0.5", {"a": -1, "b": 0.5}, r"the part 'a\*\*b' is not a finite number: it is nan"),
         ("0.5 + 0*a**b", {"a": 1e50, "b": 99}, r"the part 'a\*\*b' is not a finite number: it is inf"),
-        ("0.5 + v/1e300**2", {}, r"the part '1e\+300 \* 1e\+300' is not a finite number: it is inf"),
+        ("0.5 + v/1e300**2", {}, r"the part '1e\+300\*\*2' is not a finite number: it is inf"),
         ("0.5 + exp(-a*a*v)", {"a": 1e300}, r"a' must lie within 1e\+50 \(a pure number\), got 1e\+300"),
         ("0.5 + exp(-a*v)", {"a": 10**400}, "a' must be a number, got a whole number beyond 1e300"),
     ],

@@ -32,8 +32,8 @@ def test_a_column_that_is_missing_is_named_beside_those_that_are_there(tmp_path:
 @pytest.mark.parametrize(
     ("numbers", "message"),
     [
-        ({"cells": [0]}, "schemes: cells must lie between 12 and 100000, got 0"),
-        ({"cells": [50, 100_001]}, "schemes: cells must lie between 12 and 100000, got 100001"),
+        ({"cells": [0]}, "schemes: cells must be a whole number from 12 to 100000, got 0"),
+        ({"cells": [50, 100_001]}, "schemes: cells must be a whole number from 12 to 100000, got 100001"),
         ({"search": "conitnue"}, "schemes: there is no search 'conitnue'; did you mean 'continue'?"),
         ({"courant": float("nan")}, "schemes: newmark: the Courant number must lie in (0, inf], got nan"),
     ],

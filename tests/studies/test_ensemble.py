@@ -285,7 +285,9 @@ def test_an_interrupted_run_is_no_member(monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 def test_files_hold_what_was_found(fast: Ensemble, tmp_path: Path) -> None:
-    table = pd.read_csv(fast.to_csv(tmp_path / "a.csv"))
+    path = fast.to_csv(tmp_path / "a.csv")
+    assert path.read_text().startswith("# written by stickslip\nstart,")
+    table = pd.read_csv(path, comment="#")
     assert table.start.tolist() == fast.table.start.tolist()
     xarray = pytest.importorskip("xarray")
     with xarray.open_dataset(fast.to_netcdf(tmp_path / "a.nc")) as found:

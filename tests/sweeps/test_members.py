@@ -16,6 +16,7 @@ from stickslip.scenarios.scenario import load_scenario, read_scenario
 from stickslip.sweeps.design.quantities import QUANTITIES, quantities_named
 from stickslip.sweeps.execution.chunk import BAD_PARAMETERS, ERROR, MEANINGS, Work, one_by_one, run_chunk
 from stickslip.sweeps.execution.plan import make_plan
+from tests.batch.cases import sticking
 
 PULSES = load_scenario("fig5-slab-reconstructed")
 RATE = load_scenario("fig6-slab")
@@ -118,15 +119,19 @@ def test_quantities_are_those_of_the_solution(name: str) -> None:
         "recurrence_cv": between.std(ddof=1) / between.mean(),
         "end_time": scenario.duration,
         "arrested": float(solution.slip_rate(scenario.duration) == 0.0),
+        "sticking": sticking(solution),
         "irregular": 0.0,
         "branches": 1,
     }
     first = {f"first_{name}": events[name][0] for name in ("start", "end", "duration", "slip", "traction_drop", "static_drop")}
     energies = {name: parts[name].item() for name in ("work", "heat", "damped", "radiated", "trapped", "balance")}
     assert len(events) > 3
+    assert 0.5 < of_run["sticking"] < 1.0
     assert set(of_run | first | energies) == set(QUANTITIES)
     for name, wanted in (of_run | first | energies).items():
         assert QUANTITIES[name].value(solution) == pytest.approx(wanted, rel=1e-9, abs=1e-12), name
+    batch = ss.sweep(scenario, {"run.duration": [scenario.duration]}, quantities=["sticking"])
+    assert batch.sticking.item() == pytest.approx(of_run["sticking"], rel=1e-9, abs=1e-12)
 
 
 def test_what_a_run_does_not_have_is_missing() -> None:

@@ -14,6 +14,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from stickslip.bodies import as_slab
+from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.problem.problem import Problem
@@ -152,8 +153,7 @@ def check_suitable(problem: Problem) -> None:
 
 def grid_of(problem: Problem, cells: int, courant: float) -> Grid:
     """Return the grid of a problem. Raises InputError if it has too few or too many cells."""
-    if not FEWEST_CELLS <= cells <= LARGEST_CELLS:
-        raise InputError(f"schemes: cells must lie between {FEWEST_CELLS} and {LARGEST_CELLS}, got {cells}")
+    check_whole("schemes: cells", cells, FEWEST_CELLS, LARGEST_CELLS)
     slab = as_slab(problem.body, "schemes: a block has no grid")
     far = problem.load if problem.far_stress is None else float(problem.far_stress)  # type: ignore[arg-type]
     return Grid(

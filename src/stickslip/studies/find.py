@@ -11,6 +11,7 @@ from typing import Any
 import pandas as pd
 
 from stickslip.contact.steady import steady_slidings
+from stickslip.foundation.arguments import CheckedArguments, for_users
 from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest_and_all
@@ -42,7 +43,7 @@ What = str | Callable[[Solution], Any]
 
 
 @dataclass(frozen=True, repr=False)
-class Edge:
+class Edge(CheckedArguments):
     """The result of `find`: the last bracket, between whose ends what was looked for changes."""
 
     parameter: str
@@ -84,6 +85,7 @@ def _word(value: bool | int) -> str:
     return ("yes" if value else "no") if isinstance(value, bool) else str(value)
 
 
+@for_users
 def find(
     problem: Problem | Scenario | str | Path,
     along: str = "pull_rate",

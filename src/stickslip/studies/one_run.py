@@ -5,6 +5,7 @@ from pathlib import Path
 from stickslip.contact.critical import critical_value
 from stickslip.contact.sliding import SteadySlidings
 from stickslip.contact.steady import steady_slidings
+from stickslip.foundation.arguments import for_users
 from stickslip.observables.event_table import catalogue_statistics
 from stickslip.observables.predictability import predictability
 from stickslip.problem.problem import Problem
@@ -14,6 +15,7 @@ from stickslip.scenarios.source import read_source
 __all__ = ["catalogue_statistics", "critical_value", "predictability", "steady"]
 
 
+@for_users
 def steady(problem: Problem | Scenario | str | Path) -> SteadySlidings:
     """Find how a contact slides steadily at its pull rate, whether that is stable, and at which rates stability changes.
 

@@ -26,7 +26,7 @@ from stickslip.problem.problem import Problem
 from stickslip.scenarios.source import read_duration_and_problem, read_source
 from stickslip.schemes.contract import Scheme, Series
 from stickslip.schemes.registry import scheme_of
-from stickslip.schemes.run import check_runs, check_suitable, run_scheme
+from stickslip.schemes.run import FEWEST_CELLS, LARGEST_CELLS, check_runs, check_suitable, run_scheme
 from stickslip.solution.solution import Solution
 from stickslip.studies.judgement import TOLERANCE, Judgement
 from stickslip.studies.scheme_measures import COLUMNS, Measured
@@ -233,7 +233,7 @@ def schemes(
     several = [scheme] if isinstance(scheme, str) or not isinstance(scheme, Sequence) else scheme
     chosen = [scheme_of(one) for one in several]
     counts = cells if isinstance(cells, Iterable) and not isinstance(cells, str) else [cells]
-    meshes = sorted({check_whole("schemes: cells", count) for count in counts})
+    meshes = sorted({check_whole("schemes: cells", count, FEWEST_CELLS, LARGEST_CELLS) for count in counts})
     if not meshes or not chosen:
         raise InputError("schemes: needs a scheme and a mesh or more")
     check_runs(given, lasts, chosen, meshes, search=search, courant=courant)

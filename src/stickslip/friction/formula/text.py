@@ -27,8 +27,8 @@ def _written(node: Expression) -> tuple[str, int]:
         if node.arguments:
             return f"{node.operation}({to_text(node.arguments[0])})", _ATOM
         if node.operation == "constant":
-            number = repr(float(node.value))
-            return number.removesuffix(".0") if node.value else number, _ATOM if number[0] != "-" else _MINUS
+            number = repr(float(node.value)).removesuffix(".0")
+            return number, _ATOM if number[0] != "-" else _MINUS
         return node.name, _ATOM
     base, count = _power_of(node)
     if count > 1:
