@@ -28,7 +28,7 @@ from stickslip.foundation.formatting import clean
 COMPRESSED = (ZstdCodec(), Crc32cCodec())
 """Codecs of every array: compression, then a CRC-32C checksum after each chunk, which every reader of zarr verifies."""
 PACKINGS = (["zstd", "crc32c"], ["zstd"])
-"""Codecs, after the one that makes bytes, of arrays that are read; maps that were refined with earlier versions have no checksums."""
+"""Codecs, after the one that makes bytes, of arrays that are read; refined maps of earlier versions have no checksums."""
 LARGEST_CHUNK = 2**28
 """Bytes of the largest chunk that is unpacked, and of the largest file that is read: 33 million numbers."""
 LARGEST_METADATA = 4_000_000
