@@ -40,6 +40,11 @@ def refused(act: Callable[[], object], *words: str) -> None:
     assert all(word in str(told.value) for word in words), str(told.value)
 
 
+def contents(folder: Path) -> dict[Path, bytes | None]:
+    """Return all files in a folder with their bytes, and all folders with None."""
+    return {path: None if path.is_dir() else path.read_bytes() for path in folder.rglob("*")}
+
+
 def resealed(path: Path, edit: Callable[[h5py.File], object]) -> None:
     """Edit a file, and give it a checksum that fits: what only somebody who means it does."""
     path.write_bytes(path.read_bytes()[: -netcdf_file.SEAL])
@@ -263,13 +268,22 @@ def test_a_lock_on_a_name_is_exclusive_and_released(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["k.nc", "k.rows.csv", "k.checkpoint.nc", ".k.checkpoint.nc.lock"])
 def test_a_folder_in_place_of_a_file_of_a_catalogue_is_named_before_anything_is_removed(tmp_path: Path, name: str) -> None:
-    for file in ("k.nc", "k.rows.csv", "k.checkpoint.nc"):
-        (tmp_path / file).write_text("mine")
+    ss.catalogue(PROBLEM, 20 * ss.YEAR, tmp_path / "k.nc")
+    (tmp_path / "k.rows.csv").write_text("start,end,duration,recurrence,")  # of a run that was killed
     (tmp_path / name).unlink(missing_ok=True)
     (tmp_path / name / "inside").mkdir(parents=True)
-    before = sorted(tmp_path.rglob("*"))
+    before = contents(tmp_path)
     refused(lambda: ss.catalogue(PROBLEM, 20 * ss.YEAR, tmp_path / "k.nc"), f"{tmp_path / name}: ")
-    assert sorted(tmp_path.rglob("*")) == before
+    assert contents(tmp_path) == before
+
+
+@pytest.mark.parametrize("name", ["k.nc", "k.rows.csv", "k.checkpoint.nc"])
+def test_a_file_of_others_in_place_of_one_of_a_catalogue_is_never_replaced(tmp_path: Path, name: str) -> None:
+    ss.catalogue(PROBLEM, 20 * ss.YEAR, tmp_path / "k.nc")
+    (tmp_path / name).write_text("mine")
+    before = contents(tmp_path)
+    refused(lambda: ss.catalogue(PROBLEM, 20 * ss.YEAR, tmp_path / "k.nc"), f"{tmp_path / name}: exists, and stickslip did not")
+    assert contents(tmp_path) == before
 
 
 def test_a_checkpoint_never_cuts_a_file_that_is_no_catalogue(tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ from typer import Context
 import stickslip as ss
 from stickslip.cli.app import COMMANDS
 from stickslip.cli.options import complete_scenario, complete_vary
+from stickslip.run.run_loop import Interrupts
 from stickslip.scenarios import read_scenario
 from tests.cli.conftest import Outcome
 
@@ -22,6 +23,7 @@ IN_1D = {
     "compare": ("planar-patch", "fig6-slab"),
     "ensemble": ("planar-patch",),
     "export": ("planar-patch", "out.txt"),
+    "find": ("planar-patch", "--along", "friction.static=0.6..0.8"),
     "infer": ("planar-patch", "record.csv", "--free", "friction.static=0.6..0.8"),
     "regularise": ("planar-patch",),
     "schemes": ("planar-patch",),
@@ -106,7 +108,7 @@ def test_what_is_for_one_place_is_refused_in_one_line(command: Command, name: st
         (("--set", "contact.replicas=perhaps"), "contact.replicas 'perhaps' is unknown"),
         (("--set", "patches[7].taper=3"), "'patches[7].taper' is not a parameter of this scenario"),
         (("--duration", "3 km"), "'km' does not convert to s"),
-        (("--duration", "10 days"), "864000 s without replicas need 19360000 nodes"),
+        (("--duration", "10 days"), "864000 s without replicas need 19353856 nodes"),  # 256 and 3.5 km/s x 864000 s / 156.25 m
     ],
 )
 def test_options_that_it_does_not_have_are_refused_in_one_line(command: Command, options: tuple[str, ...], said: str) -> None:
@@ -130,14 +132,10 @@ def test_check_refuses_figures_of_a_single_place(command: Command) -> None:
 
 
 def test_an_interrupted_run_is_shown_and_resumed(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
-    class Interrupted:
-        noted = True
-
-        def __enter__(self) -> Interrupted:
-            return self
-
-        def __exit__(self, *_: object) -> None:
-            pass
+    class Interrupted(Interrupts):
+        def __init__(self) -> None:
+            super().__init__()
+            self.noted = True  # as by a Ctrl-C during the first steps
 
     with monkeypatch.context() as patched:
         patched.setattr("stickslip.run.planar_run.Interrupts", Interrupted)

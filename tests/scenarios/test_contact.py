@@ -275,7 +275,6 @@ REFUSING = {
     "catalogue": lambda name: ss.catalogue(name, "events.csv"),
     "sweep": lambda name: ss.sweep(name, {"friction.static": [0.7]}),
     "compare": lambda name: compare(name, "fig6-slab"),
-    "explore": lambda name: ss.explore(name),
 }
 
 

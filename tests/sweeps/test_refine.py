@@ -11,12 +11,14 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from zarr.codecs import GzipCodec
 
 import stickslip as ss
 from stickslip.contact.critical import margin
 from stickslip.sweeps.estimate import estimate
 from stickslip.sweeps.execution.plan import make_plan
 from stickslip.sweeps.results.refinement_spec import Change, cases, cells_of, changes
+from stickslip.sweeps.results.store import open_store, publish
 from stickslip.sweeps.sweep import SweepProgress, carry_out, on_threads
 
 
@@ -197,6 +199,19 @@ def test_a_finished_search_is_not_run_again(tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["map.zarr"]
     with pytest.raises(ss.InputError, match=r"map\.zarr: was made with another refinement"):
         refine(tmp_path / "map.zarr", depth=4)
+
+
+def test_maps_of_earlier_versions_are_read_and_what_is_packed_otherwise_is_not(tmp_path: Path) -> None:
+    """Earlier versions left the packing to xarray: Zstandard without checksums."""
+    found = refine(tmp_path / "map.zarr").load().drop_encoding()
+    publish(tmp_path / "earlier.zarr", lambda draft: found.to_zarr(draft, consolidated=False))
+    assert open_store(tmp_path / "earlier.zarr").identical(found)
+    packed = {STRESS: {"compressors": (GzipCodec(),)}}
+    publish(tmp_path / "other.zarr", lambda draft: found.to_zarr(draft, consolidated=False, encoding=packed))
+    with pytest.raises(
+        ss.InputError, match=rf"other\.zarr: not the store of a sweep: its array '{STRESS}' is packed in another way"
+    ):
+        open_store(tmp_path / "other.zarr")
 
 
 def test_the_search_ends_at_the_most_members_and_says_so() -> None:

@@ -259,7 +259,7 @@ class PlanarSlab(CheckedArguments):
         reach = self.body.wave_speed * duration
         wanted = [count + reach / step for count, step in zip(self.shape, self.spacing, strict=True)]
         if not math.prod(wanted) <= MOST_NODES:
-            needed = " x ".join(f"{one:.3g}" for one in wanted)
+            needed = " x ".join(f"{np.ceil(one):.15g}" for one in wanted)
             raise InputError(f"PlanarSlab: {duration:g} s without replicas need {needed} nodes, allowed are {MOST_NODES}")
         counts = [2 * next_fast_len(math.ceil(one / 2)) for one in wanted]
         more = [large - count for large, count in zip(counts, self.shape, strict=True)]

@@ -119,7 +119,7 @@ def catalogue_of(
 
     Raises InputError if a file of such a name was not written by this package.
     """
-    for file in () if path is None else {path, Rows(path).growing, checkpoint_of(Rows(path))}:
+    for file in () if path is None else (path, Rows(path).growing, checkpoint_of(Rows(path))):
         check_replaceable(file, f"catalogue: {file}")
     run = Session.begin(problem, replace(options, creep_rtol=leaps_with(energy, options.creep_rtol)))
     stream = run.events(event_rate, energy)

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from stickslip.foundation import zarr_folder
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import WithUnit
@@ -140,7 +141,8 @@ class _Search:
         if place is None or folder is None:
             return self.together(complete)
         together = self.together(complete).drop_encoding()
-        publish(place, lambda draft: together.to_zarr(draft, consolidated=False))
+        packed = {str(name): {"compressors": zarr_folder.COMPRESSED} for name in together.variables}
+        publish(place, lambda draft: together.to_zarr(draft, consolidated=False, encoding=packed))
         shutil.rmtree(folder)
         return self.there(place)
 

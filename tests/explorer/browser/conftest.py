@@ -1,4 +1,4 @@
-"""One browser for the tests of a process, one server for those of a module, and pages that fail when they do something wrong."""
+"""One browser for the tests of this folder, one server for those of a module, and pages that fail when they do something wrong."""
 
 from __future__ import annotations
 
@@ -10,9 +10,13 @@ import pytest
 from tests.explorer.browser.harness import NO_BROWSER, PATIENCE, Served, Watched, launch, serve
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def chromium() -> Iterator[Any]:
-    """The browser; tests are skipped, with a sentence that says why, where there is none."""
+    """The browser; tests are skipped, with a sentence that says why, where there is none.
+
+    It ends with the tests of this folder, because an event loop runs in the main thread as long as it is open: no other test could
+    start its own.
+    """
     sync_api = pytest.importorskip("playwright.sync_api")
     sync_api.expect.set_options(timeout=PATIENCE)
     with sync_api.sync_playwright() as playwright:

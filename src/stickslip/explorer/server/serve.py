@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import errno
 import logging
+import os
 import signal
 import socket
-import sys
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import nullcontext, suppress
 from dataclasses import dataclass
 from functools import partial
-from logging.handlers import QueueHandler, QueueListener
+from logging.handlers import QueueHandler
 from queue import Full, Queue
+from threading import Thread
 from typing import Any
 from urllib.parse import quote
 from weakref import ref
@@ -85,6 +86,8 @@ LOGGERS = ("panel", "bokeh", "tornado", "asyncio", "stickslip")
 """Loggers of what runs in the server."""
 MOST_LINES = 1000
 """Lines of the log that wait to be written; further ones are lost."""
+STDERR = 2
+"""Descriptor of standard error."""
 EVERYWHERE = ("0.0.0.0", "::", "")
 """Addresses by which a server listens on all networks of the computer."""
 
@@ -112,11 +115,27 @@ class Endpoint:
 
 
 class _Log(QueueHandler):
-    """Hands what is logged to a thread of its own; what that cannot write in time is lost."""
+    """Hands what is logged to a thread of its own; what that cannot write in time is lost.
+
+    That thread may wait for ever, and be ended with the process. It writes past `sys.stderr` and every handler, because the end of
+    the process waits for their locks.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(Queue(MOST_LINES))
+        self.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(name)s: %(message)s"))
+        self.setLevel(logging.WARNING)  # Panel's logger passes on all that is for finding faults in it
+        Thread(target=self._write, name="log", daemon=True).start()
 
     def enqueue(self, record: logging.LogRecord) -> None:
         with suppress(Full):
             self.queue.put_nowait(record)
+
+    def _write(self) -> None:
+        while True:
+            line = f"{self.queue.get().msg}\n"
+            with suppress(OSError):
+                os.write(STDERR, line.encode("utf-8", "backslashreplace"))
 
 
 def log_to_stderr() -> None:
@@ -125,12 +144,7 @@ def log_to_stderr() -> None:
     Panel logs to standard output, where the address of the page is said. Whoever reads nothing but the address lets the pipe become
     full, at which the server would stand still.
     """
-    queue: Queue[Any] = Queue(MOST_LINES)
-    handler = logging.StreamHandler(sys.stderr)
-    handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(name)s: %(message)s"))
-    QueueListener(queue, handler).start()  # in a daemon thread, so that a full pipe does not keep the process alive
-    through = _Log(queue)
-    through.setLevel(logging.WARNING)  # Panel's logger passes on all that is for finding faults in it
+    through = _Log()
     for name in LOGGERS:
         logger = logging.getLogger(name)
         logger.handlers, logger.propagate = [through], False
