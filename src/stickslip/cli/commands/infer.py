@@ -123,7 +123,7 @@ def infer(
     if compare and held_out is None:
         raise InputError("infer: --compare needs --held-out, the part of the record that is predicted")
     chosen = load(scenario, "infer", changes)
-    compared = [(one, _free_of(name, one, compare_free or free)) for name in compare or () for one in (load(name, "infer"),)]
+    compared = [(one := load(name, "infer"), _free_of(name, one, compare_free or free)) for name in compare or ()]
     found = _inferred(chosen, data, free, options)
     show_inference(chosen, found)
     others = [_inferred(one, data, names, options | dict.fromkeys(("priors", "bounds", "begin_at"))) for one, names in compared]

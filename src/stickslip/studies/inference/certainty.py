@@ -74,8 +74,8 @@ def unknown(found: Estimate) -> Certainty:
 def certainty_of(found: Estimate) -> Certainty:
     """Return what a record determines at a best fit, from the derivatives there and from what is left of the record.
 
-    The number whose uncertainty noise with the memory found explains best, or what is left itself if that says more, counts: an
-    estimate of least squares is right, and its intervals hold, also where noise remembers itself or the model is a little wrong.
+    Uncertainties are those that noise with the memory found gives to an estimate of least squares. If the residuals themselves say
+    more, as where a model that is a little wrong leaves most where it counts most, those count (a sandwich covariance).
     """
     x = found.searched
     model = found.model.with_(rtol=min(EXACT, found.model.rtol)).fine(x)

@@ -202,7 +202,7 @@ def infer(
     Least squares over full runs; positive numbers are searched along their logarithm. What is left is then looked at: its size
     and, by restricted maximum likelihood, the time over which it remembers itself. Intervals, of 95 %, allow for that memory, and
     for residuals that are largest where they count most, as those of a model that is a little wrong (sandwich covariance). A
-    misfit is told as a misfit. What is left never moves the numbers themselves.
+    misfit is told as a misfit. What is left moves the numbers only as it weighs several quantities, and what you know beforehand.
     """
     wishes = Wishes(
         by=by, observe=observe, start=start,
