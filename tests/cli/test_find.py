@@ -64,7 +64,19 @@ def test_check_answers_at_which_speed_stick_slip_vanishes(command: Command, axis
     said = " ".join(command("check", axis).out.split())
     assert "steady sliding at 50 mm/s, traction 3.73576 N: unstable: a small disturbance grows at 4.85759 /s" in said
     assert "unstable below a pull rate of 0.103972077 m/s, stable above (proven by interval arithmetic)" in said
+    assert "from rest it sticks up to 15" in said
+    said = " ".join(command("check", axis, "--no-runs").out.split())
     assert "from rest it may stick at a higher rate all the same: stickslip find" in said
+
+
+def test_check_and_find_draw_what_they_found(command: Command, axis: str, tmp_path: Path):
+    assert command("check", axis, "--no-runs", "--steady-figure", "steady.png").code == 0
+    assert command("find", axis, "--along", "pull_rate=0.1..0.4", "--within", "0.5", "-f", "edge.svg").code == 0
+    assert (tmp_path / "steady.png").stat().st_size > 10_000
+    assert "exact runs" in (tmp_path / "edge.svg").read_text()
+    refused = command("check", axis, "--set", "pull_rate=0", "--steady-figure", "none.png")
+    assert refused.code == 2
+    assert "check: --steady-figure: no steady sliding: nothing pulls" in refused.err
 
 
 def test_steady_sliding_can_be_set_from_the_command_line(command: Command, axis: str):

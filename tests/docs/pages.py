@@ -5,8 +5,8 @@ Conventions of the pages (README.md and docs/*.md):
 - ```python blocks of a page run in order in one namespace, in an empty folder. A ```text block right behind one is what it prints.
   A number in a comment behind a statement that prints is one that it prints, to the digits of the comment, or one of its code.
 - ```toml blocks that begin with `# NAME.toml` are put into that folder under this name.
-- ```console blocks: lines `$ stickslip ...` are run; the lines shown below one appear in what it says, in this order ("..." stands
-  for anything). A shown line that begins with "stickslip: " is an error: exit code 2; otherwise the exit code is 0.
+- ```console blocks: lines `$ stickslip ...` are run; the lines shown below one are all that it says, and "..." stands for lines that
+  are left out. A shown line that begins with "stickslip: " is an error: exit code 2; otherwise the exit code is 0.
 - Files beside the pages that a page offers (links to .csv and .toml) lie in that folder, as if the reader had downloaded them.
 """
 
@@ -112,9 +112,23 @@ def run_command(command: Command) -> tuple[int, str]:
 
 
 def missing_lines(shown: list[str], said: str) -> list[str]:
-    """The shown lines that do not appear, in order, in what was said; blanks count once."""
-    rest = iter([" ".join(line.split()) for line in said.splitlines()])
-    return [line for line in shown if line != "..." and not any(" ".join(line.split()) == other for other in rest)]
+    """The shown lines that do not follow one another in what was said, from its first line to its last; blanks count once.
+
+    Only a line "..." stands for lines that are not shown. If nothing is shown, nothing is missing.
+    """
+    rest = [words for line in said.splitlines() if (words := " ".join(line.split()))]
+    missing, may_skip = [], False
+    for line in shown:
+        if line == "...":
+            may_skip = True
+            continue
+        words = " ".join(line.split())
+        place = rest.index(words) if words in rest else None
+        if place is None or (place > 0 and not may_skip):
+            missing.append(line)
+        if place is not None:
+            rest, may_skip = rest[place + 1 :], False
+    return missing if may_skip or not shown else [*missing, *rest]
 
 
 def comments_of(block: Block) -> Iterator[tuple[str, str]]:

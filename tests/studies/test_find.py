@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import math
+import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib import pyplot
 from scipy.integrate import solve_ivp
 
 import stickslip as ss
+from stickslip.figures.contact import steady
 from stickslip.trajectory.slip_events import share_sticking
+from tests.figures.legible import has_unit, labels
 
 BODY = ss.SpringBlock(mass=1.0, stiffness=1e3, normal_force=10.0, damping=5.0)
 STRIBECK = ss.friction.FromExpression("0.3 + 0.2*exp(-v/v1)", {"v1": "50 mm/s"})
@@ -43,6 +48,73 @@ def test_the_edge_of_stick_slip_from_rest_is_that_of_an_independent_integration(
     assert not stops_again(edge.high)
     assert ss.studies.steady(AXIS).changes[0].pull_rate < 0.7 * edge.low
     assert edge.runs == len(edge.table) == len(set(edge.table["loading.pull_rate"]))
+
+
+def test_steady_finds_by_itself_that_it_sticks_from_rest_where_sliding_is_stable():
+    """An independent integration: it sticks at the lower rate and not at the upper one, within 2 % of each other."""
+    found = ss.studies.steady(AXIS)
+    rest = found.from_rest
+    assert rest is not None
+    assert rest.sticks_at is not None
+    assert rest.slides_at is not None
+    assert stops_again(rest.sticks_at)
+    assert not stops_again(rest.slides_at)
+    assert rest.slides_at - rest.sticks_at <= 0.02 * rest.slides_at
+    assert "stable above (proven by interval arithmetic); from rest it sticks up to 15" in str(found)
+    assert ss.studies.steady(AXIS, from_rest=False).from_rest is None
+
+
+def test_a_start_in_steady_sliding_makes_no_difference_to_what_happens_from_rest():
+    steady = replace(AXIS, initial_load=None, initial_rate="steady")
+    assert ss.studies.steady(steady).from_rest == ss.studies.steady(AXIS).from_rest
+
+
+def test_without_hysteresis_one_run_tells():
+    """10 N * 0.1 * 2 v/(1 + v^2)^2 = 0.5 N s/m at v = 1 m/s: stable above. The law is flat near rest, so that it slides there, too."""
+    law = ss.friction.FromExpression("0.5 - 0.1*v**2/(v**2 + w**2)", {"w": "1 m/s"})
+    heavy = ss.Problem(replace(BODY, damping=0.5), law, pull_rate=0.02, initial_load=0.0)
+    found = ss.studies.steady(heavy)
+    assert found.from_rest is not None
+    assert found.from_rest.sticks_at is None
+    assert found.from_rest.slides_at == pytest.approx(1.02, rel=1e-9, abs=0.0)
+    assert found.from_rest.runs == 1
+    assert "from rest it slides at" in str(found)
+
+
+def test_runs_from_rest_have_a_limit(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(sys.modules["stickslip.studies.find"], "MOST_PIECES", 10)
+    assert "from rest: not known, a run took 10 pieces" in str(ss.studies.steady(AXIS))
+
+
+def test_an_edge_and_steady_sliding_are_drawn(tmp_path: Path):
+    edge = ss.studies.find(AXIS, "pull_rate", 0.05, 0.4, duration=5.0, within=0.3)
+    drawn = edge.to_dataset()
+    assert drawn.bracket.values.tolist() == [edge.low, edge.high]
+    assert drawn.given.values.tolist() == edge.table.sticking.astype(float).tolist()
+    found = ss.studies.steady(AXIS)
+    curve = steady.data(found)
+    at = int(np.argmin(np.abs(curve.slip_rate.values - found.changes[0].rate)))
+    assert curve.stable.values[at:].all()
+    assert not curve.stable.values[:at].any()
+    np.testing.assert_allclose(curve.traction, 10.0 * (0.3 + 0.2 * np.exp(-curve.slip_rate / 0.05)), rtol=1e-14, atol=0.0)
+    for figure in (edge.plot(), found.plot()):
+        assert all(has_unit(text) or text == "sticking" for text in labels(figure))
+        pyplot.close(figure)
+    still = ss.Problem(BODY, STRIBECK, initial_load=0.0)
+    with pytest.raises(ss.InputError, match="plot: no steady sliding: nothing pulls"):
+        ss.studies.steady(still).plot()
+
+
+def test_sliding_that_only_ages_make_unstable_brings_no_event():
+    """The paper's slab under a law that is flat at small rates: a disturbance grows at 7e-27 /s, so that nothing will come of it."""
+    law = ss.friction.FromExpression("fw + (f0 - fw)/(1 + (v/vw)**4)**0.25", {"f0": 0.8, "fw": 0.3, "vw": "1 m/s"})
+    slab = ss.ElasticSlab(density=2800, wave_speed=3500, thickness=1e4, normal_stress=1e8)
+    slow = ss.Problem(slab, law, pull_rate=0.05 / ss.YEAR, initial_excess=0.0)
+    assert "Slides steadily at the driver's rate: no event will come." in str(ss.studies.steady(slow))
+    assert "no event will come" not in str(ss.studies.steady(replace(slow, pull_rate=0.5)))
+    run = ss.simulate(slow, "1 year")
+    assert "it slides steadily at the driver's rate: no event will come" in run.creep_note
+    assert len(run.events) == 0
 
 
 def test_the_load_at_which_slip_begins_is_the_strength():

@@ -3,16 +3,27 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import ClassVar
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, ClassVar, Unpack
 
 import numpy as np
 
 from stickslip.foundation.brief_repr import brief_repr
+from stickslip.foundation.constants import YEAR
+from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from stickslip.problem.problem import Problem
+    from stickslip.solution.place import Place
 
 RATES = np.geomspace(1e-18, 1e3, 85)
 """Slip rates (m/s) at which the stability of a law with states is examined, four a decade; changes are then found to rounding."""
+NEVER = 1e-20
+"""Growth rate (1/s) up to which a disturbance grows by less than half a per cent in the age of the universe."""
 
 
 @dataclass(frozen=True)
@@ -38,6 +49,11 @@ class Sliding:
     __repr__ = brief_repr
 
     @property
+    def lasts(self) -> bool:
+        """True if the contact stays at this rate: sliding is stable, or a disturbance takes for ever to grow."""
+        return self.stable is True or 0.0 < self.growth <= NEVER
+
+    @property
     def verdict(self) -> str:
         """The word for `stable`: stable, unstable or neutral."""
         return "neutral" if self.stable is None else "stable" if self.stable else "unstable"
@@ -52,7 +68,8 @@ class Sliding:
             return "stable: every small disturbance fades, but the faster it swings, the more slowly"
         does = "grows" if self.growth > 0.0 else "fades"
         size = "at once" if math.isinf(self.growth) else f"at {abs(self.growth):.6g} /s"
-        return f"{self.verdict}: a small disturbance {does} {size}{swings}"
+        slowly = f", by a factor e in {brief(1.0 / self.growth / YEAR, '1', 2)} years" if 0.0 < self.growth <= NEVER else ""
+        return f"{self.verdict}: a small disturbance {does} {size}{slowly}{swings}"
 
 
 @dataclass(frozen=True)
@@ -69,6 +86,37 @@ class StabilityChange:
 
     units: ClassVar = {"rate": "m/s", "pull_rate": "m/s", "enclosure": "m/s"}
     __repr__ = brief_repr
+
+
+@dataclass(frozen=True)
+class FromRest:
+    """What exact runs from rest do at pull rates (m/s) at which steady sliding is stable."""
+
+    sticks_at: float | None
+    """The highest pull rate (m/s) at which a run still stuck; None if the run just above the critical rate slid already."""
+    slides_at: float | None
+    """The lowest pull rate (m/s) at which a run came to slide without rest; None if none did."""
+    runs: int
+    duration: float
+    """Duration of each run (s)."""
+    limit: int
+    """Largest number of pieces of each run; a run that needs more ends the search."""
+
+    units: ClassVar = {"sticks_at": "m/s", "slides_at": "m/s", "duration": "s"}
+    __repr__ = brief_repr
+
+    def __str__(self) -> str:
+        runs = f"{self.runs} exact run{'s' * (self.runs > 1)} of {brief(self.duration, 's', 3)}"
+        if self.sticks_at is None:
+            at = "" if self.slides_at is None else f" at {brief(self.slides_at, 'm/s', 3)}"
+            return f"from rest it slides{at}, too (by {runs})" if at else f"from rest: not known, a run took {self.limit} pieces"
+        if self.slides_at is None:
+            return f"from rest it still sticks at {brief(self.sticks_at, 'm/s', 3)} (by {runs}; stickslip find looks further)"
+        return f"from rest it sticks up to {brief(self.sticks_at, 'm/s', 3)} (to {100.0 * FROM_REST_WITHIN:g} %, by {runs})"
+
+
+FROM_REST_WITHIN = 0.02
+"""Width, as a share of the rate, to which the highest pull rate is found at which a contact sticks that starts from rest."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -101,12 +149,39 @@ class SteadySlidings:
     """Unit of tractions."""
     is_calm: bool = False
     """True if nothing at the start keeps the contact from the slow motion that ends in `settled`, if no slower rate is unstable."""
+    problem: Problem | None = field(default=None, compare=False)
+    """The problem that was asked about."""
+    from_rest: FromRest | None = None
+    """What the contact does from rest where steady sliding is stable; None if that was not looked for."""
+
+    @property
+    def regained(self) -> float | None:
+        """The critical pull rate (m/s) above which steady sliding is stable, at which a contact from rest may stick; None without."""
+        last = self.changes[-1] if self.changes else None
+        return last.pull_rate if self.sticks and last is not None and last.stable_above and not self.varies else None
 
     @property
     def settled(self) -> Sliding | None:
-        """The stable steady sliding, if there is exactly one, and rest is not possible: what every slow motion ends in."""
-        stable = [one for one in self.slidings if one.stable]
-        return stable[0] if len(stable) == 1 and not self.can_rest else None
+        """The steady sliding that lasts, if there is exactly one, and rest is not possible: what every slow motion ends in."""
+        lasting = [one for one in self.slidings if one.lasts]
+        return lasting[0] if len(lasting) == 1 and not self.can_rest else None
+
+    def plot(self, **place: Unpack[Place]) -> Figure | Axes:
+        """Plot friction of steady sliding against the slip rate: where it is stable, this motion, critical rates, hysteresis.
+
+        The keywords `ax`, `figure`, `size` and `dpi` say where to draw, and how large, as for `solution.plot()`. Raises InputError
+        if nothing slides steadily.
+        """
+        from stickslip.figures.contact import steady
+        from stickslip.figures.sheet import known_to_pyplot
+
+        self.check_drawn("plot")
+        return known_to_pyplot(steady.draw(steady.data(self), **place), place)
+
+    def check_drawn(self, where: str) -> None:
+        """Raise InputError, which begins with `where`, if there is no steady sliding that could be drawn."""
+        if not self.slidings:
+            raise InputError(f"{where}: no steady sliding: {self.why_none}")
 
     def __repr__(self) -> str:
         return "\n".join(["stickslip SteadySlidings", *(f"  {line}" for line in self.lines())])
@@ -121,7 +196,7 @@ class SteadySlidings:
         at = "at the first pull rate, " if self.varies else "at "
         found = [f"{at}{brief(one.rate, 'm/s')}, traction {brief(one.traction, self.unit)}: {one}" for one in self.slidings]
         if self.is_calm and self.settled and all(one.rate > abs(self.settled.rate) for one in self.changes):
-            found.append(slides_on(self.settled.rate, is_driven_rigidly=self.far_stress is None))
+            found.append(slides_on(self.settled, is_driven_rigidly=self.far_stress is None))
         found += [self._given_way(), "at rest: the driver does not pull hard enough to free a contact that sticks" * self.can_rest]
         if not self.is_damped and any(one.stable is False for one in self.slidings):
             found.append("neither body nor driver damps: it is unstable wherever friction falls with the slip rate, however gently")
@@ -146,9 +221,8 @@ class SteadySlidings:
             return ""
         texts = [f"{'unstable' if self.changes[0].stable_above else 'stable'} below"]
         texts += [f"{_place(one)}, {'stable' if one.stable_above else 'unstable'} above" for one in self.changes]
-        hint = "; from rest it may stick at a higher rate all the same: stickslip find" * (
-            self.sticks and self.changes[-1].stable_above
-        )
+        hint = "" if self.regained is None else "; from rest it may stick at a higher rate all the same: stickslip find"
+        hint = hint if self.from_rest is None else f"; {self.from_rest}"
         how = "proven by interval arithmetic" if self.proven else f"found between {RATES[0]:g} and {RATES[-1]:g} m/s, not proven"
         return f"{' '.join(texts)} ({how}){hint}"
 
@@ -158,9 +232,10 @@ def driven_at(rate: float, *, is_driven_rigidly: bool) -> str:
     return "the driver's rate" if is_driven_rigidly else brief(abs(rate), "m/s")
 
 
-def slides_on(rate: float, *, is_driven_rigidly: bool) -> str:
-    """Return a sentence without its subject, a contact whose steady sliding at this rate (m/s) is stable and not left any more."""
-    return f"slides steadily and stably at {driven_at(rate, is_driven_rigidly=is_driven_rigidly)}: no event will come"
+def slides_on(sliding: Sliding, *, is_driven_rigidly: bool) -> str:
+    """Return a sentence without its subject, a contact that slides steadily and stays at this rate."""
+    how = "steadily and stably" if sliding.stable else "steadily"
+    return f"slides {how} at {driven_at(sliding.rate, is_driven_rigidly=is_driven_rigidly)}: no event will come"
 
 
 def _place(change: StabilityChange) -> str:

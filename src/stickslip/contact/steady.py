@@ -28,6 +28,7 @@ from stickslip.contact.equation import Resistance
 from stickslip.contact.folds import Certificate, certificate
 from stickslip.contact.roots import sign_change
 from stickslip.contact.sliding import RATES, Sliding, StabilityChange, SteadySlidings
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.friction.contract import one_argument
 from stickslip.friction.formula.differences import value_and_slopes
@@ -44,6 +45,12 @@ CRAWL, SAME = 1e-300, 1e-9
 def steady_slidings(problem: Problem) -> SteadySlidings:
     """Find how a contact can slide steadily under the loading of a problem, at the start if it varies, and what is stable."""
     return _Steady(problem).found()
+
+
+def steady_traction(problem: Problem, rates: Floats) -> Floats:
+    """Return the size of the traction (Pa or N) of steady sliding at slip rates (m/s) in the direction of the drive."""
+    steady = _Steady(problem)
+    return np.array([steady.traction(rate) for rate in rates.tolist()])
 
 
 @dataclass(frozen=True)
@@ -110,6 +117,7 @@ class _Steady:
             why_none=why,
             unit=problem.load_unit,
             is_calm=bool(slidings) and self.is_calm(slidings[0], changes),
+            problem=problem,
         )
 
     def is_calm(self, sliding: Sliding, changes: tuple[StabilityChange, ...]) -> bool:

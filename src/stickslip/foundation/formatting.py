@@ -36,14 +36,22 @@ def with_unit(value: float, unit: str) -> str:
     if unit == "1":
         return number(value)
     if unit in _SCALED and math.isfinite(value):
-        factor, prefix = next(((f, p) for f, p in _PREFIXES if abs(value) >= f), (1.0, ""))
-        return f"{number(value / factor)} {prefix}{unit}"
+        factor, scaled = readable_unit(value, unit)
+        return f"{number(value / factor)} {scaled}"
     plain = f"{number(value)} {unit}"
     if unit == "s" and 1e5 <= abs(value) < math.inf:
         return f"{plain} ({number(value / YEAR, 6)} years)"
     if unit.endswith("/s") and 0 < abs(value) < 1e-4:
         return f"{plain} ({number(value * YEAR, 6)} {unit.removesuffix('/s')}/year)"
     return plain
+
+
+def readable_unit(largest: float, unit: str) -> tuple[float, str]:
+    """Return the unit in which numbers up to `largest` are short, such as MPa for 8e7 Pa, after its factor to the unit given."""
+    if unit not in _SCALED or not math.isfinite(largest):
+        return 1.0, unit
+    factor, prefix = next(((f, p) for f, p in _PREFIXES if abs(largest) >= f), (1.0, ""))
+    return factor, f"{prefix}{unit}"
 
 
 def brief(value: float, unit: str, digits: int = DIGITS) -> str:

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
+from stickslip.contact.sliding import FROM_REST_WITHIN, FromRest, SteadySlidings
 from stickslip.contact.steady import steady_slidings
-from stickslip.foundation.arguments import CheckedArguments, for_users
-from stickslip.foundation.atomic_write import write_table
+from stickslip.foundation.arguments import for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest_and_all
 from stickslip.foundation.formatting import brief
@@ -20,11 +20,11 @@ from stickslip.foundation.quantities import Quantity
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import DURATION
 from stickslip.run.simulate import simulate
-from stickslip.scenarios.parameter_paths import find_parameter
+from stickslip.scenarios.parameter_paths import ParameterPath, find_parameter
 from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.source import read_source
 from stickslip.solution.solution import Solution
-from stickslip.studies.study import TextProgress, telling, uninterrupted
+from stickslip.studies.study import Study, TextProgress, telling, uninterrupted
 from stickslip.trajectory.slip_events import share_sticking
 
 WHAT: dict[str, Callable[[Solution], bool | int]] = {
@@ -37,13 +37,17 @@ WITHIN = 1e-3
 """Default width of the last bracket, as a share of its upper end."""
 MOST_DOUBLINGS = 12
 """Largest number of times that a range is doubled where no upper end is given."""
+CYCLES = 100
+"""Duration of the runs from rest, in times that a cycle of stick-slip takes at the critical rate."""
+MOST_PIECES = 100_000
+"""Largest number of pieces of each run from rest."""
 
 What = str | Callable[[Solution], Any]
 """A name in WHAT, or a function of a solution that returns True or False, or a whole number."""
 
 
 @dataclass(frozen=True, repr=False)
-class Edge(CheckedArguments):
+class Edge(Study):
     """The result of `find`: the last bracket, between whose ends what was looked for changes."""
 
     parameter: str
@@ -60,6 +64,8 @@ class Edge(CheckedArguments):
     """The runs, in the order in which they were made: the parameter (SI), and what they gave."""
     duration: float = math.nan
     """Duration of the runs (s)."""
+    meaning: str = ""
+    """Declared meaning of the parameter."""
 
     @property
     def runs(self) -> int:
@@ -73,12 +79,11 @@ class Edge(CheckedArguments):
         changes = f"{self.what}: {_word(self.at_low)} below, {_word(self.at_high)} above"
         return f"between {self.parameter} = {ends} ({changes}), by {self.runs} exact runs of {brief(self.duration, 's')}"
 
-    def to_csv(self, path: str | Path) -> Path:
-        """Write the runs as CSV and return the path; comment lines (#) before them say what was found."""
-        return write_table(Path(path), self.table, (self.text,))
+    def _about(self) -> Iterable[str]:
+        return (self.text,)
 
-    def __repr__(self) -> str:
-        return f"stickslip Edge\n  {self.text}"
+    def _lines(self) -> Iterable[str]:
+        return (self.text,)
 
 
 def _word(value: bool | int) -> str:
@@ -153,8 +158,38 @@ def find(
         raise InputError(f"find: {parameter.name} is no number that could be halved")
     ends = [None if end is None else parameter.declared.check("find", parameter.name, end) for end in (low, high)]
     with telling(progress, "find") as tell:
-        search = _Search(scenario, parameter.name, parameter.unit, what, lasts, tell)
+        search = _Search(scenario, parameter, what, lasts, tell)
         return search.edge(*search.ends(*ends), within)
+
+
+def from_rest(problem: Problem, found: SteadySlidings, tell: TextProgress = lambda text: None) -> FromRest | None:
+    """Find up to which pull rate a contact sticks that starts from rest, though steady sliding is stable; None if nothing is to find.
+
+    A dozen exact runs begin a little above the critical rate. Their number and length depend on the problem alone.
+    """
+    critical = found.regained
+    if critical is None or critical <= 0.0:
+        return None
+    if problem.has_initial_rate:
+        problem = replace(problem, initial_rate=None, initial_load=0.0, initial_excess=None)
+    body, fall = problem.body, problem.strength - min(abs(one.traction) for one in found.slidings)
+    lasts = CYCLES * (body.round_trip_time + max(fall, 0.0) / (body.stiffness * critical))
+    scenario = Scenario(problem, lasts)
+    search = _Search(scenario, find_parameter(scenario, "pull_rate", "steady"), "sticking", lasts, tell, MOST_PIECES)
+    sticks, slides = None, None
+    try:
+        rate = critical * (1.0 + FROM_REST_WITHIN)
+        for _ in range(MOST_DOUBLINGS):
+            if not search.at(rate):
+                slides = rate
+                break
+            sticks, rate = rate, 2.0 * rate
+        while sticks is not None and slides is not None and slides - sticks > FROM_REST_WITHIN * slides:
+            middle = math.sqrt(sticks * slides)
+            sticks, slides = (middle, slides) if search.at(middle) else (sticks, middle)
+    except InputError:  # a run was too long, or could not be made: what was found before holds
+        pass
+    return FromRest(sticks, slides, len(search.seen), lasts, MOST_PIECES)
 
 
 @dataclass(frozen=True)
@@ -162,11 +197,11 @@ class _Search:
     """A search for an edge along one parameter of a scenario; `seen` collects the runs."""
 
     scenario: Scenario
-    parameter: str
-    unit: str
+    parameter: ParameterPath
     what: What
     duration: float
     tell: TextProgress
+    most_pieces: int | None = None
     seen: dict[float, bool | int] = field(default_factory=dict)
 
     @property
@@ -176,8 +211,8 @@ class _Search:
     def at(self, value: float) -> bool | int:
         """Return what a run with a value (SI) of the parameter gives."""
         if value not in self.seen:
-            run = uninterrupted(simulate(self.scenario.with_values({self.parameter: value}).problem, self.duration))
-            place = f"{self.parameter} = {brief(value, self.unit)}"
+            run = uninterrupted(simulate(self.scenario.with_values({self.parameter.name: value}).problem, self.duration, max_pieces=self.most_pieces))
+            place = f"{self.parameter.name} = {brief(value, self.parameter.unit)}"
             if not run.status.ok:
                 raise InputError(f"find: the run at {place} did not reach its end: {run.status}")
             self.seen[value] = _plain(WHAT[self.what](run) if isinstance(self.what, str) else self.what(run), place)
@@ -188,10 +223,10 @@ class _Search:
         """Return the two ends of the search, in ascending order; where they are left out, from steady sliding."""
         if low is not None and high is not None:
             if low == high:
-                raise InputError(f"find: the two ends of {self.parameter} must differ, got {low:g} twice")
+                raise InputError(f"find: the two ends of {self.parameter.name} must differ, got {low:g} twice")
             return min(low, high), max(low, high)
-        if self.parameter != "loading.pull_rate" or (low is None) != (high is None):
-            raise InputError(f"find: give two values of {self.parameter} between which to look")
+        if self.parameter.name != "loading.pull_rate" or (low is None) != (high is None):
+            raise InputError(f"find: give two values of {self.parameter.name} between which to look")
         gained = [one.pull_rate for one in steady_slidings(self.scenario.problem).changes if one.stable_above and one.pull_rate]
         if not gained:
             raise InputError(
@@ -209,8 +244,8 @@ class _Search:
         """Return the edge between two values (SI)."""
         at_low, at_high = self.at(low), self.at(high)
         if at_low == at_high:
-            ends = f"{brief(low, self.unit)} and {brief(high, self.unit)}"
-            raise InputError(f"find: at both {self.parameter} = {ends} it is {self.name}: {_word(at_low)}; give ends that differ")
+            ends = f"{brief(low, self.parameter.unit)} and {brief(high, self.parameter.unit)}"
+            raise InputError(f"find: at both {self.parameter.name} = {ends} it is {self.name}: {_word(at_low)}; give ends that differ")
         while high - low > within * abs(high):
             middle = math.sqrt(low) * math.sqrt(high) if low > 0.0 else 0.5 * (low + high)
             if not low < middle < high:
@@ -219,8 +254,9 @@ class _Search:
                 high, at_high = middle, self.at(middle)
             else:
                 low = middle
-        table = pd.DataFrame({self.parameter: list(self.seen), self.name: list(self.seen.values())})
-        return Edge(self.parameter, self.unit, self.name, low, high, at_low, at_high, table, self.duration)
+        one, values = self.parameter, list(self.seen.values())
+        table = pd.DataFrame({one.name: list(self.seen), self.name: values})
+        return Edge(one.name, one.unit, self.name, low, high, at_low, at_high, table, self.duration, one.declared.meaning)
 
 
 def _plain(value: Any, place: str) -> bool | int:

@@ -1,5 +1,6 @@
 """Studies that need a single problem or run: critical values, steady sliding, predictability and the statistics of a catalogue."""
 
+from dataclasses import replace
 from pathlib import Path
 
 from stickslip.contact.critical import critical_value
@@ -11,12 +12,16 @@ from stickslip.observables.predictability import predictability
 from stickslip.problem.problem import Problem
 from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.source import read_source
+from stickslip.studies.find import from_rest as runs_from_rest
+from stickslip.studies.study import TextProgress, telling
 
 __all__ = ["catalogue_statistics", "critical_value", "predictability", "steady"]
 
 
 @for_users
-def steady(problem: Problem | Scenario | str | Path) -> SteadySlidings:
+def steady(
+    problem: Problem | Scenario | str | Path, *, from_rest: bool = True, progress: TextProgress | bool | None = None
+) -> SteadySlidings:
     """Find how a contact slides steadily at its pull rate, whether that is stable, and at which rates stability changes.
 
     Parameters
@@ -24,21 +29,27 @@ def steady(problem: Problem | Scenario | str | Path) -> SteadySlidings:
     problem : Problem, Scenario, str or Path
         The problem, its scenario, the name of a bundled scenario, or a scenario file. If its loading varies, the answer is about
         the value at the start.
+    from_rest : bool
+        Whether to find, by a dozen exact runs, up to which pull rate a contact that starts from rest sticks although steady
+        sliding is stable. These runs are made only where a critical pull rate asks for them, and no run has more than 100 000
+        pieces.
+    progress : bool or callable, optional
+        True shows the progress of these runs in one line; a function is called with a line of text after each run.
 
     Returns
     -------
     SteadySlidings
         `slidings` (slip rate, traction, stability, growth rate and period of a small disturbance), `changes` (critical slip and
-        pull rates, with proof where the law has no state), and what is said of them by `print`.
+        pull rates, with proof where the law has no state), `from_rest` (the pull rates up to which it sticks and from which it
+        slides), and what is said of them by `print`.
 
     Raises
     ------
     InputError
         If the scenario has a contact of many nodes, or there is no such scenario.
 
-    Notes
-    -----
-    From rest a contact may stick at pull rates at which steady sliding is stable: `find` tells up to which.
+    KeyboardInterrupt
+        If the user presses Ctrl-C.
 
     Examples
     --------
@@ -46,8 +57,13 @@ def steady(problem: Problem | Scenario | str | Path) -> SteadySlidings:
     >>> law = ss.friction.FromExpression("0.3 + 0.2*exp(-v/v1)", {"v1": "50 mm/s"})
     >>> body = ss.SpringBlock(mass=1.0, stiffness=1e3, normal_force=10.0, damping=5.0)
     >>> found = ss.studies.steady(ss.Problem(body, law, pull_rate=0.05, initial_load=0.0))
-    >>> found.slidings[0].stable, round(found.changes[0].pull_rate, 6)
-    (False, 0.103972)
+    >>> found.slidings[0].stable, round(found.changes[0].pull_rate, 6), round(found.from_rest.sticks_at, 2)
+    (False, 0.103972, 0.15)
     """
-    found = read_source("steady", problem)
-    return steady_slidings(found if isinstance(found, Problem) else found.problem)
+    source = read_source("steady", problem)
+    one = source if isinstance(source, Problem) else source.problem
+    found = steady_slidings(one)
+    if not from_rest or found.regained is None:
+        return found
+    with telling(progress, "steady") as tell:
+        return replace(found, from_rest=runs_from_rest(one, found, tell))

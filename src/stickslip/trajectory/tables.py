@@ -91,8 +91,8 @@ def _lasts(problem: Problem) -> str:
     if len(found) != 1:
         return "it slides steadily up to the end"
     one, rigid = found[0], problem.body.is_driven_rigidly
-    if one.stable:
-        return f"it {slides_on(one.rate, is_driven_rigidly=rigid)}"
+    if one.lasts:
+        return f"it {slides_on(one, is_driven_rigidly=rigid)}"
     return f"it slides steadily at {driven_at(one.rate, is_driven_rigidly=rigid)} to the end"
 
 

@@ -4,18 +4,22 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
+import typer
+
 from stickslip.cli.options import Changes, Dpi, ScenarioName, Size, axes_of, option
-from stickslip.cli.output.files import Look, announce, check_target, drawing, write_files
+from stickslip.cli.output.files import Look, Target, announce, check_targets, drawing, write_files
 from stickslip.cli.output.show import print_words, say, titled
 from stickslip.foundation.errors import InputError, InputWarning
 from stickslip.foundation.formatting import brief, clean, with_unit
 
 if TYPE_CHECKING:
     from stickslip.contact.folds import Fold
+    from stickslip.contact.sliding import SteadySlidings
     from stickslip.contact.uniqueness import Uniqueness
     from stickslip.scenarios.examine import Examination
     from stickslip.scenarios.scenario import Scenario
@@ -31,22 +35,27 @@ def check(
     figure: Annotated[
         Path | None, option("Save a figure of the set K, or of the map (.png, .pdf, .svg).", "--figure", "-f")
     ] = None,
+    steady_figure: Annotated[Path | None, option("Save a figure of steady sliding (.png, .pdf, .svg).", "--steady-figure")] = None,
     dpi: Dpi = None,
     size: Size = None,
     map_axes: Annotated[list[str] | None, axes_of("a regime map")] = None,
+    runs: Annotated[bool, typer.Option("--runs/--no-runs", help="Make short exact runs from rest, if a critical rate asks for them.")] = True,
 ) -> None:
-    r"""Check a scenario without running it.
+    r"""Check a scenario before it is run.
 
     The command shows every value as it understands it, with units (SI); what
     follows from the values (impedance, travel time, strength, excess); whether
     the contact slips at once; static stability and growth; steady sliding at
     the pull rate: its slip rate and traction, whether it is stable, and from
-    which pull rate on; whether the slip rate is unique, the critical values,
+    which pull rate on, and up to which rate a contact from rest sticks all the
+    same (a dozen short exact runs; --no-runs skips them); whether the slip rate is unique, the critical values,
     the folds with what is proven of them, and the jumps; and warnings. Numbers
     marked with * depend on the selection rule.
 
     --figure draws the set K: every pair of slip rate and load that solves the
     contact equation. With --map twice it draws the regime over two numbers.
+    --steady-figure draws friction of steady sliding against the slip rate, where
+    it is stable, and where it sticks from rest.
 
     \b
       stickslip check fig6-slab --figure k.png
@@ -57,21 +66,33 @@ def check(
     from stickslip.scenarios.examine import examine
 
     look = Look(dpi, size)
-    check_target(figure, "--figure")
-    look.check(figure)
+    check_targets(Target("--figure", figure), Target("--steady-figure", steady_figure))
+    look.check(figure, steady_figure)
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", ".*the points look noisy", InputWarning)  # the examination says so
         loaded = load(scenario, "check", changes, contact=True)
     if loaded.contact is not None:
-        _show_contact(loaded, figure or map_axes)
+        _show_contact(loaded, figure or map_axes or steady_figure)
         return
     axes = map_axes or []
     if axes and (len(axes) != 2 or figure is None):
         raise InputError(f"check: a map needs two --map and a --figure, got {len(axes)} and {'one' if figure else 'none'}")
     drawn = None if figure is None else _map(loaded, axes) if axes else _set(loaded)
-    show_examination(loaded, examine(loaded))
-    if drawn is not None:
-        announce(*write_files((figure, drawing(drawn, look))))
+    steady = _steady(loaded, runs=runs)
+    if steady_figure is not None:
+        steady.check_drawn("check: --steady-figure")
+    show_examination(loaded, replace(examine(loaded), steady=steady))
+    files = [(figure, drawing(drawn, look))] if drawn is not None else []
+    announce(*write_files(*files, (steady_figure, drawing(steady.plot, look))))
+
+
+def _steady(loaded: Scenario, *, runs: bool) -> SteadySlidings:
+    """Return what is found about steady sliding, with runs from rest if they are wanted."""
+    from stickslip.run.progress import progress_line
+    from stickslip.studies.one_run import steady
+
+    with progress_line("runs from rest:") as report:
+        return steady(loaded, from_rest=runs, progress=report)
 
 
 def _show_contact(loaded: Scenario, drawing_wanted: object) -> None:
@@ -81,7 +102,7 @@ def _show_contact(loaded: Scenario, drawing_wanted: object) -> None:
     from stickslip.scenarios.examine_contact import examine_contact
 
     if drawing_wanted:
-        raise InputError("check: --figure and --map draw the contact equation of a single place: leave them out with a [contact]")
+        raise InputError("check: figures and maps draw the contact equation of a single place: leave them out with a [contact]")
     found = examine_contact(loaded)
     found.derived.append(Fact("memory", size_of(loaded), "", "of a run"))
     show_examination(loaded, found)

@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from stickslip.cli.options import Changes, ScenarioName, option, table_of
-from stickslip.cli.output.files import Target, announce, check_targets, write_files
+from stickslip.cli.options import Changes, Dpi, FigureFile, ScenarioName, Size, option, table_of
+from stickslip.cli.output.files import Look, Target, announce, check_targets, drawing, write_files
 from stickslip.cli.output.show import print_sentences, titled
 from stickslip.foundation.errors import InputError
 
@@ -24,6 +24,9 @@ def find(
     duration: Annotated[str | None, option("Duration of the runs: s, or with a unit.")] = None,
     within: Annotated[float, typer.Option(help="Width of the last bracket, as a share of its upper end.")] = 1e-3,
     out: Annotated[Path | None, table_of("run")] = None,
+    figure: FigureFile = None,
+    dpi: Dpi = None,
+    size: Size = None,
 ) -> None:
     r"""Find an edge along one number of a scenario, by bisection on exact runs.
 
@@ -32,10 +35,11 @@ def find(
     runs at its two ends did. "sticking" asks whether the contact rests in the
     last third of a run: let the run last long enough. A contact that starts
     from rest may stick although steady sliding is stable: `stickslip check`
-    says from which rate on steady sliding is stable.
+    says from which rate on steady sliding is stable, and finds this edge to 2 %.
+    --figure shows what each run gave.
 
     \b
-      stickslip find mine.toml --duration "60 s"
+      stickslip find mine.toml --duration "60 s" --figure edge.png
       stickslip find mine.toml --along body.stiffness=1e6..1e8 --what events
 
     Exit code: 0 done, 2 unusable input, 130 interrupted.
@@ -44,7 +48,9 @@ def find(
     from stickslip.run.progress import progress_line
     from stickslip.studies.find import find as study
 
-    check_targets(Target("--out", out, (".csv",)))
+    look = Look(dpi, size)
+    check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))
+    look.check(figure)
     name, given, ends = along.partition("=")
     low, dots, high = ends.partition("..")
     if given and not (low and dots and high):
@@ -54,7 +60,7 @@ def find(
     with progress_line(f"{chosen.name}:") as report:
         found = study(chosen, name.strip(), *values, what=what, within=within, progress=report)
     print_sentences(titled(chosen), found.text)
-    announce(*write_files((out, found.to_csv)))
+    announce(*write_files((out, found.to_csv), (figure, drawing(found.plot, look))))
 
 
 def _typed(text: str) -> float | str:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from stickslip.cli.output.files import announce
 from stickslip.cli.output.show import console, fits, print_numbers, say, titled
 from stickslip.engine_input.limits import creep_tolerance
-from stickslip.foundation.formatting import clean, how_long, number, with_unit
+from stickslip.foundation.formatting import clean, how_long, number, readable_unit, with_unit
 from stickslip.scenarios.scenario import doubts, read_scenario
 
 if TYPE_CHECKING:
@@ -157,14 +157,23 @@ def _print(screen: Console, what: str, columns: Mapping[str, Sequence[Any]], uni
     if not count:
         say(screen, f"no {what}\n")
         return
-    headings = [f"{name.replace('_', chr(10))}\n{unit}".rstrip() for name, unit in zip(columns, units, strict=True)]
     first = list(islice(zip(*columns.values(), strict=True), FIRST))
-    forms = [[[_cell(value, unit, digits) for value, unit in zip(row, units, strict=True)] for row in first] for digits in DIGITS]
+    scaled = [_readable(column, unit) for column, unit in zip(zip(*first, strict=True), units, strict=True)]
+    headings = [f"{name.replace('_', chr(10))}\n{unit}".rstrip() for name, (unit, _) in zip(columns, scaled, strict=True)]
+    rows = list(zip(*(column for _, column in scaled), strict=True))
+    forms = [[[_cell(value, unit, digits) for value, unit in zip(row, units, strict=True)] for row in rows] for digits in DIGITS]
     shown = next((form for form in forms if fits(screen, headings, form)), forms[0])
     more = f", the first {FIRST} of them" if count > FIRST else ""
     say(screen, f"{count} {what}{'s' if count > 1 else ''}{more}")
     print_numbers(screen, headings, shown)
     screen.print()
+
+
+def _readable(column: Sequence[Any], unit: str) -> tuple[str, Sequence[Any]]:
+    """Return the unit in which a column of numbers is short, and the column in that unit."""
+    sizes = [abs(value) for value in column if isinstance(value, float) and math.isfinite(value)]
+    factor, name = readable_unit(max(sizes, default=0.0), unit)
+    return (name, column) if factor == 1.0 else (name, [value / factor for value in column])
 
 
 def _cell(value: Any, unit: str, digits: int) -> str:

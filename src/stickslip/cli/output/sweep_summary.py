@@ -11,7 +11,7 @@ import numpy as np
 
 from stickslip.cli.output.files import file_size
 from stickslip.cli.output.show import console, print_numbers, say, titled
-from stickslip.foundation.formatting import about_time, clean, number, with_unit
+from stickslip.foundation.formatting import about_time, clean, number, readable_unit, with_unit
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -130,8 +130,8 @@ def _show_quantities(dataset: xr.Dataset) -> None:
         values = dataset[name].to_numpy()
         values = values[np.isfinite(values)]
         numbers = (values.min(), np.median(values), values.max()) if values.size else (np.nan,) * 3
-        unit = str(dataset[name].attrs["units"])
-        rows.append((name, "" if unit == "1" else unit, str(values.size), *(number(float(x), 6) for x in numbers)))
+        factor, unit = readable_unit(float(np.abs(values).max(initial=0.0)), str(dataset[name].attrs["units"]))
+        rows.append((name, "" if unit == "1" else unit, str(values.size), *(number(float(x) / factor, 6) for x in numbers)))
     screen = console()
     print_numbers(screen, ("quantity", "unit", "members", "smallest", "median", "largest"), rows, text=2)
     screen.print()

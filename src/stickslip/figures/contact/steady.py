@@ -1,0 +1,72 @@
+"""Figure of steady sliding: friction against the slip rate, where it is stable, what the driver gives, and what happens from rest."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Unpack
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+
+from stickslip.contact.sliding import SteadySlidings
+from stickslip.contact.steady import steady_traction
+from stickslip.figures.panels import add_legend, finish, set_log_ticks
+from stickslip.figures.sheet import one_panel
+from stickslip.figures.style import BLUE, GREY, INK, PALE, PURPLE, VERMILLION, curve_quantity, label, shown, styled, unit_shown
+from stickslip.solution.place import Place
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+POINTS = 801
+"""Number of slip rates at which friction is drawn."""
+AROUND, FAST = 10.0, 10.0
+"""Factor by which the drawn slip rates go beyond those that are named; and the rate (m/s) they reach if no rate is critical."""
+
+
+def data(found: SteadySlidings) -> xr.Dataset:
+    """Return the friction of steady sliding along the slip rate and whether it is stable there, with the rates that are named."""
+    assert found.problem is not None
+    slidings = [abs(one.rate) for one in found.slidings]
+    critical = np.array([one.rate for one in found.changes])
+    rest = found.from_rest
+    at_pull_rate = rest is not None and rest.sticks_at is not None and found.changes[-1].rate == found.changes[-1].pull_rate
+    rests = [rest.sticks_at] if at_pull_rate else []
+    named = np.array([*slidings, *critical, *rests, *([] if critical.size else [FAST / AROUND])])
+    rates = np.unique(np.concatenate((np.geomspace(named.min() / AROUND, named.max() * AROUND, POINTS), critical)))
+    below = not found.changes[0].stable_above if found.changes else bool(found.slidings and found.slidings[0].stable)
+    stable = (np.searchsorted(critical, rates, side="right") % 2 == 0) == below
+    contents = {
+        "traction": curve_quantity("slip_rate", steady_traction(found.problem, rates), "traction", found.unit),
+        "stable": xr.Variable("slip_rate", stable.astype(int), {"long_name": "1 where steady sliding is stable", "units": "1"}),
+        "sliding_rate": curve_quantity("sliding", slidings, "slip_rate"),
+        "sliding_traction": curve_quantity("sliding", [abs(one.traction) for one in found.slidings], "traction", found.unit),
+        "critical_rate": curve_quantity("change", critical, "slip_rate"),
+        "sticks_to": curve_quantity("rest", rests, "slip_rate"),
+    }
+    return xr.Dataset(contents, coords={"slip_rate": curve_quantity("slip_rate", rates, "slip_rate")}, attrs={"force": found.unit})
+
+
+@styled
+def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure | Axes:
+    """Draw friction of steady sliding, solid where it is stable, with the steady motion, critical rates and hysteresis."""
+    axes = one_panel((5.6, 3.8), **place)
+    metres, stress = unit_shown(dataset["slip_rate"]), unit_shown(dataset["traction"])
+    rate, traction, stable = shown(dataset["slip_rate"], metres), shown(dataset["traction"], stress), dataset["stable"].values > 0
+    for chosen, colour, style, text in ((stable, BLUE, "-", "stable"), (~stable, VERMILLION, "--", "unstable")):
+        if chosen.any():
+            axes.plot(rate, np.where(chosen, traction, np.nan), color=colour, linestyle=style, label=f"steady sliding, {text}")
+    for critical in shown(dataset["critical_rate"], metres):
+        axes.axvline(critical, color=GREY, linewidth=0.9, linestyle=":", zorder=0)
+    if dataset["critical_rate"].size:
+        axes.plot([], [], color=GREY, linewidth=0.9, linestyle=":", label="critical slip rate")
+    if dataset["sticks_to"].size:
+        ends = float(shown(dataset["critical_rate"], metres)[-1]), float(shown(dataset["sticks_to"], metres)[0])
+        axes.axvspan(*ends, color=PALE, linewidth=0, zorder=0, label="stable, but sticks from rest")
+    places = shown(dataset["sliding_rate"], metres), shown(dataset["sliding_traction"], stress)
+    axes.plot(*places, "o", color=PURPLE, markeredgecolor=INK, label="steady sliding under this drive", zorder=4)
+    axes.set(xscale="log", xlabel=label(dataset["slip_rate"], metres), ylabel=label(dataset["traction"], stress))
+    axes.set(xlim=(rate[0], rate[-1]))
+    set_log_ticks(axes, "x")
+    add_legend(axes, axes.get_legend_handles_labels()[0], own=place.get("ax") is not None)
+    return finish(axes, "", **place)
