@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 import stickslip as ss
 from benchmarks.soak_problems import Draw
-from stickslip.engine_input.branch_table import folds_move
 from stickslip.engine_input.prepare import SLOWEST
 from stickslip.foundation.errors import InputError
 from stickslip.observables.energy.balance import energies, epochs, heat
@@ -41,7 +40,7 @@ class TooSlowError(Exception):
 
 def pieces_of(drawn: Draw, thorough: bool) -> int:
     """How many pieces the history of a problem may have."""
-    if folds_move(drawn.problem):
+    if drawn.problem.folds_move:
         return FEW_PIECES
     return MANY_PIECES if thorough else MOST_PIECES
 

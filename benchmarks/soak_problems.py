@@ -217,6 +217,8 @@ class Drawing:
         law = self.law(kind)
         normal = body.normal_force if isinstance(body, ss.SpringBlock) else body.normal_stress
         given: dict[str, Any] = {"selection": str(self.one_of(*SELECTION_RULES))}
+        if law.depends_on_slip and law.depends_on_rate:
+            given["selection"] = SELECTION_RULES[0]  # the only rule where folds move with slip
         speed = float(self.one_of(0.0, 1.0, 1.0, -1.0)) * self.rate * self.log(-8, -0.5)
         given["pull_rate"] = self.history(abs(speed)) if rng.random() < 0.2 else speed
         lossy = isinstance(body, ss.ElasticSlab) and math.isfinite(body.driver_impedance)

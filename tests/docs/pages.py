@@ -5,8 +5,8 @@ Conventions of the pages (README.md and docs/*.md):
 - ```python blocks of a page run in order in one namespace, in an empty folder. A ```text block right behind one is what it prints.
   A number in a comment behind a statement that prints is one that it prints, to the digits of the comment, or one of its code.
 - ```toml blocks that begin with `# NAME.toml` are put into that folder under this name.
-- ```console blocks: lines `$ stickslip ...` are run; the lines shown below one are all that it says, and "..." stands for lines that
-  are left out. A shown line that begins with "stickslip: " is an error: exit code 2; otherwise the exit code is 0.
+- ```console blocks: lines `$ stickslip ...` are run; the lines shown below one are all that it says, and "..." stands for lines
+  that are left out. A shown line that begins with "stickslip: " is an error: exit code 2; otherwise the exit code is 0.
 - Files beside the pages that a page offers (links to .csv and .toml) lie in that folder, as if the reader had downloaded them.
 """
 

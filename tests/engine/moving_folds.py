@@ -21,8 +21,6 @@ KINKED = F.SlipPlusRate(
     slip=F.SinusoidalSlip(0.3, 0.05, 3.0), rate=F.PiecewiseLinearRate((0.0, 0.5, 1.5, 2.0), (0.4, 0.25, 0.32, 0.2))
 )
 
-KINKED_WEAKENING = replace(KINKED, slip=F.ExponentialSlipWeakening(0.35, 0.3, 0.5))
-
 
 def hardening(slope: float = 0.05) -> ss.friction.FrictionLaw:
     """mu = 0.3 + 0.5 / (1 + v) + slope u: the lower fold of the fast branch rises with slip until it takes the slip away."""

@@ -70,7 +70,7 @@ def test_a_start_in_steady_sliding_makes_no_difference_to_what_happens_from_rest
 
 
 def test_without_hysteresis_one_run_tells():
-    """10 N * 0.1 * 2 v/(1 + v^2)^2 = 0.5 N s/m at v = 1 m/s: stable above. The law is flat near rest, so that it slides there, too."""
+    """10 N * 0.1 * 2 v/(1 + v^2)^2 = 0.5 N s/m at v = 1 m/s: stable above. The law is flat near rest: it slides there, too."""
     law = ss.friction.FromExpression("0.5 - 0.1*v**2/(v**2 + w**2)", {"w": "1 m/s"})
     heavy = ss.Problem(replace(BODY, damping=0.5), law, pull_rate=0.02, initial_load=0.0)
     found = ss.studies.steady(heavy)
@@ -106,7 +106,7 @@ def test_an_edge_and_steady_sliding_are_drawn(tmp_path: Path):
 
 
 def test_sliding_that_only_ages_make_unstable_brings_no_event():
-    """The paper's slab under a law that is flat at small rates: a disturbance grows at 7e-27 /s, so that nothing will come of it."""
+    """The paper's slab under a law that is flat at small rates: a disturbance grows at 7e-27 /s, and nothing will come of it."""
     law = ss.friction.FromExpression("fw + (f0 - fw)/(1 + (v/vw)**4)**0.25", {"f0": 0.8, "fw": 0.3, "vw": "1 m/s"})
     slab = ss.ElasticSlab(density=2800, wave_speed=3500, thickness=1e4, normal_stress=1e8)
     slow = ss.Problem(slab, law, pull_rate=0.05 / ss.YEAR, initial_excess=0.0)

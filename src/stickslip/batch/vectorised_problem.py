@@ -19,7 +19,7 @@ from stickslip.batch.kernels.reduction import COLUMNS
 from stickslip.bodies import ElasticSlab
 from stickslip.engine.codegen.uncompiled import UNCOMPILED
 from stickslip.engine.state.layout import Floats
-from stickslip.engine_input.branch_table import folds_move, is_algebraic
+from stickslip.engine_input.branch_table import is_algebraic
 from stickslip.engine_input.limits import LARGEST_SHARE, check_shortest_event
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import nearest
@@ -222,7 +222,7 @@ def _of_law(scenario: Scenario, parameters: Sequence[str]) -> Iterator[str]:
         yield "[initial] rate: a batch starts from rest"
     if not law.sticks and (problem.body.has_inertia or "body.contact_mass" in parameters):
         yield f"{name}: a contact with mass that never sticks starts at a slip rate of its own"
-    if folds_move(problem):
+    if problem.folds_move:
         yield f"{name}: branches of the contact equation move with slip"
     chooses = is_algebraic(problem) or ("body.contact_mass" in parameters and law.depends_on_rate)
     if chooses and problem.rule not in RULES:

@@ -156,7 +156,7 @@ class SteadySlidings:
 
     @property
     def regained(self) -> float | None:
-        """The critical pull rate (m/s) above which steady sliding is stable, at which a contact from rest may stick; None without."""
+        """The critical pull rate (m/s) above which steady sliding is stable, though a contact from rest may stick; None without."""
         last = self.changes[-1] if self.changes else None
         return last.pull_rate if self.sticks and last is not None and last.stable_above and not self.varies else None
 

@@ -108,8 +108,6 @@ def make_pass(run: Run, last_trip: int, last_phase: float) -> int:
             return Stop.FAILED
         arrive(run)
         run.counts.ready = Incoming.MET
-        if run.counts.folds_move == 1:
-            return Stop.NONE  # the caller may take back the step to come: make it in a pass of its own
     return walk_along_load(run, last_trip, last_phase)
 
 

@@ -15,7 +15,7 @@ from stickslip.engine.codegen.compiler import CompiledFormula, compile_formula, 
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, FirstLoad, Integers, LawPiece, LoadingSegment, Params, Setup, State
 from stickslip.engine.state.workspace import counts_in, lend_problem, memory_of, params_in
-from stickslip.engine_input.branch_table import branch_of, folds_move, is_algebraic, table_of_branches
+from stickslip.engine_input.branch_table import branch_of, is_algebraic, table_of_branches
 from stickslip.engine_input.forcing import inflow_of, steady_inflow, wave_before
 from stickslip.engine_input.limits import set_length, set_lumping
 from stickslip.foundation.errors import InputError
@@ -275,7 +275,7 @@ def start_of(problem: Problem) -> tuple[State, Counts]:
     for n, value in enumerate(problem.states):
         state.state_now[n] = -value if count.mode < 0 and n in problem.friction.reverses else value
     count.pause_at = count.lumped_since = count.lump_above = at.NEVER
-    count.folds_move = folds_move(problem)
+    count.folds_move = problem.folds_move
     count.disc = FIRST_DISC
     count.knots_in_rate = len(problem.friction.pieces) > 1 and problem.friction.knot_variable == "rate"
     return state, count

@@ -107,7 +107,6 @@ def origin(solution: Solution) -> dict[str, Any]:
         "status_ok": int(solution.status.ok),
         "lumping": solution.lumping_note,
         "rounding": solution.rounding_note,
-        "undecided": solution.undecided,
         "proven": solution.proven.text,
     }
 
@@ -352,8 +351,8 @@ def _solution(dataset: xr.Dataset, path: Path) -> Solution:
         checkpoint = Checkpoint(**arrays, engine=str(attributes["engine"]))
     about = scenario.max_events, scenario.creep_rtol, scenario.shortest_event
     lumping, rounding = (printable(str(attributes.get(name, ""))) for name in ("lumping", "rounding"))
-    undecided, named = int(attributes.get("undecided", 0)), (scenario.title, scenario.description)
-    return Solution(scenario.problem, asked, rtol, status, history, checkpoint, *about, lumping, rounding, undecided, *named)
+    named = scenario.title, scenario.description
+    return Solution(scenario.problem, asked, rtol, status, history, checkpoint, *about, lumping, rounding, *named)
 
 
 def _array(dataset: xr.Dataset, name: str) -> NDArray[Any]:

@@ -18,7 +18,7 @@ from stickslip.engine.codegen.records import Record
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Branch, Cause, Counts, HistoryPiece, Incoming, Setup, State, Stop
 from stickslip.engine.state.workspace import WORK_ROWS, counts_in
-from stickslip.engine_input.branch_table import STORM_OF, folds_move, has_levels_to_set, table_of_branches
+from stickslip.engine_input.branch_table import table_of_branches
 from stickslip.engine_input.prepare import prepare
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import InputError
@@ -175,8 +175,6 @@ def _shapes_of_checkpoint(checkpoint: Checkpoint) -> Iterator[Fault]:
     for name, shape in shapes.items():
         yield f"shape or type of engine_{name}", not _is(getattr(checkpoint, name), shape, "f")
     yield "shape or type of engine_count", not _is(checkpoint.count, (Counts.total,), "i")
-    crossings = checkpoint.crossings
-    yield "engine_crossings", not _is(crossings, (min(crossings.size, STORM_OF),), "f") or not np.isfinite(crossings).all()
 
 
 def _places(record: Record, *names: str) -> Any:
@@ -235,18 +233,11 @@ def _faults_of_branch(checkpoint: Checkpoint, setup: Setup, solution: Solution) 
     problem, branch, stick_to = solution.problem, checkpoint.branch, float(checkpoint.stick_to[0])
     yield "engine_count branch", not 0 <= Counts(checkpoint.count).branch < len(branch)
     yield "engine_branch: no number", np.isnan(branch).any() or math.isnan(stick_to)
-    if not folds_move(problem):
+    if not problem.folds_move:
         yield "engine_branch or engine_stick_to", not np.array_equal(branch, setup.branches) or stick_to != setup.params.stick_to
         return
     known, level = table_of_branches(problem, float(State(checkpoint.state).table_slip))
-    compared = list(Branch.places)
-    if has_levels_to_set(problem):  # compiled code sets the rule's levels, which agree to rounding only
-        compared = ["rate_from", "rate_to", "excess_from", "excess_to"]
-    same = branch.shape == known.shape and all(
-        np.array_equal(getattr(Branch.of(branch), name), getattr(Branch.of(known), name)) for name in compared
-    )
-    yield "engine_branch", not same
-    yield "engine_stick_to", not has_levels_to_set(problem) and stick_to != level
+    yield "engine_branch or engine_stick_to", not np.array_equal(branch, known) or stick_to != level
 
 
 def _refuse(faults: Iterator[Fault], path: Path) -> None:

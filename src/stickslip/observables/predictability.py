@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from stickslip.engine_input.branch_table import folds_move, is_algebraic
+from stickslip.engine_input.branch_table import is_algebraic
 from stickslip.engine_input.prepare import SAFETY
 from stickslip.foundation.arguments import NamesAttributes, for_users, shown
 from stickslip.foundation.arrays import Floats
@@ -125,4 +125,4 @@ def attributes_of(prediction: Predictability | None) -> dict[str, str | float]:
 
 def is_followed(problem: Problem) -> bool:
     """Return True if the growth of a disturbance is known for this problem."""
-    return is_algebraic(problem) and not folds_move(problem)
+    return is_algebraic(problem) and not problem.folds_move

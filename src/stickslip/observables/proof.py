@@ -72,9 +72,6 @@ class Proof:
     """Number of them that are proven without the series, or the stages, from which the engine made them."""
     unproven: int
     """Number of pieces of the history that are checked at places only: the law is not analytic where the slip rate passes zero."""
-    undecided: int
-    """Number of steps in which the selection rule is checked at places only: where folds move, it is not decided whether another
-    solution that the rule prefers comes and goes between them."""
     unit: str
     """Unit of the residual: Pa or N."""
 
@@ -91,9 +88,6 @@ class Proof:
         if self.unproven:
             pieces = "1 piece" if self.unproven == 1 else f"{self.unproven} pieces"
             found += f", except in {pieces} next to a slip rate of zero, checked at places and not proven"
-        if self.undecided:
-            steps = "1 step" if self.undecided == 1 else f"{self.undecided} steps"
-            found += f"; in {steps} the selection rule is checked at places only"
         return found
 
 
@@ -105,10 +99,10 @@ class Proven(NamedTuple):
     anew: int = 0
     unproven: int = 0
 
-    def proof(self, problem: Problem, undecided: int) -> Proof:
-        """Return it as a `Proof`, with the number of steps in which the selection rule is not proven to hold."""
+    def proof(self, problem: Problem) -> Proof:
+        """Return it as a `Proof`."""
         relative = self.residual / problem.normal
-        return Proof(self.residual, relative, self.steps, self.anew, self.unproven, undecided, problem.load_unit)
+        return Proof(self.residual, relative, self.steps, self.anew, self.unproven, problem.load_unit)
 
 
 def proven(history: History) -> Proven:

@@ -23,7 +23,7 @@ from stickslip.friction.custom.from_function import as_law
 from stickslip.loading import LoadingHistory
 from stickslip.loading.contract import SILENT, VARYING
 from stickslip.problem.parameters import Parameters
-from stickslip.problem.selection_rule import SelectionRule, checked, name_of
+from stickslip.problem.selection_rule import PERFECT_DELAY, SELECTION_RULES, SelectionRule, checked, name_of
 from stickslip.problem.start import INITIAL_STATES, STEADY, Start, check_rate, start_of, starts_steadily
 
 MAY_VARY = ("pull_rate", "far_stress")
@@ -140,6 +140,7 @@ class Problem(CheckedArguments):
         _ = self.rate  # refuses a start at which nothing balances
         check_rate(self)
         object.__setattr__(self, "selection", checked(self.selection))
+        self._check_rule()
         self._check_far_side()
 
     def _shown(self) -> dict[str, str]:
@@ -225,6 +226,13 @@ class Problem(CheckedArguments):
                 raise InputError(f"Problem: {field_name} must be one number, got {shown(value)}: each state has its own, {both}")
             object.__setattr__(self, field_name, declared.check("Problem", field_name, value))
 
+    def _check_rule(self) -> None:
+        if self.folds_move and self.rule != PERFECT_DELAY:
+            raise InputError(
+                f"Problem: selection {self.rule!a}: under friction of slip and slip rate the folds move with slip, and only "
+                f"{PERFECT_DELAY} is followed there; a law of the slip rate alone, as mu(0, v), may have every rule"
+            )
+
     def _check_far_side(self) -> None:
         if self.body.is_driven_rigidly and (self.far_stress is not None or self.far_stress_rate != 0.0):
             raise InputError("Problem: far_stress and far_stress_rate need a slab with a finite driver_impedance")
@@ -280,6 +288,17 @@ class Problem(CheckedArguments):
     def parameters(self) -> Parameters:
         """The numbers of the problem by name: `problem.parameters["friction.alpha"].value`, in SI."""
         return Parameters(self)
+
+    @property
+    def folds_move(self) -> bool:
+        """True if the folds of the contact equation move with slip: no mass, and a law of slip and slip rate without a state."""
+        law = self.friction
+        return law.depends_on_slip and law.depends_on_rate and not law.states and not self.body.has_inertia
+
+    @property
+    def rules(self) -> tuple[str, ...]:
+        """The names of the built-in selection rules under which the problem can be run."""
+        return (PERFECT_DELAY,) if self.folds_move else SELECTION_RULES
 
     @property
     def rule(self) -> str:

@@ -23,7 +23,9 @@ if TYPE_CHECKING:
     from stickslip.contact.branches import Branch
     from stickslip.contact.equation import Resistance
 
-SELECTION_RULES = ("perfect-delay", "maxwell", "minimal", "maximal")
+PERFECT_DELAY = "perfect-delay"
+"""Name of the rule that keeps a branch as long as it exists: the only one where folds move with slip."""
+SELECTION_RULES = (PERFECT_DELAY, "maxwell", "minimal", "maximal")
 """Names of the built-in rules (`stickslip.contact.rules.selection`)."""
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,59}")

@@ -246,7 +246,7 @@ class EventRows:
         known = is_followed(run.problem)
         prediction = predictability_of_events(self.rows.columns("start", "amplification"), run.options.rtol) if known else None
         residual = max(float(run.state.largest_residual), self.residual or 0.0, proven(run.history()).residual)
-        proof = Proven(residual, unproven=int(run.count.unproven)).proof(run.problem, int(run.count.undecided)).text
+        proof = Proven(residual, unproven=int(run.count.unproven)).proof(run.problem).text
         self.rows.publish(origin(solution) | {"proven": proof} | attributes_of(prediction), run.problem.load_unit)
         self.save(run, code)
         self.rows.tidy()

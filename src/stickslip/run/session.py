@@ -13,12 +13,13 @@ from typing import Self
 import numpy as np
 
 from stickslip.creep.stepper import CreepLeaps
+from stickslip.engine.loop import run_until
 from stickslip.engine.on_demand import lend_part, lend_parts_at_hand
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import EchoNode, Floats, Integers, Setup, Stop, Store
 from stickslip.engine.state.workspace import counts_in, lend, lend_history, scratch_in, state_in
 from stickslip.engine.waves.echo_queue import rebuild_queue
-from stickslip.engine_input.branch_table import RuleFollower, renewed
+from stickslip.engine_input.branch_table import renewed
 from stickslip.engine_input.limits import MOST_PIECES, PATIENCE, creep_tolerance, leaps_over, lumping_note, lumps_by_itself
 from stickslip.engine_input.prepare import prepare
 from stickslip.foundation.errors import InputError
@@ -68,7 +69,6 @@ class Session:
         self.params, self.state, self.count = self.setup.params, state_in(self.memory), counts_in(self.memory)
         self.scratch = scratch_in(self.memory)
         self.last = split_time(self.options.duration, self.problem.round_trip_time)
-        self.follower = RuleFollower(self.problem, self.problem.round_trip_time, self.state, self.count)
         if self.leaps is not None:
             self.leaps.begin(self.count)
         lend_history(self.memory, self.store, self.echoes)
@@ -159,7 +159,6 @@ class Session:
             description=options.description,
             lumping_note=self.lumping_note,
             rounding_note=self.rounding_note,
-            undecided=int(self.count.undecided),
         )
 
     def _full(self) -> Status:
@@ -193,7 +192,7 @@ class Session:
 
         The branches of a law of slip and slip rate are computed again when the engine asks for them.
         """
-        code = self.follower.advance(self.memory, self.store, self.last, budget)
+        code = run_until(self.memory, *self.last, budget)
         if code == Stop.NEED_PART:
             lend_part(self.memory)
             return Stop.NONE
@@ -201,7 +200,6 @@ class Session:
             return code
         self.setup = renewed(self.problem, self.setup, self.params, self.state, self.count)
         self._lend()
-        self.follower.set_levels(self.memory)
         return Stop.NONE
 
     def grow(self, max_pieces: int) -> bool:
@@ -256,9 +254,9 @@ class Session:
 
     def snapshot(self) -> Checkpoint:
         """Return a checkpoint of the present state."""
-        stick_to, crossings = np.array([self.params.stick_to]), np.array(self.follower.times, float)
+        stick_to = np.array([self.params.stick_to])
         state, count, scratch = self.state.numbers.copy(), self.count.numbers.copy(), self.scratch.copy()
-        return Checkpoint(state, count, scratch, self.setup.branches.copy(), stick_to, crossings, engine())
+        return Checkpoint(state, count, scratch, self.setup.branches.copy(), stick_to, engine())
 
     def checkpoint(self) -> Checkpoint:
         """Return the checkpoint from which this run, or a longer one, would continue."""
@@ -270,8 +268,6 @@ class Session:
         self.scratch[:] = checkpoint.scratch
         self.setup = self.setup._replace(branches=checkpoint.branch.copy())
         self.params.stick_to = checkpoint.stick_to[0]
-        self.follower.times.clear()
-        self.follower.times.extend(checkpoint.crossings.tolist())
         self.end_is_ahead = False
         if self.count.to_the_end == 0:
             self.before_end = None

@@ -58,8 +58,6 @@ class Solution(Exports):
     """One line on automatic lumping; empty if it did not begin."""
     rounding_note: str = ""
     """One line on steps that miss the contact equation by more than the tolerance, by rounding; empty if there are none."""
-    undecided: int = 0
-    """Number of steps in which it is not decided whether the selection rule would have left the branch between two looks."""
     title: str = ""
     """Title of the scenario, which figures show; empty for a problem from Python."""
     description: str = ""
@@ -207,7 +205,7 @@ class Solution(Exports):
     @cached_property
     def proven(self) -> Proof:
         """A proven bound of how far the run misses the contact equation at any moment: see `Proof`."""
-        return proven(self.history).proof(self.problem, self.undecided)
+        return proven(self.history).proof(self.problem)
 
     @cached_property
     def horizon_note(self) -> str:

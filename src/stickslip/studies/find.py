@@ -163,7 +163,7 @@ def find(
 
 
 def from_rest(problem: Problem, found: SteadySlidings, tell: TextProgress = lambda text: None) -> FromRest | None:
-    """Find up to which pull rate a contact sticks that starts from rest, though steady sliding is stable; None if nothing is to find.
+    """Find up to which pull rate a contact from rest sticks, though steady sliding is stable; None if there is nothing to find.
 
     A dozen exact runs begin a little above the critical rate. Their number and length depend on the problem alone.
     """
@@ -211,7 +211,8 @@ class _Search:
     def at(self, value: float) -> bool | int:
         """Return what a run with a value (SI) of the parameter gives."""
         if value not in self.seen:
-            run = uninterrupted(simulate(self.scenario.with_values({self.parameter.name: value}).problem, self.duration, max_pieces=self.most_pieces))
+            problem = self.scenario.with_values({self.parameter.name: value}).problem
+            run = uninterrupted(simulate(problem, self.duration, max_pieces=self.most_pieces))
             place = f"{self.parameter.name} = {brief(value, self.parameter.unit)}"
             if not run.status.ok:
                 raise InputError(f"find: the run at {place} did not reach its end: {run.status}")
@@ -245,7 +246,9 @@ class _Search:
         at_low, at_high = self.at(low), self.at(high)
         if at_low == at_high:
             ends = f"{brief(low, self.parameter.unit)} and {brief(high, self.parameter.unit)}"
-            raise InputError(f"find: at both {self.parameter.name} = {ends} it is {self.name}: {_word(at_low)}; give ends that differ")
+            raise InputError(
+                f"find: at both {self.parameter.name} = {ends} it is {self.name}: {_word(at_low)}; give ends that differ"
+            )
         while high - low > within * abs(high):
             middle = math.sqrt(low) * math.sqrt(high) if low > 0.0 else 0.5 * (low + high)
             if not low < middle < high:

@@ -25,7 +25,7 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import Quantity, Series
 from stickslip.problem.problem import Problem
-from stickslip.problem.selection_rule import SELECTION_RULES, names, unknown
+from stickslip.problem.selection_rule import names, unknown
 from stickslip.run.simulate import simulate
 from stickslip.scenarios.source import read_duration_and_problem
 from stickslip.solution.solution import Solution
@@ -197,7 +197,7 @@ def regularise(
     duration: float | str | WithUnit | None = None,
     by: str = "contact-mass",
     sizes: Sequence[float | str | WithUnit] | WithUnit | None = None,
-    rules: Sequence[str] = SELECTION_RULES,
+    rules: Sequence[str] | None = None,
     *,
     rtol: float = 1e-10,
     progress: TextProgress | bool | None = None,
@@ -217,8 +217,8 @@ def regularise(
         direct = variation of mu * size / R).
     sizes : sequence of float or str, optional
         Three or more different times (s, or texts with units); R/30 to R/491 520 by default.
-    rules : sequence of str
-        Selection rules to compare with.
+    rules : sequence of str, optional
+        Selection rules to compare with; by default all built-in ones that the problem may have.
     rtol : float
         Relative tolerance of the runs.
     progress : bool or callable, optional
@@ -241,7 +241,7 @@ def regularise(
     softened = [regularised(given, by, size) for size in times.tolist()]
     exact, runs, seconds = {}, [], []
     with telling(progress, "regularise") as tell:
-        for rule in _known(rules):
+        for rule in _known(given.rules if rules is None else rules):
             tell(f"exact answer, {rule}")
             exact[rule], _ = _run(replace(given, selection=rule), lasts, rtol, max_pieces)
         for i, (size, one) in enumerate(zip(times.tolist(), softened, strict=True)):

@@ -18,7 +18,6 @@ import numpy as np
 from stickslip.bodies import as_slab
 from stickslip.foundation.arrays import Floats
 from stickslip.problem.problem import Problem
-from stickslip.problem.selection_rule import SELECTION_RULES
 from stickslip.run.simulate import simulate
 from stickslip.schemes.contract import Series
 from stickslip.solution.solution import Solution
@@ -239,9 +238,9 @@ class RulePaths:
 
 
 def exact_runs(problem: Problem, duration: float, rtol: float, tell: TextProgress) -> dict[str, Solution]:
-    """Return the exact solution of a problem under its own selection rule and under all built-in ones."""
+    """Return the exact solution of a problem under its own selection rule and under all built-in ones that it may have."""
     found = {}
-    for rule in dict.fromkeys((problem.rule, *SELECTION_RULES)):
+    for rule in dict.fromkeys((problem.rule, *problem.rules)):
         tell(f"exact answer, {rule}")
         selected = problem if rule == problem.rule else replace(problem, selection=rule)
         found[rule] = uninterrupted(simulate(selected, duration, rtol))

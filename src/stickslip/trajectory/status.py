@@ -29,7 +29,6 @@ class Checkpoint:
     scratch: Floats
     branch: Floats  # Setup.branch, which changes with slip for some laws
     stick_to: Floats  # (1,): Setup.params.stick_to, which changes with it
-    crossings: Floats  # times (s) of the last crossings of a level of the selection rule that moves with slip
     engine: str  # hash of the code that made it
 
     @property

@@ -9,7 +9,7 @@ import numpy as np
 from stickslip.contact.sliding import driven_at, slides_on
 from stickslip.contact.steady import steady_slidings
 from stickslip.contact.uniqueness import uniqueness_of
-from stickslip.engine_input.branch_table import folds_move, is_algebraic
+from stickslip.engine_input.branch_table import is_algebraic
 from stickslip.engine_input.limits import leaps_over
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.history import History, Positions
@@ -100,5 +100,5 @@ def rule_in_force(problem: Problem) -> str:
     """Return the selection rule if the contact equation has several solutions at some load (and slip), else an empty string."""
     if not is_algebraic(problem):
         return ""
-    several = folds_move(problem) or uniqueness_of(problem).regime != "regular"
+    several = problem.folds_move or uniqueness_of(problem).regime != "regular"
     return problem.rule if several else ""

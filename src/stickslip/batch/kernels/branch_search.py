@@ -15,7 +15,7 @@ from stickslip.engine.codegen.compiler import ahead, bits_of, call_value, float_
 from stickslip.engine.enclosure.formula import Formulas
 from stickslip.engine.folds.turns import FASTEST, MOST_EVALUATIONS, Turns, find_turns, folds_of, new_cells, room_for_turns
 from stickslip.engine.folds.turns import Resistance as Bounded
-from stickslip.engine.state.layout import Branch, Floats, Integers, Rule
+from stickslip.engine.state.layout import Branch, Floats, Integers
 from stickslip.engine.state.workspace import branches_in
 
 MOST_BRANCHES = 4
@@ -23,7 +23,8 @@ MOST_BRANCHES = 4
 ROOM = 64
 """Largest number of turns of g, or of intervals in which these are not decided, that are told apart."""
 RULES = ("perfect-delay", "minimal", "maximal")
-"""Selection rules that a batch supports, in the order of the codes of `Rule`."""
+"""Selection rules that a batch supports; their places are their codes in compiled code."""
+MINIMAL, MAXIMAL = RULES.index("minimal"), RULES.index("maximal")
 
 BELOW, ABOVE = 1e-8, 1e4
 """Between these multiples of the slowest and of the fastest scale of a contact lies the fold of a law that bends one way."""
@@ -177,11 +178,11 @@ def keep_levels(rule: int, count: int, branches: Branch) -> float:
     stick_to = 0.0
     for n in range(count):
         low, high = branches[n].excess_from, branches[n].excess_to
-        if rule == Rule.MINIMAL:
+        if rule == MINIMAL:
             low = max(low, 0.0)
             for other in range(n):
                 low = max(low, branches[other].excess_to)
-        elif rule == Rule.MAXIMAL:
+        elif rule == MAXIMAL:
             stick_to = min(stick_to, low)
             for other in range(n + 1, count):
                 high = min(high, branches[other].excess_from)
@@ -193,7 +194,7 @@ def keep_levels(rule: int, count: int, branches: Branch) -> float:
 def search_branches(of: Resistances, one_way: bool, rule: int, work: Floats, found: Found) -> None:
     """Find the branches of each member's resistance and what follows from them.
 
-    one_way: mu is convex or concave. rule: a code of `Rule`. work has room for what `value` returns and belongs to the caller,
+    one_way: mu is convex or concave. rule: its place in RULES. work has room for what `value` returns and belongs to the caller,
     because an array made here would be freed as soon as its address is taken.
     """
     ends, table, cells = np.empty(2 * ROOM + 2), room_for_turns(ROOM), new_cells()

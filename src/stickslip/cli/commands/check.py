@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from stickslip.scenarios.examine import Examination
     from stickslip.scenarios.scenario import Scenario
 
+RUNS = "Make a dozen short exact runs from rest, where steady sliding becomes stable at a critical rate."
 MOST_UNDECIDED = 10
 """Largest number of intervals of slip rates that are listed as undecided, because they may or may not hold a fold."""
 
@@ -39,7 +40,7 @@ def check(
     dpi: Dpi = None,
     size: Size = None,
     map_axes: Annotated[list[str] | None, axes_of("a regime map")] = None,
-    runs: Annotated[bool, typer.Option("--runs/--no-runs", help="Make short exact runs from rest, if a critical rate asks for them.")] = True,
+    runs: Annotated[bool, typer.Option("--runs/--no-runs", help=RUNS)] = True,
 ) -> None:
     r"""Check a scenario before it is run.
 

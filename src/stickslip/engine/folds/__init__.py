@@ -1,1 +1,1 @@
-"""Branches of the contact equation, and levels of selection rules, that move with slip."""
+"""Folds of the contact equation: where they are, and steps up to and away from them, also where they move with slip."""

@@ -150,7 +150,6 @@ class Counts(Record):
     lump_above: int  # number of pieces in a round trip above which lumping begins
     lumped_since: int  # round trip from which on short pieces are lumped
     unproven: int  # number of implicit steps without a bound, because the law is not analytic where the slip rate passes zero
-    undecided: int  # number of steps in which it is not decided whether the selection rule would have left the branch
     disc: int  # radius of the disc on which the last explicit step was proven, as an index of `contact_step.certificate.RATIOS`
     rough: int  # number of steps in which rounding in the law hides more than the tolerance
     breach: int  # OFF_THE_LAW, NEGATIVE_FRICTION or FAILED if no step can be made from here, else 0
@@ -238,15 +237,6 @@ class StepEvent(IntEnum):
     """The slip rate reaches zero."""
     KNOT = 2
     """Slip, or the slip rate, reaches a knot of the law."""
-
-
-class Rule(IntEnum):
-    """Name the selection rules whose levels are calculated in compiled code."""
-
-    PERFECT_DELAY = 0
-    MINIMAL = 1
-    MAXIMAL = 2
-    MAXWELL = 3
 
 
 class EnginePart(IntEnum):

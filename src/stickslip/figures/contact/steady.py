@@ -1,4 +1,4 @@
-"""Figure of steady sliding: friction against the slip rate, where it is stable, what the driver gives, and what happens from rest."""
+"""Figure of steady sliding: friction against the slip rate, where it is stable, the steady motion, and what happens from rest."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ def data(found: SteadySlidings) -> xr.Dataset:
     slidings = [abs(one.rate) for one in found.slidings]
     critical = np.array([one.rate for one in found.changes])
     rest = found.from_rest
-    at_pull_rate = rest is not None and rest.sticks_at is not None and found.changes[-1].rate == found.changes[-1].pull_rate
-    rests = [rest.sticks_at] if at_pull_rate else []
+    sticks = None if rest is None or found.changes[-1].rate != found.changes[-1].pull_rate else rest.sticks_at
+    rests = [] if sticks is None else [sticks]
     named = np.array([*slidings, *critical, *rests, *([] if critical.size else [FAST / AROUND])])
     rates = np.unique(np.concatenate((np.geomspace(named.min() / AROUND, named.max() * AROUND, POINTS), critical)))
     below = not found.changes[0].stable_above if found.changes else bool(found.slidings and found.slidings[0].stable)
