@@ -158,9 +158,9 @@ def test_a_missing_table_is_refused_in_one_line(run: ss.Solution, tmp_path: Path
 
 
 @pytest.mark.parametrize("value", ["", "x", np.inf, np.nan, [1, 2]])
-def test_an_attribute_that_is_no_count_is_refused_in_one_line(run: ss.Solution, tmp_path: Path, value: Any) -> None:
+def test_an_attribute_that_is_no_number_is_refused_in_one_line(run: ss.Solution, tmp_path: Path, value: Any) -> None:
     path = run.to_netcdf(tmp_path / "run.nc")
-    resealed(path, lambda file: file.attrs.__setitem__("undecided", value))
+    resealed(path, lambda file: file.attrs.__setitem__("rtol", value))
     refused(lambda: ss.open_solution(path), "run.nc: not a file that stickslip has written: ")
 
 

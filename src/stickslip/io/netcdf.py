@@ -51,7 +51,7 @@ KINDS = {
 DRAWN_POINTS = 2000
 """Number of evenly spaced times of the stored curves, to which breaking points are added: enough for a figure."""
 
-AXES = (("numbers",), ("counts",), ("rows", "terms"), ("branches", "levels"), ("one",), ("times",))
+AXES = (("numbers",), ("counts",), ("rows", "terms"), ("branches", "levels"), ("one",))
 """Names of the dimensions of a checkpoint's arrays, in the order of `checkpoint.ARRAYS`."""
 
 LONG_NAMES = {
