@@ -1,6 +1,10 @@
 """A fixed suite of problems whose results are hashed: says in seconds whether a change of the source changes anything at all.
 
-python -m benchmarks.mutation_check        # one JSON object: hash by problem and by what is read
+python -m benchmarks.mutation_check             # one JSON object: hash by problem and by what is read
+python -m benchmarks.mutation_check --compare   # what differs from the hashes that are kept in results/hashes.json
+python -m benchmarks.mutation_check --keep      # keep the new ones there
+
+The hashes are those of one processor: on another one, run `--keep` on the commit before, and then `--compare`.
 """
 
 from __future__ import annotations
@@ -11,6 +15,7 @@ import sys
 import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,6 +23,8 @@ import numpy as np
 import stickslip as ss
 from stickslip.engine.state.layout import Store
 
+KEPT = Path(__file__).parent / "results" / "hashes.json"
+"""The hashes that are kept in the repository."""
 F = ss.friction
 SLAB = ss.ElasticSlab(2800, 3500, 1e4, 1e8)
 BLOCK = ss.SpringBlock(2.8e12, 3.43e13, 1e14, 1e11)
@@ -142,12 +149,21 @@ def measured(solutions: dict[str, ss.Solution | str]) -> dict[str, str]:
     return found
 
 
-def main() -> int:
-    """Print the hashes."""
+def main(arguments: list[str]) -> int:
+    """Print the hashes, compare them with those that are kept, or keep them. Return 1 if any differs."""
     warnings.simplefilter("ignore")
-    sys.stdout.write(json.dumps(measured(runs())) + "\n")
+    found = measured(runs())
+    if arguments == ["--keep"]:
+        KEPT.write_text(json.dumps(found, indent=0, sort_keys=True) + "\n")
+    elif arguments == ["--compare"]:
+        kept = json.loads(KEPT.read_text())
+        differ = sorted(name for name in {*kept, *found} if kept.get(name) != found.get(name))
+        sys.stdout.write("".join(f"{name}\n" for name in differ) + f"{len(differ)} of {len(kept)} differ\n")
+        return int(bool(differ))
+    else:
+        sys.stdout.write(json.dumps(found) + "\n")
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(sys.argv[1:]))
