@@ -53,7 +53,7 @@ def random_texts() -> Iterator[str]:
     for seed in range(TREES):
         rng = random.Random(seed)
         states = (seed % 3 == 0) + (seed % 9 == 0)
-        formula, rates = tree(rng, 4, states), tuple(tree(rng, 2, states) for _ in range(states))
+        formula, rates = tree(rng, 3, states), tuple(tree(rng, 2, states) for _ in range(states))
         yield text_of(formula, NAMES, rates, 3)
 
 

@@ -1,4 +1,4 @@
-"""The friction law and the contact equation at all nodes, in JAX: the formulas that the engine compiles, as `contact/on_arrays.py`.
+"""The friction law and the contact equation at all nodes, in JAX: the formulas that the engine compiles.
 
 Each node has its own parameters. Nodes in different pieces of a law share the formula where they can, and only its numbers differ.
 """

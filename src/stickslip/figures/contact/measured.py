@@ -34,9 +34,9 @@ def plot_fit(result: Fit | Smooth, path: str | Path | None = None, **place: Unpa
     """Draw measured points, the law through them and its band, and save the figure if a file is named, whole or not at all.
 
     The result is that of `stickslip.friction.fit` or `smooth`; `figure`, `size` and `dpi` say where to draw, and how large, as for
-    `solution.plot`. The figure shows points, law and the bands of one and two standard errors of the law above, the differences of
-    the points from the law below. For a law of slip and slip rate the measured friction is drawn against that of the law. Raises
-    InputError if the argument is no such result.
+    `solution.plot`. The figure shows points and law above, and below how far the points are from the law. A fit has bands of one and
+    two standard errors. For a law of slip and slip rate the measured friction is drawn against that of the law. Raises InputError if
+    the argument is no such result.
     """
     if not isinstance(result, Fit | Smooth):
         raise InputError(f"plot_fit: result must come from fit or smooth, got {type(result).__name__}")
@@ -55,7 +55,11 @@ def data(result: Fit | Smooth) -> xr.Dataset:
     place = calculated if both else points.places
     along = _along(place)
     slip = points.has == ("slip",)
-    mu, error = (along, np.full(len(along), np.nan)) if both else result.band(*((along, 0.0) if slip else (0.0, along)))
+    at = (along, 0.0) if slip else (0.0, along)
+    error = np.full(len(along), np.nan)
+    mu = along if both else law.coefficient(*at)
+    if isinstance(result, Fit) and not both:
+        mu, error = result.band(*at)
     named = ("friction coefficient of the law", "", "1") if both else ("slip", "u", "m") if slip else ("slip rate", "v", "m/s")
     contents = {
         "place": quantity("point", place, *named),
@@ -83,7 +87,7 @@ def _along(place: Floats) -> Floats:
 
 @styled
 def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
-    """Draw points, law and bands in the upper panel, and the differences of the points from the law in the lower one."""
+    """Draw points, law and the bands of a fit in the upper panel, and in the lower one how far the points are from the law."""
     figure = sheet((5.6, 5.0), **place)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2.4, 1.0))
     unit, size = unit_shown(dataset["place"])

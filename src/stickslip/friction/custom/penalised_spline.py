@@ -1,10 +1,10 @@
-"""The smoothing spline of points for every strength of smoothing: its values, degrees of freedom and standard error.
+"""The smoothing spline of points for every strength of smoothing: its values and degrees of freedom.
 
 The spline f on x in [0, 1] minimises mean((y - f(x))^2) + strength * integral of f''^2 (Reinsch 1967, Numer. Math. 10, 177). It is
 the natural cubic spline through its own values at the places of the points, so that these are all that has to be found. One
 singular value decomposition gives them for all strengths (Demmler & Reinsch 1975, Numer. Math. 24, 375).
-`scipy.interpolate.make_smoothing_spline` is the same spline, but gives no degrees of freedom, and loses all digits at the
-strengths at which the curve is nearly a straight line.
+`scipy.interpolate.make_smoothing_spline` is the same spline, but gives neither the strength that it chooses nor degrees of freedom,
+and loses all digits at the strengths at which the curve is nearly a straight line.
 """
 
 from __future__ import annotations
@@ -88,14 +88,6 @@ class PenalisedSpline:
         around = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
         found = minimize_scalar(lambda one: self.score(np.exp(one), inflation), bounds=around, method="bounded")
         return float(np.exp(found.x))
-
-    def standard_error(self, places: Floats, strength: float, residual: float) -> Floats:
-        """Return the standard error of the spline at places x in [0, 1], from the standard deviation of the points about it.
-
-        It is Wahba's (1983, J. R. Stat. Soc. B 45, 133), which includes the bias of smoothing, on average over the places.
-        """
-        spread = np.sqrt(self._followed(strength) / self.count)[:, None] * self.modes / self.roots
-        return np.asarray(residual * np.linalg.norm(_through(self.places, spread.T)(places), axis=-1))
 
     def _followed(self, strength: float) -> Floats:
         """Return the share of each combination in the points that the spline follows."""

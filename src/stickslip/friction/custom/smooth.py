@@ -55,16 +55,6 @@ class Smooth(NamesAttributes):
     _spline: PenalisedSpline
     _axis: _Axis
 
-    def band(self, u: ArrayLike = 0.0, v: ArrayLike = 0.0) -> tuple[Floats, Floats]:
-        """Return friction of the law (no unit) at slips (m) and slip rates (m/s), which broadcast, and its standard error.
-
-        The variable that the points do not have is ignored. Two standard errors on either side of the smooth curve hold the true
-        curve at 95 % of the places, if the noise of neighbouring points is independent.
-        """
-        slip, rate = np.broadcast_arrays(np.asarray(u, float), np.asarray(v, float))
-        at = self._axis.forward(slip if self.points.has == ("slip",) else rate)
-        return self.law.coefficient(slip, rate), self._spline.standard_error(at, self.strength, self.residual)
-
     @property
     def title(self) -> str:
         """What was done, in one line."""
