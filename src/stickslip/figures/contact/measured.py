@@ -34,9 +34,9 @@ def plot_fit(result: Fit | Smooth, path: str | Path | None = None, **place: Unpa
     """Draw measured points, the law through them and its band, and save the figure if a file is named, whole or not at all.
 
     The result is that of `stickslip.friction.fit` or `smooth`; `figure`, `size` and `dpi` say where to draw, and how large, as for
-    `solution.plot`. The figure shows points and law above, and below how far the points are from the law. A fit has bands of one and
-    two standard errors. For a law of slip and slip rate the measured friction is drawn against that of the law. Raises InputError if
-    the argument is no such result.
+    `solution.plot`. The figure shows points and law above, and below how far the points are from the law. A fit has bands of one
+    and two standard errors. For a law of slip and slip rate the measured friction is drawn against that of the law. Raises
+    InputError if the argument is no such result.
     """
     if not isinstance(result, Fit | Smooth):
         raise InputError(f"plot_fit: result must come from fit or smooth, got {type(result).__name__}")
