@@ -256,7 +256,22 @@ def test_posterior_samples_have_the_intervals_of_the_curvature() -> None:
     assert len(study.plot().axes) == 4
 
 
-def drawn_until(call: int, count: int) -> Any:
+def test_more_samples_go_on_where_the_walk_ended() -> None:
+    pytest.importorskip("emcee")
+    study = inferred(free=("friction.a", "friction.reference"), samples=160)
+    longer = study.more(320)
+    assert longer.samples is not None
+    assert study.samples is not None
+    assert len(longer.samples) == 320
+    assert longer.samples[:160].equals(study.samples)
+    assert longer.about_samples[0].startswith("320 samples")
+    with pytest.raises(ss.InputError, match="more: there are 160 samples already, got 160"):
+        study.more(160)
+    with pytest.raises(ss.InputError, match="more: no samples were drawn: ask `infer` for some first, with samples="):
+        inferred().more(100)
+
+
+def drawn_until(call: int, count: int, before: Any = None) -> Any:
     """Samples of one number with a normal distribution, where Ctrl-C comes in the call of the model with this number."""
     calls = iter(range(call))
 
@@ -268,19 +283,21 @@ def drawn_until(call: int, count: int) -> Any:
     model = SimpleNamespace(limits=(np.array([-9.0]), np.array([9.0])), residual=residual)
     found: Any = SimpleNamespace(model=model, searched=np.zeros(1), loss="linear")
     sure: Any = SimpleNamespace(widths=np.ones(1), covariance=np.eye(1), excess=np.ones(1))
-    return sample(found, sure, count, 1, lambda _: None)
+    return sample(found, sure, count, lambda _: None, seed=1, before=before)
 
 
 def test_samples_that_were_drawn_before_ctrl_c_are_kept(capfd: pytest.CaptureFixture[str]) -> None:
     """16 walkers take 375 steps, and 113 before these; half of the walkers move at a time, so that 16 calls are a step."""
     pytest.importorskip("emcee")
-    whole, (note,) = drawn_until(100_000, 6000)
-    assert note.startswith("6000 samples")
+    whole = drawn_until(100_000, 6000)
+    assert whole.notes[0].startswith("6000 samples")
     for call in (16 * 200, 16 * 200 + 3, 16 * 200 + 11):
-        some, notes = drawn_until(call, 6000)
-        assert notes[0] == f"sampling was stopped: {len(some)} of 6000 samples were drawn"
-        assert abs(len(some) - 16 * (200 - 113)) <= 32
-        assert np.array_equal(some, whole[: len(some)])
+        some = drawn_until(call, 6000)
+        count = len(some.drawn)
+        assert some.notes[0] == f"sampling was stopped: {count} of 6000 samples were drawn; `more` goes on"
+        assert abs(count - 16 * (200 - 113)) <= 32
+        assert np.array_equal(some.drawn, whole.drawn[:count])
+        assert np.array_equal(drawn_until(100_000, 6000, some).drawn, whole.drawn)
     with pytest.raises(KeyboardInterrupt):
         drawn_until(16 * 50, 6000)
     assert capfd.readouterr() == ("", "")

@@ -30,7 +30,7 @@ from stickslip.studies.inference.noise import LOSSES
 from stickslip.studies.inference.part import Part, first_sizes, share_of, shortened
 from stickslip.studies.inference.record import Record
 from stickslip.studies.inference.resample import MOST_FITTED, resampled
-from stickslip.studies.inference.sampling import sample
+from stickslip.studies.inference.sampling import MOST_SAMPLES, sample
 from stickslip.studies.inference.search import COMPETES, Tell, Told
 from stickslip.studies.inference.setup import at_rests, evenly, hints_of, own_of, parts_of, scales_of, with_parts
 from stickslip.studies.inference.starting import with_starts
@@ -42,8 +42,6 @@ if TYPE_CHECKING:
 
 WAYS = ("samples", "features")
 """What of a record is fitted: each sample, or features of its slip events."""
-MOST_SAMPLES = 1_000_000
-"""Largest number of posterior samples."""
 MOST_PARTS, MOST_SEARCHED = 24, 8
 """Largest number of parts between rests that are fitted, and among which the first search goes on."""
 LEAST_FITTED = 2000
@@ -289,7 +287,7 @@ def _inferred(model: Model, whole: tuple[Part, ...], wishes: Wishes, notes: list
     tell = Told(tell)
     found = _estimated(model.with_(ran=tell.run), wishes, tell)
     sure, profiles, windows = unknown(found), list[Profile](), None
-    drawn, said, finished = None, tuple[str, ...](), found.finished
+    walk, finished = None, found.finished
     try:
         tell("what the record determines")
         sure = certainty_of(found)
@@ -300,12 +298,12 @@ def _inferred(model: Model, whole: tuple[Part, ...], wishes: Wishes, notes: list
             shared = [i for i, one in enumerate(found.model.free) if one.part is None]
             profiles.extend(profile_of(found, sure, i, tell) for i in shared)
         if finished and wishes.samples:
-            drawn, said = sample(found, sure, wishes.samples, wishes.seed, tell)
-            finished = len(drawn) == wishes.samples
+            walk = sample(found, sure, wishes.samples, tell, seed=wishes.seed)
+            finished = not walk.stopped
     except KeyboardInterrupt:
         finished = False
     found = replace(found, finished=finished)
-    return Inference(found, sure, whole, tuple(notes), tuple(profiles), drawn, said, windows)
+    return Inference(found, sure, whole, tuple(notes), tuple(profiles), walk, windows)
 
 
 def _estimated(model: Model, wishes: Wishes, tell: Tell) -> Estimate:

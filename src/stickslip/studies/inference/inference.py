@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.atomic_write import write_atomically, write_table
 from stickslip.foundation.errors import InputError
@@ -30,8 +31,10 @@ from stickslip.studies.inference.free import Free
 from stickslip.studies.inference.memory import WHITE
 from stickslip.studies.inference.model import OF_NO_ZERO, Model, unit_of
 from stickslip.studies.inference.part import Part
+from stickslip.studies.inference.sampling import MOST_SAMPLES, Walk, sample
+from stickslip.studies.inference.search import Told
 from stickslip.studies.inference.words import notes_of
-from stickslip.studies.study import Study
+from stickslip.studies.study import Study, TextProgress, telling
 
 
 def _near(value: float, uncertainty: float) -> str:
@@ -44,10 +47,9 @@ class Inference(Study):
     """The result of `infer`: the best fit with its model, and what the record determines.
 
     `parts` are the parts of the record, with what was left out of the fit; `about` says what was done with it, one sentence each.
-    `profiles` of the likelihood and samples `drawn` from the posterior distribution are there if they were asked for;
-    `about_samples` says how good the samples are. `windows`, if they were asked for, has the numbers of shorter parts of the
-    record, one row each: begin, end (s since the first sample), samples, and each free number (SI). `asked` are the options that
-    were given, by name.
+    `profiles` of the likelihood and the `walk` through the posterior distribution are there if they were asked for. `windows`, if
+    they were asked for, has the numbers of shorter parts of the record, one row each: begin, end (s since the first sample),
+    samples, and each free number (SI). `asked` are the options that were given, by name.
     """
 
     estimate: Estimate
@@ -55,8 +57,7 @@ class Inference(Study):
     parts: tuple[Part, ...]
     about: tuple[str, ...]
     profiles: tuple[Profile, ...] = ()
-    drawn: Floats | None = None
-    about_samples: tuple[str, ...] = ()
+    walk: Walk | None = None
     windows: pd.DataFrame | None = None
     asked: Mapping[str, Any] = field(default_factory=dict)
 
@@ -107,10 +108,32 @@ class Inference(Study):
     @cached_property
     def samples(self) -> pd.DataFrame | None:
         """Samples of the posterior distribution (SI), a column for each free number; None if none were asked for."""
-        if self.drawn is None:
+        if self.walk is None:
             return None
-        columns = {one.label: [one.natural(x) for x in self.drawn[:, i].tolist()] for i, one in enumerate(self.free)}
-        return pd.DataFrame(columns)
+        drawn = self.walk.drawn
+        return pd.DataFrame({one.label: [one.natural(x) for x in drawn[:, i].tolist()] for i, one in enumerate(self.free)})
+
+    @property
+    def about_samples(self) -> tuple[str, ...]:
+        """Sentences on how good the samples are; empty if none were asked for."""
+        return () if self.walk is None else self.walk.notes
+
+    def more(self, samples: int, *, progress: TextProgress | bool | None = None) -> Self:
+        """Draw further samples of the posterior distribution, until there are `samples` in all, and return the result with them.
+
+        The walk goes on where it ended, also where Ctrl-C ended it. Raises InputError if no samples were drawn before, or if there
+        are as many already.
+        """
+        count = check_whole("more: samples", samples, 1, MOST_SAMPLES)
+        if self.walk is None:
+            raise InputError("more: no samples were drawn: ask `infer` for some first, with samples=")
+        if count <= len(self.walk.drawn):
+            raise InputError(f"more: there are {len(self.walk.drawn)} samples already, got {count}")
+        with telling(progress, "infer") as tell:
+            told = Told(tell)
+            found = replace(self.estimate, model=self.model.with_(ran=told.run))
+            walk = sample(found, self.certainty, count, told, before=self.walk)
+        return replace(self, walk=walk, estimate=replace(self.estimate, finished=not walk.stopped))
 
     @property
     def determined(self) -> bool:

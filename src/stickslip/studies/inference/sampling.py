@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,8 @@ from stickslip.studies.inference.model import FAILED
 from stickslip.studies.inference.noise import cost_of
 from stickslip.studies.inference.search import Tell
 
+MOST_SAMPLES = 1_000_000
+"""Largest number of posterior samples."""
 WALKERS = 4
 """Number of walkers for each free number; there are 16 at least."""
 FORGET = 0.3
@@ -24,12 +27,44 @@ FEW_TIMES = 20.0
 """Number of correlation times of the walkers below which samples are too few."""
 
 
-def sample(found: Estimate, sure: Certainty, count: int, seed: int, tell: Tell) -> tuple[Floats, tuple[str, ...]]:
-    """Return samples of the searched numbers, shape (count, number of free ones), and sentences on how good they are.
+@dataclass(frozen=True, eq=False)
+class Walk:
+    """The walk through the posterior distribution so far: what it kept, and from where it can go on."""
 
-    Numbers on a bound may leave it, and those that are not determined are drawn within their limits. Ctrl-C ends the drawing with
-    the samples of the steps that are done; there are fewer then. Raises InputError if emcee is not installed, and KeyboardInterrupt
-    if Ctrl-C comes before the walkers have forgotten where they began.
+    chain: Floats
+    """Places of the walkers after each step, shape (steps, walkers, free numbers), without the steps that they forget."""
+    state: Any
+    """Places, probabilities and random state after the last step, as emcee has them."""
+    asked: int
+    """Number of samples that were asked for."""
+    stopped: bool = False
+    """True if Ctrl-C ended it."""
+
+    @property
+    def drawn(self) -> Floats:
+        """The samples, shape (number of samples, free numbers)."""
+        return self.chain.reshape(-1, self.chain.shape[2])[: self.asked]
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Sentences on how good the samples are."""
+        from emcee.autocorr import function_1d
+
+        worst = max(_memory(self.chain[:, :, i], function_1d) for i in range(self.chain.shape[2]))
+        drawn = len(self.drawn)
+        note = f"{drawn} samples, about {drawn / max(worst, 1.0):.0f} of them independent"
+        if len(self.chain) < FEW_TIMES * worst:
+            note += "; the walkers need longer to forget each other: ask for more samples"
+        stop = f"sampling was stopped: {drawn} of {self.asked} samples were drawn; `more` goes on"
+        return (stop, note) if self.stopped else (note,)
+
+
+def sample(found: Estimate, sure: Certainty, count: int, tell: Tell, *, seed: int = 0, before: Walk | None = None) -> Walk:
+    """Draw `count` samples of the searched numbers, or go on with the walk `before` until there are so many in all.
+
+    Numbers on a bound may leave it, and those that are not determined are drawn within their limits. Ctrl-C ends the walk with the
+    samples of the steps that are done; there are fewer then. Raises InputError if emcee is not installed, and KeyboardInterrupt if
+    Ctrl-C comes before the walkers have forgotten where they began.
     """
     try:
         import emcee
@@ -39,33 +74,29 @@ def sample(found: Estimate, sure: Certainty, count: int, seed: int, tell: Tell) 
     walkers = max(16, WALKERS * dimensions)
     walkers += walkers % 2
     steps = -(-count // walkers)
-    forget = max(20, math.ceil(FORGET * steps))
-
-    random = np.random.default_rng(seed)
-    begin = _begun(found, sure, walkers, random)
+    forget = max(20, math.ceil(FORGET * steps)) if before is None else 0
     posterior = _Posterior(found, float(np.max(sure.excess**2)))
     sampler: Any = emcee.EnsembleSampler(walkers, dimensions, posterior)
-    sampler.random_state = np.random.RandomState(seed).get_state()
-    done = 0
+    if before is None:
+        begin, kept = _begun(found, sure, walkers, np.random.default_rng(seed)), []
+        sampler.random_state = np.random.RandomState(seed).get_state()
+    else:
+        begin, kept = before.state, [before.chain]
+    left, done, state = forget + steps - sum(map(len, kept)), 0, begin
+    new = np.empty((max(left, 0), walkers, dimensions))
     try:
-        for _ in sampler.sample(begin, iterations=forget + steps):
+        for moved in sampler.sample(begin, iterations=left) if left > 0 else ():
             if posterior.stopped:  # in the middle of this step
                 break
+            state, new[done] = emcee.State(moved, copy=True), moved.coords
             if done % 10 == 0:
-                tell(f"sampling: step {done + 1} of {forget + steps}, {walkers} runs each")
+                tell(f"sampling: step {done + 1} of {left}, {walkers} runs each")
             done += 1
     except KeyboardInterrupt:  # between two runs
         posterior.stopped = True
-    if posterior.stopped and done <= forget:
+    if posterior.stopped and before is None and done <= forget:
         raise KeyboardInterrupt
-    chain = sampler.get_chain()[forget:done]
-    worst = max(_memory(chain[:, :, i], emcee.autocorr.function_1d) for i in range(dimensions))
-    drawn = chain.reshape(-1, dimensions)[:count]
-    note = f"{len(drawn)} samples, about {len(drawn) / max(worst, 1.0):.0f} of them independent"
-    if len(chain) < FEW_TIMES * worst:
-        note += "; the walkers need longer to forget each other: ask for more samples"
-    stop = f"sampling was stopped: {len(drawn)} of {count} samples were drawn"
-    return np.asarray(drawn), ((stop,) if posterior.stopped else ()) + (note,)
+    return Walk(np.concatenate([*kept, new[forget:done]]), state, count, posterior.stopped)
 
 
 class _Posterior:
