@@ -1,6 +1,7 @@
 """Folds of the resistance g(v) = Z v + S mu(v), and its smallest slope, each with a proof by bounds of g' and g''.
 
-The proofs are those of `engine.folds.turns` and `engine.folds.lowest_slope`, in compiled code; here they meet a contact.
+The proofs are those of `engine.folds.turns` and `engine.folds.lowest_slope`; here they meet a contact, and `contact.proofs` says
+how they run.
 """
 
 from __future__ import annotations
@@ -8,15 +9,19 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
 from stickslip.contact.equation import Resistance
+from stickslip.contact.proofs import Way, run_proof
+from stickslip.engine.codegen.kernels import in_python
 from stickslip.engine.enclosure.formula import formulas_of
 from stickslip.engine.folds import turns
 from stickslip.engine.folds.lowest_slope import find_lowest, polished
+from stickslip.engine.folds.panels import MOST_PANELS, panels_between
 from stickslip.engine.folds.turns import FASTEST, find_turns, folds_of, new_cells, room_for_turns
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.brief_repr import brief_repr
 from stickslip.foundation.errors import InputError
 
@@ -102,7 +107,7 @@ def bounds_of(g: Resistance) -> turns.Resistance:
     values = np.array([g.law.piece_values(i) for i in range(len(g.trees))]).reshape(len(g.trees), -1)
     formulas = formulas_of(g.trees, g.law.parameters(), values)
     return turns.Resistance(
-        formulas, knots, pieces.astype(np.int64), g.damping, g.normal, min(g.scales), max(g.scales), new_cells()
+        formulas, knots, pieces.astype(np.int64), g.damping, g.normal, min(g.scales), max(g.scales), in_python(new_cells)()
     )
 
 
@@ -113,10 +118,10 @@ def certificate(g: Resistance, budget: int = turns.MOST_EVALUATIONS) -> Certific
     Raises InputError if friction falls at least as fast as Z v rises even at the fastest rate of the search, unless Z is 0.
     """
     bounds, reach = bounds_of(g), FASTEST
-    found, table = _turns(bounds, g, reach, budget)
+    found, table, way = _turns(bounds, g, reach, budget)
     if found.intervals < 0:
         reach = g.reach if g.damping else FASTEST
-        found, table = _turns(bounds, g, reach, budget)
+        found, table, way = _turns(bounds, g, reach, budget)
     if found.intervals < 0:
         raise InputError(
             f"{type(g.law).__name__}: g = Z v + S mu(v) turns more than {MOST_FOLDS} times up to {reach:.3g} m/s: friction that "
@@ -131,30 +136,58 @@ def certificate(g: Resistance, budget: int = turns.MOST_EVALUATIONS) -> Certific
         (sure if proven == 1 else open_).append((low, high))
     at_rest = None if found.at_rest == 0 else found.at_rest > 0
     folds = np.empty(2 * MOST_FOLDS)
-    rates = tuple(folds[: folds_of(table, found.intervals, folds)].tolist())
+    rates = tuple(folds[: way(folds_of)(table, found.intervals, folds)].tolist())
     if reach < FASTEST and rates and g.slope(reach) <= 0.0:
         rates, sure = rates[:-1], sure[:-1]  # the last branch counts as endless, and its end is at a load that is never reached
     return Certificate("not decided" if open_ else "proven", rates, tuple(sure), tuple(open_), at_rest, found.evaluations, reach)
 
 
-def _turns(bounds: turns.Resistance, g: Resistance, reach: float, budget: int) -> tuple[turns.Account, turns.Turns]:
-    """Return the turns of g up to a slip rate (m/s); the number of intervals is -1 if there are more than MOST_FOLDS."""
-    for room in (64, MOST_FOLDS):
-        table = room_for_turns(room)
-        found = find_turns(bounds, g.law_slip, reach, budget, table)
-        if found.intervals >= 0:
-            break
-    return found, table
+def _turns(bounds: turns.Resistance, g: Resistance, reach: float, budget: int) -> tuple[turns.Account, turns.Turns, Way]:
+    """Return the turns of g up to a slip rate (m/s), and the way in which they were found.
+
+    The number of intervals is -1 if there are more than MOST_FOLDS.
+    """
+
+    def search(way: Way, most: int) -> tuple[int, tuple[turns.Account, turns.Turns]]:
+        for room in (64, MOST_FOLDS):
+            table = in_python(room_for_turns)(room)
+            found = way(find_turns)(bounds, g.law_slip, reach, most, table)
+            if found.intervals >= 0:
+                break
+        return found.evaluations, (found, table)
+
+    (found, table), way = run_proof(search, budget)
+    return found, table, way
+
+
+def panels(g: Resistance, low: float, high: float) -> Floats:
+    """Return the edges (m/s) of panels from one slip rate to another, in each of which a rule of Gauss integrates g to rounding."""
+    bounds = bounds_of(g)
+
+    def search(way: Way, most: int) -> tuple[int, Floats]:
+        edges = np.empty(min(most, MOST_PANELS) + 1)
+        count = way(panels_between)(bounds, g.law_slip, low, high, edges) if most > 1 else most
+        return count, edges[: count + 1]
+
+    found: Floats = run_proof(search, MOST_PANELS)[0]
+    return found
 
 
 @lru_cache(maxsize=64)
 def lowest_slope(g: Resistance, tolerance: float = _TOLERANCE) -> Lowest:
     """Bound the smallest g' to a tolerance relative to the larger of Z and its own magnitude, and find it to rounding."""
     bounds = bounds_of(g)
-    found = find_lowest(bounds, g.law_slip, tolerance, turns.MOST_EVALUATIONS)
-    rate, slope = polished(bounds, g.law_slip, found)
-    near = found.at_most - found.at_least <= _NEAR * tolerance * max(g.damping, abs(found.at_most))
-    return Lowest("proven" if near else "not decided", found.at_least, found.at_most, slope, rate)
+
+    def search(way: Way, most: int) -> tuple[int, Any]:
+        found = way(find_lowest)(bounds, g.law_slip, tolerance, most)
+        return found.evaluations, found
+
+    found, way = run_proof(search, turns.MOST_EVALUATIONS)
+    with np.errstate(all="ignore"):
+        rate, slope = map(float, way(polished)(bounds, g.law_slip, found))
+    least, most = float(found.at_least), float(found.at_most)
+    near = most - least <= _NEAR * tolerance * max(g.damping, abs(most))
+    return Lowest("proven" if near else "not decided", least, most, slope, rate)
 
 
 def critical_stress_between(g: Resistance) -> Interval | None:

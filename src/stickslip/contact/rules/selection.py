@@ -19,9 +19,9 @@ import numpy as np
 
 from stickslip.contact.branches import Branch, branches_of, rate_on
 from stickslip.contact.equation import Resistance, resistance
-from stickslip.contact.folds import MOST_FOLDS, bounds_of, certificate
+from stickslip.contact.folds import MOST_FOLDS, certificate, panels
 from stickslip.contact.roots import bracketed_newton
-from stickslip.engine.folds.panels import MOST_PANELS, NODES, WEIGHTS, panels_between
+from stickslip.engine.folds.panels import NODES, WEIGHTS
 from stickslip.engine.folds.turns import FASTEST
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
@@ -85,8 +85,7 @@ def area(g: Resistance, start: float, end: float, excess: float) -> float:
     """Return the integral of g - load from start to end (m/s), in Pa m/s: Gauss's rule on panels that resolve the law."""
     if end <= start:
         return 0.0
-    edges = np.empty(MOST_PANELS + 1)
-    edges = edges[: panels_between(bounds_of(g), g.law_slip, start, end, edges) + 1]
+    edges = panels(g, start, end)
     half = 0.5 * np.diff(edges)
     rates = edges[:-1, None] + half[:, None] * (1.0 + NODES)
     return float(np.sum(half * ((g.excess(rates) - excess) @ WEIGHTS)))

@@ -35,6 +35,7 @@ class Lowest(NamedTuple):
     piece: int
     low: float
     high: float
+    evaluations: int  # number of cells and single rates at which g' was bounded
 
 
 class Ends(NamedTuple):
@@ -76,7 +77,8 @@ def find_lowest(g: Resistance, slip: float, tolerance: float, budget: int) -> Lo
             low, at_low = high, at_high
         begin = end
     found = find.found
-    return Lowest(min(found[AT_LEAST], found[AT_MOST]), found[AT_MOST], int(found[PIECE]), found[LOW], found[HIGH])
+    least, used = min(found[AT_LEAST], found[AT_MOST]), budget - int(found[LEFT])
+    return Lowest(least, found[AT_MOST], int(found[PIECE]), found[LOW], found[HIGH], used)
 
 
 @kernel
