@@ -67,7 +67,7 @@ def test_every_column_of_a_divided_table_is_shown_once_beside_the_first(
     assert [row[0] for row in rows] == ["0"] * len(rows)
     assert [value for row in rows for value in row[1:]] == [
         *("5.7142857", "5.7142857", "23.440233", "4.1020408"),
-        *("80400000", "80400000", "1"),
+        *("80.4", "80.4", "1"),
     ]
 
 

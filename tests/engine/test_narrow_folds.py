@@ -44,17 +44,3 @@ def test_rising_load_reaches_a_fold_in_one_step() -> None:
     for _ in range(50):
         x = slowness * math.exp(x * x)
     assert jump.rate_before == pytest.approx(1.0 + 0.3 * x, rel=1e-7, abs=0)
-
-
-def test_maximal_rule_jumps_to_a_moving_fold_and_departs_from_it() -> None:
-    """Friction falls a little with slip while the load rises: slip begins at the very fold and leaves it with the load."""
-    law = ss.friction.FromExpression("0.6 + 0.1*exp(-((v - 1)/0.3)**2) + 0.01*exp(-u/5)")
-    slab = ss.ElasticSlab(2e3, 1e3, 1e3, 1e8)
-    run = ss.simulate(ss.Problem(slab, law, pull_rate=2.0, initial_excess=-2e7, selection="maximal"), 8.0)
-    assert run.status.ok
-    jump = next(run.shocks[run.shocks.cause == "fold"].itertuples())
-    x = 2.0
-    for _ in range(50):  # at the fold x exp(-x^2) = 0.03, with v = 1 + 0.3 x
-        x = math.sqrt(math.log(x / 0.03))
-    assert jump.rate_after == pytest.approx(1.0 + 0.3 * x, rel=1e-6, abs=0)
-    assert float(run.slip_rate(jump.time + 0.5)) > jump.rate_after

@@ -140,7 +140,6 @@ class Problem(CheckedArguments):
         _ = self.rate  # refuses a start at which nothing balances
         check_rate(self)
         object.__setattr__(self, "selection", checked(self.selection))
-        self._check_rule()
         self._check_far_side()
 
     def _shown(self) -> dict[str, str]:
@@ -226,13 +225,6 @@ class Problem(CheckedArguments):
                 raise InputError(f"Problem: {field_name} must be one number, got {shown(value)}: each state has its own, {both}")
             object.__setattr__(self, field_name, declared.check("Problem", field_name, value))
 
-    def _check_rule(self) -> None:
-        if self.folds_move and self.rule != PERFECT_DELAY:
-            raise InputError(
-                f"Problem: selection {self.rule!a}: under friction of slip and slip rate the folds move with slip, and only "
-                f"{PERFECT_DELAY} is followed there; a law of the slip rate alone, as mu(0, v), may have every rule"
-            )
-
     def _check_far_side(self) -> None:
         if self.body.is_driven_rigidly and (self.far_stress is not None or self.far_stress_rate != 0.0):
             raise InputError("Problem: far_stress and far_stress_rate need a slab with a finite driver_impedance")
@@ -299,6 +291,16 @@ class Problem(CheckedArguments):
     def rules(self) -> tuple[str, ...]:
         """The names of the built-in selection rules under which the problem can be run."""
         return (PERFECT_DELAY,) if self.folds_move else SELECTION_RULES
+
+    @property
+    def why_not_run(self) -> str:
+        """Why the problem cannot be run under its selection rule; empty if it can."""
+        if not self.folds_move or self.rule == PERFECT_DELAY:
+            return ""
+        return (
+            f"selection {self.rule!a}: under friction of slip and slip rate the folds move with slip, and only {PERFECT_DELAY} is "
+            "followed there; under a law of the slip rate alone every rule is"
+        )
 
     @property
     def rule(self) -> str:

@@ -81,6 +81,8 @@ class RunOptions:
     def check(self, who: str, problem: Problem) -> Self:
         """Return the options if this problem can be run with them. Raises InputError, which begins with `who`, otherwise."""
         check_problem(who, problem)
+        if problem.why_not_run:
+            raise InputError(f"{who}: {problem.why_not_run}")
         creep_rtol = None if self.creep_rtol is None else CREEP_RTOL.check(who, "creep_rtol", self.creep_rtol)
         shortest = None if self.shortest_event is None else SHORTEST_EVENT.check(who, "shortest_event", self.shortest_event)
         if not isinstance(self.title, str):

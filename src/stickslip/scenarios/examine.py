@@ -252,6 +252,8 @@ def warnings_of(scenario: Scenario, contact: Uniqueness) -> list[str]:
     if problem.body.has_waves:
         found += _slab_warnings(scenario, as_slab(problem.body), contact)
     rule = problem.rule
+    if problem.why_not_run:
+        found.append(f"it cannot be run: {problem.why_not_run}")
     moving = problem.friction.depends_on_slip and problem.friction.depends_on_rate
     if contact.regime == "regular" and rule != "perfect-delay" and not (moving and contact.resistance):
         found.append(f"the selection rule {rule} has no effect: the slip rate is unique")
