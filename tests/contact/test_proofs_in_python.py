@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.contact import proofs
+from stickslip.contact import folds, proofs
 from stickslip.contact.branches import branches_of
 from stickslip.contact.equation import Resistance, resistance
 from stickslip.contact.folds import certificate, lowest_slope, panels
@@ -37,6 +37,7 @@ def by(patience: float, prove: Callable[[], Any], monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(proofs._Patience, "left", patience)
     certificate.cache_clear()
     lowest_slope.cache_clear()
+    folds._way_of.cache_clear()
     return prove()
 
 

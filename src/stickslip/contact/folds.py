@@ -14,7 +14,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from stickslip.contact.equation import Resistance
-from stickslip.contact.proofs import Way, run_proof
+from stickslip.contact.proofs import Way, compiled, run_proof, way_of_next
 from stickslip.engine.codegen.kernels import in_python
 from stickslip.engine.enclosure.formula import formulas_of
 from stickslip.engine.folds import turns
@@ -36,6 +36,8 @@ _ROUNDING = 8.0 * float(np.finfo(float).eps)
 """Relative rounding error allowed for three operations."""
 MOST_FOLDS = 1024
 """Largest number of folds that a contact may have. Friction that rises and falls with the slip rate for ever has any number."""
+FEW_PANELS = 200
+"""Number of panels of an integral from which on they are found in compiled code."""
 _MOST_SHOWN = 6
 """Largest number of folds that a sentence names; more would make it unreadable."""
 
@@ -161,16 +163,24 @@ def _turns(bounds: turns.Resistance, g: Resistance, reach: float, budget: int) -
 
 
 def panels(g: Resistance, low: float, high: float) -> Floats:
-    """Return the edges (m/s) of panels from one slip rate to another, in each of which a rule of Gauss integrates g to rounding."""
+    """Return the edges (m/s) of panels from one slip rate to another, in each of which a rule of Gauss integrates g to rounding.
+
+    For one contact the same slip rates always give the same edges, so that areas which should cancel do.
+    """
     bounds = bounds_of(g)
+    for way, room in ((_way_of(g), FEW_PANELS), (compiled, MOST_PANELS)):
+        edges = np.empty(room + 1)
+        with np.errstate(all="ignore"):
+            count = way(panels_between)(bounds, g.law_slip, low, high, edges)
+        if count < room:
+            break
+    return edges[: count + 1]
 
-    def search(way: Way, most: int) -> tuple[int, Floats]:
-        edges = np.empty(min(most, MOST_PANELS) + 1)
-        count = way(panels_between)(bounds, g.law_slip, low, high, edges) if most > 1 else most
-        return count, edges[: count + 1]
 
-    found: Floats = run_proof(search, MOST_PANELS)[0]
-    return found
+@lru_cache(maxsize=64)
+def _way_of(g: Resistance) -> Way:
+    """Return the way in which the panels of a contact are found, for as long as the contact is remembered."""
+    return way_of_next(FEW_PANELS)
 
 
 @lru_cache(maxsize=64)

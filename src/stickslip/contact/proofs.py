@@ -50,3 +50,10 @@ def run_proof(search: Callable[[Way, int], tuple[int, Any]], budget: int) -> tup
         if most == budget or used < most:
             return found, in_python
     return search(compiled, budget)[1], compiled
+
+
+def way_of_next(count: int) -> Way:
+    """Return the way of work that is as much as so many bounds."""
+    left = _Patience.left
+    _Patience.left -= count
+    return in_python if left > 0 else compiled

@@ -100,7 +100,7 @@ def loop_of(g: Resistance, stable: tuple[Branch, ...], table: SelectionTable) ->
         levels.append(table.keep_from[walked[-1]])
         walked.append(table.descend(walked[-1], math.nextafter(levels[-1], -math.inf)))
     jumps = [_jump(g, stable, way, level) for way, level in zip(pairwise(walked), levels, strict=True)]
-    enclosed = sum(_against(g, jump, level) for jump, level in zip(jumps, levels, strict=True))
+    enclosed = math.fsum(_against(g, jump, level) for jump, level in zip(jumps, levels, strict=True))  # what cancels, cancels
     return Loop(tuple(walked), tuple(jump for jump in jumps if jump.rate_before != jump.rate_after), enclosed)
 
 
