@@ -158,7 +158,9 @@ class SteadySlidings:
     def regained(self) -> float | None:
         """The critical pull rate (m/s) above which steady sliding is stable, though a contact from rest may stick; None without."""
         last = self.changes[-1] if self.changes else None
-        return last.pull_rate if self.sticks and last is not None and last.stable_above and not self.varies else None
+        if not self.sticks or self.varies or last is None or not last.stable_above or last.pull_rate is None:
+            return None
+        return last.pull_rate if last.pull_rate * self.pull_rate > 0.0 else None
 
     @property
     def settled(self) -> Sliding | None:
@@ -220,11 +222,20 @@ class SteadySlidings:
         if not self.changes:
             return ""
         texts = [f"{'unstable' if self.changes[0].stable_above else 'stable'} below"]
-        texts += [f"{_place(one)}, {'stable' if one.stable_above else 'unstable'} above" for one in self.changes]
+        texts += [f"{self._place(one)}, {'stable' if one.stable_above else 'unstable'} above" for one in self.changes]
         hint = "" if self.regained is None else "; from rest it may stick at a higher rate all the same: stickslip find"
         hint = hint if self.from_rest is None else f"; {self.from_rest}"
         how = "proven by interval arithmetic" if self.proven else f"found between {RATES[0]:g} and {RATES[-1]:g} m/s, not proven"
         return f"{' '.join(texts)} ({how}){hint}"
+
+    def _place(self, change: StabilityChange) -> str:
+        """Return the words for where stability changes."""
+        if change.pull_rate is None:
+            return f"a slip rate of {change.rate:.9g} m/s"
+        if change.pull_rate == change.rate:
+            return f"a pull rate of {change.rate:.9g} m/s"
+        back = " (the driver would have to move back)" * (change.pull_rate * self.pull_rate < 0.0)
+        return f"a slip rate of {change.rate:.9g} m/s, at a pull rate of {change.pull_rate:.9g} m/s{back}"
 
 
 def driven_at(rate: float, *, is_driven_rigidly: bool) -> str:
@@ -236,11 +247,3 @@ def slides_on(sliding: Sliding, *, is_driven_rigidly: bool) -> str:
     """Return a sentence without its subject, a contact that slides steadily and stays at this rate."""
     how = "steadily and stably" if sliding.stable else "steadily"
     return f"slides {how} at {driven_at(sliding.rate, is_driven_rigidly=is_driven_rigidly)}: no event will come"
-
-
-def _place(change: StabilityChange) -> str:
-    if change.pull_rate is None:
-        return f"a slip rate of {change.rate:.9g} m/s"
-    if change.pull_rate == change.rate:
-        return f"a pull rate of {change.rate:.9g} m/s"
-    return f"a slip rate of {change.rate:.9g} m/s, at a pull rate of {change.pull_rate:.9g} m/s"
