@@ -69,6 +69,11 @@ def test_a_start_in_steady_sliding_makes_no_difference_to_what_happens_from_rest
     assert ss.studies.steady(steady).from_rest == ss.studies.steady(AXIS).from_rest
 
 
+def test_a_block_that_is_pulled_backwards_sticks_up_to_the_same_rate():
+    forwards, backwards = ss.studies.steady(AXIS).from_rest, ss.studies.steady(replace(AXIS, pull_rate=-0.05)).from_rest
+    assert backwards == forwards
+
+
 def test_without_hysteresis_one_run_tells():
     """10 N * 0.1 * 2 v/(1 + v^2)^2 = 0.5 N s/m at v = 1 m/s: stable above. The law is flat near rest: it slides there, too."""
     law = ss.friction.FromExpression("0.5 - 0.1*v**2/(v**2 + w**2)", {"w": "1 m/s"})

@@ -90,7 +90,7 @@ class StabilityChange:
 
 @dataclass(frozen=True)
 class FromRest:
-    """What exact runs from rest do at pull rates (m/s) at which steady sliding is stable."""
+    """What exact runs from rest do at pull rates at which steady sliding is stable; rates (m/s) without their sign."""
 
     sticks_at: float | None
     """The highest pull rate (m/s) at which a run still stuck; None if the run just above the critical rate slid already."""
@@ -156,11 +156,12 @@ class SteadySlidings:
 
     @property
     def regained(self) -> float | None:
-        """The critical pull rate (m/s) above which steady sliding is stable, though a contact from rest may stick; None without."""
+        """The size of the critical pull rate (m/s) above which sliding is stable, though a contact from rest may stick; or None."""
         last = self.changes[-1] if self.changes else None
         if not self.sticks or self.varies or last is None or not last.stable_above or last.pull_rate is None:
             return None
-        return last.pull_rate if last.pull_rate * self.pull_rate > 0.0 else None
+        is_against = self.far_stress is not None and last.pull_rate * self.pull_rate <= 0.0
+        return None if is_against else abs(last.pull_rate)
 
     @property
     def settled(self) -> Sliding | None:
@@ -234,7 +235,7 @@ class SteadySlidings:
             return f"a slip rate of {change.rate:.9g} m/s"
         if change.pull_rate == change.rate:
             return f"a pull rate of {change.rate:.9g} m/s"
-        back = " (the driver would have to move back)" * (change.pull_rate * self.pull_rate < 0.0)
+        back = " (the driver would have to move back)" * (self.far_stress is not None and change.pull_rate * self.pull_rate < 0.0)
         return f"a slip rate of {change.rate:.9g} m/s, at a pull rate of {change.pull_rate:.9g} m/s{back}"
 
 

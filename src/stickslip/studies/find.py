@@ -168,7 +168,7 @@ def from_rest(problem: Problem, found: SteadySlidings, tell: TextProgress = lamb
     A dozen exact runs begin a little above the critical rate. Their number and length depend on the problem alone.
     """
     critical = found.regained
-    if critical is None or critical <= 0.0:
+    if not critical:
         return None
     if problem.has_initial_rate:
         problem = replace(problem, initial_rate=None, initial_load=0.0, initial_excess=None)
@@ -180,13 +180,13 @@ def from_rest(problem: Problem, found: SteadySlidings, tell: TextProgress = lamb
     try:
         rate = critical * (1.0 + FROM_REST_WITHIN)
         for _ in range(MOST_DOUBLINGS):
-            if not search.at(rate):
+            if not search.at(math.copysign(rate, found.pull_rate)):
                 slides = rate
                 break
             sticks, rate = rate, 2.0 * rate
         while sticks is not None and slides is not None and slides - sticks > FROM_REST_WITHIN * slides:
             middle = math.sqrt(sticks * slides)
-            sticks, slides = (middle, slides) if search.at(middle) else (sticks, middle)
+            sticks, slides = (middle, slides) if search.at(math.copysign(middle, found.pull_rate)) else (sticks, middle)
     except InputError:  # a run was too long, or could not be made: what was found before holds
         pass
     return FromRest(sticks, slides, len(search.seen), lasts, MOST_PIECES)
