@@ -114,6 +114,7 @@ def test_every_link_has_its_target(page: Path) -> None:
         path, _, anchor = target.partition("#")
         aim = (page.parent / path).resolve() if path else page
         assert aim.exists(), f"{page.name}: {target}"
+        assert aim.suffix != ".md" or page.parent == ROOT or ROOT / "docs" in aim.parents, f"{page.name}: {target} leaves the site"
         if anchor:
             assert anchor in headings(aim), f"{page.name}: {target}"
 
