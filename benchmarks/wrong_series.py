@@ -24,6 +24,7 @@ from stickslip.engine.codegen import compiler
 from stickslip.engine.codegen.taylor_series import FormulaWriter
 from stickslip.engine_input import prepare
 from stickslip.friction.formula import expression as e
+from stickslip.friction.formula.operations import FUNCTIONS, OPERATIONS
 from stickslip.observables.proof import proven
 from stickslip.trajectory.history import History, Positions
 
@@ -33,7 +34,7 @@ SIZES = (1e-6, 1e-3, 0.1)
 SLAB, BLOCK = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8), ss.SpringBlock(1.0, 20.0, 10.0)
 LAW = "0.5 + 0.02*sin(4*u)*exp(-u*u/2) + 0.01*tanh(2*u-1) + 0.01*log(1+u*u) + 0.01/(1+u**4) + 0.01*(1+u*u)**0.3 + 0.01*arcsinh(u)"
 RATE = "0.6 - 0.05*v/(v+2) + 0.01*exp(-v/3)*sin(v) + 0.01*log(1+v)"
-FUNCTIONS = SimpleNamespace(
+MPMATH = SimpleNamespace(
     **{name: getattr(mpmath, name) for name in ("sin", "cos", "exp", "log", "sqrt", "tanh", "expm1", "log1p")}, arcsinh=mpmath.asinh
 )
 LINE = re.compile(r"^([anqsvwxe]\w*?)(?:_(\d+))? = (.*)$")
@@ -137,10 +138,10 @@ def exact(tree: e.Expression, numbers: dict[str, float], variables: dict[e.Expre
     found = dict(variables)
     for node in e.nodes_of(tree):
         arguments = [found[argument] for argument in node.arguments]
-        if node.operation in e.FUNCTIONS:
-            found[node] = getattr(FUNCTIONS, node.operation)(*arguments)
+        if node.operation in FUNCTIONS:
+            found[node] = getattr(MPMATH, node.operation)(*arguments)
         elif arguments:
-            found[node] = e.OPERATIONS[node.operation](*arguments)
+            found[node] = OPERATIONS[node.operation](*arguments)
         elif node not in found:
             found[node] = mpmath.mpf(numbers[node.name] if node.operation == "parameter" else node.value)
     return found[tree]

@@ -19,7 +19,7 @@ import stickslip as ss
 from stickslip.batch import run_members
 from stickslip.foundation.quantities import quantity
 from stickslip.friction.families import RemembersSlip
-from stickslip.friction.formula.expression import evaluate
+from stickslip.friction.formula.functions import evaluate
 from stickslip.friction.formula.parse import parse
 from stickslip.scenarios.scenario import Scenario
 from tests.adversarial.walk import Place, walk

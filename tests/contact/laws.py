@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import stickslip as ss
 from stickslip.foundation.quantities import quantity
-from stickslip.friction.formula.expression import cos, exp
+from stickslip.friction.formula.functions import cos, exp
 
 SLAB = ss.ElasticSlab(density=2800.0, wave_speed=3500.0, thickness=1e4, normal_stress=1e8)
 """The paper's slab."""

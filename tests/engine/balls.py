@@ -13,18 +13,16 @@ from numpy.typing import NDArray
 
 from stickslip.engine.codegen.taylor_series import FormulaWriter
 from stickslip.engine.codegen.uncompiled import MATHS
-from stickslip.engine.series import ball_radii, differences, sine
+from stickslip.engine.series import ball_radii, sine
+from stickslip.engine.series.called import FLOATS
 from stickslip.engine.state.layout import Ball
 from stickslip.friction.formula import expression as e
+from stickslip.friction.formula import functions
+from stickslip.friction.formula.operations import FUNCTIONS, OPERATIONS
 
 Complexes = NDArray[np.complex128]
 LEAVES = (e.SLIP, e.RATE, e.STATE)
-EXACT = SimpleNamespace(
-    **{name: getattr(mpmath, name) for name in ("sin", "cos", "exp", "log", "sqrt", "tanh")},
-    arcsinh=mpmath.asinh,
-    expm1=mpmath.expm1,
-    log1p=mpmath.log1p,
-)
+EXACT = SimpleNamespace(**{name: getattr(mpmath, OPERATIONS[name].in_math) for name in FUNCTIONS})
 ROUNDING = 1e-14
 """Absolute error of a value at the centre (1): some nodes are known as a difference from a reference of order one."""
 DIGITS = 60
@@ -68,24 +66,24 @@ def drawn_formula(rng: np.random.Generator, depth: int) -> e.Expression:
             return e.as_expression(drawn_number(rng, -2.0, 2.0))
         leaf = LEAVES[int(rng.integers(3))]
         return leaf * drawn_number(rng, -2.0, 2.0) if rng.random() < 0.5 else leaf - drawn_number(rng)
-    kind = str(rng.choice(["add", "sub", "mul", "div", "pow", "square", "logistic", "cosh", *e.FUNCTIONS]))
+    kind = str(rng.choice(["add", "sub", "mul", "div", "pow", "square", "logistic", "cosh", *FUNCTIONS]))
     a = drawn_formula(rng, depth - 1)
     if kind in ("add", "sub", "mul", "div"):
         b = drawn_formula(rng, depth - 1)
-        return e.OPERATIONS[kind](a, 1.0 + b * b if kind == "div" and rng.random() < 0.7 else b)
+        return OPERATIONS[kind](a, 1.0 + b * b if kind == "div" and rng.random() < 0.7 else b)
     if kind == "square":
         return a * a
     if kind == "logistic":
-        return 1.0 / (1.0 + e.exp(a))
+        return 1.0 / (1.0 + functions.exp(a))
     if kind == "cosh":
-        return 1.0 / (e.exp(a) + e.exp(-a))
+        return 1.0 / (functions.exp(a) + functions.exp(-a))
     if kind in ("log", "sqrt", "pow") and rng.random() < 0.8:
-        a = 0.5 + a * a if rng.random() < 0.5 else 0.1 + e.exp(a)
+        a = 0.5 + a * a if rng.random() < 0.5 else 0.1 + functions.exp(a)
     if kind == "pow":
         return e.Expression(
             "pow", (a, e.as_expression(round(rng.uniform(-30.0, 30.0), 2) if rng.random() < 0.5 else rng.uniform(-2.0, 2.0)))
         )
-    return e.OPERATIONS[kind](a)
+    return OPERATIONS[kind](a)
 
 
 def values_of(tree: e.Expression, at: tuple[Any, Any, Any], functions: Any) -> list[Any]:
@@ -96,10 +94,10 @@ def values_of(tree: e.Expression, at: tuple[Any, Any, Any], functions: Any) -> l
         arguments = [found[argument] for argument in node.arguments]
         if node.operation == "constant":
             found[node] = number(node.value)
-        elif node.operation in e.FUNCTIONS:
+        elif node.operation in FUNCTIONS:
             found[node] = getattr(functions, node.operation)(*arguments)
         elif arguments:
-            found[node] = e.OPERATIONS[node.operation](*arguments)
+            found[node] = OPERATIONS[node.operation](*arguments)
     return [*found.values(), found[tree]]
 
 
@@ -127,7 +125,7 @@ def radius_of(tree: e.Expression, disc: Disc, rules: Mapping[str, Any] | None = 
     writer, ball = FormulaWriter(tree, (), state_rates=(tree,)), Ball(np.zeros(Ball.total))
     ball.slip, ball.rate, ball.state[0] = disc.radius
     ball.at_slip, ball.at_rate, ball.at_state[0] = disc.centre
-    names = {**vars(MATHS), **vars(differences), **vars(sine), **vars(ball_radii), **(rules or {})}
+    names = {**vars(MATHS), **FLOATS, **vars(sine), **vars(ball_radii), **(rules or {})}
     names |= {"c": np.zeros(writer.size), "p": np.zeros(1), "x_ref": np.float64(0.0)}
     names["k"] = ball.numbers
     with np.errstate(all="ignore"):

@@ -15,6 +15,7 @@ from stickslip.engine.codegen.taylor_series import ORDER, SIGNATURES, FormulaWri
 from stickslip.friction import LAWS
 from stickslip.friction.formula import expression as e
 from stickslip.friction.formula.expression import Expression
+from stickslip.friction.formula.operations import FUNCTIONS
 from tests.engine.drawn import example_law
 
 KEPT = Path(__file__).with_suffix(".json")
@@ -35,9 +36,9 @@ def tree(rng: random.Random, depth: int, states: int) -> Expression:
     if depth == 0 or rng.random() < 0.1:
         leaves = [e.SLIP, e.RATE, *e.STATES[:states], *map(e.Parameter, NAMES)]
         return rng.choice([*leaves, e.as_expression(rng.choice((0.0, 1.0, 2.0, 0.5, -1.5)))])
-    kind = rng.choice(("add", "sub", "mul", "div", "pow", "whole", "shared", *e.FUNCTIONS))
+    kind = rng.choice(("add", "sub", "mul", "div", "pow", "whole", "shared", *FUNCTIONS))
     one = tree(rng, depth - 1, states)
-    if kind in e.FUNCTIONS:
+    if kind in FUNCTIONS:
         return Expression(kind, (one,))
     if kind == "whole":
         return one ** rng.choice((2, 3, -1, 5))

@@ -10,8 +10,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.engine.codegen.compiler import compile_formula
+from stickslip.engine.codegen.recurrences import Recurrences
+from stickslip.engine.codegen.taylor_series import ORDER, FormulaWriter
+from stickslip.engine.codegen.uncompiled import MATHS
 from stickslip.engine.enclosure.formula import bound_at_slips, bound_friction, formulas_of
+from stickslip.engine.series import sine
+from stickslip.engine.series.called import FLOATS
 from stickslip.friction.formula import expression as e
+from stickslip.friction.formula import functions as elementary
 from stickslip.friction.formula.expression import Expression
 
 
@@ -55,7 +61,35 @@ def pointer(array: np.ndarray) -> Any:
 
 
 def compiled(formula: Formula, reference: float) -> tuple[Any, np.ndarray]:
-    functions = compile_formula(e.as_expression(formula(e, e.SLIP, e.RATE)), (), ())
+    functions = compile_formula(e.as_expression(formula(elementary, e.SLIP, e.RATE)), (), ())
     constants, none = np.zeros(functions.size), np.zeros(1)
     functions.fill(none, reference, constants)
     return functions, constants
+
+
+def series(formula: Expression, x_ref: float, slip: list[float], rate: list[float] | None = None) -> tuple[list[float], float]:
+    """Return the Taylor coefficients of a formula along given series of slip (difference from x_ref) and slip rate.
+
+    Without a slip rate it is the derivative of the slip. The second result is the difference of the formula from its value at x_ref
+    and rate 0. Both come from the generated text.
+    """
+    writer = Recurrences(formula, ())
+    names: dict[str, Any] = {**vars(MATHS), **FLOATS, **vars(sine), "x_ref": x_ref, "c": [0.0] * writer.size}
+    rate = rate or [k * x for k, x in enumerate([*slip, 0.0])][1:]
+    names |= {"dx": slip[0], "p": [], "fused": lambda a, b, c: a * b + c} | {f"s_{k}": rate[k] for k in range(ORDER + 1)}
+    lines = [f"c[{writer.index[node]}] = {writer.reference_value(node)}" for node in writer.nodes] + writer.order_zero()
+    lines += writer.before_orders("1.0", "0.0")
+    for k in range(1, ORDER + 1):
+        names[f"x_{k}"] = slip[k]
+        lines += [*writer.order(k), *writer.weights(k)]
+    exec("\n".join(lines), names)
+    coefficients = [names[str(writer.coefficient(formula, k))] for k in range(ORDER + 1)]
+    return coefficients, names[str(writer.difference(formula))]
+
+
+def written_slopes(formula: Expression, x_ref: float, dx: float, rate: float) -> tuple[float, float]:
+    """Return the derivatives of a formula by slip rate (s/m) and slip (1/m) from the generated text."""
+    writer, out = FormulaWriter(formula, ()), [0.0] * 3
+    names: dict[str, Any] = {**vars(MATHS), **FLOATS, **vars(sine), "x_ref": x_ref, "c": [0.0] * writer.size}
+    exec("\n".join([*writer.prepare(), *writer.value()]), names | {"dx": dx, "s": rate, "p": [], "out": out})
+    return out[1], out[2]

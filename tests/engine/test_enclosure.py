@@ -11,19 +11,9 @@ import pytest
 
 from stickslip.engine.enclosure import intervals as iv
 from stickslip.foundation.errors import InputError
-from stickslip.friction.formula.expression import (
-    FUNCTIONS,
-    OPERATIONS,
-    RATE,
-    SLIP,
-    STATE,
-    Expression,
-    Parameter,
-    as_expression,
-    evaluate,
-    exp,
-    nodes_of,
-)
+from stickslip.friction.formula.expression import RATE, SLIP, STATE, Expression, Parameter, as_expression, nodes_of
+from stickslip.friction.formula.functions import evaluate, exp
+from stickslip.friction.formula.operations import FUNCTIONS, OPERATIONS
 from tests.engine.formulas import enclose
 
 mpmath = pytest.importorskip("mpmath")

@@ -12,13 +12,12 @@ from numba import njit
 from scipy.integrate import solve_ivp
 
 import stickslip as ss
-from stickslip.engine.codegen.recurrences import Recurrences
 from stickslip.engine.codegen.taylor_series import ORDER
-from stickslip.engine.series import differences
 from stickslip.engine.series.sine import sine, versine
-from stickslip.friction.formula.expression import COMPOSED, RATE, SLIP, Expression, expm1, log1p
+from stickslip.friction.formula.expression import RATE, SLIP
+from stickslip.friction.formula.functions import COMPOSED, expm1, log1p
 from stickslip.friction.formula.parse import parse
-from tests.engine.formulas import enclose
+from tests.engine.formulas import enclose, series
 
 ROUNDINGS = 5
 """Of numbers up to 2: what the libraries' functions and a product or two make."""
@@ -53,31 +52,9 @@ def _versine(e: float) -> float:
     return versine(e)
 
 
-HELPERS = {name: getattr(differences, name) for name in dir(differences) if name.endswith(("_difference", "_value", "_pull"))}
-MATHS = {name: getattr(math, name) for name in ("exp", "expm1", "log", "log1p", "sqrt", "sin", "cos", "tanh", "asinh")}
 EXACT = {"expm1": mpmath.expm1, "log1p": mpmath.log1p}
 ARGUMENTS = [(-60.0, 1.0), (-3.0, 1.0), (-0.4, 1.0), (0.0, 1e-18), (0.0, 1.0), (1e-9, 1e-3), (2.0, 1.0), (40.0, 1.0)]
 """Values of the argument at the reference point, and how far the path leads from there."""
-
-
-def series(formula: Expression, x_ref: float, slip: list[float], rate: list[float] | None = None) -> tuple[list[float], float]:
-    """Return the Taylor coefficients of a formula along given series of slip (difference from x_ref) and slip rate.
-
-    Without a slip rate it is the derivative of the slip. The second result is the difference of the formula from its value at x_ref
-    and rate 0. Both come from the generated text.
-    """
-    writer = Recurrences(formula, ())
-    names: dict[str, Any] = MATHS | HELPERS | {"sine": sine, "versine": versine, "x_ref": x_ref, "c": [0.0] * writer.size}
-    rate = rate or [k * x for k, x in enumerate([*slip, 0.0])][1:]
-    names |= {"dx": slip[0], "p": [], "fused": lambda a, b, c: a * b + c} | {f"s_{k}": rate[k] for k in range(ORDER + 1)}
-    lines = [f"c[{writer.index[node]}] = {writer.reference_value(node)}" for node in writer.nodes] + writer.order_zero()
-    lines += writer.before_orders("1.0", "0.0")
-    for k in range(1, ORDER + 1):
-        names[f"x_{k}"] = slip[k]
-        lines += [*writer.order(k), *writer.weights(k)]
-    exec("\n".join(lines), names)
-    coefficients = [names[str(writer.coefficient(formula, k))] for k in range(ORDER + 1)]
-    return coefficients, names[str(writer.difference(formula))]
 
 
 def path(start: float, size: float, seed: int) -> list[float]:

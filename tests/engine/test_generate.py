@@ -18,6 +18,7 @@ from stickslip.engine.codegen.taylor_series import SIGNATURES, FormulaWriter
 from stickslip.engine.state.layout import TERMS
 from stickslip.engine_input import prepare
 from stickslip.friction.formula import expression as e
+from stickslip.friction.formula import functions
 from tests.engine.formulas import FORMULAS, JET, VALUE, compiled, pointer
 
 
@@ -120,7 +121,7 @@ def test_motion_jet_solves_the_equation_of_motion(name: str, bend: float) -> Non
 
 
 def test_a_law_compiles_once() -> None:
-    tree = e.as_expression(FORMULAS["sin"](e, e.SLIP, e.RATE))
+    tree = e.as_expression(FORMULAS["sin"](functions, e.SLIP, e.RATE))
     assert compile_formula(tree, (), ()) is compile_formula(tree, (), ())
 
 

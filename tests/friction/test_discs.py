@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import mpmath
@@ -10,6 +11,7 @@ import pytest
 
 from stickslip.friction.formula import discs
 from stickslip.friction.formula.discs import on_discs
+from stickslip.friction.formula.operations import OPERATIONS
 from stickslip.friction.formula.text import to_text
 from tests.engine.balls import DIGITS, EXACT, LEAVES, Drawn, distances, drawn_disc, drawn_formula, exact_distance, values_of
 
@@ -83,15 +85,15 @@ def test_no_value_is_nearer_to_zero_than_the_lower_bound() -> None:
             assert (values >= found.least * (1.0 - 1e-9))[np.isfinite(values)].all(), to_text(one.formula)
 
 
-@pytest.mark.parametrize("rule", sorted(discs._RULES))
+@pytest.mark.parametrize("rule", sorted(OPERATIONS))
 def test_a_rule_whose_radius_is_too_small_by_a_tenth_is_noticed(rule: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of each operation, in some random formula."""
-    true = discs._RULES[rule]
+    true = OPERATIONS[rule]
 
     def wrong(*arguments: discs.Disc) -> discs.Disc:
-        found = true(*arguments)
+        found = true.disc(*arguments)
         return found._replace(radius=0.9 * np.asarray(found.radius))
 
-    monkeypatch.setitem(discs._RULES, rule, wrong)
+    monkeypatch.setitem(OPERATIONS, rule, replace(true, disc=wrong))
     radii = ((one, float(evaluated(one, one.disc.radius).radius)) for one in map(drawn, range(MANY)))
     assert any(share(one, radius) > 1.0 + 1e-12 for one, radius in radii if radius < NOTHING)

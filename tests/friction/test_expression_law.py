@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 import stickslip as ss
 from stickslip import InputError
 from stickslip.friction import FromExpression, HyperbolicRate
-from stickslip.friction.formula.expression import FUNCTIONS, OPERATIONS, RATE, SLIP, Expression, Parameter, as_expression
+from stickslip.friction.formula.expression import RATE, SLIP, Expression, Parameter, as_expression
+from stickslip.friction.formula.operations import FUNCTIONS, OPERATIONS
 from stickslip.friction.formula.parse import parse
 from stickslip.friction.formula.text import to_text
 
@@ -48,7 +49,7 @@ def test_an_expression_is_the_built_in_law_to_the_last_digit() -> None:
     ],
 )
 def test_an_expression_is_read_with_its_value(text: str, u: float, v: float, value: float) -> None:
-    from stickslip.friction.formula.expression import evaluate
+    from stickslip.friction.formula.functions import evaluate
 
     assert float(evaluate(parse(text, ()), {}, np.float64(u), np.float64(v))) == pytest.approx(value, rel=1e-15)
 

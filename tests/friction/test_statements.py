@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 import stickslip as ss
 from stickslip.foundation.quantities import quantity
 from stickslip.friction import LAWS, FrictionLaw
-from stickslip.friction.formula.expression import exp
+from stickslip.friction.formula.functions import exp
 from stickslip.friction.statements import check_statements
 from stickslip.scenarios.scenario import read_scenario
 from stickslip.scenarios.templates import template

@@ -16,7 +16,8 @@ from stickslip.bodies import as_slab
 from stickslip.foundation.brief_repr import brief_repr
 from stickslip.friction import FrictionLaw
 from stickslip.friction.formula.differences import difference
-from stickslip.friction.formula.expression import Expression, evaluate
+from stickslip.friction.formula.expression import Expression
+from stickslip.friction.formula.functions import evaluate
 from stickslip.problem.problem import Problem
 
 _LOADS = 2.0

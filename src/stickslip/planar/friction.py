@@ -12,28 +12,20 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from stickslip.friction.formula.denominators import LARGEST_EXPONENT, harmless_overflows
+from stickslip.friction.formula.denominators import limited
 from stickslip.friction.formula.expression import STATES, VARIABLES, Expression, nodes_of
+from stickslip.friction.formula.operations import LARGEST_EXPONENT, operation_of
 from stickslip.friction.law import FrictionLaw
 from stickslip.planar.nodes import NodeValues
 
 ITERATIONS = 80
 """Largest number of steps of Newton's method or bisection; from the slip rate of the step before it takes two to four."""
-OPERATIONS = {
-    "add": jnp.add,
-    "sub": jnp.subtract,
-    "mul": jnp.multiply,
-    "div": jnp.divide,
-    "pow": jnp.power,
-    **{name: getattr(jnp, name) for name in ("sin", "cos", "exp", "log", "sqrt", "tanh", "arcsinh", "expm1", "log1p")},
-}
-"""Function of each operation of a formula."""
 
 
 def evaluated(tree: Expression, numbers: dict[str, Any], variables: tuple[Any, ...]) -> Any:
     """Return a formula from the parameters by name and the variables: slip (m), slip rate (m/s), states."""
     found: dict[Expression, Any] = dict.fromkeys(STATES, 0.0) | dict(zip(VARIABLES, variables, strict=False))
-    limited = {node for node in harmless_overflows(nodes_of(tree)) if node.operation in ("exp", "expm1")}
+    cut = limited(tree)
     for node in nodes_of(tree):
         if node.operation == "parameter":
             found[node] = numbers[node.name]
@@ -41,9 +33,9 @@ def evaluated(tree: Expression, numbers: dict[str, Any], variables: tuple[Any, .
             found[node] = node.value
         elif node.arguments:
             given = [found[argument] for argument in node.arguments]
-            if node in limited:
+            if node in cut:
                 given = [jnp.minimum(given[0], LARGEST_EXPONENT)]
-            found[node] = OPERATIONS[node.operation](*given)
+            found[node] = getattr(jnp, operation_of(node).on_arrays.__name__)(*given)
     return found[tree]
 
 

@@ -18,6 +18,7 @@ from numba.extending import intrinsic, lower_builtin, lower_cast, models, regist
 
 from stickslip.engine.codegen.numba_privates import AbstractTemplate, infer_global, signature
 from stickslip.engine.codegen.uncompiled import UNCOMPILED
+from stickslip.friction.formula.operations import OPERATIONS
 
 WIDTH = 8
 """Number of lanes, which fills the widest registers of today's processors; narrower processors use several registers."""
@@ -146,8 +147,9 @@ _define(math.sqrt, 1, _of_the_processor("sqrt"))
 _define(np.floor, 1, _of_the_processor("floor"))
 _define(min, 2, _smaller)
 _define(max, 2, _larger)
-for _function in (math.sin, math.cos, math.exp, math.expm1, math.log, math.log1p, math.tanh, math.asinh):
-    _define(_function, 1, _each_by_itself(_function))
+for _function in (getattr(math, _one.in_math) for _one in OPERATIONS.values() if not _one.sign):
+    if _function is not math.sqrt:
+        _define(_function, 1, _each_by_itself(_function))
 
 
 @intrinsic

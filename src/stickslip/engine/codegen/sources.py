@@ -19,8 +19,8 @@ from stickslip.foundation.atomic_write import write_atomically
 
 NOT_COMPILED = ("cache.py", "private_folder.py", "sealed_cache.py", "sources.py")
 """Files in the compiled folders that decide where machine code is kept, but not what it does; the hash leaves them out."""
-COMPILED_FOLDERS = ("engine", "batch/kernels")
-"""Folders of the package whose files all enter the hash, because they hold compiled functions."""
+COMPILED_FOLDERS = ("engine", "batch/kernels", "friction/formula/operations")
+"""Folders of the package whose files all enter the hash, because they hold compiled functions or write them."""
 COMPILED_FILES = (
     "engine_input/branch_table.py",
     "foundation/constants.py",

@@ -28,6 +28,7 @@ from collections.abc import Callable
 from stickslip.engine.codegen.balls import Balls
 from stickslip.engine.codegen.recurrences import Recurrences
 from stickslip.friction.formula.expression import RATE, SLIP, STATES, Expression
+from stickslip.friction.formula.operations import OPERATIONS, operation_of
 
 ORDER = 18
 """Order of the Taylor series, and therefore degree of the polynomials in the history."""
@@ -49,16 +50,16 @@ SIGNATURES = {
 
 MODULE_HEADER = '''"""Generated for the friction formula {formula}; do not edit."""
 
-from math import asinh, cos, exp, expm1, log, log1p, sin, sqrt, tanh
+from math import {maths}
 
 from numba import types
 
 from stickslip.engine.codegen.kernels import compiled_cfunc
-from stickslip.engine.series.{functions} import arcsinh_difference, exp_difference, exp_value
-from stickslip.engine.series.{functions} import log_difference, power_difference, power_value, tanh_difference
 from stickslip.engine.codegen.simd import fused
+from stickslip.engine.series.called import {called} as _called
 from stickslip.engine.series.sine import sine, versine
 {lanes}
+{functions}
 _options = dict(nopython=True, error_model="numpy", fastmath={{"contract"}})
 
 '''
@@ -238,13 +239,12 @@ class FormulaWriter(Recurrences):
 
         Formulas that differ in their constants alone so have the same functions, but for `prepare`, and share their machine code.
         """
-        signs = {"add": "+", "sub": "-", "mul": "*", "div": "/", "pow": "**"}
         if not self.varies[node]:
             return self.reference(node)
-        if node.operation in signs:
-            left, right = (self.describe(argument) for argument in node.arguments)
-            return f"({left} {signs[node.operation]} {right})"
-        return f"{node.operation}({self.describe(node.arguments[0])})" if node.arguments else node.name or node.operation
+        if not node.arguments:
+            return node.name or node.operation
+        sign, given = operation_of(node).sign, [self.describe(argument) for argument in node.arguments]
+        return f"({given[0]} {sign} {given[1]})" if sign else f"{node.operation}({given[0]})"
 
     def module(self, part: str) -> str:
         """Return the source text of a module that has one of the functions."""
@@ -254,9 +254,15 @@ class FormulaWriter(Recurrences):
             f"@compiled_cfunc(types.void({kinds}), **_options)\ndef {part}({', '.join(name.strip('[]') for name in arguments)}):\n"
         )
         body = "".join(f"    {line}\n" for line in self.statements(part))
-        functions, lanes = ("lane_differences", SIDE) if part in SIDE_BY_SIDE else ("differences", ONE)
-        lanes = RADII_HEADER + lanes if part in RADII else lanes
-        header = MODULE_HEADER.format(formula=self.describe(self.formula), functions=functions, lanes=lanes)
+        called, lanes = ("LANES", SIDE) if part in SIDE_BY_SIDE else ("FLOATS", ONE)
+        names = dict.fromkeys(function.__name__ for one in OPERATIONS.values() for function in one.called)
+        header = MODULE_HEADER.format(
+            formula=self.describe(self.formula),
+            maths=", ".join(one.in_math for one in OPERATIONS.values() if not one.sign),
+            called=called,
+            functions="\n".join(f"{name} = _called[{name!r}]" for name in names),
+            lanes=RADII_HEADER + lanes if part in RADII else lanes,
+        )
         return header + head + body
 
 

@@ -19,6 +19,8 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.friction.formula.operations import OPERATIONS
+
 UNCOMPILED = os.environ.get("STICKSLIP_UNCOMPILED", "") not in ("", "0")
 """True if kernels run as plain Python."""
 
@@ -101,9 +103,9 @@ def call(handle: int, *arguments: Any) -> Any:
 
 
 MATHS = SimpleNamespace(
-    **{name: getattr(np, name) for name in ("sqrt", "log", "exp", "expm1", "log1p", "sin", "cos", "tanh", "sinh", "cosh", "hypot")},
-    **{name: getattr(np, name) for name in ("isnan", "isfinite", "isinf", "floor", "ceil", "copysign", "fabs")},
-    asinh=np.arcsinh,
+    **{one.in_math: one.value for one in OPERATIONS.values() if not one.sign},
+    **{name: getattr(np, name) for name in ("sinh", "cosh", "hypot", "floor", "ceil", "copysign", "fabs")},
+    **{name: getattr(np, name) for name in ("isnan", "isfinite", "isinf")},
     inf=np.float64(np.inf),
     nan=np.float64(np.nan),
     pi=np.float64(np.pi),

@@ -22,7 +22,8 @@ from stickslip.friction.custom.typed_state import STATES, read_evolution, split,
 from stickslip.friction.families import RemembersSlip
 from stickslip.friction.formula.bounds import bounds
 from stickslip.friction.formula.dimensions import check_dimensions
-from stickslip.friction.formula.expression import SLIP, Expression, depends_on, evaluate, nodes_of
+from stickslip.friction.formula.expression import SLIP, Expression, depends_on, nodes_of
+from stickslip.friction.formula.functions import evaluate
 from stickslip.friction.formula.parse import LARGEST_EXPONENT, LONGEST, RESERVED, parse
 
 MOST_PARAMETERS = 50

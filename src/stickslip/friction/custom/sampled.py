@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.foundation.errors import InputError
-from stickslip.friction.formula.expression import RATE, SLIP, Expression, Parameter, depends_on, evaluate_nodes
+from stickslip.friction.formula.expression import RATE, SLIP, Expression, Parameter, depends_on
+from stickslip.friction.formula.functions import evaluate_nodes
 from stickslip.friction.formula.text import quoted
 
 LARGEST_RATE = 10.0

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 from stickslip.friction.formula.expression import Expression, nodes_of
+from stickslip.friction.formula.operations import operation_of
 
-LARGEST_EXPONENT = 150.0
-"""Largest exponent, dimensionless, of an exp whose overflow is harmless; larger ones are replaced by it. A quotient over e^150 is
-negligible, exp(-e^150) is zero, and the square and the series of e^150 are still finite."""
-SQUASH = ("exp", "expm1", "tanh")
-"""Functions that no longer change when their argument grows beyond e^150, or are infinite there already."""
+
+@lru_cache(maxsize=256)
+def limited(tree: Expression) -> frozenset[Expression]:
+    """Return the exponentials of a formula whose exponents are limited to LARGEST_EXPONENT."""
+    return frozenset(node for node in harmless_overflows(nodes_of(tree)) if node.arguments and operation_of(node).overflows)
 
 
 def harmless_overflows(nodes: Sequence[Expression]) -> set[Expression]:
-    """Return the nodes whose every way into the formula leads to a denominator or into one of SQUASH.
+    """Return the nodes whose every way into the formula leads to a denominator, or to an argument such as that of exp.
 
     The way may lead through sums, differences, roots and products, but not through a product with a factor that may be as small as
     the node is large, nor over a divisor that may be as large.
@@ -23,24 +25,26 @@ def harmless_overflows(nodes: Sequence[Expression]) -> set[Expression]:
     for node in nodes:
         for argument in node.arguments:
             parents[argument].append(node)
-    below: set[Expression] = set()
+    found: set[Expression] = set()
     for node in reversed(nodes):
         ways = parents[node]
-        if ways and all(
-            parent.operation in SQUASH
-            or (parent.operation == "div" and parent.arguments[1] == node and (parent.arguments[0] != node))
-            or (parent in below and _keeps_large(node, parent))
-            for parent in ways
-        ):
-            below.add(node)
-    return below
+        if ways and all(_settles(node, parent) or (parent in found and _keeps_large(node, parent)) for parent in ways):
+            found.add(node)
+    return found
+
+
+def _places(node: Expression, parent: Expression) -> set[int]:
+    return {place for place, argument in enumerate(parent.arguments) if argument == node}
+
+
+def _settles(node: Expression, parent: Expression) -> bool:
+    """Return True if the parent of a node no longer changes where the node is large."""
+    return _places(node, parent) <= set(operation_of(parent).settles)
 
 
 def _keeps_large(node: Expression, parent: Expression) -> bool:
     """Return True if the parent of a node is large wherever the node is."""
-    if parent.operation not in ("mul", "div"):
-        return parent.operation in ("add", "sub", "sqrt")
-    if parent.operation == "div" and parent.arguments[0] != node:
-        return False
-    others = [argument for argument in parent.arguments if argument != node]
-    return all(part.operation not in ("exp", "expm1", "pow", "div") for other in others for part in nodes_of(other))
+    operation = operation_of(parent)
+    others = [part for argument in parent.arguments if argument != node for part in nodes_of(argument) if part.arguments]
+    small = operation.scales and any(operation_of(part).shrinks for part in others)
+    return bool(_places(node, parent) & set(operation.carries)) and not small

@@ -1,14 +1,13 @@
 """Represent the formula of a friction law as an expression tree.
 
-A law states its formula once, with ordinary operators and the functions of this module. Called with numbers or arrays, the
+A law states its formula once, with ordinary operators and the functions of `functions`. Called with numbers or arrays, the
 formula returns a number or an array. Called with the symbols `SLIP`, `RATE`, `STATE` and `Parameter`, it returns an `Expression`
 tree, from which `stickslip.engine.codegen.taylor_series` generates compiled code. No text is ever evaluated as Python here.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, NoReturn
@@ -17,8 +16,6 @@ import numpy as np
 
 from stickslip.foundation.errors import InputError
 
-FUNCTIONS = ("sin", "cos", "exp", "log", "sqrt", "tanh", "arcsinh", "expm1", "log1p")
-"""Elementary functions that a formula may use; each has a compiled Taylor recurrence."""
 LARGEST_SIZE = 10_000
 """Largest number of nodes of a formula, shared parts counted at each use: n repeated squarings make 2^n of them."""
 LARGEST_POWER = 100
@@ -105,22 +102,16 @@ class Expression:
 
     def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **options: Any) -> Expression:
         """Return an expression for a numpy function of expressions, such as np.exp(v) in a user's function."""
-        rule = _UFUNCS.get(ufunc.__name__)
-        if ufunc.__name__ in _KINKED:
-            raise InputError(f"formula: np.{ufunc.__name__} has a kink or a jump and cannot be traced; {_instead(*inputs)}")
-        if rule is None or method != "__call__" or options:
-            allowed = ", ".join(f"np.{name}" for name in (*FUNCTIONS, *COMPOSED))
-            raise InputError(f"formula: np.{ufunc.__name__} cannot be traced; allowed: {allowed} and + - * / **")
-        if any(isinstance(value, np.ndarray) and value.ndim for value in inputs):
-            raise InputError("formula: an array cannot be traced: u and v are single numbers")
-        return as_expression(rule(*inputs))
+        from stickslip.friction.formula.functions import of_numpy  # which is made of expressions
+
+        return of_numpy(ufunc.__name__, method, inputs, options)
 
     def __array_function__(self, function: Callable[..., Any], types: Any, arguments: Any, options: Any) -> NoReturn:
         """Refuse functions of numpy that are not elementary, such as np.where and np.interp."""
-        raise InputError(f"formula: np.{function.__name__} cannot be traced; {_instead(self, *arguments)}")
+        raise InputError(f"formula: np.{function.__name__} cannot be traced; {instead(self, *arguments)}")
 
     def _refuse(self, *others: Any) -> NoReturn:
-        raise InputError(f"formula: a branch on the value of u, v or a parameter cannot be traced; {_instead(self, *others)}")
+        raise InputError(f"formula: a branch on the value of u, v or a parameter cannot be traced; {instead(self, *others)}")
 
     __bool__ = __lt__ = __le__ = __gt__ = __ge__ = _refuse
 
@@ -158,7 +149,7 @@ class Magnitude:
     __pow__ = __rpow__ = __neg__ = __pos__ = __abs__ = __float__ = __int__ = __array_ufunc__ = __array_function__ = refuse
 
 
-def _instead(*parts: Any) -> str:
+def instead(*parts: Any) -> str:
     """Return the laws to use in place of a formula with a kink, by the variable on which the given parts of it depend."""
     nodes = [part for part in parts if isinstance(part, Expression)]
     found = {variable.name for variable in (SLIP, RATE) for node in nodes if depends_on(node, variable)}
@@ -199,91 +190,6 @@ def as_expression(value: Any) -> Expression:
     if isinstance(value, Magnitude):
         value.refuse()
     return value if isinstance(value, Expression) else Expression("constant", value=float(value))
-
-
-def _function(name: str) -> Callable[[Any], Any]:
-    numeric = getattr(np, name)
-
-    def apply(argument: Any) -> Any:
-        if isinstance(argument, Expression):
-            return Expression(name, (argument,))
-        with np.errstate(over="ignore"):  # an exponential may overflow on the way to a finite value, as in exp(-exp(z))
-            return numeric(argument)
-
-    apply.__name__ = name
-    apply.__doc__ = f"{name} of a number, an array or an expression."
-    return apply
-
-
-sin, cos, exp, log, sqrt, tanh, arcsinh, expm1, log1p = (_function(name) for name in FUNCTIONS)
-
-
-COMPOSED: dict[str, Callable[..., Any]] = {
-    "square": lambda x: x * x,
-    "reciprocal": lambda x: 1.0 / x,
-    "log10": lambda x: log(x) / math.log(10.0),
-    "log2": lambda x: log(x) / math.log(2.0),
-    "exp2": lambda x: exp(x * math.log(2.0)),
-    "tan": lambda x: sin(x) / cos(x),
-    "cosh": lambda x: 0.5 * (exp(x) + exp(-x)),
-    "sinh": lambda x: 0.5 * (expm1(x) - expm1(-x)),
-}
-"""Further functions, named as in numpy, that are expressed by those in FUNCTIONS."""
-
-OPERATIONS: dict[str, Callable[..., Any]] = {
-    "add": lambda a, b: a + b,
-    "sub": lambda a, b: a - b,
-    "mul": lambda a, b: a * b,
-    "div": lambda a, b: a / b,
-    "pow": lambda a, b: a**b,
-} | dict(zip(FUNCTIONS, (sin, cos, exp, log, sqrt, tanh, arcsinh, expm1, log1p), strict=True))
-"""Function of each operation, for numbers and for expressions."""
-_KINKED = ("maximum", "minimum", "fmax", "fmin", "sign", "heaviside", "floor", "ceil", "rint", "trunc", "fabs", "copysign")
-"""Functions of numpy with kinks or jumps, which have no Taylor series there."""
-
-_UFUNCS: dict[str, Callable[..., Any]] = (
-    {name: OPERATIONS[name] for name in FUNCTIONS}
-    | COMPOSED
-    | {
-        "add": lambda a, b: as_expression(a) + b,
-        "subtract": lambda a, b: as_expression(a) - b,
-        "multiply": lambda a, b: as_expression(a) * b,
-        "divide": lambda a, b: as_expression(a) / b,
-        "power": lambda a, b: as_expression(a) ** b,
-        "float_power": lambda a, b: as_expression(a) ** b,
-        "negative": lambda a: -a,
-        "positive": lambda a: a,
-        "absolute": abs,
-    }
-)
-"""Rules that turn numpy functions of expressions into expressions, by the name of the numpy function."""
-
-
-def evaluate(tree: Expression, numbers: Mapping[str, Any], u: Any, v: Any, *states: Any) -> Any:
-    """Return the formula at slip u (m), slip rate v (m/s) and states, with the parameters' values by name.
-
-    Numbers, arrays and expressions are allowed. States that are left out are 0.
-    """
-    return evaluate_nodes(tree, numbers, u, v, *states)[tree]
-
-
-def evaluate_nodes(tree: Expression, numbers: Mapping[str, Any], u: Any, v: Any, *states: Any) -> dict[Expression, Any]:
-    """Return the values of all nodes of the formula, with the arguments of `evaluate`."""
-    given = dict.fromkeys(STATES, 0.0) | dict(zip(VARIABLES, (u, v, *states), strict=False))
-    found: dict[Expression, Any] = {variable: _of_numpy(value) for variable, value in given.items()}
-    for node in nodes_of(tree):
-        if node.operation == "parameter":
-            found[node] = _of_numpy(numbers[node.name])
-        elif node.operation == "constant":
-            found[node] = np.float64(node.value)
-        elif node.arguments:
-            found[node] = OPERATIONS[node.operation](*(found[argument] for argument in node.arguments))
-    return found
-
-
-def _of_numpy(number: Any) -> Any:
-    """Return a number of Python as one of numpy, which gives inf or nan on division by zero, where Python's raises an error."""
-    return np.float64(number) if isinstance(number, int | float) else number
 
 
 def depends_on(node: Expression, variable: Expression) -> bool:

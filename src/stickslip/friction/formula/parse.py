@@ -15,9 +15,6 @@ from functools import lru_cache
 
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.friction.formula.expression import (
-    COMPOSED,
-    FUNCTIONS,
-    OPERATIONS,
     RATE,
     SLIP,
     STATES,
@@ -28,6 +25,8 @@ from stickslip.friction.formula.expression import (
     depends_on,
     nodes_of,
 )
+from stickslip.friction.formula.functions import COMPOSED
+from stickslip.friction.formula.operations import FUNCTIONS, OPERATIONS
 
 LONGEST = 1000
 """Largest number of characters in an expression, which is untrusted."""

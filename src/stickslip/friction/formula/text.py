@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from stickslip.friction.formula.expression import Expression
+from stickslip.friction.formula.operations import operation_of
+from stickslip.friction.formula.operations.powers import POW
 
-_SIGNS = {"add": " + ", "sub": " - ", "mul": " * ", "div": " / ", "pow": "**"}
-_RANK = {"add": 1, "sub": 1, "mul": 2, "div": 2, "pow": 4}
-"""Precedence of the operators: a larger number binds more tightly."""
 _MINUS, _ATOM = 3, 5
 """Precedence of a leading minus, between product and power, and of a part that never needs parentheses."""
 
@@ -23,23 +22,23 @@ def quoted(node: Expression) -> str:
 
 
 def _written(node: Expression) -> tuple[str, int]:
-    if node.operation not in _SIGNS:
-        if node.arguments:
-            return f"{node.operation}({to_text(node.arguments[0])})", _ATOM
-        if node.operation == "constant":
-            number = repr(float(node.value)).removesuffix(".0")
-            return number, _ATOM if number[0] != "-" else _MINUS
+    if node.operation == "constant":
+        number = repr(float(node.value)).removesuffix(".0")
+        return number, _ATOM if number[0] != "-" else _MINUS
+    if not node.arguments:
         return node.name, _ATOM
+    operation = operation_of(node)
+    if not operation.sign:
+        return f"{node.operation}({to_text(node.arguments[0])})", _ATOM
     base, count = _power_of(node)
     if count > 1:
-        return f"{_enclosed(base, _ATOM)}**{count}", _RANK["pow"]
+        return f"{_enclosed(base, _ATOM)}**{count}", POW.rank
     left, right = node.arguments
-    rank = _RANK[node.operation]
     if node.operation == "sub" and left == Expression("constant", value=0.0) and right.operation != "constant":
         return f"-{_enclosed(right, _MINUS)}", _MINUS
-    if node.operation == "pow":
-        return f"{_enclosed(left, _ATOM)}**{_enclosed(right, _ATOM)}", rank
-    return f"{_enclosed(left, rank)}{_SIGNS[node.operation]}{_enclosed(right, rank + 1)}", rank
+    if operation is POW:
+        return f"{_enclosed(left, _ATOM)}**{_enclosed(right, _ATOM)}", POW.rank
+    return f"{_enclosed(left, operation.rank)} {operation.sign} {_enclosed(right, operation.rank + 1)}", operation.rank
 
 
 def _power_of(node: Expression) -> tuple[Expression, int]:

@@ -13,7 +13,7 @@ from typing_extensions import override
 from stickslip.foundation.conversion import Number
 from stickslip.foundation.quantities import quantity
 from stickslip.friction.contract import Formula, StateVariable
-from stickslip.friction.formula.expression import exp
+from stickslip.friction.formula.functions import exp
 from stickslip.friction.law import FrictionLaw
 
 BENDING = StateVariable("z", "m", "mean bending z of the bristles, positive in forward slip", reverses=True)

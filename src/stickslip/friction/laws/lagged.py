@@ -13,7 +13,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Part, declare, quantity
 from stickslip.friction.composite import MAKES_LAWS, LawOfParts, PartNumbers
 from stickslip.friction.contract import Formula, StateVariable
-from stickslip.friction.formula.expression import arcsinh
+from stickslip.friction.formula.functions import arcsinh
 from stickslip.friction.law import FrictionLaw
 
 

@@ -14,7 +14,7 @@ from stickslip.foundation.conversion import Number, Numbers
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, Series, declare, quantity
 from stickslip.friction.families import Stribeck, hull
-from stickslip.friction.formula.expression import exp, log
+from stickslip.friction.formula.functions import exp, log
 from stickslip.friction.law import FrictionLaw
 from stickslip.friction.piecewise import PiecewiseLinearLaw
 

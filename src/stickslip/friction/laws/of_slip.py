@@ -12,7 +12,7 @@ from stickslip.foundation.conversion import Number, Numbers
 from stickslip.foundation.quantities import Quantity, Series, declare, quantity
 from stickslip.friction.contract import Formula
 from stickslip.friction.families import RemembersSlip, SlipWeakening, hull
-from stickslip.friction.formula.expression import exp, sin
+from stickslip.friction.formula.functions import exp, sin
 from stickslip.friction.piecewise import PiecewiseLinearLaw
 
 

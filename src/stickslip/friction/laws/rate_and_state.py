@@ -12,7 +12,7 @@ from stickslip.foundation.conversion import Number
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Choice, declare, quantity
 from stickslip.friction.contract import Formula, StateVariable
-from stickslip.friction.formula.expression import arcsinh, exp, log
+from stickslip.friction.formula.functions import arcsinh, exp, log
 from stickslip.friction.law import FrictionLaw
 
 LARGEST_EXPONENT = 600.0

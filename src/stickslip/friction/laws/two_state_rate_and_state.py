@@ -10,7 +10,7 @@ from typing_extensions import override
 from stickslip.foundation.conversion import Number
 from stickslip.foundation.quantities import Choice, declare, quantity
 from stickslip.friction.contract import Formula, StateVariable
-from stickslip.friction.formula.expression import arcsinh, exp, log
+from stickslip.friction.formula.functions import arcsinh, exp, log
 from stickslip.friction.laws.rate_and_state import SLOWEST, DirectEffect
 
 

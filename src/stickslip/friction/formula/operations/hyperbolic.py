@@ -1,0 +1,146 @@
+"""The hyperbolic tangent, and the inverse of the hyperbolic sine."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from stickslip.friction.formula.expression import Expression, nodes_of
+from stickslip.friction.formula.operations.operation import Change, Levels, Operation, Radius, Recurrence, Series
+from stickslip.friction.formula.operations.sets import OF_FUNCTION, Disc, growing
+
+
+def _tanh_step(start: Any, end: Any, a: Change) -> Any:
+    """Return the change of tanh, with tanh x - tanh y = sinh(x - y) / (cosh x cosh y) near the reference.
+
+    Farther from it a subtraction loses no digits.
+    """
+    # with the same sign, both may differ from 1 or -1 only in their last digits: subtraction would cancel even for large steps
+    one_side = (np.abs(a.step) < 300.0) & (np.multiply(a.reference, a.value) > 0.0)
+    near = (np.abs(a.step) < 1.0) | one_side
+    across = np.cosh(a.value)  # where it overflows, 1 / cosh is 0
+    return np.where(near, np.sinh(np.where(near, a.step, 0.0)) / np.cosh(a.reference) / across, end - start)
+
+
+def _tanh_slope(end: Any, a: Change) -> Any:
+    across = np.cosh(a.value)
+    return a.slope / across / across
+
+
+def _tanh_disc(a: Disc) -> Disc:
+    """Return tanh, by |tanh z - tanh m| = |sinh(z - m)| / (|cosh z| |cosh m|), or by 2 / |exp(2 z) + 1| far from zero.
+
+    |cosh z| is at least |cosh m| (cos r - |tanh m| sinh r) for a radius r below pi / 2, and at least sinh of the real part.
+    """
+    centre, size = np.tanh(a.centre), np.cosh(a.centre)
+    apart, sinh = np.abs(a.centre) - a.radius, np.sinh(a.radius)
+    least = np.maximum(size * (np.cos(np.minimum(a.radius, 2.0)) - np.abs(centre) * sinh), np.sinh(apart))
+    near = np.where(least > 0.0, sinh / (least * size), np.inf)
+    far = np.where(apart > 0.0, 4.0 / np.expm1(2.0 * apart), np.inf)
+    return Disc(centre, np.fmin(near, far), 0.0).rounded(OF_FUNCTION)
+
+
+def tanh_difference(value: float, now: float, step: float) -> float:
+    """Return tanh(now) minus its value at the reference."""
+    if abs(step) < 1.0 or (abs(step) < 300.0 and now * value > 0.0):  # on one side both may be 1 but for their last digits
+        return math.sinh(step) / math.cosh(now - step) / math.cosh(now)
+    return math.tanh(now) - value
+
+
+def _tanh_order_zero(writer: Levels, node: Expression) -> dict[str, str]:
+    a = node.arguments[0]
+    return writer.level(node, f"tanh_difference({writer.reference(node)}, {writer.coefficient(a, 0)}, {writer.difference(a)})")
+
+
+def _tanh_derivative(writer: Levels, node: Expression, da: str) -> str:
+    value = writer.coefficient(node, 0)
+    return f"(1.0 - {value} * {value}) * {da}"
+
+
+def _tanh_coefficient(writer: Series, node: Expression, k: int) -> str:
+    a, square = node.arguments[0], node * node
+    slope = f"(1.0 - {writer.coefficient(square, 0)})"
+    return f"{writer.coefficient(a, k) or '0.0'} * {slope} - (0.0{writer.weighted(a, square, k)})"
+
+
+TANH = Operation(
+    name="tanh",
+    value=np.tanh,
+    step=_tanh_step,
+    slope=_tanh_slope,
+    bounds=growing(np.tanh),
+    disc=_tanh_disc,
+    order_zero=_tanh_order_zero,
+    derivative=_tanh_derivative,
+    recurrence=Recurrence(_tanh_coefficient, weights_of_argument=True),
+    ball=Radius(lambda balls, node: f"tanh_radius({balls.size(node.arguments[0])}, {balls.radius(node.arguments[0])})"),
+    companions=lambda node: (node, node * node),
+    zeros=(0,),
+    settles=(0,),
+    called=(tanh_difference,),
+)
+
+
+def root_of(node: Expression) -> Expression:
+    """Return the node sqrt(1 + a^2) for a node arcsinh(a)."""
+    return Expression("sqrt", (1.0 + node.arguments[0] * node.arguments[0],))
+
+
+def _arcsinh_step(start: Any, end: Any, a: Change) -> Any:
+    """Return the change of arcsinh, by arcsinh x - arcsinh y = arcsinh((x - y) (1 + p q - x y) / (p + q)).
+
+    Here p = sqrt(1 + x^2) and q = sqrt(1 + y^2). Where the squares would overflow, subtract.
+    """
+    x, y = a.value, a.reference
+    with np.errstate(invalid="ignore"):
+        p, q, xy = np.hypot(1.0, x), np.hypot(1.0, y), x * y
+        gap = np.where(xy > 0.0, (1.0 + x * x + y * y) / (p * q + np.abs(xy)), p * q - xy)
+        step = np.arcsinh(a.step * (1.0 + gap) / (p + q))
+    return np.where(np.maximum(p, q) > 1e150, end - start, step)
+
+
+def arcsinh_difference(reference: float, now: float, step: float) -> float:
+    """Return arcsinh(now) - arcsinh(reference) = arcsinh(step (1 + p q - x y) / (p + q)), p^2 = 1 + x^2, q^2 = 1 + y^2."""
+    if abs(reference) > 1e150 or abs(now) > 1e150:  # their squares are no numbers
+        return math.asinh(now) - math.asinh(reference)
+    p, q, xy = math.sqrt(1.0 + now * now), math.sqrt(1.0 + reference * reference), now * reference
+    gap = (1.0 + now * now + reference * reference) / (p * q + xy) if xy > 0.0 else p * q - xy
+    return math.asinh(step * (1.0 + gap) / (p + q))
+
+
+def _arcsinh_order_zero(writer: Levels, node: Expression) -> dict[str, str]:
+    a = node.arguments[0]
+    return writer.level(node, f"arcsinh_difference({writer.reference(a)}, {writer.coefficient(a, 0)}, {writer.difference(a)})")
+
+
+def _arcsinh_derivative(writer: Levels, node: Expression, da: str) -> str:
+    a0 = writer.coefficient(node.arguments[0], 0)
+    return f"{da} / (sqrt(1.0 + {a0} * {a0}) if abs({a0}) < 1e150 else abs({a0}))"
+
+
+def _arcsinh_coefficient(writer: Series, node: Expression, k: int) -> str:
+    ak = writer.coefficient(node.arguments[0], k) or "0.0"
+    return f"({ak} - (0.0{writer.weighted(node, root_of(node), k)})) * i{writer.index[node]}"
+
+
+ARCSINH = Operation(
+    name="arcsinh",
+    math_name="asinh",
+    value=np.arcsinh,
+    step=_arcsinh_step,
+    slope=lambda end, a: a.slope / np.hypot(1.0, a.value),
+    bounds=growing(np.arcsinh),
+    # its derivative 1 / sqrt((z - i)(z + i)) has its singularities at i and -i
+    disc=lambda a: Disc(np.arcsinh(a.centre), -np.log1p(-a.radius / np.hypot(1.0, a.centre)), 0.0).rounded(OF_FUNCTION),
+    order_zero=_arcsinh_order_zero,
+    derivative=_arcsinh_derivative,
+    recurrence=Recurrence(
+        _arcsinh_coefficient, divisor=lambda writer, node: f"{writer.coefficient(root_of(node), 0)}", weights_of_result=True
+    ),
+    ball=Radius(lambda balls, node: f"arcsinh_radius({balls.size(node.arguments[0])}, {balls.radius(node.arguments[0])})"),
+    companions=lambda node: (*nodes_of(root_of(node)), node),
+    zeros=(0,),
+    called=(arcsinh_difference,),
+)

@@ -1,0 +1,183 @@
+"""Powers with an exponent that does not vary, and square roots."""
+
+from __future__ import annotations
+
+import math
+import operator
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from stickslip.foundation.errors import InputError
+from stickslip.friction.formula.expression import Expression
+from stickslip.friction.formula.operations.operation import (
+    Balls,
+    Change,
+    Dimension,
+    Levels,
+    Operation,
+    Radius,
+    Recurrence,
+    Series,
+    oldest_first,
+    sum_of,
+    unit_text,
+    without_zeros,
+)
+from stickslip.friction.formula.operations.sets import EVERYTHING, OF_FUNCTION, Disc, Interval, growing, hull
+
+
+def chained(outer: Any, inner: Any) -> Any:
+    """Return outer * inner, and 0 where inner is 0: without dependence the product is 0 even if the outer slope is infinite."""
+    inner = np.asarray(inner, float)
+    return np.multiply(outer, inner, where=inner != 0.0, out=np.zeros(np.broadcast_shapes(np.shape(outer), inner.shape)))
+
+
+def _raised(base: Dimension, exponent: Fraction) -> Dimension:
+    return without_zeros({name: power * exponent for name, power in base.items()})
+
+
+def _pow_unit(node: Expression, base: Dimension, exponent: Dimension) -> Dimension:
+    if not base and exponent:
+        raise InputError(f"its exponent must be a pure number, but is in {unit_text(exponent)}")
+    if base and node.arguments[1].operation != "constant":
+        raise InputError(f"{unit_text(base)} to a power that is a parameter has no fixed unit; divide it by one first")
+    return _raised(base, Fraction(node.arguments[1].value).limit_denominator(1000)) if base else {}
+
+
+def _pow_step(start: Any, end: Any, a: Change, b: Change) -> Any:
+    near = (np.asarray(a.reference) > 0) & (np.asarray(a.value) > 0)
+    ratio = np.divide(a.step, a.reference, where=near, out=np.zeros(np.broadcast_shapes(near.shape, np.shape(a.step))))
+    return np.where(near, start * np.expm1(b.reference * np.log1p(ratio)), end - start)
+
+
+def _pow_bounds(_: Expression, a: Interval, b: Interval) -> Interval:
+    if a[0] < 0.0 or b[0] != b[1] or (a[0] == 0.0 and b[0] < 0.0):
+        return EVERYTHING
+    return hull(*(float(np.power(np.float64(end), b[0])) for end in a))
+
+
+def _pow_disc(a: Disc, b: Disc) -> Disc:
+    """Return a power whose exponent is a number of the law; a whole one above zero may pass zero."""
+    exponent, size = b.centre, np.abs(a.centre)
+    power = size**exponent
+    radius = power * np.expm1(np.abs(exponent) * a.turned)
+    radius = np.where((exponent == np.rint(exponent)) & (exponent > 0.0), a.most**exponent - power, radius)
+    least = np.minimum(a.least**exponent, a.most**exponent)
+    by = OF_FUNCTION * (1.0 + np.abs(exponent) * (1.0 + np.abs(np.log(np.maximum(size, 1e-300)))))
+    return Disc(a.centre**exponent, radius, 0.0).rounded(by, least)
+
+
+def power_difference(reference: float, now: float, step: float, exponent: float) -> float:
+    """Return now**exponent - reference**exponent."""
+    if abs(step) < 0.5 * reference:
+        return reference**exponent * math.expm1(exponent * math.log1p(step / reference))
+    return now**exponent - reference**exponent
+
+
+def power_value(reference: float, difference: float, base: float, exponent: float) -> float:
+    """Return base**exponent. Far from the reference nothing of it may be left in reference + difference."""
+    return reference + difference if abs(difference) < 0.5 * abs(reference) else base**exponent
+
+
+def _pow_order_zero(writer: Levels, node: Expression) -> dict[str, str]:
+    a, b = node.arguments
+    now, exponent = writer.coefficient(a, 0), writer.reference(b)
+    difference = f"power_difference({writer.reference(a)}, {now}, {writer.difference(a)}, {exponent})"
+    return writer.level(node, difference, f"power_value({writer.reference(node)}, {writer.difference(node)}, {now}, {exponent})")
+
+
+def _pow_derivative(writer: Levels, node: Expression, da: str, _: str | None) -> str:
+    a, b = node.arguments
+    return f"{writer.reference(b)} * {writer.coefficient(node, 0)} / {writer.coefficient(a, 0)} * {da}"
+
+
+def _pow_coefficient(writer: Series, node: Expression, k: int) -> str:
+    a, exponent = node.arguments[0], writer.reference(node.arguments[1])
+    terms = [
+        f"({k - i}.0 * {exponent} - {i}.0) * {x} * {writer.coefficient(node, i)}"
+        for i, j in oldest_first([(j, k - j) for j in range(k)])
+        if (x := writer.coefficient(a, j)) is not None
+    ]
+    return f"({sum_of(terms)}) * ({1.0 / k!r} * i{writer.index[node]})"
+
+
+def _power_radius(balls: Balls, node: Expression, exponent: str) -> str:
+    return f"power_radius({balls.size(node)}, {exponent}, {balls.logarithm(node.arguments[0])})"
+
+
+def _turned(balls: Balls, node: Expression, exponent: str) -> str:
+    return f"{exponent} * {balls.logarithm(node.arguments[0])}"
+
+
+def _exponent_size(balls: Balls, node: Expression) -> str:
+    return f"abs({balls.centre(node.arguments[1])})"
+
+
+POW = Operation(
+    name="pow",
+    sign="**",
+    rank=4,
+    numpy_name="power",
+    value=operator.pow,
+    step=_pow_step,
+    slope=lambda end, a, b: chained(b.reference * np.power(a.value, b.reference - 1.0), a.slope),
+    bounds=_pow_bounds,
+    disc=_pow_disc,
+    unit=_pow_unit,
+    order_zero=_pow_order_zero,
+    derivative=_pow_derivative,
+    recurrence=Recurrence(_pow_coefficient, divisor=lambda writer, node: f"{writer.coefficient(node.arguments[0], 0)}"),
+    ball=Radius(
+        lambda balls, node: _power_radius(balls, node, _exponent_size(balls, node)),
+        logarithm=lambda balls, node, plain: _turned(balls, node, _exponent_size(balls, node)),
+    ),
+    shrinks=True,
+    varies_much=True,
+    called=(
+        power_difference,
+        power_value,
+    ),
+)
+
+
+def _sqrt_step(start: Any, end: Any, a: Change) -> Any:
+    return np.divide(a.step, start + end, where=np.asarray(start + end) > 0, out=np.zeros(np.shape(end)))
+
+
+def _sqrt_disc(a: Disc) -> Disc:
+    centre = np.sqrt(a.centre)
+    return Disc(centre, centre * np.expm1(0.5 * a.turned), 0.0).rounded(OF_FUNCTION, np.sqrt(a.least))
+
+
+def _sqrt_order_zero(writer: Levels, node: Expression) -> dict[str, str]:
+    a = node.arguments[0]
+    now = writer.coefficient(a, 0)
+    return writer.level(node, f"{writer.difference(a)} / (sqrt({now}) + {writer.reference(node)})", f"sqrt({now})")
+
+
+def _sqrt_coefficient(writer: Series, node: Expression, k: int) -> str:
+    ak = writer.coefficient(node.arguments[0], k) or "0.0"
+    return f"({ak} - ({writer.products(node, node, k, range(1, k))})) * i{writer.index[node]}"
+
+
+SQRT = Operation(
+    name="sqrt",
+    value=np.sqrt,
+    step=_sqrt_step,
+    slope=lambda end, a: chained(np.divide(0.5, end), a.slope),
+    bounds=growing(np.sqrt, least=0.0),
+    disc=_sqrt_disc,
+    unit=lambda node, a: _raised(a, Fraction(1, 2)),
+    order_zero=_sqrt_order_zero,
+    derivative=lambda writer, node, da: f"{da} / (2.0 * {writer.coefficient(node, 0)})",
+    recurrence=Recurrence(_sqrt_coefficient, divisor=lambda writer, node: f"2.0 * {writer.coefficient(node, 0)}"),
+    ball=Radius(
+        lambda balls, node: _power_radius(balls, node, "0.5"),
+        least=lambda balls, node, plain: f"sqrt({balls.least(node.arguments[0])})",
+        logarithm=lambda balls, node, plain: _turned(balls, node, "0.5"),
+    ),
+    zeros=(0,),
+    carries=(0,),
+)

@@ -1,0 +1,73 @@
+"""Sets of values, on which operations have rules: intervals of numbers, and discs of complex numbers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+Interval = tuple[float, float]
+"""Lower and upper end of an interval."""
+EVERYTHING: Interval = (-math.inf, math.inf)
+"""The interval of a value about which nothing is known."""
+
+
+def hull(*ends: float) -> Interval:
+    """Return the smallest interval with these numbers; everything if one of them is not a number."""
+    return EVERYTHING if any(math.isnan(end) for end in ends) else (min(ends), max(ends))
+
+
+def times(x: float, y: float) -> float:
+    """Return x y, with 0 times infinity equal to 0: an infinite end of an interval is never reached."""
+    return 0.0 if x == 0.0 or y == 0.0 else float(np.float64(x) * np.float64(y))
+
+
+def growing(function: Callable[[Any], Any], least: float = -math.inf) -> Callable[..., Interval]:
+    """Return the rule that bounds a function which grows with its argument, from the least argument that it has on."""
+
+    def bounds(_: Any, a: Interval) -> Interval:
+        return hull(*(float(function(np.maximum(np.float64(end), least))) for end in a))
+
+    return bounds
+
+
+ROUNDING = 1.2e-16
+"""Relative rounding (1) of a sum, product or quotient."""
+OF_FUNCTION = 8.0 * ROUNDING
+"""The same of a function of the mathematical library: four units in the last place."""
+
+
+class Disc(NamedTuple):
+    """A disc: its real centre, its radius, and a lower bound of the magnitude of all values that the node may have in it.
+
+    An exponential varies by orders of magnitude on a disc and stays away from zero, which a radius alone cannot express.
+    """
+
+    centre: Any
+    radius: Any
+    least: Any
+
+    @classmethod
+    def of(cls, centre: ArrayLike, radius: ArrayLike = 0.0) -> Disc:
+        """Return the disc with a given centre and radius."""
+        middle = np.asarray(centre, float)
+        return cls(middle, radius, np.maximum(np.abs(middle) - radius, 0.0))
+
+    @property
+    def most(self) -> Any:
+        """The largest magnitude in the disc."""
+        return np.abs(self.centre) + self.radius
+
+    @property
+    def turned(self) -> Any:
+        """An upper bound of |log(value / centre)|, which is not a number where the disc reaches zero."""
+        return -np.log1p(-self.radius / np.abs(self.centre))
+
+    def rounded(self, by: ArrayLike = ROUNDING, least: ArrayLike = 0.0) -> Disc:
+        """Return the disc with a radius that contains a relative rounding of its centre, and with a better lower bound."""
+        size = np.abs(self.centre)
+        radius = self.radius + by * size
+        return Disc(self.centre, radius, np.fmax(np.fmax(size - radius, np.multiply(least, 1.0 - 1e-14)), 0.0))

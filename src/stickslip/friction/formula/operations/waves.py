@@ -1,0 +1,91 @@
+"""Sine and cosine, each of which needs the other."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from stickslip.friction.formula.expression import Expression
+from stickslip.friction.formula.operations.operation import Balls, Change, Levels, Operation, Radius, Recurrence, Scaled, Series
+from stickslip.friction.formula.operations.sets import OF_FUNCTION, Disc
+
+
+def both(node: Expression) -> tuple[Expression, Expression]:
+    """Return sine and cosine of a node's argument."""
+    return Expression("sin", node.arguments), Expression("cos", node.arguments)
+
+
+def _sin_step(start: Any, end: Any, a: Change) -> Any:
+    half = np.sin(0.5 * a.step)
+    return 2.0 * half * (np.cos(a.reference) * np.cos(0.5 * a.step) - np.sin(a.reference) * half)
+
+
+def _cos_step(start: Any, end: Any, a: Change) -> Any:
+    half = np.sin(0.5 * a.step)
+    return -2.0 * half * (np.sin(a.reference) * np.cos(0.5 * a.step) + np.cos(a.reference) * half)
+
+
+def _disc(own: Any, other: Any, radius: Any) -> Disc:
+    """Return sin or cos, from both at the centre: sin(m + d) = sin m cos d + cos m sin d."""
+    moved = np.abs(own) * 2.0 * np.sinh(0.5 * radius) ** 2 + np.abs(other) * np.sinh(radius)
+    return Disc(own, moved, 0.0).rounded(OF_FUNCTION)
+
+
+def _order_zero(writer: Levels, node: Expression, is_sine: bool) -> dict[str, str]:
+    a, j = node.arguments[0], writer.index[node.arguments[0]]
+    sine, cosine = (writer.reference(one) for one in both(node))
+    turned = {f"g{j}": f"sine({writer.difference(a)})", f"h{j}": f"versine({writer.difference(a)})"}
+    step = f"{cosine} * g{j} - {sine} * h{j}" if is_sine else f"-{sine} * g{j} - {cosine} * h{j}"
+    return turned | writer.level(node, step)
+
+
+def _radius(balls: Balls, node: Expression, is_sine: bool) -> str:
+    sine, cosine = (balls.size(one) for one in both(node))
+    own, other = (sine, cosine) if is_sine else (cosine, sine)
+    return f"sine_radius({own}, {other}, {balls.radius(node.arguments[0])})"
+
+
+def _scaled(partner: int, minus: str) -> Scaled:
+    return Scaled(
+        where=lambda writer, node: writer.is_direct(node.arguments[0]),
+        total=lambda writer, node, k: writer.directly_weighted(node.arguments[0], both(node)[partner], k),
+        factor=lambda writer, node, k: f"{minus}{1.0 / k!r}",
+    )
+
+
+def _grown(writer: Series, node: Expression, partner: int, k: int) -> str:
+    """Write the k-th coefficient of a function whose derivative is its partner."""
+    a, other = node.arguments[0], both(node)[partner]
+    return f"{writer.coefficient(a, k) or '0.0'} * {writer.coefficient(other, 0)}{writer.weighted(a, other, k)}"
+
+
+SIN = Operation(
+    name="sin",
+    value=np.sin,
+    step=_sin_step,
+    slope=lambda end, a: np.cos(a.value) * a.slope,
+    bounds=lambda node, a: (-1.0, 1.0),
+    disc=lambda a: _disc(np.sin(a.centre), np.cos(a.centre), a.radius),
+    order_zero=lambda writer, node: _order_zero(writer, node, is_sine=True),
+    derivative=lambda writer, node, da: f"{writer.coefficient(both(node)[1], 0)} * {da}",
+    recurrence=Recurrence(lambda writer, node, k: _grown(writer, node, 1, k), weights_of_argument=True, scaled=_scaled(1, "")),
+    ball=Radius(lambda balls, node: _radius(balls, node, is_sine=True)),
+    companions=both,
+    zeros=(0,),
+)
+COS = Operation(
+    name="cos",
+    value=np.cos,
+    step=_cos_step,
+    slope=lambda end, a: -np.sin(a.value) * a.slope,
+    bounds=lambda node, a: (-1.0, 1.0),
+    disc=lambda a: _disc(np.cos(a.centre), np.sin(a.centre), a.radius),
+    order_zero=lambda writer, node: _order_zero(writer, node, is_sine=False),
+    derivative=lambda writer, node, da: f"-{writer.coefficient(both(node)[0], 0)} * {da}",
+    recurrence=Recurrence(
+        lambda writer, node, k: f"-({_grown(writer, node, 0, k)})", weights_of_argument=True, scaled=_scaled(0, "-")
+    ),
+    ball=Radius(lambda balls, node: _radius(balls, node, is_sine=False)),
+    companions=both,
+)
