@@ -20,7 +20,7 @@ from stickslip.engine.series import ball_radii
 from stickslip.engine.series.polynomial import MOST_CROSSINGS, NONE, crossings, evaluate, first_descent, maximum, restrict
 from stickslip.engine.state.layout import TERMS, Ball
 from stickslip.friction.formula import expression as e
-from stickslip.friction.formula import functions
+from stickslip.friction.formula import functions as elementary
 from stickslip.friction.formula.text import to_text
 from tests.engine.balls import Disc, Drawn, drawn_disc, drawn_formula, exact_distance, farthest, radius_of
 from tests.engine.formulas import FORMULAS, JET, compiled
@@ -159,20 +159,20 @@ def test_a_rule_that_is_too_small_by_a_tenth_is_noticed(rule: str) -> None:
 
 CENTRES = (-1e3, -300.0, -30.0, -3.0, -0.1, 0.0, 0.01, 1.0, 10.0, 100.0, 1e3)
 NESTED = {
-    "logistic": lambda u: 1.0 / (1.0 + functions.exp(u)),
-    "product of logistics": lambda u: 1.0 / ((1.0 + functions.exp(u)) * (2.0 + functions.exp(-u))),
-    "hyperbolic secant": lambda u: 1.0 / (0.5 * (functions.exp(u) + functions.exp(-u))),
-    "logarithm of cosh": lambda u: functions.log(0.5 * (functions.exp(u) + functions.exp(-u))),
-    "root of a logistic": lambda u: functions.sqrt(1.0 / (1.0 + functions.exp(u))),
-    "power of a logistic": lambda u: e.Expression("pow", (1.0 + functions.exp(-u), e.as_expression(-7.3))),
-    "tanh": functions.tanh,
-    "arcsinh": functions.arcsinh,
-    "logarithm": lambda u: functions.log(1e-6 + u * u),
-    "root": lambda u: functions.sqrt(1e-6 + u * u),
+    "logistic": lambda u: 1.0 / (1.0 + elementary.exp(u)),
+    "product of logistics": lambda u: 1.0 / ((1.0 + elementary.exp(u)) * (2.0 + elementary.exp(-u))),
+    "hyperbolic secant": lambda u: 1.0 / (0.5 * (elementary.exp(u) + elementary.exp(-u))),
+    "logarithm of cosh": lambda u: elementary.log(0.5 * (elementary.exp(u) + elementary.exp(-u))),
+    "root of a logistic": lambda u: elementary.sqrt(1.0 / (1.0 + elementary.exp(u))),
+    "power of a logistic": lambda u: e.Expression("pow", (1.0 + elementary.exp(-u), e.as_expression(-7.3))),
+    "tanh": elementary.tanh,
+    "arcsinh": elementary.arcsinh,
+    "logarithm": lambda u: elementary.log(1e-6 + u * u),
+    "root": lambda u: elementary.sqrt(1e-6 + u * u),
     "power": lambda u: e.Expression("pow", (1.0 + u * u, e.as_expression(0.3))),
-    "bump": lambda u: functions.exp(-(u * u)),
-    "Gompertz": lambda u: functions.exp(-functions.exp(-u)),
-    "sine of an exponential": lambda u: functions.sin(functions.exp(-u * u)),
+    "bump": lambda u: elementary.exp(-(u * u)),
+    "Gompertz": lambda u: elementary.exp(-elementary.exp(-u)),
+    "sine of an exponential": lambda u: elementary.sin(elementary.exp(-u * u)),
 }
 
 
@@ -223,7 +223,7 @@ def test_radii_after_a_series_are_the_same_in_lanes_and_floats_and_hold(name: st
     three = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 3)
     three(functions.address("radii_in_lanes"))(pointers[0], pointers[3], pointers[4])
     double = ctypes.POINTER(ctypes.c_double)
-    tree = e.as_expression(FORMULAS[name](functions, e.SLIP, e.RATE))
+    tree = e.as_expression(FORMULAS[name](elementary, e.SLIP, e.RATE))
     for n in range(WIDTH):
         own = [np.ascontiguousarray(block[:, n]) for block in (c, k, load, np.zeros_like(series), ball)]
         own[4][FRICTION] = 0.0
@@ -236,6 +236,6 @@ def test_radii_after_a_series_are_the_same_in_lanes_and_floats_and_hold(name: st
 
 def test_an_exponential_that_underflows_at_the_centre_still_has_a_ball() -> None:
     """exp(-746) is zero in doubles, and the disc reaches exp(-53)."""
-    formula, disc = 1e30 * functions.exp(e.SLIP), Disc((-746.0, 0.0, 0.0), (693.0, 0.0, 0.0))
+    formula, disc = 1e30 * elementary.exp(e.SLIP), Disc((-746.0, 0.0, 0.0), (693.0, 0.0, 0.0))
     reached = exact_distance(formula, disc, np.array([-53.0, 0.0, 0.0]))
     assert radius_of(formula, disc) >= reached

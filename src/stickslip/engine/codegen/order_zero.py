@@ -106,7 +106,8 @@ class OrderZero:
         Beyond LARGEST_EXPONENT it is a constant with a series of zeros: the derivatives of its argument may be beyond numbers, and
         those of the quotient or exp that it leads to are zero to rounding.
         """
-        return self.largest_exponent(node) == LARGEST_EXPONENT and not self._is_straight(node.arguments[0])
+        overflows = bool(node.arguments) and operation_of(node).overflows
+        return overflows and self.largest_exponent(node) == LARGEST_EXPONENT and not self._is_straight(node.arguments[0])
 
     def _is_straight(self, node: Expression) -> bool:
         """Return True if a node is linear in the variables."""

@@ -214,8 +214,8 @@ class Operation:
     """The text of its derivative: from the writer, the node, and the name of each argument's derivative, None for one that is 0."""
     recurrence: Recurrence
     ball: Radius
-    called: tuple[Callable[..., float], ...] = ()
-    """Functions of numbers that its lines call by their names, of which the arithmetic and `math` suffice; the engine compiles them."""
+    called: tuple[Callable[..., Any], ...] = ()
+    """Functions of numbers that its lines call by their names, in plain Python with `math`; the engine compiles them."""
     unit: Callable[..., Dimension] = pure
     """The dimension of its value: from the node and the dimension of each argument. Raises InputError with what is wrong."""
     sign: str = ""

@@ -69,14 +69,14 @@ def _pow_disc(a: Disc, b: Disc) -> Disc:
     return Disc(a.centre**exponent, radius, 0.0).rounded(by, least)
 
 
-def power_difference(reference: float, now: float, step: float, exponent: float) -> float:
+def power_difference(reference: float, now: float, step: float, exponent: float) -> Any:
     """Return now**exponent - reference**exponent."""
     if abs(step) < 0.5 * reference:
         return reference**exponent * math.expm1(exponent * math.log1p(step / reference))
     return now**exponent - reference**exponent
 
 
-def power_value(reference: float, difference: float, base: float, exponent: float) -> float:
+def power_value(reference: float, difference: float, base: float, exponent: float) -> Any:
     """Return base**exponent. Far from the reference nothing of it may be left in reference + difference."""
     return reference + difference if abs(difference) < 0.5 * abs(reference) else base**exponent
 
