@@ -350,3 +350,11 @@ def test_what_a_law_with_a_state_lacks_is_said(text: str, evolution: str, said: 
         FromExpression(text, values, evolution=evolution, state_unit="s" if "log(theta" in text else "")
     assert said in str(error.value)
     assert str(error.value).count("FromExpression: ") == 1
+
+
+def test_functions_of_formulas_are_found_where_laws_of_users_have_imported_them_from() -> None:
+    from stickslip.friction.formula import expression, functions
+
+    assert all(getattr(expression, name) is getattr(functions, name) for name in FUNCTIONS)
+    with pytest.raises(AttributeError, match="has no attribute 'cot'"):
+        expression.cot  # noqa: B018

@@ -110,7 +110,7 @@ class LawContract(Declared, ABC):
     def formula(law: Any, u: Any, v: Any) -> Any:
         """Return mu from the parameters (attributes of `law`), slip u (m) and slip rate v >= 0 (m/s).
 
-        u and v are numbers, arrays or expressions: use only ordinary operators and the functions of `formula.expression`.
+        u and v are numbers, arrays or expressions: use only ordinary operators and the functions of `formula.functions`.
         """
         raise TypeError(f"{type(law).__name__} has neither a formula nor pieces")
 

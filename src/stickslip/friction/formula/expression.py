@@ -210,3 +210,12 @@ def nodes_of(root: Expression) -> tuple[Expression, ...]:
 
     visit(root)
     return tuple(found)
+
+
+def __getattr__(name: str) -> Any:
+    """Return a function such as `exp`, which laws of users have imported from here."""
+    from stickslip.friction.formula import functions, operations
+
+    if name in operations.FUNCTIONS:
+        return getattr(functions, name)
+    raise AttributeError(f"module {__name__} has no attribute {name!r}")

@@ -1,7 +1,7 @@
 """Read a formula tree from text, by a whitelist over Python's syntax tree; no text is ever evaluated.
 
 Allowed are numbers, the variables u (slip, m) and v (slip rate, m/s), pi, declared parameters, + - * /, ** with an exponent that
-does not depend on u or v, and the functions in FUNCTIONS and COMPOSED of `stickslip.friction.formula.expression`. Length, depth and
+does not depend on u or v, and the functions in FUNCTIONS and COMPOSED of `stickslip.friction.formula.functions`. Length, depth and
 size are limited because the text is untrusted.
 """
 
