@@ -1,4 +1,4 @@
-"""`python -m benchmarks.wrong_series`: does the proof of a run notice that the engine is wrong?
+"""`python -m benchmarks.wrong_series [--few] ["block, implicit" ...]`: does the proof of a run notice that the engine is wrong?
 
 Each coefficient of each node's series, each value of a node in the law's compiled formula, and each coefficient of a finished step
 is made wrong by a factor 1 + e. What the run then really misses of the contact equation, in 40 digits at 200 places of its steps,
@@ -25,7 +25,7 @@ from stickslip.engine.codegen.taylor_series import FormulaWriter
 from stickslip.engine_input import prepare
 from stickslip.friction.formula import expression as e
 from stickslip.friction.formula.operations import FUNCTIONS, OPERATIONS
-from stickslip.observables.proof import proven
+from stickslip.observables.proof import Motion, _unsure_duration, proven
 from stickslip.trajectory.history import History, Positions
 
 DIGITS, PLACES = 40, 200
@@ -201,8 +201,12 @@ _exactly: dict[bytes, float] = {}
 
 
 def worst_of(run: ss.Solution) -> float:
-    """The largest miss of a run (Pa or N): in DIGITS digits where double precision does not decide whether it exceeds the bound."""
-    history, found = run.history, missed_in_doubles(run.history)
+    """The largest miss of a run (Pa or N): in DIGITS digits where double precision does not decide whether it exceeds the bound.
+
+    Pieces that the run says are not proven, those next to a slip rate of zero, are left out.
+    """
+    history = run.history
+    found = np.where(np.isnan(history.store.residual), 0.0, missed_in_doubles(history))
     n = int(np.argmax(found))
     if found[n] < 0.9 * run.proven.residual:
         return float(found[n])
@@ -210,6 +214,16 @@ def worst_of(run: ss.Solution) -> float:
     if key not in _exactly:
         _exactly[key] = missed(history, n)
     return _exactly[key]
+
+
+def of_duration(history: History) -> float:
+    """What inertia may miss (Pa or N) because the duration of a step is the difference of two times, which are rounded.
+
+    The bound holds for a duration within this rounding, `missed` for the one that the history has.
+    """
+    moving = np.flatnonzero(history.store.mode != 0)
+    thrust = np.abs(Motion.of(history, moving).thrust).sum(axis=1)
+    return float(np.max(_unsure_duration(history, moving)[:, 0] * thrust, initial=0.0))
 
 
 @dataclass
@@ -228,7 +242,7 @@ class Tally:
 
     def count(self, run: ss.Solution, right: float) -> None:
         """Count a run, given the bound of the right engine."""
-        real, said = worst_of(run), run.proven.residual
+        real, said = worst_of(run), run.proven.residual + of_duration(run.history)
         self.tightest = max(self.tightest, real / said)
         self.hidden += real > said
         self.noticed += said > 10.0 * right
@@ -245,11 +259,13 @@ def bent(history: History, n: int, k: int, by: float) -> History:
 
 def main() -> int:
     """Print the table."""
-    few = "--few" in sys.argv
+    few, only = "--few" in sys.argv, [name for name in sys.argv[1:] if name != "--few"]
     hidden = 0
     print("| problem | wrong | runs | noticed | no effect | ended | more missed than said | tightest |")  # noqa: T201
     print("| --- | --- | --- | --- | --- | --- | --- | --- |")  # noqa: T201
     for name, (problem, duration) in cases().items():
+        if only and name not in only:
+            continue
         right = ss.simulate(problem, duration)
         bound = right.proven.residual
         with wrong_engine() as make_wrong:
@@ -271,7 +287,8 @@ def main() -> int:
                 wrong = bent(right.history, int(steps[len(steps) // 2]), k, size)
                 tally = tallies.setdefault("a finished step", Tally())
                 counted["a finished step"] += 1
-                real, said = missed(wrong, int(steps[len(steps) // 2])), proven(wrong).residual
+                real = missed(wrong, int(steps[len(steps) // 2]))
+                said = proven(wrong).residual + of_duration(wrong)
                 tally.hidden, tally.tightest = tally.hidden + (real > said), max(tally.tightest, real / said)
                 tally.noticed, tally.unharmed = tally.noticed + (said > 10.0 * bound), tally.unharmed + (real <= bound)
         for what, tally in tallies.items():
