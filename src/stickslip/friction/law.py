@@ -15,6 +15,7 @@ from typing_extensions import override
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, Series, fields_of, quantities_of
 from stickslip.friction.contract import Formula, LawContract, one_argument
+from stickslip.friction.formula.differences import value_and_slopes
 from stickslip.friction.formula.expression import RATE, SLIP, STATES, Expression, Parameter, as_expression, depends_on
 from stickslip.friction.statements import check_statements, is_known, stated_range
 
@@ -131,16 +132,20 @@ class FrictionLaw(LawContract):
         """Return the static friction coefficient at slip u (m): the largest |traction| / normal stress while v = 0."""
         return self.coefficient(u) + self.static_excess
 
-    def slopes(self, slip: float, rate: float = 0.0) -> tuple[float, float]:
-        """Return the derivatives of mu with respect to slip (1/m) and slip rate (s/m).
+    def slopes(self, u: ArrayLike, v: ArrayLike = 0.0, w: ArrayLike = 0.0) -> NDArray[np.float64]:
+        """Return the derivatives of mu by slip (1/m), by slip rate (s/m) and by each state, with one more axis in front.
 
-        `slip` (m) is the slip as the law counts it; `rate` (m/s) is not negative, and 0 means the limit 0+. The derivatives come
-        from a complex step, which loses no digits because the formula of a law is analytic.
+        The arguments are those of `coefficient`. The derivatives are exact but for rounding.
         """
-        piece, step = int(self.piece_at(slip, rate)), 1e-100
-        by_slip = np.imag(self.piece_coefficient(piece, np.complex128(complex(slip, step)), np.complex128(rate)))
-        by_rate = np.imag(self.piece_coefficient(piece, np.complex128(slip), np.complex128(complex(rate, step))))
-        return float(by_slip) / step, float(by_rate) / step
+        given = (np.asarray(one, float) for one in (u, v, *self.each_state(w)))
+        slip, rate, *states = np.broadcast_arrays(*given)
+        piece, trees = self.piece_at(slip, rate), self.trees()
+        found = np.empty((2 + len(states), *slip.shape))
+        for i in np.unique(piece).tolist():
+            chosen = piece == i
+            there = (one[chosen] for one in (slip, rate, *states))
+            found[:, chosen] = value_and_slopes(trees[i], self.numbers(i), *there)[1]
+        return found
 
     # ---- properties -----------------------------------------------------------------------------------------------------------
 

@@ -7,7 +7,6 @@ user's class are compared with its formula when the law is made.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -32,8 +31,6 @@ MULTIPLES = np.array([0.01, 0.03, 0.1, 0.2, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 
 """Multiples of the scales of a law at which it is sampled."""
 SLACK = 1e-7
 """Relative difference between a statement and the formula that counts as rounding."""
-TINY_STEP = 1e-100
-"""Imaginary step (m/s) of the slip rate, by which an analytic formula gives its slope without cancellation."""
 
 
 def is_known(law: FrictionLaw) -> bool:
@@ -108,7 +105,7 @@ class _Samples:
         rows = [one[:, None] for one in states]
         with np.errstate(all="ignore"):
             value = law.coefficient(slip[:, None], rate, one_argument(rows))
-            slope = _slopes(law, slip[:, None], rate, rows) if len(rate) > SOME else np.zeros((0, 1))
+            slope = law.slopes(slip[:, None], rate, one_argument(rows))[1] if len(rate) > SOME else np.zeros((0, 1))
         return cls(slip, states, rate, value, slope, law)
 
     def place(self, row: int, column: int) -> str:
@@ -157,23 +154,12 @@ class _Samples:
                 rate = law.rate_at_slope(float(slope[k]))
                 if rate is None:
                     return
-                there = _slopes(law, self.slip[:1], np.maximum(_number(rate), 0.0), [one[:1] for one in self.states])[0]
+                there = law.slopes(self.slip[0], max(_number(rate), 0.0), one_argument([one[0] for one in self.states]))[1]
             if not abs(there - slope[k]) <= 1e-5 * size:
                 raise InputError(
                     f"{type(law).__name__}: rate_at_slope({slope[k]:.6g}) must be the slip rate with this dmu/dv,"
                     f" {self.rate[k]:.6g} m/s, got {_number(rate):.6g} m/s; return None without a closed form"
                 )
-
-
-def _slopes(law: FrictionLaw, slip: Floats, rate: Floats | float, states: Sequence[Floats]) -> Floats:
-    """Return dmu/dv (s/m), by a complex step of the formula of the piece at each place."""
-    slip, rate, *states = np.broadcast_arrays(slip, np.asarray(rate, float), *states)
-    piece, slope = law.piece_at(slip, rate), np.empty(slip.shape)
-    for i in np.unique(piece).tolist():
-        chosen = piece == i
-        there = law.piece_coefficient(i, slip[chosen], rate[chosen] + 1j * TINY_STEP, one_argument([one[chosen] for one in states]))
-        slope[chosen] = np.imag(there) / TINY_STEP
-    return slope
 
 
 def rises_with_rate(law: FrictionLaw) -> bool:
@@ -186,7 +172,7 @@ def rises_with_rate(law: FrictionLaw) -> bool:
         seen = np.reshape(steady, (many, -1))[:, some]
         states = list(np.transpose([law.inner_states(one.tolist()) for one in seen.T]))
     with np.errstate(all="ignore"):
-        slopes = _slopes(law, np.zeros((1, 1)), rates, [one[:, None] for one in states])
+        slopes = law.slopes(0.0, rates, one_argument([one[:, None] for one in states]))[1]
     return not bool(np.any(slopes < 0.0))
 
 

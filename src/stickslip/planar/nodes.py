@@ -15,6 +15,7 @@ from stickslip.foundation.errors import InputError, full_name
 from stickslip.foundation.quantities import Quantity, in_units, quantities_of
 from stickslip.friction import FrictionLaw
 from stickslip.friction.contract import one_argument
+from stickslip.friction.formula.functions import evaluate
 from stickslip.problem.parameters import law_with, with_numbers
 from stickslip.problem.problem import LOAD, Problem
 
@@ -80,18 +81,11 @@ class NodeValues:
         """
         fall = self.slopes(reach)[0]
         for problem in (one for one in self.problems if one.friction.states):
-            law, slip, tiny = problem.friction, problem.law_slip, 1e-100
-            rate, states, numbers = (
-                abs(problem.strength + problem.excess) / impedance,
-                problem.states,
-                SimpleNamespace(**law.numbers(0)),
-            )
-            evolutions = law.state_rate if isinstance(law.state_rate, tuple) else (law.state_rate,)
-            along_slip = [
-                w + 1j * tiny * evolve(numbers, slip, rate, *states) / rate for w, evolve in zip(states, evolutions, strict=True)
-            ]
-            found = law.piece_coefficient(0, np.complex128(slip), np.complex128(rate), one_argument(along_slip))
-            fall = max(fall, -problem.normal * float(np.imag(found)) / tiny)
+            law, slip, states = problem.friction, problem.law_slip, problem.states
+            rate = abs(problem.strength + problem.excess) / impedance
+            evolved = [evaluate(tree, law.numbers(0), slip, rate, *states) for tree in law.state_trees()]
+            by_state = law.slopes(slip, rate, one_argument(states))[2:]
+            fall = max(fall, -problem.normal * float(by_state @ evolved) / rate)
         return fall
 
     def is_unique(self, impedance: float, slip: float, rate: float) -> bool:

@@ -66,12 +66,8 @@ def check_rate(problem: Problem) -> None:
 
 def resistance_slope(problem: Problem) -> float:
     """Return how damping v + S mu grows with the slip rate at the start (Pa s/m or N s/m)."""
-    law, rate, tiny = problem.friction, abs(problem.rate), 1e-100
-    piece = int(law.piece_at(problem.law_slip, rate))
-    value = law.piece_coefficient(
-        piece, np.complex128(problem.law_slip), np.complex128(complex(rate, tiny)), one_argument(problem.states)
-    )
-    return problem.body.damping + problem.normal * float(np.imag(value)) / tiny
+    slopes = problem.friction.slopes(problem.law_slip, abs(problem.rate), one_argument(problem.states))
+    return problem.body.damping + problem.normal * float(slopes[1])
 
 
 def written_out(problem: Problem) -> Problem:

@@ -96,7 +96,7 @@ def stability_of(problem: Problem) -> str:
         return _critical_stiffness(problem, law)
     if law.states:
         return ""
-    by_slip, by_rate = law.slopes(problem.law_slip)
+    by_slip, by_rate = law.slopes(problem.law_slip).tolist()
     if not body.has_waves:
         return _block_stability(as_block(body), by_slip, by_rate)
     number = -problem.normal * by_slip / body.stiffness

@@ -170,7 +170,7 @@ def weakening(problem: Problem) -> dict[str, float]:
     The keys are "weakening_slip" and "weakening_rate".
     """
     body = as_slab(problem.body)
-    by_slip, _ = problem.friction.slopes(problem.law_slip)
+    by_slip = float(problem.friction.slopes(problem.law_slip)[0])
     massless = replace(problem, body=replace(body, contact_mass=0.0))
     return {"weakening_slip": -problem.normal * by_slip / body.stiffness, "weakening_rate": 1.0 - margin(massless)}
 

@@ -63,7 +63,7 @@ def _slip_scale(law: FrictionLaw) -> float:
     """Return a slip (m) over which a law changes: that of its first knot, or one over its steepest relative slope at slip 0."""
     if law.knots:
         return abs(law.knots[-1]) or 1.0
-    slope = abs(law.slopes(0.0)[0])
+    slope = abs(float(law.slopes(0.0)[0]))
     return law.variation / slope if slope > 0.0 else 1.0
 
 
