@@ -242,9 +242,10 @@ class Tally:
 
     def count(self, run: ss.Solution, right: float) -> None:
         """Count a run, given the bound of the right engine."""
-        real, said = worst_of(run), run.proven.residual + of_duration(run.history)
-        self.tightest = max(self.tightest, real / said)
-        self.hidden += real > said
+        real, said = worst_of(run), run.proven.residual
+        allowed = said + of_duration(run.history)
+        self.tightest = max(self.tightest, real / allowed)
+        self.hidden += real > allowed
         self.noticed += said > 10.0 * right
         self.unharmed += real <= right
         self.ended += not run.status.ok
@@ -288,8 +289,9 @@ def main() -> int:
                 tally = tallies.setdefault("a finished step", Tally())
                 counted["a finished step"] += 1
                 real = missed(wrong, int(steps[len(steps) // 2]))
-                said = proven(wrong).residual + of_duration(wrong)
-                tally.hidden, tally.tightest = tally.hidden + (real > said), max(tally.tightest, real / said)
+                said = proven(wrong).residual
+                allowed = said + of_duration(wrong)
+                tally.hidden, tally.tightest = tally.hidden + (real > allowed), max(tally.tightest, real / allowed)
                 tally.noticed, tally.unharmed = tally.noticed + (said > 10.0 * bound), tally.unharmed + (real <= bound)
         for what, tally in tallies.items():
             hidden += tally.hidden
