@@ -187,9 +187,9 @@ def from_rest(problem: Problem, found: SteadySlidings, tell: TextProgress = lamb
         while sticks is not None and slides is not None and slides - sticks > FROM_REST_WITHIN * slides:
             middle = math.sqrt(sticks * slides)
             sticks, slides = (middle, slides) if search.at(math.copysign(middle, found.pull_rate)) else (sticks, middle)
-    except InputError:  # a run was too long, or could not be made: what was found before holds
+    except InputError:  # a run did not reach its end: what was found before holds
         pass
-    return FromRest(sticks, slides, len(search.seen), lasts, MOST_PIECES)
+    return FromRest(sticks, slides, len(search.seen), lasts)
 
 
 @dataclass(frozen=True)

@@ -49,9 +49,9 @@ def check(
     the contact slips at once; static stability and growth; steady sliding at
     the pull rate: its slip rate and traction, whether it is stable, and from
     which pull rate on, and up to which rate a contact from rest sticks all the
-    same (a dozen short exact runs; --no-runs skips them); whether the slip rate is unique, the critical values,
-    the folds with what is proven of them, and the jumps; and warnings. Numbers
-    marked with * depend on the selection rule.
+    same (a dozen short exact runs; --no-runs skips them); whether the slip rate
+    is unique, the critical values, the folds with what is proven of them, and
+    the jumps; and warnings. Numbers marked with * depend on the selection rule.
 
     --figure draws the set K: every pair of slip rate and load that solves the
     contact equation. With --map twice it draws the regime over two numbers.
