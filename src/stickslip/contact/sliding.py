@@ -106,8 +106,9 @@ class FromRest:
     def __str__(self) -> str:
         runs = f"{self.runs} exact run{'s' * (self.runs > 1)} of {brief(self.duration, 's', 3)}"
         if self.sticks_at is None:
-            at = "" if self.slides_at is None else f" at {brief(self.slides_at, 'm/s', 3)}"
-            return f"from rest it slides{at}, too (by {runs})" if at else "from rest: not known, because a run did not reach its end"
+            if self.slides_at is None:
+                return "from rest: not known, because a run did not reach its end"
+            return f"from rest it slides at {brief(self.slides_at, 'm/s', 3)}, too (by {runs})"
         if self.slides_at is None:
             return f"from rest it still sticks at {brief(self.sticks_at, 'm/s', 3)} (by {runs}; stickslip find looks further)"
         return f"from rest it sticks up to {brief(self.sticks_at, 'm/s', 3)} (to {100.0 * FROM_REST_WITHIN:g} %, by {runs})"
