@@ -167,14 +167,20 @@ def panels(g: Resistance, low: float, high: float) -> Floats:
 
     For one contact the same slip rates always give the same edges, so that areas which should cancel do.
     """
-    bounds = bounds_of(g)
-    for way, room in ((_way_of(g), FEW_PANELS), (compiled, MOST_PANELS)):
-        edges = np.empty(room + 1)
+    bounds, way = bounds_of(g), _way_of(g)
+    if way is in_python:
         with np.errstate(all="ignore"):
-            count = way(panels_between)(bounds, g.law_slip, low, high, edges)
-        if count < room:
-            break
-    return edges[: count + 1]
+            edges, is_whole = _panels(bounds, g.law_slip, (low, high), way, FEW_PANELS)
+        if is_whole:
+            return edges
+    return _panels(bounds, g.law_slip, (low, high), compiled, MOST_PANELS)[0]
+
+
+def _panels(bounds: turns.Resistance, slip: float, ends: Interval, way: Way, most: int) -> tuple[Floats, bool]:
+    """Return the edges of panels, and whether so many panels are enough for them to be as short as they should be."""
+    edges = np.empty(most + len(bounds.pieces) + 4)
+    count = way(panels_between)(bounds, slip, *ends, edges)
+    return edges[: count + 1], count <= most
 
 
 @lru_cache(maxsize=64)

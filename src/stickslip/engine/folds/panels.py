@@ -28,7 +28,8 @@ MOST_PANELS = 4096
 def panels_between(g: Resistance, slip: float, low: float, high: float, edges: Floats) -> int:
     """Write the edges (m/s) of panels from one slip rate to another into `edges`, and return the number of panels.
 
-    Panels that remain when `edges` is full are as long as they are.
+    There must be room for one panel of each piece of the law, and four more. Panels that remain when only this room is left are as
+    long as they are.
     """
     count, begin, missed = 0, 0.0, NEGLIGIBLE * (high - low)
     edges[0] = low
@@ -49,7 +50,7 @@ def panels_between(g: Resistance, slip: float, low: float, high: float, edges: F
             slope, bend = max(-friction[2], friction[3]), 2.0 * max(-friction[4], friction[5])
             length = last - first
             fits = length * bend <= SMOOTH * slope or bend * length * length * length <= missed or length <= NARROW * last
-            if fits or count + waiting + 3 > len(edges) or waiting + 2 > DEPTH:
+            if fits or count + waiting + 3 + len(g.pieces) - k > len(edges) or waiting + 2 > DEPTH:
                 count += 1
                 edges[count] = last
                 continue
