@@ -14,7 +14,6 @@ from stickslip.contact import folds, proofs
 from stickslip.contact.branches import branches_of
 from stickslip.contact.equation import Resistance, resistance
 from stickslip.contact.folds import certificate, lowest_slope, panels
-from stickslip.engine.folds.panels import panels_between
 from stickslip.friction import LAWS, FrictionLaw
 from tests.engine.drawn import example_law
 
@@ -88,15 +87,3 @@ def test_panels_of_a_law_of_many_pieces_fit_in_both_ways(monkeypatch: pytest.Mon
     np.testing.assert_array_equal(ours, theirs)
     assert len(ours) > 1000
     assert (np.diff(ours) > 0.0).all()
-
-
-def test_memory_beside_the_edges_of_panels_stays_as_it_is() -> None:
-    """Compiled code has no bounds checks: a guard behind the least room that is allowed is not overwritten."""
-    rates = np.linspace(0.0, 3.0, 300)
-    law = ss.friction.FromTable(friction=(0.6 + 0.01 * np.sin(40.0 * rates)).tolist(), rate=rates.tolist())
-    bounds = folds.bounds_of(resistance(ss.Problem(SLAB, law, initial_excess=0.0)))
-    room = len(bounds.pieces) + 4
-    memory = np.full(room + 1000, -7.0)
-    count = panels_between(bounds, 0.0, 0.0, 2.9, memory[:room])
-    assert count < room
-    assert (memory[room:] == -7.0).all()
