@@ -24,6 +24,9 @@ from numpy.typing import NDArray
 from stickslip.bodies import BodyOnCharacteristics
 from stickslip.contact.wave_modes import MOST_STEPS, Growth, Polynomial, WaveModes, first_of
 
+CANCELLED = 2e-15
+"""A difference that is smaller than this share of its terms is their rounding, and counts as 0."""
+
 
 class Response(NamedTuple):
     """Hold friction's response Phi(s) to a disturbance of the slip rate (s/m) as two polynomials in s, lowest order first."""
@@ -87,8 +90,9 @@ def _all_left(equation: Polynomial) -> bool | None:
         first.append(lead)
         if lead == 0.0:
             break
-        rest = np.append(rows[1], 0.0)[1 : len(rows[0])]
-        rows = rows[1], rows[0][1:] - rows[0][0] / lead * rest
+        rest = rows[0][0] / lead * np.append(rows[1], 0.0)[1 : len(rows[0])]
+        left = rows[0][1:] - rest
+        rows = rows[1], np.where(np.abs(left) > CANCELLED * np.abs(rest), left, 0.0)
     if min(first) < 0.0:
         return False
     return None if 0.0 in first else True

@@ -20,8 +20,9 @@ if TYPE_CHECKING:
     from stickslip.problem.problem import Problem
     from stickslip.solution.place import Place
 
-RATES = np.geomspace(1e-18, 1e3, 85)
-"""Slip rates (m/s) at which the stability of a law with states is examined, four a decade; changes are then found to rounding."""
+RATES = np.geomspace(1e-15, 1e3, 73)
+"""Slip rates (m/s) at which the stability of a law with states is examined, four a decade; changes are then found to rounding.
+Slower ones, below 30 nm a year, are left out: there the slip law is made smooth, which would look like a change."""
 NEVER = 1e-20
 """Growth rate (1/s) up to which a disturbance grows by less than half a per cent in the age of the universe."""
 
@@ -218,15 +219,21 @@ class SteadySlidings:
     def _changes(self) -> str:
         """Return a sentence on the critical rates, and on what is proven of them."""
         if not self.changes and self.proven and self.slidings:
-            return f"{self.slidings[0].verdict} at any other slip rate, too (proven)" * (len(self.slidings) == 1)
+            return f"{self.slidings[0].verdict} at any other slip rate, too (proven{self._searched})" * (len(self.slidings) == 1)
         if not self.changes:
             return ""
         texts = [f"{'unstable' if self.changes[0].stable_above else 'stable'} below"]
         texts += [f"{self._place(one)}, {'stable' if one.stable_above else 'unstable'} above" for one in self.changes]
         hint = "" if self.regained is None else "; from rest it may stick at a higher rate all the same: stickslip find"
         hint = hint if self.from_rest is None else f"; {self.from_rest}"
-        how = "proven by interval arithmetic" if self.proven else f"found between {RATES[0]:g} and {RATES[-1]:g} m/s, not proven"
+        how = f"proven by interval arithmetic{self._searched}" if self.proven else f"found{self._searched}, not proven"
         return f"{' '.join(texts)} ({how}){hint}"
+
+    @property
+    def _searched(self) -> str:
+        """The words for the slip rates that were looked at, where that is not all of them."""
+        has_states = self.problem is not None and self.problem.friction.states
+        return f" between {RATES[0]:g} and {RATES[-1]:g} m/s" if has_states or not self.proven else ""
 
     def _place(self, change: StabilityChange) -> str:
         """Return the words for where stability changes."""

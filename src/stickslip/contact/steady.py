@@ -28,6 +28,7 @@ from stickslip.contact.equation import Resistance
 from stickslip.contact.folds import Certificate, certificate
 from stickslip.contact.roots import sign_change
 from stickslip.contact.sliding import RATES, Sliding, StabilityChange, SteadySlidings
+from stickslip.contact.steady_proof import proven_changes
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.friction.contract import one_argument
@@ -37,6 +38,8 @@ from stickslip.problem.problem import Problem
 
 FAR = (0.0, 0.37, 1e3)
 """Distances (m) over which friction must not change with slip if the contact is to slide steadily."""
+CANCELLED = 1e-14
+"""Rounding of a slope of a state's rate by the slip rate, relative to its terms."""
 CRAWL, SAME = 1e-300, 1e-9
 """A slip rate (m/s) that is next to rest; and the relative difference of two tractions that counts as none."""
 
@@ -45,6 +48,12 @@ CRAWL, SAME = 1e-300, 1e-9
 def steady_slidings(problem: Problem) -> SteadySlidings:
     """Find how a contact can slide steadily under the loading of a problem, at the start if it varies, and what is stable."""
     return _Steady(problem).found()
+
+
+@lru_cache(maxsize=64)
+def proven_slidings(problem: Problem) -> SteadySlidings:
+    """Find the same, with a proof under a law with a state where there is one, which takes from 0.3 s to some seconds."""
+    return _Steady(problem, proves=True).found() if problem.friction.states else steady_slidings(problem)
 
 
 def steady_traction(problem: Problem, rates: Floats) -> Floats:
@@ -58,6 +67,8 @@ class _Steady:
     """The search for steady sliding of one problem; slip rates in it are magnitudes, in the direction of the drive."""
 
     problem: Problem
+    proves: bool = False
+    """True if a proof is wanted under a law with a state, too."""
 
     @cached_property
     def is_soft(self) -> bool:
@@ -199,6 +210,8 @@ class _Steady:
             return Response(slopes[1:2], np.ones(1))
         evolve = np.array([value_and_slopes(tree, numbers, *at)[1] for tree in law.state_trees()])
         matrix, forced, felt = evolve[:, 2:], evolve[:, 1], slopes[2:]
+        # what two terms leave of each other is rounding, as for friction that is the same at any rate
+        forced = np.where(np.abs(forced) * rate > CANCELLED * np.abs(np.diag(matrix) * states), forced, 0.0)
         below = np.real(np.poly(matrix))[::-1]
         above = np.zeros(many)
         above[-1] = felt @ forced
@@ -251,7 +264,7 @@ class _Steady:
         """Return where stability changes along the slip rate, and whether it is proven that it changes nowhere else."""
         law = self.problem.friction
         if law.states:
-            return tuple(self._change(rate, above, None) for rate, above in self._searched()), False
+            return self._changes_under_states()
         taken = self.taken_away
         if not law.depends_on_rate or not math.isfinite(taken):
             return (), True
@@ -263,6 +276,14 @@ class _Steady:
             beyond = 0.5 * (rate + rates[k + 1]) if k + 1 < len(rates) else 2.0 * rate
             found.append(self._change(rate, bool(g.slope(beyond) > 0.0), proof.enclosure(rate)))
         return tuple(found), proof.verdict == "proven"
+
+    def _changes_under_states(self) -> tuple[tuple[StabilityChange, ...], bool]:
+        problem = self.problem
+        ends = (float(RATES[0]), float(RATES[-1]))
+        found = proven_changes(problem.body, problem.normal, problem.friction, self.slip, ends) if self.proves else None
+        if found is None:
+            return tuple(self._change(rate, above, None) for rate, above in self._searched()), False
+        return tuple(self._change(self._edge(*one), one.stable_above, (one.low, one.high)) for one in found), True
 
     @cached_property
     def taken_away(self) -> float:
@@ -286,11 +307,11 @@ class _Steady:
         """Return the slip rates (m/s) at which stability changes under a law with states, and whether it is stable above each."""
         stable = [self._is_stable(rate) for rate in RATES.tolist()]
         ends = zip(RATES[:-1].tolist(), RATES[1:].tolist(), stable[:-1], stable[1:], strict=True)
-        return [
-            (sign_change(lambda rate, after=after: 1.0 if self._is_stable(rate) == after else -1.0, low, high), after)  # type: ignore[misc]
-            for low, high, before, after in ends
-            if before != after
-        ]
+        return [(self._edge(low, high, after), after) for low, high, before, after in ends if before != after]
+
+    def _edge(self, low: float, high: float, stable_above: bool) -> float:
+        """Return the slip rate (m/s) between two others at which stability changes."""
+        return sign_change(lambda rate: 1.0 if self._is_stable(rate) == stable_above else -1.0, low, high)
 
     def _is_stable(self, rate: float) -> bool:
         return self.disturbed(rate).is_stable() is True

@@ -12,7 +12,7 @@ from stickslip.bodies import ElasticSlab, as_slab
 from stickslip.contact.critical import critical_normal_stress
 from stickslip.contact.regime_map import regimes_along_slip
 from stickslip.contact.sliding import SteadySlidings
-from stickslip.contact.steady import steady_slidings
+from stickslip.contact.steady import proven_slidings
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
 from stickslip.engine_input.limits import MOST_PIECES, PATIENCE, automatic_length, creep_tolerance, leaps_over, lumps_by_itself
 from stickslip.foundation.formatting import brief
@@ -76,7 +76,7 @@ def examine(scenario: Scenario) -> Examination:
         derived=_derived(problem),
         start=start_of(problem),
         stability=stability_of(problem),
-        steady=steady_slidings(problem),
+        steady=proven_slidings(problem),
         uniqueness=contact,
         critical=_critical(problem, contact),
         along_slip=_along_slip(problem, contact),

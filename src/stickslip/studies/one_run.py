@@ -5,7 +5,7 @@ from pathlib import Path
 
 from stickslip.contact.critical import critical_value
 from stickslip.contact.sliding import SteadySlidings
-from stickslip.contact.steady import steady_slidings
+from stickslip.contact.steady import proven_slidings
 from stickslip.foundation.arguments import for_users
 from stickslip.observables.event_table import catalogue_statistics
 from stickslip.observables.predictability import predictability
@@ -62,7 +62,7 @@ def steady(
     """
     source = read_source("steady", problem)
     one = source if isinstance(source, Problem) else source.problem
-    found = steady_slidings(one)
+    found = proven_slidings(one)
     if not from_rest or found.regained is None:
         return found
     with telling(progress, "steady") as tell:

@@ -52,7 +52,8 @@ def _exp_slope(end: Any, a: Change) -> Any:
 
 def _exp_disc(a: Disc) -> Disc:
     centre = np.exp(np.minimum(a.centre, KNOWN))
-    radius = np.where(a.centre > KNOWN, np.inf, centre * np.expm1(a.radius))
+    most = np.exp(np.minimum(a.centre + a.radius, KNOWN)) + centre  # where expm1 overflows
+    radius = np.where(a.centre > KNOWN, np.inf, np.where(a.radius < KNOWN, centre * np.expm1(a.radius), most))
     return Disc(centre, radius, 0.0).rounded(OF_FUNCTION, np.exp(np.minimum(a.centre - a.radius, KNOWN)))
 
 
@@ -108,6 +109,7 @@ EXP = Operation(
     value=np.exp,
     step=_exp_step,
     slope=_exp_slope,
+    slope_formula=lambda node, da: node * da,
     bounds=growing(np.exp),
     disc=_exp_disc,
     order_zero=_exp_order_zero,
@@ -149,6 +151,7 @@ EXPM1 = Operation(
     value=np.expm1,
     step=lambda start, end, a: _exp_step(np.exp(a.reference), np.exp(a.value), a),
     slope=lambda end, a: _exp_slope(np.exp(a.value), a),
+    slope_formula=lambda node, da: exp_of(node) * da,
     bounds=growing(np.expm1),
     disc=_expm1_disc,
     order_zero=_expm1_order_zero,

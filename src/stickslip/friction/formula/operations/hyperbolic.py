@@ -70,6 +70,7 @@ TANH = Operation(
     value=np.tanh,
     step=_tanh_step,
     slope=_tanh_slope,
+    slope_formula=lambda node, da: (1.0 - node * node) * da,
     bounds=growing(np.tanh),
     disc=_tanh_disc,
     order_zero=_tanh_order_zero,
@@ -131,6 +132,7 @@ ARCSINH = Operation(
     value=np.arcsinh,
     step=_arcsinh_step,
     slope=lambda end, a: a.slope / np.hypot(1.0, a.value),
+    slope_formula=lambda node, da: da / root_of(node),
     bounds=growing(np.arcsinh),
     # its derivative 1 / sqrt((z - i)(z + i)) has its singularities at i and -i
     disc=lambda a: Disc(np.arcsinh(a.centre), -np.log1p(-a.radius / np.hypot(1.0, a.centre)), 0.0).rounded(OF_FUNCTION),

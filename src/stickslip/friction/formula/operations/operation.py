@@ -204,6 +204,8 @@ class Operation:
     """How far its value changes between two points, without cancellation: from the values at both, and each argument's `Change`."""
     slope: Callable[..., Any]
     """Its derivative at the end point: from its value there, and each argument's `Change`."""
+    slope_formula: Callable[..., Expression]
+    """The formula of its derivative: from the node, and the formula of each argument's derivative."""
     bounds: Callable[..., Interval]
     """Bounds of its value: from the node and the interval of each argument. They need not be sharp, and leave out rounding."""
     disc: Callable[..., Disc]
