@@ -58,7 +58,11 @@ def test_slabs_and_several_states_are_found_by_search():
         a=0.01, b=0.009, second_b=0.006, distance=1e-5, second_distance=1e-5, rate=1e-6, reference=0.6
     )
     slab = ss.Problem(
-        ss.ElasticSlab(2700.0, 3000.0, 1.0, NORMAL), ss.friction.RateAndState(**WEAKER), pull_rate=1e-6, initial_load=6e5
+        ss.ElasticSlab(2700.0, 3000.0, 1.0, NORMAL),
+        ss.friction.RateAndState(**WEAKER),
+        pull_rate=1e-6,
+        initial_load=6e5,
+        initial_state=10.0,
     )
     for found in (found_for(two, 2.0 * CRITICAL), proven_slidings(slab)):
         assert not found.proven
