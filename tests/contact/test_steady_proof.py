@@ -48,9 +48,11 @@ def test_no_change_is_proven_where_there_is_none(b: float, share: float, stable:
     )
 
 
-def test_what_only_touches_is_not_proven():
+def test_what_only_touches_is_not_proven_and_rounding_makes_no_changes():
     """With K = S (b - a)/Dc the block is unstable at any rate, but ever less so towards a rate of 0."""
-    assert not found_for(ss.friction.RateAndState(**WEAKER), CRITICAL).proven
+    found = found_for(ss.friction.RateAndState(**WEAKER), CRITICAL)
+    assert not found.proven
+    assert found.changes == ()
 
 
 def test_slabs_and_several_states_are_found_by_search():

@@ -199,6 +199,9 @@ def test_rate_and_state_is_judged_by_its_stiffness() -> None:
     block, slab = (examine(load_scenario(f"rate-and-state-{body}")) for body in ("block", "slab"))
     assert "stiffness K = 2e+07 against the critical 5e+07 N/m" in block.stability
     assert "stiffness G/h = 3.43e+07 against the critical 5e+08 Pa/m" in slab.stability
+    forwards = load_scenario("rate-and-state-block")
+    backwards = forwards.with_values({"loading.pull_rate": -forwards.problem.first_pull_rate})
+    assert "against the critical 5e+07 N/m" in examine(backwards).stability
     assert block.steady.slidings[0].stable is slab.steady.slidings[0].stable is False
     assert slab.uniqueness.regime == "regular"
     assert "a given state" in slab.uniqueness.summary

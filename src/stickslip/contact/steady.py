@@ -19,6 +19,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -40,6 +41,8 @@ FAR = (0.0, 0.37, 1e3)
 """Distances (m) over which friction must not change with slip if the contact is to slide steadily."""
 CANCELLED = 1e-14
 """Rounding of a slope of a state's rate by the slip rate, relative to its terms."""
+SURE = 1e-12
+"""Relative change of the normal load by which stability must not change at a rate where it is called known."""
 CRAWL, SAME = 1e-300, 1e-9
 """A slip rate (m/s) that is next to rest; and the relative difference of two tractions that counts as none."""
 
@@ -305,9 +308,16 @@ class _Steady:
 
     def _searched(self) -> list[tuple[float, bool]]:
         """Return the slip rates (m/s) at which stability changes under a law with states, and whether it is stable above each."""
-        stable = [self._is_stable(rate) for rate in RATES.tolist()]
-        ends = zip(RATES[:-1].tolist(), RATES[1:].tolist(), stable[:-1], stable[1:], strict=True)
-        return [(self._edge(low, high, after), after) for low, high, before, after in ends if before != after]
+        known = [(rate, stable) for rate in RATES.tolist() if (stable := self._surely_stable(rate)) is not None]
+        return [(self._edge(low, high, after), after) for (low, before), (high, after) in pairwise(known) if before != after]
+
+    def _surely_stable(self, rate: float) -> bool | None:
+        """Return whether sliding is stable; None if a little more or less normal load decides, which is a matter of rounding."""
+        body, response = self.problem.body, self.response(rate)
+        more, less = (
+            Disturbed(body, self.problem.normal * share, response).is_stable() is True for share in (1.0 + SURE, 1.0 - SURE)
+        )
+        return more if more == less else None
 
     def _edge(self, low: float, high: float, stable_above: bool) -> float:
         """Return the slip rate (m/s) between two others at which stability changes."""

@@ -124,8 +124,8 @@ def _block_stability(body: SpringBlock, by_slip: float, by_rate: float) -> str:
 
 def _critical_stiffness(problem: Problem, law: RateAndState) -> str:
     """Return a sentence on the stiffness of the body and the critical one, above which sliding at the pull rate is stable."""
-    body, rate, pull = problem.body, problem.first_pull_rate, "first pull rate" if problem.varies else "pull rate"
-    if rate <= 0.0:
+    body, rate, pull = problem.body, abs(problem.first_pull_rate), "first pull rate" if problem.varies else "pull rate"
+    if rate == 0.0:
         return "not pulled at first" if problem.varies else "not pulled: it creeps to a halt, ever more slowly"
     sliding = SteadySliding(problem.normal, law.a, law.b, law.distance, rate)
     if not body.has_waves:
