@@ -52,8 +52,10 @@ def _exp_slope(end: Any, a: Change) -> Any:
 
 def _exp_disc(a: Disc) -> Disc:
     centre = np.exp(np.minimum(a.centre, KNOWN))
-    most = np.exp(np.minimum(a.centre + a.radius, KNOWN)) + centre  # where expm1 overflows
-    radius = np.where(a.centre > KNOWN, np.inf, np.where(a.radius < KNOWN, centre * np.expm1(a.radius), most))
+    end = a.centre + a.radius
+    tiny = (a.radius > KNOWN) & (end < 0.0)  # expm1 overflows, but no value is larger than 1
+    radius = np.where(tiny, np.exp(np.minimum(end, 0.0)) + centre, centre * np.expm1(a.radius))
+    radius = np.where(a.centre > KNOWN, np.inf, radius)
     return Disc(centre, radius, 0.0).rounded(OF_FUNCTION, np.exp(np.minimum(a.centre - a.radius, KNOWN)))
 
 
