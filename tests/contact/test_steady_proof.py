@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
+from stickslip.contact import steady_proof
 from stickslip.contact.steady import proven_slidings, steady_slidings
 
 NORMAL, DISTANCE, RATE = 1e6, 1e-5, 1e-6
@@ -160,3 +161,12 @@ def test_laws_drawn_at_random_change_where_eigenvalues_do(seed: int):
                 else (found.slidings[0].stable if not found.changes else not found.changes[0].stable_above)
             )
             assert roots_are_left(law, body, rate) == stable, rate
+
+
+def test_discs_that_do_not_hold_the_steady_states_prove_nothing(monkeypatch: pytest.MonkeyPatch):
+    """With discs half as wide as the change of the state in a cell no cell is decided."""
+    law = ss.friction.RateAndState(**WEAKER)
+    body = ss.SpringBlock(10.0, 3.0 * CRITICAL, NORMAL)
+    assert steady_proof.proven_changes(body, NORMAL, law, 0.0, (1e-9, 1e-3)) == []
+    monkeypatch.setattr(steady_proof, "WIDER", 0.5)
+    assert steady_proof.proven_changes(body, NORMAL, law, 0.0, (1e-9, 1e-3)) is None
