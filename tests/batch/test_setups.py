@@ -106,10 +106,10 @@ def test_branches_of_a_batch_equal_those_of_the_contact_equation(name: str, rule
     scenario = CASES[name].scenario
     scenario = replace(scenario, problem=replace(scenario.problem, selection=rule))
     key = "friction.alpha" if name == "rate" else "friction.rate"
-    closed = scenario.problem.friction.critical_value(SLAB.impedance, SLAB.normal_stress)
-    assert closed is not None
+    critical = ss.uniqueness(scenario.problem).critical_value
+    assert critical is not None
     shares = np.concatenate((10.0 ** np.random.default_rng(2).uniform(-3, 3, 20), 1.0 + np.array([-1e-3, 1e-3, 1e-6, -1e-6])))
-    case, values = Case(scenario, {}), {key: closed[1] * shares}
+    case, values = Case(scenario, {}), {key: critical * shares}
     setups = set_up(scenario, values)
     assert {0.0, 1.0} == set(setups.irregular)
     for n in range(len(shares)):

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+import numpy as np
 from hypothesis import strategies as st
 
 import stickslip as ss
@@ -44,9 +45,9 @@ class Wavy(ss.friction.FrictionLaw):
         return self.mean - 2 * abs(self.amplitude), self.mean + 2 * abs(self.amplitude) + self.step
 
 
-def hyperbolic(alpha: float) -> ss.friction.HyperbolicRate:
+def hyperbolic(alpha: float, static: float = 0.8, dynamic: float = 0.3) -> ss.friction.HyperbolicRate:
     """The paper's rate law, eq. (15)."""
-    return ss.friction.HyperbolicRate(static=0.8, dynamic=0.3, alpha=alpha)
+    return ss.friction.HyperbolicRate(static=static, dynamic=dynamic, alpha=alpha)
 
 
 def slab_problem(law: ss.friction.FrictionLaw, selection: str = "perfect-delay", **body: float) -> ss.Problem:
@@ -70,3 +71,27 @@ wavy_laws = st.builds(
     step=st.sampled_from([0.0, 0.05]),
 )
 """Draw laws that rise and fall with the rate."""
+
+
+def closed_critical_value(law: ss.friction.FrictionLaw) -> tuple[str, float] | None:
+    """The closed form of a critical value of a bundled law on SLAB: paper section 3, and the steepest fall of Stribeck's curves."""
+    if isinstance(law, ss.friction.SlipPlusRate):
+        name, value = closed_critical_value(law.rate) or ("", math.nan)
+        return f"rate.{name}", value
+    if isinstance(law, ss.friction.PiecewiseLinearRate):
+        steepest = -float(np.min(law.polynomials()[:, 1]))
+        return ("normal_stress", Z / steepest) if steepest > 0.0 else None
+    fall = S * (law.static - law.dynamic) if hasattr(law, "dynamic") else 0.0
+    if fall <= 0.0:
+        return None
+    if isinstance(law, ss.friction.Coulomb):
+        return "static", law.dynamic
+    if isinstance(law, ss.friction.HyperbolicRate):
+        return "alpha", Z / fall
+    n = law.exponent
+    y = (n - 1.0) / (n if isinstance(law, ss.friction.ExponentialStribeck) else n + 1.0)
+    if isinstance(law, ss.friction.ExponentialStribeck):
+        steepness = n * y**y * math.exp(-y)
+    else:
+        steepness = n * y ** ((n - 1.0) / n) / (1.0 + y) ** 2
+    return "rate", steepness * fall / (Z + S * law.viscosity)

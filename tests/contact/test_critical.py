@@ -14,7 +14,7 @@ from stickslip.contact.critical import critical_normal_stress, margin, steepest_
 from stickslip.contact.equation import resistance
 from stickslip.contact.roots import sign_change
 
-from .laws import S, Z, hyperbolic, slab_problem
+from .laws import S, Z, closed_critical_value, hyperbolic, slab_problem
 
 F = ss.friction
 
@@ -41,7 +41,7 @@ def steepest_by_scan(law: ss.friction.FrictionLaw) -> float:
 @pytest.mark.parametrize("name", CLOSED)
 def test_closed_forms_agree_with_the_root_finder(name):
     problem = slab_problem(CLOSED[name])
-    place, value = CLOSED[name].critical_value(Z, S)
+    place, value = closed_critical_value(CLOSED[name])
     found = ss.studies.critical_value(problem, place)
     assert found.value == pytest.approx(value, rel=1e-12, abs=0)
     assert found.parameter.endswith(place)
@@ -49,10 +49,27 @@ def test_closed_forms_agree_with_the_root_finder(name):
     assert len(found.regimes) == len(found.values) + 1
 
 
+@pytest.mark.parametrize("name", CLOSED)
+def test_uniqueness_tells_the_critical_value_that_the_law_names(name):
+    """It is found from the formula; a law of points names no parameter, and the critical normal stress is told."""
+    told = ss.uniqueness(slab_problem(CLOSED[name]))
+    place, value = closed_critical_value(CLOSED[name])
+    assert told.critical_parameter == place == (CLOSED[name].critical or "normal_stress")
+    assert told.critical_value == pytest.approx(value, rel=1e-14, abs=0)
+
+
+def test_a_critical_parameter_that_does_not_exist_is_one_line():
+    class Misnamed(F.HyperbolicRate):
+        critical = "alpa"
+
+    with pytest.raises(ss.InputError, match=r"^Misnamed: critical: parameter 'alpa' is unknown; did you mean 'alpha'\?"):
+        ss.uniqueness(slab_problem(Misnamed(0.8, 0.3, 1.0)))
+
+
 @pytest.mark.parametrize("name", [name for name in CLOSED if name not in ("coulomb", "polyline")])
 def test_friction_falls_by_the_impedance_at_the_closed_form(name):
     """At the critical value the steepest fall of friction is Z/S."""
-    place, value = CLOSED[name].critical_value(Z, S)
+    place, value = closed_critical_value(CLOSED[name])
     problem = slab_problem(CLOSED[name])
     at_critical = problem.parameters[place].put(value).friction
     assert -S * steepest_by_scan(at_critical) == pytest.approx(Z, rel=2e-5, abs=0)
@@ -61,7 +78,7 @@ def test_friction_falls_by_the_impedance_at_the_closed_form(name):
 @pytest.mark.parametrize("name", [name for name in CLOSED if name != "coulomb"])
 @pytest.mark.parametrize("step", [-1e-6, 1e-6])
 def test_the_regime_changes_where_it_is_said_to(name, step):
-    place, value = CLOSED[name].critical_value(Z, S)
+    place, value = closed_critical_value(CLOSED[name])
     changed = slab_problem(CLOSED[name]).parameters[place].put(value * (1.0 + step))
     found = ss.studies.critical_value(changed, place)
     side = found.regimes[0] if step < 0 else found.regimes[-1]
@@ -71,10 +88,9 @@ def test_the_regime_changes_where_it_is_said_to(name, step):
 
 def test_laws_that_never_weaken_enough_have_no_critical_value():
     strengthening = F.VelocityStrengthening(0.6, 0.01, 1e-6, 0.1)
-    assert strengthening.critical_value(Z, S) is None
-    assert F.ExponentialStribeck(0.4, 0.6, 0.1).critical_value(Z, S) is None
-    assert F.PowerStribeck(0.4, 0.6, 0.1).critical_value(Z, S) is None
-    assert F.PiecewiseLinearRate((0.0, 1.0), (0.4, 0.6)).critical_value(Z, S) is None
+    rising = F.ExponentialStribeck(0.4, 0.6, 0.1), F.PowerStribeck(0.4, 0.6, 0.1), F.PiecewiseLinearRate((0.0, 1.0), (0.4, 0.6))
+    for law in (strengthening, *rising, hyperbolic(1.0, static=0.3, dynamic=0.8)):
+        assert ss.uniqueness(slab_problem(law)).critical_value is None
     for law in (strengthening, F.SinusoidalSlip(1.0, 0.5, 5.0), F.Coulomb(0.6, 0.5)):
         problem = slab_problem(law)
         assert critical_normal_stress(resistance(problem)) is None
@@ -151,7 +167,7 @@ def test_steepest_fall_is_found_over_all_scales(fall, rate, exponent, viscosity)
         F.ExponentialStribeck(0.3 + fall, 0.3, rate, exponent, viscosity),
         F.PowerStribeck(0.3 + fall, 0.3, rate, exponent, viscosity),
     ):
-        place, critical = law.critical_value(Z, S)
+        place, critical = closed_critical_value(law)
         at_rate, slope = steepest_fall(resistance(slab_problem(replace(law, rate=critical))))
         assert place == "rate"
         assert abs(slope) < 1e-13 * (Z + S * viscosity) * 4
@@ -163,7 +179,7 @@ def test_steepest_fall_is_found_over_all_scales(fall, rate, exponent, viscosity)
 def test_margin_says_what_the_branches_say(factor, exponent):
     assume(abs(factor - 1.0) > 1e-9)
     law = F.ExponentialStribeck(0.6, 0.4, 1.0, exponent)
-    problem = slab_problem(replace(law, rate=law.critical_value(Z, S)[1] * factor))
+    problem = slab_problem(replace(law, rate=closed_critical_value(law)[1] * factor))
     stable = branches_of(resistance(problem))
     several = len(stable) > 1 or stable[0].rate_from > 0.0
     assert (margin(problem) < 0.0, several) == (factor < 1.0, factor < 1.0)

@@ -119,11 +119,6 @@ def test_a_contact_with_mass_has_no_admissible_rates():
         found.admissible(7e7)
 
 
-def test_laws_know_their_own_critical_value():
-    assert ss.friction.Coulomb(0.8, 0.3).critical_value(Z, S) == ("static", 0.3)
-    assert ss.friction.HyperbolicRate(0.3, 0.8, 1.0).critical_value(Z, S) is None
-
-
 def test_coulomb_friction_is_irregular():
     found = uniqueness_of(slab_problem(ss.friction.Coulomb(0.8, 0.3)))
     assert found.regime == "irregular"

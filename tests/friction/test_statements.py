@@ -27,6 +27,8 @@ class Own(FrictionLaw):
     """mu = dynamic + (static - dynamic) / (1 + v / rate), as a user writes it; every statement of it is true."""
 
     kind = "own-hyperbolic"
+    critical = "rate"
+
     static: float = quantity("1", "at rest", default=0.8)
     dynamic: float = quantity("1", "fast", default=0.3)
     rate: float = quantity("m/s", "scale", above=0, default=0.1)
@@ -44,10 +46,6 @@ class Own(FrictionLaw):
 
     def rate_at_slope(self, slope: Any) -> Any:
         return self.rate * (np.sqrt(np.maximum((self.dynamic - self.static) / (self.rate * slope), 0.0)) - 1.0)
-
-    def critical_value(self, impedance: float, normal: float) -> tuple[str, float] | None:
-        fall = normal * (self.static - self.dynamic)
-        return ("rate", fall / impedance) if fall > 0.0 else None
 
 
 def lying(**statements: Any) -> type[Own]:
@@ -197,28 +195,10 @@ SLAB = ss.ElasticSlab(2800, 3500, 1e4, 1e8)
 
 
 @pytest.mark.parametrize("rate", [1e-4, 1.0, 5.0, 6.0, 1e3])
-def test_a_true_critical_value_is_believed(rate: float) -> None:
+def test_the_critical_value_of_an_own_law_is_that_of_the_parameter_it_names(rate: float) -> None:
     """Z v + S mu(v) first falls where rate = S (static - dynamic) / Z = 5.1 m/s."""
     found = ss.uniqueness(ss.Problem(SLAB, Own(rate=rate), initial_excess=0.0))
-    assert found.critical_value == pytest.approx(0.5 * 1e8 / 9.8e6, rel=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("wrong", "message"),
-    [
-        (lambda law, Z, S: ("rate", 2.0 * S * 0.5 / Z), "critical_value contradicts the proof: "),
-        (lambda law, Z, S: ("rate", 0.999 * S * 0.5 / Z), "critical_value contradicts the proof: "),
-        (lambda law, Z, S: ("normal_stress", 2e9 * law.rate), "critical_value contradicts the proof: "),
-        (lambda law, Z, S: ("speed", 1.0), "critical_value: parameter 'speed' is unknown; "),
-        (lambda law, Z, S: 3.0, "critical_value must return a name and a number, or None, got 3.0"),
-        (lambda law, Z, S: ("rate", math.nan), "critical_value must return a name and a number, or None, got"),
-    ],
-)
-def test_a_critical_value_that_a_proof_contradicts_is_one_line(wrong: Any, message: str) -> None:
-    law = lying(critical_value=wrong)()
-    with pytest.raises(ss.InputError) as found:
-        ss.uniqueness(ss.Problem(SLAB, law, initial_excess=0.0))
-    assert str(found.value).startswith(f"Lying: {message}")
+    assert (found.critical_parameter, found.critical_value) == ("rate", pytest.approx(0.5 * 1e8 / 9.8e6, rel=1e-12))
 
 
 def test_laws_of_the_package_pay_nothing() -> None:

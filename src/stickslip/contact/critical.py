@@ -1,16 +1,16 @@
 """Critical values: the values of a parameter at which the contact equation changes from one solution to several.
 
 Source: Campillo et al. 1996, section 3: alpha_c is where g'(0) = Z + S mu'(0) vanishes. In general the critical value is where the
-smallest g' over all slip rates vanishes. Closed forms of the laws are in their method `critical_value`.
+smallest g' over all slip rates vanishes. A law names the parameter of which `uniqueness` tells it (`critical`).
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from itertools import pairwise
-from typing import Any, Literal
+from itertools import pairwise, zip_longest
+from typing import Literal
 
 from stickslip.contact.equation import Resistance, resistance
 from stickslip.contact.folds import Verdict, certificate, lowest_slope
@@ -18,58 +18,8 @@ from stickslip.contact.roots import sign_change
 from stickslip.foundation.arguments import NamesAttributes, for_users
 from stickslip.foundation.brief_repr import brief_repr
 from stickslip.foundation.errors import InputError
-from stickslip.friction.statements import is_known
 from stickslip.problem.parameters import Parameter
 from stickslip.problem.problem import Problem, check_problem
-
-_SLACK = 1e-6
-"""Relative difference between the statement and the proof that counts as rounding."""
-
-
-def check_critical(problem: Problem, impedance: float, between: tuple[float, float] | None) -> None:
-    """Raise InputError if `critical_value` of a user's class returns no name and number, or contradicts a proof.
-
-    `between` is the interval (Pa) in which the critical normal stress has been proven to lie, Z / max(-dmu/dv). At that stress the
-    present value of the parameter must be the critical one.
-    """
-    law = problem.friction
-    if is_known(law):
-        return
-    who, given = type(law).__name__, law.critical_value(impedance, problem.normal)
-    if given is None:
-        return
-    name, _ = _read(who, given)
-    _check_name(who, name, problem)
-    if between is None or law.depends_on_slip:
-        return
-    present = problem.parameters[name].value
-    stated = sorted(_read(who, law.critical_value(impedance, stress))[1] for stress in between)
-    low, high = between if name == "normal_stress" else (present, present)
-    if not (stated[0] <= high + _SLACK * abs(high) and stated[1] >= low - _SLACK * abs(low)):
-        raise InputError(
-            f"{who}: critical_value contradicts the proof: friction falls so steeply that the critical normal stress is"
-            f" {between[0]:.6g} Pa at {name} = {present:.6g}, where critical_value gives {name} = {stated[0]:.6g}"
-        )
-
-
-def _check_name(who: str, name: str, problem: Problem) -> None:
-    try:
-        problem.parameters[name]
-    except InputError as error:
-        raise InputError(f"{who}: critical_value: {error}") from None
-
-
-def _read(who: str, given: Any) -> tuple[str, float]:
-    """Return a critical value as a name and a finite number. Raises InputError for anything else."""
-    if isinstance(given, tuple) and len(given) == 2 and isinstance(given[0], str):
-        try:
-            value = float(given[1])
-        except (TypeError, ValueError):
-            value = math.nan
-        if math.isfinite(value):
-            return given[0], value
-    raise InputError(f"{who}: critical_value must return a name and a number, or None, got {str(given)[:60]}")
-
 
 Regime = Literal["regular", "irregular"]
 
@@ -176,6 +126,31 @@ def critical_value(problem: Problem, name: str, law_slip: float | None = None) -
     return Critical(found.name, found.unit, found.value, tuple(values), regimes, (points[0][0], points[-1][0]), verdict, enclosures)
 
 
+def nearest_critical(problem: Problem, name: str, law_slip: float | None = None) -> float | None:
+    """Return the critical value of a parameter that is nearest to the present value, to 15 digits, or None if there is none.
+
+    `critical_value` finds all of them, and proves them. Here the search goes both ways at once, and ends at the first change.
+    """
+    try:
+        found = problem.parameters[name]
+    except InputError as error:
+        raise InputError(f"{type(problem.friction).__name__}: critical: {error}") from None
+
+    def margin_at(value: float) -> float:
+        return margin(found.put(value), law_slip)
+
+    here = found.value, margin_at(found.value)
+    last = [here, here]
+    for pair in zip_longest(_walk(found, margin_at, -1), _walk(found, margin_at, 1)):
+        for side, one in enumerate(pair):
+            if one is None:
+                continue
+            if (one[1] < 0.0) != (here[1] < 0.0):
+                return float(f"{sign_change(margin_at, *sorted((last[side][0], one[0]))):.15g}")
+            last[side] = one
+    return None
+
+
 def _proven(found: Parameter, value: float, law_slip: float | None) -> Regime | None:
     """Return the proven regime at a value of a parameter, or None if it is not decided."""
     try:
@@ -197,8 +172,8 @@ def _proven_change(found: Parameter, value: float, law_slip: float | None) -> tu
     return None
 
 
-def _walk(found: Parameter, margin_at: Callable[[float], float], way: int) -> list[tuple[float, float]]:
-    """Return values and margins on one side of the present value, up to where the problem refuses them."""
+def _walk(found: Parameter, margin_at: Callable[[float], float], way: int) -> Iterator[tuple[float, float]]:
+    """Yield values and margins on one side of the present value, away from it, up to where the problem refuses them."""
     walked: list[tuple[float, float]] = []
 
     def taken(value: float) -> bool:
@@ -208,11 +183,15 @@ def _walk(found: Parameter, margin_at: Callable[[float], float], way: int) -> li
             return False
         return True
 
-    refused = next((value for value in _values(found.value, way) if not taken(value)), None)
-    if refused:  # a refusal at 0 needs no bisection, because the progression has come close enough to it
-        last = walked[-1][0] if walked else found.value
-        sign_change(lambda value: 1.0 if taken(value) else -1.0, last, refused)
-    return walked
+    for value in _values(found.value, way):
+        if not taken(value):  # a refusal at 0 needs no bisection, because the progression has come close enough to it
+            last = walked[-1][0] if walked else found.value
+            yielded = len(walked)
+            if value:
+                sign_change(lambda x: 1.0 if taken(x) else -1.0, last, value)
+            yield from sorted(walked[yielded:], reverse=way < 0)
+            return
+        yield walked[-1]
 
 
 def _values(present: float, way: int) -> list[float]:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.contact.branches import Branch, branches_of, rates_at
-from stickslip.contact.critical import check_critical, critical_normal_stress
+from stickslip.contact.critical import critical_normal_stress, nearest_critical
 from stickslip.contact.equation import Plateau, Resistance, resistance
 from stickslip.contact.folds import Certificate, Fold, Verdict, certificate, critical_stress_between, sentence
 from stickslip.contact.rules.loop import Jump, Loop, jumps_of, loop_of
@@ -58,8 +58,8 @@ class Uniqueness(NamesAttributes):
     rule: str
     summary: str
     critical_parameter: str | None = None
-    """Name of the parameter that has a critical value, as `critical_value` takes it: one of the law if there is a closed form,
-    otherwise the normal stress."""
+    """Name of the parameter that has a critical value, as `critical_value` takes it: the one that the law names, otherwise the
+    normal stress."""
     critical_value: float | None = None
     """Value of that parameter at which the regime changes, in SI units."""
     critical_unit: str = ""
@@ -242,8 +242,7 @@ def _determined(problem: Problem, slip: float | None) -> Uniqueness:
     stable = branches_of(g, proof)
     table, folds = table_of(problem, g, stable), _folds(g, stable, proof)
     between = critical_stress_between(g)
-    check_critical(problem, g.damping, between)
-    window, critical, endless = _window(stable), _critical(problem, g), proof.reach < FASTEST
+    window, critical, endless = _window(stable), _critical(problem, g, slip), proof.reach < FASTEST
     jumps = jumps_of(g, stable, table, MOST_LEFT if endless else len(stable)) if window else ()
     return Uniqueness(
         regime=_regime(g, window),
@@ -271,12 +270,14 @@ _kept = lru_cache(maxsize=16)(_determined)
 """The same function, which keeps its last results: a run, its tables and its notes ask for the same problem again and again."""
 
 
-def _critical(problem: Problem, g: Resistance) -> tuple[str, float] | None:
-    """Return a parameter and its critical value, from the law's closed form if there is one, otherwise the normal stress."""
-    closed = problem.friction.critical_value(g.damping, g.normal)
-    if closed is not None:
-        return closed
-    stress = critical_normal_stress(g)
+def _critical(problem: Problem, g: Resistance, slip: float | None) -> tuple[str, float] | None:
+    """Return the parameter that the law names and its critical value; the normal stress for other laws."""
+    stress, name = critical_normal_stress(g), problem.friction.critical
+    if stress is None and not g.law.static_excess:
+        return None
+    value = nearest_critical(problem, name, slip) if name else None
+    if value is not None:
+        return name, value
     return None if stress is None else ("normal_stress", stress)
 
 

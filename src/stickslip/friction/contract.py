@@ -103,6 +103,11 @@ class LawContract(Declared, ABC):
 
     Formulas, `range`, `knots` and `static_excess` then return arrays too.
     """
+    critical: ClassVar[str] = ""
+    """Name of the parameter whose critical value `uniqueness` tells, as in `problem.parameters`; without one, the normal stress.
+
+    On one side of that value several slip rates solve the contact equation (paper, section 3).
+    """
     columns: ClassVar[Mapping[str, str]] = {}
     """Columns of a data file and the fields that they fill; a scenario may give a law with columns as `file`."""
 
@@ -158,15 +163,6 @@ class LawContract(Declared, ABC):
         return ()
 
     # ---- what a search for folds can use --------------------------------------------------------------------------------------
-
-    def critical_value(self, impedance: float, normal: float) -> tuple[str, float] | None:
-        """Return the parameter, and its value in SI, at which Z v + S mu(v) first has a falling part.
-
-        The arguments are Z (Pa s/m) and the normal stress S (Pa). The name is as in `problem.parameters`. Return None without a
-        closed form, or if Z v + S mu(v) never falls. On one side of the value several slip rates solve the contact equation
-        (paper, section 3).
-        """
-        return None
 
     def rate_at_slope(self, slope: Any) -> Any:
         """Return the slip rate (m/s) at which dmu/dv equals `slope` (s/m), for a law that `bends_one_way`.

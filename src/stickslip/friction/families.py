@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from abc import abstractmethod
 from dataclasses import dataclass
 from functools import reduce
 from typing import Any, Literal
@@ -79,24 +78,13 @@ class Stribeck(FrictionLaw):
     The exponent must be whole: otherwise the curve has no derivatives at v = 0, where every slip begins.
     """
 
+    critical = "rate"
+
     static: float = quantity("1", "friction coefficient at rest", at_least=0)
     dynamic: float = quantity("1", "friction coefficient at high slip rate, without the viscous term", at_least=0)
     rate: Number = quantity("m/s", "slip rate v_s over which friction falls", above=0)
     exponent: float = quantity("1", "exponent of v / rate; whole", at_least=1, whole=True)
     viscosity: Number = quantity("s/m", "increase of friction with slip rate", at_least=0, default=0.0)
-
-    @abstractmethod
-    def steepness(self) -> float:
-        """Return the steepest fall of the curve without viscosity, in units of (static - dynamic) / rate."""
-
-    @override
-    def critical_value(self, impedance: float, normal: float) -> tuple[str, float] | None:
-        """Return rate_c = k S (static - dynamic) / (Z + S viscosity), with k the `steepness`.
-
-        The problem is irregular for smaller rates.
-        """
-        fall = self.steepness() * normal * (self.static - self.dynamic)
-        return ("rate", fall / (impedance + normal * self.viscosity)) if fall > 0.0 else None
 
     @override
     def range(self) -> tuple[float, float]:

@@ -37,13 +37,10 @@ class SlipPlusRate(CompositeLaw):
         (low, high), (least, most) = self.slip.range(), self.rate.range()
         return low + least, high + most
 
-    @override
-    def critical_value(self, impedance: float, normal: float) -> tuple[str, float] | None:
-        """Return the critical value of the rate law: the part that depends on slip does not change with the slip rate."""
-        closed = self.rate.critical_value(impedance, normal)
-        if closed is None or closed[0] == "normal_stress":
-            return closed
-        return f"rate.{closed[0]}", closed[1]
+    @property
+    def critical(self) -> str:  # type: ignore[override] # that of the rate law: the other part does not change with the slip rate
+        """The name of the rate law's parameter that has a critical value."""
+        return f"rate.{self.rate.critical}" if self.rate.critical else ""
 
 
 @dataclass(frozen=True)

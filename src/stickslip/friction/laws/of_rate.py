@@ -26,6 +26,7 @@ class Coulomb(FrictionLaw):
     kind = "coulomb"
     source = "Campillo et al. 1996, section 4 (limit of eq. 15)"
     many = True
+    critical = "static"
     example: ClassVar = {"static": 0.6, "dynamic": 0.5}
 
     static: float = quantity("1", "friction coefficient at rest", at_least=0)
@@ -50,11 +51,6 @@ class Coulomb(FrictionLaw):
     def range(self) -> tuple[float, float]:
         return self.dynamic, self.static
 
-    @override
-    def critical_value(self, impedance: float, normal: float) -> tuple[str, float] | None:
-        """Return static_c = dynamic: any step down in friction gives several solutions, under every normal stress."""
-        return "static", self.dynamic
-
     @property
     @override
     def bends_one_way(self) -> bool:
@@ -68,6 +64,7 @@ class HyperbolicRate(FrictionLaw):
     kind = "hyperbolic-rate"
     source = "Campillo et al. 1996, eq. (15)"
     many = True
+    critical = "alpha"
     example: ClassVar = {"static": 0.8, "dynamic": 0.3, "alpha": "1 s/m"}
 
     static: float = quantity("1", "friction coefficient muS at rest", at_least=0)
@@ -82,12 +79,6 @@ class HyperbolicRate(FrictionLaw):
     @override
     def range(self) -> tuple[float, float]:
         return hull(self.static, self.dynamic)
-
-    @override
-    def critical_value(self, impedance: float, normal: float) -> tuple[str, float] | None:
-        """Return alpha_c = Z / (S (muS - muD)), paper section 3; None unless muS > muD."""
-        fall = normal * (self.static - self.dynamic)
-        return ("alpha", impedance / fall) if fall > 0.0 else None
 
     @override
     def rate_at_slope(self, slope: Any) -> Any:
@@ -120,15 +111,6 @@ class ExponentialStribeck(Stribeck):
         return law.dynamic + (law.static - law.dynamic) * exp(-((v / law.rate) ** law.exponent)) + law.viscosity * v
 
     @override
-    def steepness(self) -> float:
-        """Return k = n y^((n-1)/n) exp(-y) with y = (n-1)/n and exponent n.
-
-        Friction falls most steeply at (v / rate)^n = y, which is at rest for n = 1.
-        """
-        n, y = self.exponent, (self.exponent - 1.0) / self.exponent
-        return float(n * y**y * math.exp(-y))
-
-    @override
     def rate_at_slope(self, slope: Any) -> Any:
         """Return the root v (m/s) of viscosity - (static - dynamic) exp(-v / rate) / rate = slope, if the exponent is 1."""
         if self.exponent != 1.0:
@@ -158,15 +140,6 @@ class PowerStribeck(Stribeck):
     def formula(law: Any, u: Any, v: Any) -> Any:
         return law.dynamic + (law.static - law.dynamic) / (1.0 + (v / law.rate) ** law.exponent) + law.viscosity * v
 
-    @override
-    def steepness(self) -> float:
-        """Return k = n y^((n-1)/n) / (1 + y)^2 with y = (n-1)/(n+1) and exponent n.
-
-        Friction falls most steeply at (v / rate)^n = y, which is at rest for n = 1, the law of paper eq. (15).
-        """
-        n, y = self.exponent, (self.exponent - 1.0) / (self.exponent + 1.0)
-        return float(n * y ** ((n - 1.0) / n) / (1.0 + y) ** 2)
-
 
 @dataclass(frozen=True)
 class PiecewiseLinearRate(PiecewiseLinearLaw):
@@ -185,15 +158,6 @@ class PiecewiseLinearRate(PiecewiseLinearLaw):
     @override
     def points(self) -> tuple[Sequence[float], Sequence[float]]:
         return self.rates, self.coefficients
-
-    @override
-    def critical_value(self, impedance: float, normal: float) -> tuple[str, float] | None:
-        """Return S_c = Z / (steepest decrease of mu with v), the critical normal stress (Pa).
-
-        No single parameter of the law has a critical value, hence the normal stress. None if mu never falls.
-        """
-        steepest = -float(np.min(self.polynomials()[:, 1]))
-        return ("normal_stress", impedance / steepest) if steepest > 0.0 else None
 
 
 @dataclass(frozen=True)
