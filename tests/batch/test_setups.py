@@ -138,16 +138,6 @@ def test_laws_that_claim_to_bend_one_way_do(kind: str) -> None:
         assert not replace(law, exponent=2.0).bends_one_way
 
 
-@pytest.mark.parametrize("kind", [kind for kind, law in LAWS.items() if law.many])
-def test_laws_know_where_friction_has_a_slope(kind: str) -> None:
-    law = CASES_OF_KIND[kind]
-    rates, step = np.geomspace(1e-3, 1.0, 31), 1e-30
-    slope = law.piece_coefficient(0, 0.1, rates + 1j * step).imag / step if law.bends_one_way else np.nan
-    found = law.rate_at_slope(slope)
-    assert found is None or found == pytest.approx(rates, rel=1e-12, abs=0)
-    assert (found is not None) == (kind in ("hyperbolic-rate", "exponential-stribeck"))
-
-
 CASES_OF_KIND = {case.scenario.problem.friction.kind: case.scenario.problem.friction for case in reversed(CASES.values())}
 
 

@@ -44,9 +44,6 @@ class Own(FrictionLaw):
     def bends_one_way(self) -> bool:
         return True
 
-    def rate_at_slope(self, slope: Any) -> Any:
-        return self.rate * (np.sqrt(np.maximum((self.dynamic - self.static) / (self.rate * slope), 0.0)) - 1.0)
-
 
 def lying(**statements: Any) -> type[Own]:
     """Return the class with other statements, and with the name Lying."""
@@ -60,9 +57,6 @@ class Bell(Own):
     @staticmethod
     def formula(law: Any, u: Any, v: Any) -> Any:
         return law.static - (law.static - law.dynamic) * exp(-(((u - 0.3) / 0.05) ** 2)) + 0.0 * v
-
-    def rate_at_slope(self, slope: Any) -> Any:
-        return None
 
 
 LIES: dict[str, tuple[dict[str, Any], str]] = {
@@ -102,7 +96,6 @@ LIES: dict[str, tuple[dict[str, Any], str]] = {
         {"formula": staticmethod(lambda law, u, v: law.dynamic + (law.static - law.dynamic) * exp(-((v / law.rate) ** 2)))},
         "bends_one_way says that mu is convex, or concave, over all slip rates, but dmu/dv rises again near slip rate",
     ),
-    "wrong rate at slope": ({"rate_at_slope": lambda law, slope: 2.0 * law.rate}, "rate_at_slope(-"),
     "too many knots": ({"knots": property(lambda law: (1.0,))}, "knots must be one fewer than pieces, got 1 knots and 1 pieces"),
     "knots that descend": (
         {

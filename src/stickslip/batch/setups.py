@@ -195,14 +195,11 @@ def branches_of(problem: Problem, group: Alike, constants: Floats, count: int) -
     damping, normal, start = (spread(x, count) for x in (body.damping, problem.normal, -problem.normal * law.static_excess))
     kind = one.friction.bends_one_way, RULES.index(one.rule)
     table, irregular, stick_to = Branch.table(count, 1 if kind[0] else MOST_BRANCHES), np.empty(count), np.empty(count)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        near = law.rate_at_slope(-damping / normal)
-    near = spread(np.nan if near is None else near, count)
     address = int(LawPiece(group.functions[0]).value_at)
     numbers = np.array([spread(getattr(law, name), count) for name in law.parameters()]).reshape(-1, count).T
     formulas = formulas_of(one.friction.trees()[:1], law.parameters(), numbers)
     slip = spread(problem.law_slip, count)
-    contacts = Resistances(address, constants, damping, normal, start, slowest, fastest, near, formulas, slip)
+    contacts = Resistances(address, constants, damping, normal, start, slowest, fastest, formulas, slip)
     found = Found(table, branches, irregular, stick_to)
     search_branches(contacts, *kind, np.empty(4), found)
     return found

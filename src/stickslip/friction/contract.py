@@ -164,14 +164,6 @@ class LawContract(Declared, ABC):
 
     # ---- what a search for folds can use --------------------------------------------------------------------------------------
 
-    def rate_at_slope(self, slope: Any) -> Any:
-        """Return the slip rate (m/s) at which dmu/dv equals `slope` (s/m), for a law that `bends_one_way`.
-
-        Return None if there is no closed form. If no slip rate has that slope, the result may be NaN or any number: a batch only
-        starts its search for the fold of Z v + S mu(v) there, so that a wrong rate costs time but no accuracy.
-        """
-        return None
-
     @property
     def bends_one_way(self) -> bool:
         """True if mu is convex, or concave, over all slip rates v > 0, so that Z v + S mu(v) turns at most once."""

@@ -56,7 +56,6 @@ def check_statements(law: FrictionLaw) -> None:
         samples.check_range(name, low, high, step, law.can_be_negative)
     if law.bends_one_way and len(along_rate.slope):
         along_rate.check_bends(name)
-        along_rate.check_rate_at_slope(law)
 
 
 def _number(value: Any) -> float:
@@ -142,23 +141,6 @@ class _Samples:
                 raise InputError(
                     f"{name}: bends_one_way says that mu is convex, or concave, over all slip rates, but dmu/dv"
                     f" {'falls' if rises[:turn].any() else 'rises'} again near {self.place(row, int(known[turn]))}; return False"
-                )
-
-    def check_rate_at_slope(self, law: FrictionLaw) -> None:
-        """Compare the slope at the rate that the law returns for the slope of a sample."""
-        slope = self.slope[0]
-        size = np.max(np.abs(slope[np.isfinite(slope)]), initial=0.0)
-        strict = np.isfinite(slope[1:-1]) & (np.abs(np.diff(slope))[:-1] > 1e-3 * size) & (np.abs(np.diff(slope))[1:] > 1e-3 * size)
-        for k in 1 + np.flatnonzero(strict)[:3]:
-            with np.errstate(all="ignore"):
-                rate = law.rate_at_slope(float(slope[k]))
-                if rate is None:
-                    return
-                there = law.slopes(self.slip[0], max(_number(rate), 0.0), one_argument([one[0] for one in self.states]))[1]
-            if not abs(there - slope[k]) <= 1e-5 * size:
-                raise InputError(
-                    f"{type(law).__name__}: rate_at_slope({slope[k]:.6g}) must be the slip rate with this dmu/dv,"
-                    f" {self.rate[k]:.6g} m/s, got {_number(rate):.6g} m/s; return None without a closed form"
                 )
 
 

@@ -30,8 +30,6 @@ BELOW, ABOVE = 1e-8, 1e4
 """Between these multiples of the slowest and of the fastest scale of a contact lies the fold of a law that bends one way."""
 NEVER_RISES, TOO_MANY = 0, -1
 """Results instead of a number of branches: g still falls at the fastest rate, or there are more branches than fit."""
-NEARBY = 1e-14
-"""Relative rounding error of the rate at which a law itself says that the fold is."""
 PROBES = 128
 """Largest number of slip rates (1) that are tried for one turn: more than the 64 bits that are halved and STEPS together."""
 OCTAVE, STEPS = 2**52, 16
@@ -60,7 +58,6 @@ class Resistances(NamedTuple):
     start: Floats  # g(0+) minus the static strength, Pa
     slowest: Floats  # slowest and fastest scale of the contact, m/s
     fastest: Floats
-    near: Floats  # m/s: slip rate at which the law says that the fold is, or NaN
     formulas: Formulas  # the formula with the numbers of each member
     slip: Floats  # m: law slip
 
@@ -123,10 +120,10 @@ def share_kept(value: float, last: float) -> float:
 
 
 @kernel
-def turns_once(g: Resistance, slowest: float, fastest: float, near: float, ends: Floats) -> int:
+def turns_once(g: Resistance, slowest: float, fastest: float, ends: Floats) -> int:
     """Write the ends of the branches (m/s) into `ends`, if the slope of g is monotone; return their number or NEVER_RISES.
 
-    slowest, fastest and near are those of `Resistances`.
+    slowest and fastest are those of `Resistances`.
     """
     low, high = 0.0, ABOVE * fastest
     at_high = slope_at(g, high)
@@ -136,7 +133,7 @@ def turns_once(g: Resistance, slowest: float, fastest: float, near: float, ends:
     ends[0], ends[1] = 0.0, math.inf
     if at_low > 0.0 or (at_low == 0.0 and slope_at(g, BELOW * slowest) > 0.0):
         return 1
-    for rate in (near * (1.0 - NEARBY), near * (1.0 + NEARBY), slowest, fastest):
+    for rate in (slowest, fastest):
         if low < rate < high:
             slope = slope_at(g, rate)
             if slope > 0.0:
@@ -203,7 +200,7 @@ def search_branches(of: Resistances, one_way: bool, rule: int, work: Floats, fou
         c = ahead(floats(of.constants.ctypes.data), n * size)
         g = Resistance(of.address, c, of.damping[n], of.normal[n], of.start[n], out)
         if one_way:
-            count = turns_once(g, of.slowest[n], of.fastest[n], of.near[n], ends)
+            count = turns_once(g, of.slowest[n], of.fastest[n], ends)
         else:
             count = turns_of(of, n, ends, table, cells)
             count = TOO_MANY if count > MOST_BRANCHES else count

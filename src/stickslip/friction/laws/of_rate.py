@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-import numpy as np
 from typing_extensions import override
 
 from stickslip.foundation.conversion import Number, Numbers
@@ -80,11 +79,6 @@ class HyperbolicRate(FrictionLaw):
     def range(self) -> tuple[float, float]:
         return hull(self.static, self.dynamic)
 
-    @override
-    def rate_at_slope(self, slope: Any) -> Any:
-        """Return the root v (m/s) of -(muS - muD) alpha / (1 + alpha v)^2 = slope."""
-        return (np.sqrt((self.dynamic - self.static) * self.alpha / slope) - 1.0) / self.alpha
-
     @property
     @override
     def bends_one_way(self) -> bool:
@@ -109,13 +103,6 @@ class ExponentialStribeck(Stribeck):
     @override
     def formula(law: Any, u: Any, v: Any) -> Any:
         return law.dynamic + (law.static - law.dynamic) * exp(-((v / law.rate) ** law.exponent)) + law.viscosity * v
-
-    @override
-    def rate_at_slope(self, slope: Any) -> Any:
-        """Return the root v (m/s) of viscosity - (static - dynamic) exp(-v / rate) / rate = slope, if the exponent is 1."""
-        if self.exponent != 1.0:
-            return None
-        return self.rate * np.log((self.static - self.dynamic) / (self.rate * (self.viscosity - slope)))
 
 
 @dataclass(frozen=True)
