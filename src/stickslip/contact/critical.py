@@ -27,6 +27,10 @@ _DECADES, _PER_DECADE = 9, 4
 """Decades that the search covers on either side of the present value, and its steps in each decade."""
 _STEPS = tuple(2.0**-k for k in range(50, 25, -4))
 """Relative distances from a critical value at which a proof of the regimes is tried, the smallest first."""
+_STRAIGHT = 1e-9
+"""Distance of a margin from a straight line that counts as rounding, relative to 1 or to the margin where the line begins."""
+_ROUGH = 1e-2
+"""Tolerance of a search for the smallest g' that ends at the right minimum, unless another one is nearly as low."""
 
 
 @dataclass(frozen=True)
@@ -64,15 +68,16 @@ def steepest_fall(g: Resistance) -> tuple[float, float]:
     return lowest.rate, lowest.slope
 
 
-def margin(problem: Problem, law_slip: float | None = None) -> float:
+def margin(problem: Problem, law_slip: float | None = None, **tolerance: float) -> float:
     """Return the smallest g'/Z over all slip rates at a law slip (m; default: the initial one).
 
-    It is negative in the irregular regime, and -inf if friction steps down as slip begins. Raises InputError for a block.
+    It is negative in the irregular regime, and -inf if friction steps down as slip begins. Raises InputError for a block. The
+    `tolerance` is that of `lowest_slope`.
     """
     g = resistance(problem, law_slip)
     if not g.law.depends_on_rate:
         return 1.0
-    return -math.inf if g.law.static_excess > 0.0 else steepest_fall(g)[1] / g.damping
+    return -math.inf if g.law.static_excess > 0.0 else lowest_slope(g, **tolerance).slope / g.damping
 
 
 def check_no_contact_mass(problem: Problem, where: str) -> None:
@@ -140,6 +145,9 @@ def nearest_critical(problem: Problem, name: str, law_slip: float | None = None)
         return margin(found.put(value), law_slip)
 
     here = found.value, margin_at(found.value)
+    only = _only_zero(here, lambda value: margin(found.put(value), law_slip, tolerance=_ROUGH))
+    if only is not None:
+        return float(f"{only:.15g}")
     last = [here, here]
     for pair in zip_longest(_walk(found, margin_at, -1), _walk(found, margin_at, 1)):
         for side, one in enumerate(pair):
@@ -148,6 +156,31 @@ def nearest_critical(problem: Problem, name: str, law_slip: float | None = None)
             if (one[1] < 0.0) != (here[1] < 0.0):
                 return float(f"{sign_change(margin_at, *sorted((last[side][0], one[0]))):.15g}")
             last[side] = one
+    return None
+
+
+def _only_zero(here: tuple[float, float], margin_at: Callable[[float], float]) -> float | None:
+    """Return the zero of a margin that is straight in a parameter or in its inverse, as three values show; None for others.
+
+    `here` is the present value and the margin there. A straight line has no other zero.
+    """
+    if here[0] == 0.0 or not math.isfinite(here[1]):
+        return None
+    for power in (-1, 1):
+        try:
+            value, level = here
+            for _ in range(2):  # from far away, rounding hides the zero; from the first one found it does not
+                step = value**power
+                slope = (margin_at((2.0 * step) ** power) - level) / step
+                zero = step - level / slope
+                missed = margin_at(zero**power)
+                if abs(missed) <= _STRAIGHT:
+                    return float((zero - missed / slope) ** power)
+                if abs(missed) > _STRAIGHT * abs(level):
+                    break
+                value, level = zero**power, missed
+        except (InputError, ArithmeticError):
+            continue
     return None
 
 
@@ -187,8 +220,9 @@ def _walk(found: Parameter, margin_at: Callable[[float], float], way: int) -> It
         if not taken(value):  # a refusal at 0 needs no bisection, because the progression has come close enough to it
             last = walked[-1][0] if walked else found.value
             yielded = len(walked)
-            if value:
-                sign_change(lambda x: 1.0 if taken(x) else -1.0, last, value)
+            if value:  # the edge itself counts, because the regime may change there
+                edge = sign_change(lambda x: 1.0 if taken(x) else -1.0, last, value)
+                taken(float(f"{edge:.15g}"))
             yield from sorted(walked[yielded:], reverse=way < 0)
             return
         yield walked[-1]
