@@ -1,7 +1,7 @@
 """Critical values: closed forms against the root finder and against a dense scan of slopes."""
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -9,10 +9,13 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import stickslip as ss
+from stickslip.contact import folds, proofs
 from stickslip.contact.branches import branches_of
 from stickslip.contact.critical import critical_normal_stress, margin, steepest_fall
 from stickslip.contact.equation import resistance
 from stickslip.contact.roots import sign_change
+from stickslip.foundation.quantities import quantity
+from stickslip.friction.formula.functions import exp
 
 from .laws import S, Z, closed_critical_value, hyperbolic, slab_problem
 
@@ -56,6 +59,56 @@ def test_uniqueness_tells_the_critical_value_that_the_law_names(name):
     place, value = closed_critical_value(CLOSED[name])
     assert told.critical_parameter == place == (CLOSED[name].critical or "normal_stress")
     assert told.critical_value == pytest.approx(value, rel=1e-14, abs=0)
+
+
+@pytest.mark.parametrize("rate", [1e-9, 1e-3, 1.0, 1e3, 1e9])
+@pytest.mark.parametrize("exponent", [1, 2, 4])
+def test_the_critical_value_is_told_however_far_it_is(exponent, rate):
+    law = F.PowerStribeck(0.6, 0.4, rate, exponent, viscosity=0.02)
+    value = closed_critical_value(law)[1]
+    assert ss.uniqueness(slab_problem(law)).critical_value == pytest.approx(value, rel=1e-14, abs=0)
+
+
+@pytest.mark.parametrize("law", [F.ExponentialStribeck, F.PowerStribeck])
+@pytest.mark.parametrize("exponent", [1, 2, 4])
+def test_a_first_uniqueness_waits_for_no_compiler(law, exponent, monkeypatch):
+    """All of its bounds are worked out in plain Python, for which a process has patience for 1000."""
+    monkeypatch.setattr(folds, "compiled", None)
+    for static in (0.61, 0.31):
+        monkeypatch.setattr(proofs._Patience, "left", 1000)
+        found = ss.uniqueness(slab_problem(law(static, 0.4, 0.1, exponent)))
+        assert (found.critical_value is None) == (static < 0.4)
+        assert 0 < proofs._Patience.left < 1000
+
+
+def test_the_edge_of_what_a_problem_accepts_can_be_critical():
+    """Static friction may not be below dynamic friction, and the contact is regular where both are equal, to the last bit."""
+    for dynamic in np.random.default_rng(5).uniform(0.1, 0.5, 20).round(6).tolist():
+        law = F.Coulomb(0.6, dynamic)
+        assert ss.uniqueness(slab_problem(law)).critical_value == dynamic
+
+
+@pytest.mark.parametrize("k", [0.2, 0.9, 1.2, 3.0])
+def test_of_two_critical_values_the_one_beside_the_present_value_is_told(k):
+    """Friction falls by 0.5 k exp(-k), which is straight neither in k nor in its inverse."""
+
+    @dataclass(frozen=True)
+    class Both(F.FrictionLaw):
+        kind = "both"
+        critical = "k"
+        k: float = quantity("1", "number")
+
+        @staticmethod
+        def formula(law, u, v):
+            return 0.3 + 0.5 * law.k * exp(-law.k) / (1.0 + v)
+
+        def range(self):
+            return 0.3, 0.3 + 0.5 * self.k * math.exp(-self.k)
+
+    all_values = ss.studies.critical_value(slab_problem(Both(k)), "k").values
+    assert len(all_values) == 2
+    nearest = min(all_values, key=lambda one: abs(math.log(one / k)))
+    assert ss.uniqueness(slab_problem(Both(k))).critical_value == pytest.approx(nearest, rel=1e-13, abs=0)
 
 
 def test_a_critical_parameter_that_does_not_exist_is_one_line():

@@ -27,8 +27,9 @@ _DECADES, _PER_DECADE = 9, 4
 """Decades that the search covers on either side of the present value, and its steps in each decade."""
 _STEPS = tuple(2.0**-k for k in range(50, 25, -4))
 """Relative distances from a critical value at which a proof of the regimes is tried, the smallest first."""
-_STRAIGHT = 1e-9
-"""Distance of a margin from a straight line that counts as rounding, relative to 1 or to the margin where the line begins."""
+_NEAR, _STRAIGHT = 1e-6, 1e-9
+"""Distances of a margin from a straight line with which it may still be one: from far away, where rounding moves the zero of the
+line, and beside that zero."""
 _ROUGH = 1e-2
 """Tolerance of a search for the smallest g' that ends at the right minimum, unless another one is nearly as low."""
 
@@ -144,10 +145,16 @@ def nearest_critical(problem: Problem, name: str, law_slip: float | None = None)
     def margin_at(value: float) -> float:
         return margin(found.put(value), law_slip)
 
+    def roughly(value: float) -> float:
+        try:
+            return margin(found.put(value), law_slip, tolerance=_ROUGH)
+        except InputError:
+            return math.nan
+
     here = found.value, margin_at(found.value)
-    only = _only_zero(here, lambda value: margin(found.put(value), law_slip, tolerance=_ROUGH))
-    if only is not None:
-        return float(f"{only:.15g}")
+    zeros = _zeros_if_straight(here, roughly)
+    if zeros is not None:
+        return next((float(f"{zero:.15g}") for zero in zeros), None)
     last = [here, here]
     for pair in zip_longest(_walk(found, margin_at, -1), _walk(found, margin_at, 1)):
         for side, one in enumerate(pair):
@@ -159,28 +166,31 @@ def nearest_critical(problem: Problem, name: str, law_slip: float | None = None)
     return None
 
 
-def _only_zero(here: tuple[float, float], margin_at: Callable[[float], float]) -> float | None:
-    """Return the zero of a margin that is straight in a parameter or in its inverse, as three values show; None for others.
+def _zeros_if_straight(here: tuple[float, float], margin_at: Callable[[float], float]) -> list[float] | None:
+    """Return the zeros of a margin that is straight in a parameter or in its inverse, at most one; None if it is neither.
 
-    `here` is the present value and the margin there. A straight line has no other zero.
+    `here` is the present value and the margin there. A margin is straight if a third one lies on the line through two others. It is
+    not a number where the problem refuses the value.
     """
-    if here[0] == 0.0 or not math.isfinite(here[1]):
+    if not (1e-100 < abs(here[0]) < 1e100 and math.isfinite(here[1])):
         return None
     for power in (-1, 1):
-        try:
-            value, level = here
-            for _ in range(2):  # from far away, rounding hides the zero; from the first one found it does not
-                step = value**power
-                slope = (margin_at((2.0 * step) ** power) - level) / step
-                zero = step - level / slope
-                missed = margin_at(zero**power)
-                if abs(missed) <= _STRAIGHT:
-                    return float((zero - missed / slope) ** power)
-                if abs(missed) > _STRAIGHT * abs(level):
-                    break
-                value, level = zero**power, missed
-        except (InputError, ArithmeticError):
-            continue
+        value, level = here
+        for _ in range(3):
+            step = value**power
+            slope = (margin_at((2.0 * step) ** power) - level) / step
+            zero = step - level / slope if slope else math.inf
+            missed = margin_at(zero**power) if zero else math.nan
+            if math.isnan(missed):  # the line has no zero among the values that are allowed
+                third = margin_at((4.0 * step) ** power) - level
+                if abs(third - 3.0 * step * slope) <= _NEAR * abs(third):
+                    return []
+                break
+            if abs(missed) <= _STRAIGHT:
+                return [float((zero - missed / slope) ** power)]
+            if abs(missed) > _NEAR * max(1.0, abs(level)):
+                break
+            value, level = zero**power, missed
     return None
 
 

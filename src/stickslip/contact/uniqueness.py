@@ -273,8 +273,6 @@ _kept = lru_cache(maxsize=16)(_determined)
 def _critical(problem: Problem, g: Resistance, slip: float | None) -> tuple[str, float] | None:
     """Return the parameter that the law names and its critical value; the normal stress for other laws."""
     stress, name = critical_normal_stress(g), problem.friction.critical
-    if stress is None and not g.law.static_excess:
-        return None
     value = nearest_critical(problem, name, slip) if name else None
     if value is not None:
         return name, value
