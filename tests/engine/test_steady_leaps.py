@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.creep import stepper
+from stickslip.creep import steady_landing
 from stickslip.creep.steady import Multiplier
 from stickslip.engine_input.limits import PATIENCE
 from stickslip.friction import FrictionLaw
@@ -171,8 +171,8 @@ def test_a_leap_that_lands_wrongly_is_undone(monkeypatch: pytest.MonkeyPatch) ->
     def shifted(run: object, leap: object, deviation: object) -> None:
         write(run, leap, replace(deviation, load_there=deviation.load_there + 5000.0))  # type: ignore[attr-defined,type-var,arg-type]
 
-    write = stepper.write
-    monkeypatch.setattr(stepper, "write", shifted)
+    write = steady_landing.write
+    monkeypatch.setattr(steady_landing, "write", shifted)
     assert len(ss.simulate(CASES["fades at once"], 3.0).creep) == 0
 
 

@@ -1,1 +1,1 @@
-"""Leaps over creep of a slab under a law of slip: the theory, the pattern of the load, the landing, and when to leap."""
+"""Leaps over creep under a law of slip, and over slow and steady sliding: theory, landing, and when to leap."""

@@ -27,7 +27,7 @@ import math
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -35,14 +35,12 @@ from stickslip.contact.equation import Resistance
 from stickslip.contact.folds import bounds_of
 from stickslip.contact.sliding import Sliding
 from stickslip.contact.steady import steady_slidings
+from stickslip.creep.leaping_run import LeapingRun
 from stickslip.creep.pattern import Pattern, monotone_parts
 from stickslip.engine.enclosure.formula import bound_at_slips, bound_friction
 from stickslip.engine.state.layout import TERMS, Branch, Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
-
-if TYPE_CHECKING:
-    from stickslip.run.session import Session
 
 SHORTEST_LEAP = 16
 """Fewest round trips of a leap that is worth its cost."""
@@ -89,7 +87,7 @@ class Deviation:
     share: float  # largest deviation of a state, as a share of the state
 
     @classmethod
-    def of(cls, run: Session, rate: float, load: float, states: Floats) -> Deviation:
+    def of(cls, run: LeapingRun, rate: float, load: float, states: Floats) -> Deviation:
         """Return what the last round trip of a run is beyond steady sliding."""
         rows = slice(int(run.count.previous_from), int(run.count.previous_to))
         rates, loads = run.store.rate[rows].copy(), run.store.load[rows].copy()
@@ -137,7 +135,12 @@ class SteadyLeaps:
     problem: Problem
     tolerance: float
 
-    def leap(self, run: Session, most: int) -> tuple[Leap, Deviation] | None:
+    @property
+    def is_stable(self) -> bool:
+        """True if the contact slides steadily at some rate, and a small deviation from it fades."""
+        return any(sliding.stable is True for sliding in self._slidings)
+
+    def leap(self, run: LeapingRun, most: int) -> tuple[Leap, Deviation] | None:
         """Return a leap over at most so many round trips, as long as the tolerance allows; None if none is worth its cost."""
         for sliding in self._near(run):
             deviation = Deviation.of(run, sliding.rate, self._load(sliding), self._states(sliding))
@@ -151,7 +154,7 @@ class SteadyLeaps:
                 trips //= 2
         return None
 
-    def _near(self, run: Session) -> Iterator[Sliding]:
+    def _near(self, run: LeapingRun) -> Iterator[Sliding]:
         """Return the steady sliding motions, all in the direction in which the whole last round trip has slipped."""
         store, rows = run.store, slice(int(run.count.previous_from), int(run.count.previous_to))
         modes, pieces, mode = store.mode[rows], store.law_piece[rows], int(run.count.mode)
@@ -197,7 +200,7 @@ class SteadyLeaps:
         mu = bound_friction(bounds.formulas, piece, max(low, 0.0), high)
         return normal * float(mu[2]), normal * float(mu[3])
 
-    def _of_length(self, run: Session, sliding: Sliding, deviation: Deviation, trips: int) -> Leap | None:
+    def _of_length(self, run: LeapingRun, sliding: Sliding, deviation: Deviation, trips: int) -> Leap | None:
         """Return the leap over so many round trips, None if what a deviation does in them is not known."""
         body, law = self.problem.body, self.problem.friction
         piece = int(run.store.law_piece[deviation.rows][0])
@@ -210,7 +213,7 @@ class SteadyLeaps:
             return self._dropped(sliding, deviation, trips)
         return None
 
-    def _multiplied(self, run: Session, sliding: Sliding, deviation: Deviation, trips: int, piece: int) -> Leap | None:
+    def _multiplied(self, run: LeapingRun, sliding: Sliding, deviation: Deviation, trips: int, piece: int) -> Leap | None:
         """Return a leap of a contact without mass: deviations are multiplied by a number in each round trip."""
         body, rate, later = self.problem.body, abs(sliding.rate), trips + 1
         slope, _ = self._slopes(rate, rate, piece)
@@ -245,7 +248,7 @@ class SteadyLeaps:
         error += trips * turn * max(growth * deviation.largest_rate - rate, 0.0)  # it rests where the rate would be below zero
         return Leap(trips, self._kept(factor, deviation), trips * turn * rate + sign * beyond, error)
 
-    def _keeps_branch(self, run: Session, deviation: Deviation, growth: float) -> bool:
+    def _keeps_branch(self, run: LeapingRun, deviation: Deviation, growth: float) -> bool:
         """Return True if the selection rule keeps the branch at all loads of deviations that have grown by a factor."""
         branch, most = Branch(run.setup.branches[run.count.branch]), growth * deviation.largest_load
         there = deviation.load_there
@@ -253,7 +256,7 @@ class SteadyLeaps:
         rounding = BELOW_REST * deviation.largest_load
         return bool(branch.keep_from - rounding <= seen - most and seen + most <= branch.keep_to + rounding)
 
-    def _repeated(self, run: Session, sliding: Sliding, deviation: Deviation, trips: int, piece: int) -> Leap | None:
+    def _repeated(self, run: LeapingRun, sliding: Sliding, deviation: Deviation, trips: int, piece: int) -> Leap | None:
         """Return a leap of a block that swings with its own period, as if friction did not vary with the slip rate."""
         body, rate, turn = self.problem.body, abs(sliding.rate), self.problem.round_trip_time
         if body.damping or turn != body.round_trip_time:

@@ -4,23 +4,22 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from stickslip.creep.averaged import AveragedCreep, Strength
 from stickslip.creep.landing import Piece, landing
+from stickslip.creep.leaping_run import LeapingRun
 from stickslip.creep.pattern import Pattern, monotone_parts
 from stickslip.creep.planner import Plan, Planner, hermite
+from stickslip.creep.slow_landing import SlowLanding
+from stickslip.creep.slow_leaps import SlowLeaps
 from stickslip.creep.steady import SHORTEST_LEAP, SteadyLeaps
-from stickslip.creep.steady_landing import write
+from stickslip.creep.steady_landing import SteadyLanding
 from stickslip.engine.state.layout import NEVER, TERMS, Counts, Floats, HistoryPiece, Incoming, State, Stop, Store
 from stickslip.engine_input.limits import PATIENCE, leaps_over
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.history import NO_LEAPS
-
-if TYPE_CHECKING:
-    from stickslip.run.session import Session
 
 
 def seen(load: Floats, strength: float, direction: int) -> Floats:
@@ -105,6 +104,8 @@ A run that leaps automatically may slide for ever and never creep, so attempts m
 first leap. After that they are frequent again: if 128 round trips of the creep after a pulse are computed exactly, the run ends
 in an event storm.
 """
+LONGEST_SPENT = 4096
+"""Largest number of round trips that are waited for because a search for a leap took as long as they do."""
 FAST = 1000.0
 """Largest slip rate, as a multiple of the pull rate, at which a leap is attempted: no tolerance would accept a faster creep."""
 CHECKED = 1
@@ -131,11 +132,11 @@ class CreepLeaps:
     def __post_init__(self) -> None:
         self.impedance, self.speed = self.problem.body.impedance, abs(self.problem.first_pull_rate)
         self.direction = 1 if self.problem.first_pull_rate > 0.0 else -1
-        self.steady = SteadyLeaps(self.problem, self.tolerance) if leaps_over(self.problem) == "steady sliding" else None
+        self.over, self.steady = leaps_over(self.problem), SteadyLeaps(self.problem, self.tolerance)
 
     def begin(self, count: Counts) -> None:
         """Have the engine pause after the first round trip, or when slip has lasted."""
-        if self.patient or self.steady is not None:
+        if self.patient or self.over != "creep":
             count.creep_in, count.pause_for = PATIENCE if self.patient else 1, 1
             return
         count.pause_at = count.pause_for = 1
@@ -152,14 +153,14 @@ class CreepLeaps:
         """Return True if the engine has paused for an attempt to leap."""
         return bool(count.pause_at <= count.trip <= last_trip and count.source == 0 and count.ready == Incoming.NONE)
 
-    def at_row_end(self, run: Session) -> None:
+    def at_row_end(self, run: LeapingRun) -> None:
         """Leap if there is creep, and set when to try again.
 
         The run is at the end of a round trip; round trip `pause_at` comes next.
         """
         count = run.count
-        if self.steady is not None:
-            self._leap_while_steady(run, self.steady)
+        if self.over != "creep":
+            self._leap_while_sliding(run)
             return
         if not self._creeps(run):
             count.pause_at, count.pause_for = count.trip + 1, 1
@@ -179,40 +180,53 @@ class CreepLeaps:
         unproven = self.patient and count.creep_leaps == 0
         count.pause_for = min(2 * count.pause_for, LONGEST_FIRST_WAIT if unproven else LONGEST_WAIT)
 
-    def _leap_while_steady(self, run: Session, steady: SteadyLeaps) -> None:
-        """Leap if the contact slides steadily, and set after how many round trips with slip to look again.
+    def _leap_while_sliding(self, run: LeapingRun) -> None:
+        """Leap if the contact slides steadily or slowly, and set after how many round trips with slip to look again.
 
         The engine does not pause meanwhile, so that it may pass over echoes under which nothing slips.
         """
         count, room = run.count, int(run.last[0] - CHECKED - 2 - run.count.trip)
-        found = steady.leap(run, room) if room >= SHORTEST_LEAP else None
-        if found is not None:
-            leap, deviation = found
-            if leap.trips == room and count.to_the_end == 0:
-                run.cut_at_end()
-            before = run.snapshot()
-            begun = int(count.trip)
-            write(run, leap, deviation)
-            self.taken[count.creep_leaps :] = [(begun, leap.trips, leap.error, leap.error / abs(deviation.rate_there))]
-            count.creep_leaps += 1
-            count.pause_at = count.trip + CHECKED
-            expected, turn = (
-                float(run.state.slip_now) + self.problem.round_trip_time * deviation.rate_there,
-                self.problem.round_trip_time,
-            )
-            allowed = max(leap.error, self.tolerance * abs(expected)) + turn * abs(leap.factor) * deviation.largest_rate
-            if not (self._goes_on(run, int(count.trip) + CHECKED) and abs(float(run.state.slip_now) - expected) <= allowed):
-                run.restore(before)
-                found = None
+        found: SteadyLanding | SlowLanding | None = self._steady_landing(run, room)
+        at_end, cost = found is not None and found.trips == room, 0
+        if found is None and self.over == "slow sliding":
+            leaps = SlowLeaps(self.problem, self.tolerance, self.steady.is_stable)
+            leap = leaps.leap(run, room)
+            found, at_end, cost = leap and SlowLanding(leap), leaps.at_end, leaps.cost
+        if at_end and count.to_the_end == 0:
+            run.cut_at_end()
+        lands = found is not None and self._lands(run, found)
         count.pause_at, count.creep_in = NEVER, count.pause_for
-        count.pause_for = 1 if found is not None else min(2 * count.pause_for, LONGEST_FIRST_WAIT)
+        spent = min(cost, LONGEST_SPENT) - (found.trips if found is not None and lands else 0)
+        count.pause_for = max(1 if lands else min(2 * count.pause_for, LONGEST_FIRST_WAIT), spent)
+
+    def _steady_landing(self, run: LeapingRun, most: int) -> SteadyLanding | None:
+        """Return a leap of at most so many round trips over steady sliding, or None."""
+        if most < SHORTEST_LEAP or (self.over == "slow sliding" and not self.steady.is_stable):
+            return None
+        found = self.steady.leap(run, most)
+        return None if found is None else SteadyLanding(*found)
+
+    def _lands(self, run: LeapingRun, found: SteadyLanding | SlowLanding) -> bool:
+        """Leap, compute exact round trips after the landing, and return True if they continue as the leap predicts."""
+        count = run.count
+        before, begun = run.snapshot(), int(count.trip)
+        found.write(run)
+        self.taken[count.creep_leaps :] = [(begun, found.trips, *found.errors)]
+        count.creep_leaps += 1
+        count.pause_at = count.trip + CHECKED
+        expected, missed = found.expected(run, CHECKED)
+        allowed = max(missed, self.tolerance * abs(expected))
+        if self._goes_on(run, int(count.trip) + CHECKED) and abs(float(run.state.slip_now) - expected) <= allowed:
+            return True
+        run.restore(before)
+        return False
 
     # ---- before -------------------------------------------------------------------------------------------------------------
 
     def _previous(self, count: Counts) -> slice:
         return slice(int(count.previous_from), int(count.previous_to))
 
-    def _creeps(self, run: Session) -> bool:
+    def _creeps(self, run: LeapingRun) -> bool:
         """Return True if the last round trip came just before this one and slipped slowly, in the direction of the driver only."""
         rows = self._previous(run.count)
         modes, rate = run.store.mode[rows], run.store.rate[rows]
@@ -224,19 +238,19 @@ class CreepLeaps:
             and not (modes == -self.direction).any()
         )
 
-    def _planner(self, run: Session, most: int) -> Planner:
+    def _planner(self, run: LeapingRun, most: int) -> Planner:
         """Return the planner of a leap of at most the given number of round trips from the coming one on."""
         averaged = self._averaged(run)
         fastest = max((float(averaged.pattern.ends[1].max()) - averaged.strength(0.0)) / self.impedance, 0.0)
         return Planner(averaged, abs(float(run.state.slip_now)), self.tolerance, fastest, self._before(run), most)
 
-    def _before(self, run: Session) -> Floats:
+    def _before(self, run: LeapingRun) -> Floats:
         """Return the last round trip in the form that `AveragedCreep.swing` takes."""
         rows, store = self._previous(run.count), run.store
         slip = np.append(store.slip[rows], run.state.slip_now)
         return np.stack([store.phase_to[rows], self.direction * (slip[1:] - slip[0])])
 
-    def _averaged(self, run: Session) -> AveragedCreep:
+    def _averaged(self, run: LeapingRun) -> AveragedCreep:
         """Return the averaged creep from the coming round trip on."""
         rows, store = self._previous(run.count), run.store
         load = seen(store.load[rows] - 2.0 * self.impedance * store.rate[rows], self.problem.strength, self.direction)
@@ -248,7 +262,7 @@ class CreepLeaps:
 
     # ---- the leap -----------------------------------------------------------------------------------------------------------
 
-    def _leap(self, run: Session, averaged: AveragedCreep, plan: Plan) -> bool:
+    def _leap(self, run: LeapingRun, averaged: AveragedCreep, plan: Plan) -> bool:
         """Leap, compute exact round trips after the landing, and return True if they continue as the leap predicts."""
         begun, slip = int(run.count.trip), float(run.state.slip_now)
         self._write(run, averaged, plan)
@@ -262,7 +276,7 @@ class CreepLeaps:
         tolerance = max(self.tolerance * (abs(slip) + expected), plan.error)
         return abs(self.direction * (0.5 * (first + now) - slip) - expected) <= tolerance
 
-    def _write(self, run: Session, averaged: AveragedCreep, plan: Plan) -> None:
+    def _write(self, run: LeapingRun, averaged: AveragedCreep, plan: Plan) -> None:
         """Write the leap as pieces of the history, and set the engine to its end."""
         pieces = landing(averaged, plan.states[-1])
         run.reserve(run.length + len(plan.states) + len(pieces))
@@ -275,7 +289,7 @@ class CreepLeaps:
         count.previous_from, count.previous_to, count.trip_from = landed_from, count.length, count.length
         count.trip, count.pause_at = landed_on + 1, landed_on + 1 + CHECKED
 
-    def _move(self, run: Session, end: Piece, sign: float) -> None:
+    def _move(self, run: LeapingRun, end: Piece, sign: float) -> None:
         """Move the contact to the end of the last piece of a landing."""
         state, count, grown = run.state, run.count, end.slip + end.grown
         state.slip_now += self.direction * grown
@@ -284,7 +298,7 @@ class CreepLeaps:
         count.mode = self.direction if end.slips else 0
         count.source = count.moved = count.trips_at_rest = count.leaving_rest = count.jump = count.cause = count.stalled = 0
 
-    def _goes_on(self, run: Session, row: int) -> bool:
+    def _goes_on(self, run: LeapingRun, row: int) -> bool:
         """Compute exact round trips up to a row; return False if a rest that is leaped over, or a failure, comes first."""
         while (code := run.step(STEPS)) in (Stop.NONE, Stop.FULL):
             if code == Stop.FULL:

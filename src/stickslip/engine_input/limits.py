@@ -35,6 +35,9 @@ PER_ROOT_RTOL = 0.1
 TIGHTEST, LOOSEST = 1e-6, 1e-3
 """Bounds of the automatic creep_rtol: tighter ones leave too many round trips to compute, looser ones have not been measured."""
 
+Over = Literal["creep", "slow sliding", "steady sliding", ""]
+"""What a run may leap over: creep under a law of slip, slow or only steady sliding, or nothing."""
+
 
 def creep_tolerance(problem: Problem, creep_rtol: float | None, rtol: float) -> float:
     """Return the tolerance of leaps over creep in a run: the given or the automatic one, or 0 if there are no leaps."""
@@ -43,19 +46,24 @@ def creep_tolerance(problem: Problem, creep_rtol: float | None, rtol: float) -> 
     return min(max(PER_ROOT_RTOL * math.sqrt(rtol), TIGHTEST), LOOSEST) if leaps_over(problem) else 0.0
 
 
-def leaps_over(problem: Problem) -> Literal["creep", "steady sliding", ""]:
-    """Return what a run of a problem may leap over: creep under a law of slip, steady sliding, or nothing."""
+def leaps_over(problem: Problem) -> Over:
+    """Return what a run of a problem may leap over."""
     rigid = problem.body.is_driven_rigidly
     return _but_pull(problem) if problem.pull_rate != 0.0 or not rigid else ""
 
 
-def _but_pull(problem: Problem) -> Literal["creep", "steady sliding", ""]:
+def _but_pull(problem: Problem) -> Over:
     """Return the same, whatever the pull rate is, which may differ between the members of a batch."""
     if not missing_for_creep(problem):
         return "creep"
     law = problem.friction
     changes = problem.varies or (problem.far_stress_rate != 0.0 and not problem.body.is_driven_rigidly)
-    return "" if changes or law.depends_on_slip or not (law.depends_on_rate or law.states) else "steady sliding"
+    if changes or law.depends_on_slip or not (law.depends_on_rate or law.states):
+        return ""
+    body = problem.body
+    never_rests = law.creeps and bool(law.states) and len(law.pieces) == 1
+    slow = never_rests and body.has_waves and body.is_driven_rigidly and not body.has_inertia
+    return "slow sliding" if slow else "steady sliding"
 
 
 def check_creep_rtol(problem: Problem, creep_rtol: float | None, where: str, name: str = "creep_rtol") -> float | None:

@@ -70,19 +70,30 @@ def creep_table(history: History) -> pd.DataFrame:
 
 
 def creep_note(history: History) -> str:
-    """Return one line on the leaps over creep or steady sliding in a history; empty if there are none."""
+    """Return one line on the leaps over creep, or steady or slow sliding, in a history; empty if there are none."""
     if not len(history.creep):
         return ""
     leaps, (row, trips, error, delay) = len(history.creep), history.creep.T
-    steady = leaps_over(history.problem) == "steady sliding"
-    over = f"{leaps} leap{'s' * (leaps > 1)} over {int(trips.sum())} round trips{' of steady sliding' * steady}"
+    passed = leaps_over(history.problem)
+    over = f"{leaps} leap{'s' * (leaps > 1)} over {int(trips.sum())} round trips{f' of {passed}' * (passed != 'creep')}"
     note = f"{over}, error at most {error.max():.1e} m of slip, {delay.max():.3g} s of time"
     ends = (row[-1] + trips[-1] + NEAR_THE_END) * history.round_trip_time >= history.duration
-    return f"{note}; {_lasts(history.problem)}" if steady and ends else note
+    return f"{note}; {_lasts(history.problem)}" if ends and _slides_steadily(history) else note
 
 
 NEAR_THE_END = 8
 """Number of round trips after a leap within which the run ends if the leap was cut by its end."""
+
+
+STEADY = 1e-3
+"""Largest deviation of the slip rate from that of steady sliding, as a share of it, in sliding that is called steady."""
+
+
+def _slides_steadily(history: History) -> bool:
+    """Return True if a history that leaps over sliding ends in steady sliding."""
+    over, rate = leaps_over(history.problem), float(history.store.rate[-1].sum())
+    steady = (one.rate for one in steady_slidings(history.problem).slidings)
+    return over == "steady sliding" or (over != "creep" and any(abs(rate - one) <= STEADY * abs(one) for one in steady))
 
 
 def _lasts(problem: Problem) -> str:

@@ -1,0 +1,46 @@
+"""What leaps need of the run that they are part of."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from stickslip.engine.state.layout import Counts, Setup, State, Store
+from stickslip.problem.problem import Problem
+from stickslip.trajectory.status import Checkpoint
+
+
+class LeapingRun(Protocol):
+    """A run between two calls of the engine, with its history; its last pieces are those of the round trip just past."""
+
+    problem: Problem
+    setup: Setup
+    state: State
+    count: Counts
+    store: Store
+    last: tuple[int, float]
+    """Round trip and phase (s) at which the run ends."""
+
+    @property
+    def length(self) -> int:
+        """The number of pieces that the history has."""
+        ...
+
+    def reserve(self, pieces: int) -> None:
+        """Make sure that there is room for at least so many pieces."""
+        ...
+
+    def step(self, budget: int) -> int:
+        """Call the engine once, for so many steps at most, and return a code of `Stop`."""
+        ...
+
+    def cut_at_end(self) -> None:
+        """Let the end of the run cut what comes next."""
+        ...
+
+    def snapshot(self) -> Checkpoint:
+        """Return a checkpoint of the present state."""
+        ...
+
+    def restore(self, checkpoint: Checkpoint) -> None:
+        """Go back to a checkpoint."""
+        ...

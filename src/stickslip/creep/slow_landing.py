@@ -1,0 +1,103 @@
+"""Landing of a leap over slow sliding: the way and the last round trip as pieces of the history, and the engine at its end."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from stickslip.creep.leaping_run import LeapingRun
+from stickslip.creep.slow import BOTH, NODES, PLACES, RoundTrip, to_powers
+from stickslip.creep.slow_leaps import SlowLeap
+from stickslip.creep.steady import integrals
+from stickslip.creep.steady_landing import continue_after, write_piece
+from stickslip.engine.state.layout import Floats
+
+
+@dataclass(frozen=True)
+class SlowLanding:
+    """A leap over slow sliding, ready to be written."""
+
+    leap: SlowLeap
+
+    @property
+    def trips(self) -> int:
+        """The number of round trips that are leaped over."""
+        return self.leap.trips
+
+    @property
+    def errors(self) -> tuple[float, float]:
+        """The bound of the error of slip (m), and that as a time (s)."""
+        per_trip = float(self.leap.motion.at(self.leap.landing).change[BOTH, -1])
+        return self.leap.error, self.leap.error / per_trip * self.leap.motion.offsets.period
+
+    def write(self, run: LeapingRun) -> None:
+        """Write the leap into the history of a run, and set the engine to its end."""
+        leap, first = self.leap, run.length + len(self.leap.steps)
+        pieces = len(leap.motion.offsets.phase)
+        run.reserve(first + pieces)
+        begun = int(run.count.trip)
+        self._write_way(run)
+        self._write_round_trip(run, first, begun + leap.trips)
+        end = leap.motion.later(leap.landing, 1)
+        states = end[BOTH, leap.motion.size : -1] + leap.motion.at(end).state_begins[BOTH]
+        continue_after(run, begun + leap.trips, first, first + pieces, states)
+
+    def expected(self, run: LeapingRun, trips: int) -> tuple[float, float]:
+        """Return the slip (m) that is expected some exact round trips after the landing, and by how much it may differ."""
+        motion, sign = self.leap.motion, int(run.count.mode)
+        landed, end = motion.later(self.leap.landing, 1), motion.later(self.leap.landing, 1 + trips)
+        return float(run.state.slip_now) + sign * (self._slip(end) - self._slip(landed)), self.leap.error
+
+    def _slip(self, y: Floats) -> float:
+        """Return the slip since the leap began (m) where a round trip begins."""
+        return float(y[BOTH, -1] + self.leap.motion.at(y).slip_begins[BOTH])
+
+    def _write_way(self, run: LeapingRun) -> None:
+        """Write the averaged motion, a piece for each step of the integration, and move the contact to its end."""
+        motion, trip, last = self.leap.motion, int(run.count.trip), int(run.count.previous_to) - 1
+        turn, rows = motion.offsets.period, []
+        for step in self.leap.steps:
+            moments = [step.between(step.begin + place * (step.end - step.begin))[BOTH] for place in PLACES]
+            rows.append([to_powers(one) for one in motion.means(np.array(moments))])
+        ends = np.array([(step.begin, step.end) for step in self.leap.steps]) * turn
+        ends[-1, 1] += np.spacing((trip + self.leap.trips) * turn)  # no gap before the next round trip
+        grown = np.array([rate @ (1.0 / np.arange(1, NODES + 1)) for _, rate, _ in rows]) * (ends[:, 1] - ends[:, 0])
+        stretch = self._slip(self.leap.landing) / grown.sum()  # that slip has no jump where the averaged motion begins or ends
+        for k, (load, rate, states) in enumerate(rows):
+            n = int(run.count.length) + k
+            write_piece(run, n, last, (trip, *ends[k]))
+            self._write_motion(run, n, load, stretch * rate, states)
+            self._move(run, stretch * grown[k])
+
+    def _write_round_trip(self, run: LeapingRun, first: int, trip: int) -> None:
+        """Write the round trip on which the leap lands, with the pieces of the last one, and move the contact to its end."""
+        motion, store, last = self.leap.motion, run.store, int(run.count.previous_to) - 1
+        there = RoundTrip(motion, self.leap.landing, motion.later(self.leap.landing, 1))
+        states = there.states()[BOTH] + there.at_begin.ripple[:, BOTH]
+        rate = np.exp(there.log_rate()[BOTH] + there.at_begin.quicker[BOTH])
+        load = motion.friction(rate, states) + run.problem.body.impedance * rate
+        for k, ends in enumerate(pairwise(motion.offsets.edges.tolist())):
+            n, here = first + k, slice(k * NODES, (k + 1) * NODES)
+            write_piece(run, n, last, (trip, *ends))
+            self._write_motion(run, n, *(to_powers(one) for one in (load[here], rate[here], states[:, here].T)))
+            self._move(run, abs(float(integrals(store.rate[n : n + 1], store.speed[n : n + 1], store.bend[n : n + 1])[0])))
+
+    def _write_motion(self, run: LeapingRun, n: int, load: Floats, rate: Floats, states: Floats) -> None:
+        """Write polynomials of load (Pa), slip rate (m/s) and states into piece n; the first two in the direction of slip."""
+        store, sign = run.store, int(run.count.mode)
+        for row, values in (
+            (store.load[n], sign * load),
+            (store.rate[n], sign * rate),
+            *zip(store.state[n], states.T, strict=True),
+        ):
+            row[:] = 0.0
+            row[:NODES] = values
+        store.load[n, 0] -= run.problem.strength
+
+    def _move(self, run: LeapingRun, grown: float) -> None:
+        """Move the contact on by a slip (m) in its direction."""
+        sign = int(run.count.mode)
+        run.state.slip_now += sign * grown
+        run.state.law_slip += (sign if run.problem.friction.counts == "net" else 1) * grown
