@@ -28,9 +28,10 @@ class SlowLanding:
 
     @property
     def errors(self) -> tuple[float, float]:
-        """The bound of the error of slip (m), and that as a time (s)."""
-        per_trip = float(self.leap.motion.at(self.leap.landing).change[BOTH, -1])
-        return self.leap.error, self.leap.error / per_trip * self.leap.motion.offsets.period
+        """The bound of the error of slip (m), and that as a time (s): at the slip rate there, or the driver's if that is larger."""
+        motion = self.leap.motion
+        rate = float(motion.at(self.leap.landing).change[BOTH, -1]) / motion.offsets.period
+        return self.leap.error, self.leap.error / max(rate, motion.speed)
 
     def write(self, run: LeapingRun) -> None:
         """Write the leap into the history of a run, and set the engine to its end."""

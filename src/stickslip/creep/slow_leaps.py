@@ -35,7 +35,7 @@ FEWEST_STEPS, MOST_STEPS = 10, 250
 RESOLVED = 0.1
 """Share of the tolerance to which slip rates are resolved where several pieces of a round trip are followed as one."""
 FADED = 0.1
-"""Share of the tolerance by which slip rates differ from that of stable steady sliding where the leap ends: others begin there."""
+"""Share of the tolerance within which slip rates and states are taken for stable steady sliding: other leaps begin there."""
 
 
 class Step(NamedTuple):
@@ -66,8 +66,8 @@ class SlowLeaps:
 
     problem: Problem
     tolerance: float
-    has_rest: bool
-    """True if steady sliding at the pull rate is stable: it is left to the leaps over steady sliding."""
+    steady: Floats | None
+    """States of steady sliding at the pull rate if that is stable: it is left to the leaps over steady sliding."""
     slipped: float = 0.0  # m
     quickest: float = 0.0  # largest pace so far: see `Slow`
     error: float = 0.0  # of the slip at the last state that was examined, m
@@ -147,8 +147,10 @@ class SlowLeaps:
 
     def _has_faded(self, y: Floats) -> bool:
         """Return True if nothing is left but stable steady sliding."""
-        off = np.abs(y[BOTH, : self.motion.size] - math.log(self.motion.speed)).max()
-        return self.has_rest and bool(off <= FADED * self.tolerance)
+        if self.steady is None:
+            return False
+        faster, beyond = y[BOTH, : self.motion.size] - math.log(self.motion.speed), y[BOTH, self.motion.size : -1] - self.steady
+        return bool(max(np.abs(faster).max(), np.abs(beyond).max()) <= FADED * self.tolerance)
 
     def _is_slow(self, y: Floats) -> bool:
         """Return True if the motion is slow in a state, and its error is allowed."""

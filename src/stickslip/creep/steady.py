@@ -136,9 +136,9 @@ class SteadyLeaps:
     tolerance: float
 
     @property
-    def is_stable(self) -> bool:
-        """True if the contact slides steadily at some rate, and a small deviation from it fades."""
-        return any(sliding.stable is True for sliding in self._slidings)
+    def stable_states(self) -> Floats | None:
+        """The states of friction, as the formulas use them, in a steady sliding that is stable; None without one."""
+        return next((self._states(sliding) for sliding in self._slidings if sliding.stable is True), None)
 
     def leap(self, run: LeapingRun, most: int) -> tuple[Leap, Deviation] | None:
         """Return a leap over at most so many round trips, as long as the tolerance allows; None if none is worth its cost."""

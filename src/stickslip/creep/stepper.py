@@ -189,9 +189,9 @@ class CreepLeaps:
         found: SteadyLanding | SlowLanding | None = self._steady_landing(run, room)
         at_end, cost = found is not None and found.trips == room, 0
         if found is None and self.over == "slow sliding":
-            leaps = SlowLeaps(self.problem, self.tolerance, self.steady.is_stable)
+            leaps = SlowLeaps(self.problem, self.tolerance, self.steady.stable_states)
             leap = leaps.leap(run, room)
-            found, at_end, cost = leap and SlowLanding(leap), leaps.at_end, leaps.cost
+            found, at_end, cost = None if leap is None else SlowLanding(leap), leaps.at_end, leaps.cost
         if at_end and count.to_the_end == 0:
             run.cut_at_end()
         lands = found is not None and self._lands(run, found)
@@ -201,7 +201,7 @@ class CreepLeaps:
 
     def _steady_landing(self, run: LeapingRun, most: int) -> SteadyLanding | None:
         """Return a leap of at most so many round trips over steady sliding, or None."""
-        if most < SHORTEST_LEAP or (self.over == "slow sliding" and not self.steady.is_stable):
+        if most < SHORTEST_LEAP or (self.over == "slow sliding" and self.steady.stable_states is None):
             return None
         found = self.steady.leap(run, most)
         return None if found is None else SteadyLanding(*found)
