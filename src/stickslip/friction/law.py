@@ -117,13 +117,10 @@ class FrictionLaw(LawContract):
         `u` is the slip (m) as the law counts it, `v` the magnitude of the slip rate (m/s), where 0 means the limit v = 0+, and `w`
         the state in the form that the formulas use (`inner_state`); for several states it is an array with one more axis in front.
         """
-        given = (np.asarray(one, float) for one in (u, v, *self.each_state(w)))
-        slip, rate, *states = np.broadcast_arrays(*given)
-        piece = self.piece_at(slip, rate)
+        slip, rate, *states = self._broadcast(u, v, w)
         values = np.empty(slip.shape)
         with np.errstate(over="ignore", under="ignore"):  # exp(-v / 1e-9) may underflow; in a denominator exp(v / 1e-9) overflows
-            for i in np.unique(piece).tolist():
-                chosen = piece == i
+            for i, chosen in self._by_piece(slip, rate):
                 there = one_argument([state[chosen] for state in states])
                 values[chosen] = self.piece_coefficient(i, slip[chosen], rate[chosen], there)
         return values
@@ -137,15 +134,23 @@ class FrictionLaw(LawContract):
 
         The arguments are those of `coefficient`. The derivatives are exact but for rounding.
         """
-        given = (np.asarray(one, float) for one in (u, v, *self.each_state(w)))
-        slip, rate, *states = np.broadcast_arrays(*given)
-        piece, trees = self.piece_at(slip, rate), self.trees()
-        found = np.empty((2 + len(states), *slip.shape))
-        for i in np.unique(piece).tolist():
-            chosen = piece == i
+        slip, rate, *states = self._broadcast(u, v, w)
+        found, trees = np.empty((2 + len(states), *slip.shape)), self.trees()
+        for i, chosen in self._by_piece(slip, rate):
             there = (one[chosen] for one in (slip, rate, *states))
             found[:, chosen] = value_and_slopes(trees[i], self.numbers(i), *there)[1]
         return found
+
+    def _broadcast(self, u: ArrayLike, v: ArrayLike, w: ArrayLike) -> Sequence[NDArray[np.float64]]:
+        given = [np.asarray(one, float) for one in (u, v, *self.each_state(w))]
+        return given if all(one.shape == given[0].shape for one in given) else np.broadcast_arrays(*given)
+
+    def _by_piece(self, slip: NDArray[np.float64], rate: NDArray[np.float64]) -> list[tuple[int, NDArray[np.bool_]]]:
+        """Return each piece that applies somewhere, and where."""
+        if len(self.pieces) == 1:
+            return [(0, np.ones(slip.shape, bool))]
+        piece = self.piece_at(slip, rate)
+        return [(i, piece == i) for i in np.unique(piece).tolist()]
 
     # ---- properties -----------------------------------------------------------------------------------------------------------
 

@@ -44,12 +44,14 @@ class Expression:
 
     def __eq__(self, other: object) -> bool:
         """Return True if two formulas are the same tree; refuse a comparison with a number, which is a branch on a value."""
+        if self is other:
+            return True
         if isinstance(other, int | float | np.number):
             self._refuse()
-        if not isinstance(other, Expression):
+        if not isinstance(other, Expression) or hash(self) != hash(other):
             return False
         ours, theirs = ((node.operation, node.name, node.value) for node in (self, other))
-        return self is other or (hash(self) == hash(other) and ours == theirs and self.arguments == other.arguments)
+        return ours == theirs and self.arguments == other.arguments
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Rebuild a copy from its fields, so that another process computes its own hash: hashes of texts differ there."""
