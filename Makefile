@@ -9,13 +9,16 @@ PIP = $(BIN)/python -m pip --disable-pip-version-check --quiet
 # process of the tests, and five for each command that they start.
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: paper test browser lint bench site oldest newest lock clean
+.PHONY: paper test browser lint compiled bench site oldest newest lock clean
 
 paper: $(VENV)/.installed
 	$(BIN)/stickslip paper --out paper
 
-# The tests run in as many processes as there are cores; threads of linear algebra would only compete with them.
-test: lint browser
+# The tests run in as many processes as there are cores; threads of linear algebra would only compete with them. While one core checks
+# the source, another one compiles what most tests need of the engine, and the tests: all of these processes would begin with that.
+test: $(VENV)/.installed-test
+	$(MAKE) --jobs=2 lint compiled
+	$(MAKE) browser
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -q --numprocesses auto --dist worksteal
 
 # The explorer is tested in a real browser; where none can be had, this says so and those tests are skipped.
@@ -26,6 +29,10 @@ lint: $(VENV)/.installed-test
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+
+compiled: $(VENV)/.installed-test
+	$(BIN)/python -m tests.compile_first
+	$(BIN)/python -m pytest -q --collect-only > /dev/null
 
 bench: $(VENV)/.installed-test
 	$(PIP) install -e ".[bench]"

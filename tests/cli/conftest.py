@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-import stickslip as ss
 from stickslip.cli.main import main
+from tests import compile_first
 
 
 @dataclass(frozen=True)
@@ -20,9 +20,7 @@ class Outcome:
 @pytest.fixture(scope="session", autouse=True)
 def compiled_engine() -> None:
     """Compile the engine and its parts before any test looks at what a command says on standard error."""
-    for name in ("fig6-slab", "rate-and-state-block"):
-        repr(ss.simulate(name))  # with events and all else that a summary compiles
-    ss.sweep("fig6-slab", {"friction.alpha": [0.5, 1.0]})
+    compile_first.main()
 
 
 @pytest.fixture

@@ -1,0 +1,24 @@
+"""Compile what most tests need of the engine, once: processes that test side by side would each do it for themselves."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import stickslip as ss
+
+SCENARIOS = ("fig6-slab", "rate-and-state-block", "cycles-block", "tides-block", "stress-pulse-slab", "second-event-perfect-delay")
+"""Runs that use, together, each part of the engine."""
+
+
+def main() -> None:
+    """Run, check and sweep; the machine code stays in the cache on disk."""
+    for name in SCENARIOS:
+        repr(ss.simulate(name))  # with events and all else that a summary compiles
+        ss.uniqueness(name)
+    problem = ss.load_scenario("fig6-slab").problem
+    ss.uniqueness(replace(problem, friction=ss.friction.FromExpression("0.6 - 0.2*tanh(u) + 0.1*v/(1 + v)")))
+    ss.sweep("fig6-slab", {"friction.alpha": [0.5, 1.0]})
+
+
+if __name__ == "__main__":
+    main()
