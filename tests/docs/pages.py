@@ -16,12 +16,17 @@ import ast
 import io
 import re
 import shlex
+import shutil
 import sys
+import types
+import warnings
 from collections.abc import Iterator
 from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
 from unittest.mock import patch
+
+import matplotlib as mpl
 
 from stickslip.cli.main import main
 
@@ -29,6 +34,7 @@ ROOT = Path(__file__).parents[2]
 MADE = {"_build", "gallery"}
 """Folders of docs/ that hold what `make site` has made."""
 PAGES = [ROOT / "README.md", *sorted(page for page in (ROOT / "docs").glob("**/*.md") if not MADE & set(page.parts))]
+PAPER = ROOT / "docs" / "paper.md"
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 _FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
@@ -152,3 +158,48 @@ def wrong_numbers(comment: str, code: str, said: str) -> list[str]:
         return text in given or any(abs(one - float(text)) <= 1.001 * half_a_digit for one in printed)
 
     return [text for text in re.findall(number, comment) if not is_right(text)]
+
+
+def run_page(page: Path) -> None:
+    """Run the blocks of a page in the present folder, and check that each does what the page shows."""
+    mpl.use("agg")
+    module = types.ModuleType(f"page_{page.stem.replace('-', '_')}")
+    for download in downloads_of(page):
+        shutil.copy(download, Path.cwd())
+    sys.modules[module.__name__] = module  # where classes that a page defines look for their names
+    try:
+        for block in blocks_of(page):
+            _run_block(block, module, f"{page.name}, line {block.line}")
+    finally:
+        del sys.modules[module.__name__]
+
+
+def _run_block(block: Block, module: types.ModuleType, where: str) -> None:
+    if block.language == "python":
+        said = _run_python(block, module, where)
+        assert block.shown is None or _lines(said) == _lines(block.shown), where
+    elif block.language == "toml":
+        name = re.match(r"# (\S+\.toml)\n", block.text)
+        if name:
+            Path(name[1]).write_text(block.text, encoding="utf-8")
+    elif block.language == "console":
+        for command in commands_of(block):
+            code, said = run_command(command)
+            assert code == command.code, f"{where}: {command.arguments}: {said}"
+            assert missing_lines(command.shown, said) == [], f"{where}: {command.arguments}: {said}"
+
+
+def _run_python(block: Block, module: types.ModuleType, where: str) -> str:
+    said = io.StringIO()
+    with warnings.catch_warnings(), redirect_stdout(said):
+        warnings.simplefilter("error")
+        for code, comment in comments_of(block):
+            before = len(said.getvalue())
+            exec(compile(code, where, "exec"), module.__dict__)
+            printed = said.getvalue()[before:]
+            assert not printed or wrong_numbers(comment, code, printed) == [], f"{where}: {code.strip()}"
+    return said.getvalue()
+
+
+def _lines(text: str) -> list[str]:
+    return [line.rstrip() for line in text.rstrip().splitlines()]
