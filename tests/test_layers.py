@@ -5,10 +5,8 @@ from __future__ import annotations
 import ast
 import subprocess
 import sys
-from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
-
-import pytest
 
 import stickslip
 
@@ -94,23 +92,26 @@ HEIGHT = heights(LAYERS)
 ROOM_HEIGHT = {package: heights(rooms) for package, rooms in ROOMS.items()}
 
 
-def imports(path: Path) -> Iterator[tuple[str, str]]:
-    """Yield what a file imports as dotted names, each with "eager", "later" (inside a function) or "types" (for type checkers)."""
+@cache
+def imports(path: Path) -> list[tuple[str, str]]:
+    """Return what a file imports as dotted names, each with "eager", "later" (inside a function) or "types" (for type checkers)."""
+    found: list[tuple[str, str]] = []
 
-    def walk(node: ast.AST, kind: str) -> Iterator[tuple[str, str]]:
+    def walk(node: ast.AST, kind: str) -> None:
         for child in ast.iter_child_nodes(node):
             if isinstance(child, ast.Import):
-                yield from ((kind, alias.name) for alias in child.names)
+                found.extend((kind, alias.name) for alias in child.names)
             elif isinstance(child, ast.ImportFrom) and child.module:
-                yield from ((kind, f"{child.module}.{alias.name}") for alias in child.names)
+                found.extend((kind, f"{child.module}.{alias.name}") for alias in child.names)
             elif isinstance(child, ast.If) and "TYPE_CHECKING" in ast.unparse(child.test):
-                yield from walk(ast.Module(child.body, []), "types")
-                yield from walk(ast.Module(child.orelse, []), kind)
-            else:
-                inside = isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda)
-                yield from walk(child, "later" if inside and kind == "eager" else kind)
+                walk(ast.Module(child.body, []), "types")
+                walk(ast.Module(child.orelse, []), kind)
+            elif isinstance(child, ast.stmt | ast.ExceptHandler | ast.match_case):
+                inside = isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef)
+                walk(child, "later" if inside and kind == "eager" else kind)
 
-    yield from walk(ast.parse(path.read_text(encoding="utf-8")), "eager")
+    walk(ast.parse(path.read_text(encoding="utf-8")), "eager")
+    return found
 
 
 def parts(path: Path) -> tuple[str, ...]:
@@ -163,27 +164,16 @@ def test_every_folder_has_its_place() -> None:
         assert {parts(path)[1] for path in FILES if parts(path)[0] == package} - {"__init__"} == set(rooms), package
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(PACKAGE)))
-def test_imports_point_down(path: Path) -> None:
-    found = upward(path)
-    assert found["eager"] == set()
-    name = str(path.relative_to(PACKAGE))
-    if name not in LAZY_DOORS:
-        assert found["later"] == set()
-    assert found["types"] == UPWARD_FOR_TYPES.get(name, set())
+def test_imports_point_down() -> None:
+    found = {str(path.relative_to(PACKAGE)): upward(path) for path in FILES}
+    assert {name: ups["eager"] for name, ups in found.items() if ups["eager"]} == {}
+    assert {name: ups["later"] for name, ups in found.items() if ups["later"] and name not in LAZY_DOORS} == {}
+    assert {name: ups["types"] for name, ups in found.items() if ups["types"]} == UPWARD_FOR_TYPES
 
 
-def test_lists_of_upward_imports_name_files_that_exist() -> None:
-    names = {str(path.relative_to(PACKAGE)) for path in FILES}
-    assert set(UPWARD_FOR_TYPES) <= names
-
-
-@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(PACKAGE)))
-def test_heavy_libraries_are_known_to_few(path: Path) -> None:
-    own = parts(path)[0]
-    for kind, name in imports(path):
-        root = name.split(".")[0]
-        assert kind != "eager" or own in ALLOWED.get(root, {own}), f"{own} imports {root}"
+def test_heavy_libraries_are_known_to_few() -> None:
+    eager = {(path, name.split(".")[0]) for path in FILES for kind, name in imports(path) if kind == "eager"}
+    assert [(str(path), root) for path, root in eager if parts(path)[0] not in ALLOWED.get(root, {parts(path)[0]})] == []
 
 
 def test_the_key_of_the_compile_cache_covers_all_that_is_compiled() -> None:
