@@ -15,7 +15,7 @@ import stickslip as ss
 from stickslip.creep import stepper
 from stickslip.creep.pattern import Pattern, monotone_parts
 from stickslip.engine.state.layout import TERMS
-from stickslip.trajectory.history import horner
+from stickslip.trajectory.history import Epoch, horner
 from tests.engine.creep_truth import GROWN, ROUND, printed
 
 F = ss.friction
@@ -176,11 +176,41 @@ def test_no_leap_passes_over_a_kink_of_the_law() -> None:
         assert KINKED.piece_at(slips[0]) == KINKED.piece_at(slips[1])
 
 
+@cache
+def years(tolerance: float) -> ss.Solution:
+    """Run the printed slab up to its second pulse, after 332 days."""
+    return ss.simulate(printed(1), 5.026e6 * ROUND, creep_rtol=tolerance)
+
+
+def test_time_after_years_of_creep_is_sharp() -> None:
+    """At the second pulse, local times count from a whole number of round trips."""
+    run = years(1e-5)
+    window = run.window(int(run.events.slip.iloc[2:].argmax()) + 2)
+    assert window.epoch.trip > 5_000_000
+    assert 0.0 <= window.epoch.offset < ROUND
+    assert window.event.start == pytest.approx(window.epoch.trip * ROUND + window.epoch.offset, rel=1e-15, abs=0.0)
+    peak = float(window.event.peak_after)
+    near = peak + np.array([0.0, 1e-9, 2e-9])  # a float of seconds since the start has a resolution of 4e-9 s here
+    np.testing.assert_allclose(np.diff(window.event_slip(near)), window.event.peak_rate * 1e-9, rtol=1e-5, atol=0.0)
+
+
+def test_slip_has_no_gap_at_the_borders_of_a_leap() -> None:
+    run = years(1e-5)
+    for epoch in (Epoch(0, 0.0), Epoch(41_000, 1.234), Epoch(5_025_990, 5.678)):
+        history = run.history.seen_from(epoch)
+        for leap in run.creep.itertuples():
+            for row in (leap.start_row, leap.start_row + leap.round_trips):
+                border = float(history.seconds(np.array([row]), np.zeros(1))[0])
+                time = border + np.spacing(max(abs(border), ROUND)) * np.arange(-8.0, 9.0)
+                slip = history.slipped(history.find(time, "right"))
+                assert np.ptp(slip) < 1e-11 * slip[0]
+
+
 def test_the_printed_slab_creeps_for_years_without_gaps() -> None:
     """Creep behind the first pulse as well: 330 days, 5 million round trips, the second pulse; and the energy balances."""
     second = []
     for tolerance in (1e-5, 1e-6):
-        solution = ss.simulate(printed(1), 5.026e6 * ROUND, creep_rtol=tolerance)
+        solution = years(tolerance)
         start, end = solution.creep.end.iloc[1], solution.duration
         second.append(brentq(lambda t: float(solution.slip(t)) - solution.problem.initial_slip - 1.6, start, end, xtol=1e-6))  # noqa: B023
     assert solution.creep.round_trips.sum() > 5_000_000

@@ -53,7 +53,7 @@ def test_without_load_and_state_it_starts_in_steady_sliding_and_stays_there(name
     assert float(run.traction(0.0, side="left")) == pytest.approx(way * friction, rel=1e-14)
     assert run.state(times) == pytest.approx(float(law.steady_state(SPEED)), rel=1e-10)
     mass = body.inertia + (body.density * body.thickness if isinstance(body, ss.ElasticSlab) else 0.0)
-    energy = run.energy(times)
+    energy = run.energy(times[::23])
     assert np.abs(energy.kinetic).max() < 1e-9 * 0.5 * mass * SPEED**2
     assert np.abs(energy.balance).max() < 1e-11 * float(energy.heat[-1])
     if isinstance(body, ss.ElasticSlab):
@@ -270,7 +270,8 @@ def test_a_contact_that_can_stick_may_start_in_steady_sliding(name: str, mass: f
     assert run.slip_rate(times) == pytest.approx(0.3 * way, rel=1e-9)
     assert run.traction(times) == pytest.approx(way * friction, rel=1e-9)
     assert float(run.slip_rate(0.0, side="left")) == 0.3 * way
-    assert np.abs(run.energy(times).balance).max() < 1e-9 * float(run.energy(times).heat[-1])
+    energy = run.energy(times[::19])
+    assert np.abs(energy.balance).max() < 1e-9 * float(energy.heat.max())
 
 
 @pytest.mark.parametrize("driver", [0.3, 3.0])

@@ -1,7 +1,7 @@
 """Laws with a state of their own, built in and typed, against integrators that share no code with the package.
 
-The truths are written with signed slip rates, by hand: scipy's Radau method for a block, with events at onset and arrest where the
-law sticks; and the method of steps for a slab, whose slip rate scipy's brentq finds from the contact equation.
+The truths are written with signed slip rates, by hand: scipy's DOP853 for a block, or Radau where it is stiff, with events at onset
+and arrest where the law sticks; and the method of steps for a slab, whose slip rate scipy's brentq finds from the contact equation.
 """
 
 from __future__ import annotations
@@ -89,14 +89,16 @@ def largest_difference(run: Any, t: Floats, slip: Floats, state: Floats) -> floa
 # ---- block ---------------------------------------------------------------------------------------------------------------------
 
 
-def block_truth(one: Truth, body: Any, force: Callable[[float], float], start: tuple[float, ...], t: Floats) -> Floats:
+def block_truth(
+    one: Truth, body: Any, force: Callable[[float], float], start: tuple[float, ...], t: Floats, method: str = "DOP853"
+) -> Floats:
     """Slip, slip rate and state at times t, by scipy; `force` is that of the spring (N) without slip."""
 
     def right(now: float, y: Floats) -> list[float]:
         u, v, w = y
         return [v, (force(now) - body.stiffness * u - body.normal_force * one.mu(v, w)) / body.mass, one.change(v, w)]
 
-    found = solve_ivp(right, (0.0, t[-1]), start, "Radau", t, rtol=1e-11, atol=[1e-15, 1e-14, 1e-16], max_step=t[-1] / 500)
+    found = solve_ivp(right, (0.0, t[-1]), start, method, t, rtol=1e-11, atol=[1e-15, 1e-14, 1e-16], max_step=t[-1] / 500)
     return np.asarray(found.y)
 
 
@@ -141,7 +143,7 @@ def test_flash_heating_weakens_a_block_in_an_earthquake_and_swings_back() -> Non
     state = float(FLASH.law.steady_state(1e-6))
     problem = ss.Problem(FAULT, FLASH.law, pull_rate=0.01, initial_load=0.7e8, initial_state=state)
     run, t = ss.simulate(problem, 6.0), np.linspace(0.0, 6.0, 121)
-    slip, rate, psi = block_truth(FLASH, FAULT, lambda now: 0.7e8 + 1e5 * now, (0.0, problem.rate, state), t)
+    slip, rate, psi = block_truth(FLASH, FAULT, lambda now: 0.7e8 + 1e5 * now, (0.0, problem.rate, state), t, "Radau")
     assert rate.max() > 1.0
     assert rate.min() < -0.01
     assert largest_difference(run, t, slip, psi) < CLOSE
@@ -236,7 +238,7 @@ def slab_truth(one: Truth, problem: Any, t: Floats) -> tuple[Floats, Floats]:
     while n * trip < t[-1]:
         found = solve_ivp(
             lambda s, y: [v := solved(load(s), float(y[1])), one.change(v, float(y[1]))],
-            (n * trip, (n + 1) * trip), y, "DOP853", dense_output=True, rtol=1e-11, atol=1e-15, first_step=1e-9, max_step=4e-5,
+            (n * trip, (n + 1) * trip), y, "DOP853", dense_output=True, rtol=1e-11, atol=1e-15, first_step=1e-9, max_step=4e-4,
         )  # fmt: skip
         past.append(found.sol)
         y, n = found.y[:, -1], n + 1

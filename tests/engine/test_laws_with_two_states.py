@@ -65,7 +65,9 @@ WARM = Truth(
 """Bristles that soften as the contact warms up: one state changes its sign at a reversal, the other keeps it."""
 
 
-def block_truth(one: Truth, body: Any, force: Callable[[float], float], start: tuple[float, ...], t: Floats) -> Floats:
+def block_truth(
+    one: Truth, body: Any, force: Callable[[float], float], start: tuple[float, ...], t: Floats, method: str = "Radau"
+) -> Floats:
     """Slip, slip rate and states at times t, by scipy; `force` is that of the spring (N) without slip."""
 
     def right(now: float, y: Floats) -> list[float]:
@@ -73,7 +75,7 @@ def block_truth(one: Truth, body: Any, force: Callable[[float], float], start: t
         friction = body.normal_force * one.mu(v, w, w2)
         return [v, (force(now) - body.stiffness * u - friction) / body.mass, *one.change(v, w, w2)]
 
-    found = solve_ivp(right, (0.0, t[-1]), start, "Radau", t, rtol=1e-11, atol=1e-15, max_step=t[-1] / 500)
+    found = solve_ivp(right, (0.0, t[-1]), start, method, t, rtol=1e-11, atol=1e-15, max_step=t[-1] / 500)
     return np.asarray(found.y)
 
 
@@ -105,9 +107,8 @@ def test_bristles_that_warm_up_follow_their_loop(way: float) -> None:
     problem = ss.Problem(AXIS, WARM.law, pull_rate=pull, initial_load=0.0, initial_second_state=0.3)
     run, t = ss.simulate(problem, 0.5), np.linspace(0.0, 0.5, 251)
     turn = 2.0 * math.pi / 0.2
-    slip, _, *states = block_truth(
-        WARM, AXIS, lambda now: way * AXIS.stiffness * 2e-3 / turn * (1.0 - math.cos(turn * now)), (0.0, 0.0, 0.0, 0.3), t
-    )
+    force = lambda now: way * AXIS.stiffness * 2e-3 / turn * (1.0 - math.cos(turn * now))  # noqa: E731
+    slip, _, *states = block_truth(WARM, AXIS, force, (0.0, 0.0, 0.0, 0.3), t, "DOP853")
     assert (np.diff(np.sign(run.slip_rate(t[1:]))) != 0.0).sum() >= 4  # it does reverse
     assert max(differences(run, t, slip, np.array(states))) < CLOSE
     energy = run.energy(t)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from functools import cache
 from typing import Any, Literal
 
 import numpy as np
@@ -57,16 +58,16 @@ def hat(x: Any, strength: float) -> Any:
 @pytest.mark.parametrize("seed", range(3))
 def test_cross_validation_finds_the_smallest_score_of_scipys_splines(seed: int) -> None:
     x, y = drawn(40, seed)
-    n, spline = len(x), PenalisedSpline.of(x, y)
+    n, spline, smoothed = len(x), PenalisedSpline.of(x, y), cache(lambda strength: hat(x, strength))
 
     def score(strength: float, inflation: float) -> float:
-        smoothing = hat(x, strength)
+        smoothing = smoothed(strength)
         return float(np.mean((y - smoothing @ y) ** 2) / (1.0 - inflation * np.trace(smoothing) / n) ** 2)
 
     for inflation in (1.0, 1.4):
         chosen = spline.cross_validated(inflation)
         assert spline.score(chosen, inflation) == pytest.approx(score(chosen, inflation), rel=1e-5)
-        others = np.geomspace(1e-8, 1.0, 17)
+        others = np.geomspace(1e-8, 1.0, 17).tolist()
         smallest = min(score(one, inflation) for one in others if n > inflation * spline.freedom(one))
         assert spline.score(chosen, inflation) <= smallest * (1.0 + 1e-6)
 

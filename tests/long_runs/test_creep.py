@@ -23,7 +23,6 @@ from stickslip.run.resume import taken_up
 from stickslip.run.session import Session
 from stickslip.run.simulate import WholeHistory
 from stickslip.solution.window import Window
-from stickslip.trajectory.history import Epoch
 from stickslip.trajectory.status import UNDER_WAY
 from tests.engine.creep_truth import ROUND, printed
 from tests.long_runs.problems import differences as differences_of_runs
@@ -187,33 +186,3 @@ def _around_peak(window: Window) -> np.ndarray:
     """Slip (m) since the peak."""
     peak = float(window.event.peak_after)
     return window.event_slip(peak + np.linspace(-6.0, 2.0, 300)) - float(window.event_slip(peak))
-
-
-@pytest.fixture(scope="module")
-def years_of_creep() -> ss.Solution:
-    """Run the printed slab up to its second pulse, after 332 days."""
-    return ss.simulate(printed(1), 5.026e6 * ROUND, creep_rtol=1e-5)
-
-
-def test_time_after_years_of_creep_is_sharp(years_of_creep: ss.Solution) -> None:
-    """At the second pulse, local times count from a whole number of round trips."""
-    run = years_of_creep
-    window = run.window(int(run.events.slip.iloc[2:].argmax()) + 2)
-    assert window.epoch.trip > 5_000_000
-    assert 0.0 <= window.epoch.offset < ROUND
-    assert window.event.start == pytest.approx(window.epoch.trip * ROUND + window.epoch.offset, rel=1e-15, abs=0.0)
-    peak = float(window.event.peak_after)
-    near = peak + np.array([0.0, 1e-9, 2e-9])  # a float of seconds since the start has a resolution of 4e-9 s here
-    np.testing.assert_allclose(np.diff(window.event_slip(near)), window.event.peak_rate * 1e-9, rtol=1e-5, atol=0.0)
-
-
-def test_slip_has_no_gap_at_the_borders_of_a_leap(years_of_creep: ss.Solution) -> None:
-    run = years_of_creep
-    for epoch in (Epoch(0, 0.0), Epoch(41_000, 1.234), Epoch(5_025_990, 5.678)):
-        history = run.history.seen_from(epoch)
-        for leap in run.creep.itertuples():
-            for row in (leap.start_row, leap.start_row + leap.round_trips):
-                border = float(history.seconds(np.array([row]), np.zeros(1))[0])
-                time = border + np.spacing(max(abs(border), ROUND)) * np.arange(-8.0, 9.0)
-                slip = history.slipped(history.find(time, "right"))
-                assert np.ptp(slip) < 1e-11 * slip[0]
