@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import os
+import signal
 from collections import Counter
 from collections.abc import Generator, Mapping
 
@@ -17,6 +18,8 @@ LONGEST = 60
 """Characters of a name."""
 
 os.environ.pop("COLUMNS", None)  # test runners set it, and tables are as wide as it says
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as in jobs that a shell runs in the background
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 settings.register_profile("stickslip", deadline=None)  # a slow machine is no failure
 settings.load_profile("stickslip")
 

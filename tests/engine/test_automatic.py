@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -106,6 +107,11 @@ def weakening(alpha: float, thickness: float = 1e4) -> ss.Problem:
     return replace(WEAKENING, friction=replace(WEAKENING.friction, alpha=alpha), body=replace(WEAKENING.body, thickness=thickness))
 
 
+@cache
+def creeping(pull_rate: float, rtol: float = 1e-10) -> ss.Solution:
+    return ss.simulate(replace(printed(1), pull_rate=pull_rate), DAYS, rtol)
+
+
 def same_pieces(one: ss.Solution, other: ss.Solution, count: int) -> bool:
     """Whether the first pieces of two histories have the same bits."""
     pairs = zip(one.history.store[:4], other.history.store[:4], strict=True)
@@ -118,7 +124,7 @@ def same_pieces(one: ss.Solution, other: ss.Solution, count: int) -> bool:
 @pytest.mark.parametrize(("rtol", "error"), [(1e-10, 1e-4), (1e-8, 1e-3), (1e-6, 2e-2)])
 def test_a_plain_call_reaches_the_first_pulse(rtol: float, error: float) -> None:
     """2.71878 days of creep in a second, and the error of the pulse's time (s) follows rtol."""
-    run = ss.simulate(printed(1), DAYS, rtol)
+    run = creeping(printed(1).pull_rate, rtol)
     assert run.status.name == "finished"
     found = brentq(lambda t: float(run.slip(t)) - run.problem.initial_slip - GROWN, PULSE - 20, PULSE + 20, xtol=1e-9)
     assert found == pytest.approx(PULSE, rel=0.0, abs=error)
@@ -154,7 +160,7 @@ def test_the_tolerance_follows_rtol(rtol: float, tolerance: float) -> None:
 @pytest.mark.parametrize("share", [0.004, 0.5, 0.99])
 def test_a_resumed_run_leaps_as_if_it_had_not_stopped(tmp_path: Path, share: float) -> None:
     """Stopped before the first leap, in it, and behind it."""
-    file, whole = tmp_path / "run.nc", ss.simulate(printed(1), DAYS)
+    file, whole = tmp_path / "run.nc", creeping(printed(1).pull_rate)
     ss.simulate(printed(1), share * whole.creep.end.iloc[0]).to_netcdf(file)
     assert ss.open_solution(file).creep_rtol is None
     resumed = ss.resume(file, DAYS)
@@ -168,7 +174,7 @@ def test_a_member_of_a_batch_leaps_as_a_single_run() -> None:
     pulls = np.array([0.0, 1.0, 3.0]) * scenario.problem.pull_rate
     found = run_members(scenario, {"loading.pull_rate": pulls}, ("events", "slip", "peak_time"))
     for n, pull in enumerate(pulls):
-        run = ss.simulate(replace(scenario.problem, pull_rate=float(pull)), DAYS)
+        run = creeping(float(pull))
         assert STATUSES[int(found.status[n])] == run.status
         assert found.results["events"][n] == len(run.events)
         peak = run.events.peak_time[run.events.peak_rate.idxmax()]

@@ -1,4 +1,4 @@
-"""One browser for the tests of this folder, one server for those of a module, and pages that fail when they do something wrong."""
+"""One browser for the tests of this folder, one server for most of them, and pages that fail when they do something wrong."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ def chromium() -> Iterator[Any]:
         browser.close()
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="package")
 def server(tmp_path_factory: pytest.TempPathFactory, chromium: Any) -> Iterator[Served]:
-    """A server of the explorer, which the end of the module stops with Ctrl-C."""
+    """A server of the explorer, which Ctrl-C stops in the end."""
     served = serve("--sessions", "20", folder=tmp_path_factory.mktemp("served"))
     yield served
     assert served.end() == 0
