@@ -307,9 +307,13 @@ class Radiation(Waves):
         behind = self.driver_rate(leaving, left) - self.history.problem.pull_rate_at(left + self.half)
         return np.asarray(self.body.driver_impedance * behind**2)
 
-    def _at_rest(self, first: int, past: int) -> float:
-        """Return the work of `Waves._at_rest`; it is zero for a rigid driver."""
-        return 0.0 if self.body.is_driven_rigidly else super()._at_rest(first, past)
+    def work(self, now: Epoch) -> float:
+        """Return the energy radiated since the start of the run; it is zero for a rigid driver."""
+        return 0.0 if self.body.is_driven_rigidly else super().work(now)
+
+    def work_between(self, first: Epoch, last: Epoch) -> float:
+        """Return the energy radiated between two moments; it is zero for a rigid driver."""
+        return 0.0 if self.body.is_driven_rigidly else super().work_between(first, last)
 
     def power_growth(self, leaving: Floats, left: Floats) -> Floats:
         """Return zero: all echoes at rest move the driver in the same way."""
