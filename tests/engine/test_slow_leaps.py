@@ -35,6 +35,7 @@ CASES: dict[str, tuple[ss.Problem, float]] = {
     "backward": (slid(AGEING, -1e-5, -29e6, 1e4), 8e3),
     "slip law": (slid(ss.friction.RateAndState(0.6, 0.01, 0.014, 0.03, evolution="slip"), 3e-6, 29e6, 1e5), 1.5e4),
     "PRZ law": (slid(ss.friction.RateAndState(0.6, 0.02, 0.01, 0.05, evolution="prz"), 1e-5, 28e6, 1e5), 2e4),
+    "contact mass": (slid(AGEING, 1e-5, 29e6, 1e4, body=replace(SLAB, contact_mass=1e3)), 1.1e4),
     "two states": (slid(TWO_STATES, 5e-6, 29e6, 1e4, 1e5), 2e4),
 }
 
@@ -113,6 +114,16 @@ def test_the_ripple_of_the_states_is_what_the_averaged_motion_lacks_without_it()
     assert off[slow.PLAIN] >= 100.0 * off[slow.BOTH]
 
 
+def test_the_push_of_a_contact_mass_has_its_closed_form() -> None:
+    """Where the slip rate grows as exp(k phi) within the round trip, the mass takes m k v of the direct effect a S."""
+    problem = slid(AGEING, 1e-5, 29e6, 1e4, body=replace(SLAB, contact_mass=1e3))
+    edges, k = np.linspace(0.0, TURN, 5), 0.7
+    motion = slow.SlowMotion(problem, slow.Offsets(edges, TURN))
+    log_rate = np.log(1e-9) + k * motion.offsets.phase.ravel()
+    y = np.tile(np.concatenate([log_rate, [2.0, 0.0]]), (3, 1))
+    assert motion.push(y) == pytest.approx(1e3 * k * np.exp(log_rate.max()) / (AGEING.a * 50e6), rel=1e-6, abs=0.0)
+
+
 def test_years_agree_with_the_equations_of_a_spring_without_mass() -> None:
     """Before the first event the slab is a spring of stiffness 2 Z/T, to (T over the time of change) squared.
 
@@ -182,7 +193,6 @@ def test_the_error_that_a_leap_states_grows_with_what_it_neglects(monkeypatch: p
 @pytest.mark.parametrize(
     "other",
     [
-        {"body": replace(SLAB, contact_mass=10.0)},
         {"body": replace(SLAB, driver_impedance=1e7)},
         {"friction": ss.friction.LuGre(0.6, 0.3, 1e-3, 1e5), "initial_state": 0.0},
         {"pull_rate": ss.loading.Steps([0.0, 1e9], [1e-9, 2e-9])},

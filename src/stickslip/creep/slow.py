@@ -14,8 +14,9 @@ These are ordinary differential equations in n. Within a round trip the states d
 adds, their *ripple* r(phi), whose mean is zero. To second order, v and dw/dt are those at the states w + r. The terms of third
 order that are left out are estimated as what the ripple does, times the largest relative change of the slip rate in a round trip.
 Left out, too, is the difference between the sum and the integral, Z/6 d2v/dn2 in dtau/dn: it acts as if a third of the slab's mass
-slipped with the contact. What both do to the slip shows where the motion is followed three times side by side: with the ripple,
-without it, and with ripple and inertia.
+slipped with the contact, beside the mass that the contact may have itself (m_c, as m_c/T instead of Z/6). What both do to the slip
+shows where the motion is followed three times side by side: with the ripple, without it, and with ripple and inertia. Within the
+round trip a mass of the contact must have nothing to do: the force m_c dv/dphi is far smaller than the direct effect S dmu/dln v.
 """
 
 from __future__ import annotations
@@ -54,6 +55,9 @@ _SHARES = np.linalg.inv(np.array([one(PLACES) for one in _BASIS]).T)
 _POWERS = np.array([np.pad(_in_powers(one), (0, NODES - 1 - k)) for k, one in enumerate(_BASIS)]).T
 INTEGRALS = np.array([one.integ(lbnd=0.0)([*PLACES, 1.0]) for one in _BASIS]).T @ _SHARES
 """Integrals from 0 to each of these places and to 1, of the polynomial through values there."""
+
+SLOPES = np.array([one.deriv()(PLACES) for one in _BASIS]).T @ _SHARES
+"""Slopes at these places, of the polynomial through values there."""
 
 
 def through(values: Floats, places: Floats) -> Floats:
@@ -185,11 +189,19 @@ class SlowMotion:
         z2 = 2.0 * self.problem.body.impedance
         loaded, eased = z2 * (self.speed - there) / direct, (by_state * grows[..., None]).sum(axis=0) / direct
         faster = loaded - eased
-        faster -= INERTIA * z2 * there * faster * faster / (6.0 * direct)  # where v grows as 1/n or falls so, v'' = 2 v'^2 / v
+        inertia = INERTIA * (z2 / 6.0 + 2.0 * self.problem.body.inertia / self.offsets.period)
+        faster -= inertia * there * faster * faster / direct  # where v grows as 1/n or falls so, v'' = 2 v'^2 / v
         pace = max(float(np.abs(one[BOTH]).max()) for one in (loaded, eased))
         change = np.concatenate([faster, grows.T, (slips @ mean)[:, None]], axis=1)
         begins = state_begins.T * RIPPLES[:, None], self.offsets.ripple(slips)[1] * RIPPLES
         return Slow(change, ripple, quicker, *begins, pace, bool((direct > 0.0).all()))
+
+    def push(self, y: Floats) -> float:
+        """Return the largest force (as a share of the direct effect) that the mass of the contact takes to follow the pattern."""
+        rate = np.exp(y[BOTH, : self.size])
+        steepness = rate.reshape(self.offsets.phase.shape) @ SLOPES.T / np.diff(self.offsets.edges)[:, None]
+        direct, _ = self.slopes(rate, y[BOTH, self.size : -1, None])
+        return float(np.abs(self.problem.body.inertia * steepness.ravel() / direct).max())
 
     def start(self, rate: Floats, states: Floats) -> Floats:
         """Return the averaged state where a round trip begins, from the slip rates (m/s) in the one before and the states now."""

@@ -34,6 +34,8 @@ FEWEST_STEPS, MOST_STEPS = 10, 250
 """Number of steps that a leap takes at least, about, and at most: they take a second or two, in which a run cannot be stopped."""
 RESOLVED = 0.1
 """Share of the tolerance to which slip rates are resolved where several pieces of a round trip are followed as one."""
+PUSHED = 1.0
+"""Largest force on the mass of the contact within a round trip, over the direct effect, as a share of the tolerance."""
 FADED = 0.1
 """Share of the tolerance within which slip rates and states are taken for stable steady sliding: other leaps begin there."""
 
@@ -156,6 +158,8 @@ class SlowLeaps:
         """Return True if the motion is slow in a state, and its error is allowed."""
         now = self.motion.at(y)
         if not (np.isfinite(now.change).all() and now.rises and now.pace <= FASTEST):
+            return False
+        if self.problem.body.has_inertia and self.motion.push(y) > PUSHED * self.tolerance:
             return False
         quickest, off = max(self.quickest, now.pace), y - y[BOTH]
         off[:, -1] += now.slip_begins - now.slip_begins[BOTH]

@@ -62,8 +62,7 @@ def _but_pull(problem: Problem) -> Over:
         return ""
     body = problem.body
     never_rests = law.creeps and bool(law.states) and len(law.pieces) == 1
-    slow = never_rests and body.has_waves and body.is_driven_rigidly and not body.has_inertia
-    return "slow sliding" if slow else "steady sliding"
+    return "slow sliding" if never_rests and body.has_waves and body.is_driven_rigidly else "steady sliding"
 
 
 def check_creep_rtol(problem: Problem, creep_rtol: float | None, where: str, name: str = "creep_rtol") -> float | None:
