@@ -1,12 +1,13 @@
-"""Prove where steady sliding of a block gains or loses its stability under a law with one state, over a whole range of slip rates.
+"""Prove where steady sliding gains or loses its stability under a law with one state, over a whole range of slip rates.
 
-With w' = f(v, w), friction mu(v, w), and steady states w(v) where f = 0, a disturbance exp(s t) of a block solves a cubic equation
+The range is cut into cells. In each, bounds of the slopes of f in w' = f(v, w) enclose the steady states w(v) of all its rates, and
+then those of friction mu(v, w) and of f. They say whether all of the cell is stable, or none of it. A cell in which that is not
+certain is halved, until only narrow ones are left: there stability changes. `wave_proof` decides cells of a slab. A disturbance
+exp(s t) of a block solves a cubic equation
 
     m s^3 + a s^2 + b s - K f_w = 0,   a = D - m f_w + S mu_v,   b = K - D f_w + S (mu_w f_v - mu_v f_w)
 
-so sliding is stable if and only if a > 0 and H = a b + m K f_w > 0 (Routh & Hurwitz, with f_w < 0). The range is cut into cells. In
-each, bounds of the slopes of f enclose the steady states of all its rates, and then those of mu and f bound a and H. A cell in
-which their signs are not certain is halved, until only narrow ones are left: there stability changes.
+so sliding is stable if and only if a > 0 and H = a b + m K f_w > 0 (Routh & Hurwitz, with f_w < 0).
 
 Source: Rice & Ruina 1983, J. Appl. Mech. 50, 343; Rump 2010, Acta Numerica 19, for the arithmetic on discs.
 """
@@ -20,6 +21,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stickslip.bodies import BodyOnCharacteristics
+from stickslip.contact.wave_proof import SLOPES, of_slab
 from stickslip.foundation.arrays import Floats
 from stickslip.friction.formula.differences import value_and_slopes
 from stickslip.friction.formula.discs import Disc, largest, on_discs
@@ -55,9 +57,9 @@ def proven_changes(
 ) -> list[ProvenChange] | None:
     """Return where stability changes between two slip rates (m/s), slowest first; None if that cannot be proven.
 
-    `normal` is the normal load (N), and `slip` (m) one on which friction and states do not depend.
+    `normal` is the normal load (N or Pa), and `slip` (m) one on which friction and states do not depend.
     """
-    if body.has_waves or body.stiffness <= 0.0 or len(law.states) != 1 or len(law.pieces) != 1:
+    if not (body.has_waves or body.stiffness > 0.0) or len(law.states) != 1 or len(law.pieces) != 1:
         return None
     contact = _Contact(body, normal, law, slip)
     edges = np.geomspace(*rates, 1 + int(CELLS * np.log10(rates[1] / rates[0])))
@@ -93,12 +95,8 @@ def _changes(cells: Floats) -> list[ProvenChange] | None:
     return found if open_from is None else None
 
 
-SLOPES = tuple(Parameter(name) for name in ("mu_v", "mu_w", "f_v", "f_w"))
-"""Slopes of friction and of the state's rate, by slip rate and by state, as symbols."""
-
-
 def _equation() -> tuple[Expression, Expression]:
-    """Return a and H as formulas of the slopes and of the body's numbers."""
+    """Return a and H of a block as formulas of the slopes and of the body's numbers."""
     mass, damping, stiffness, normal = (Parameter(name) for name in ("m", "D", "K", "S"))
     mu_v, mu_w, f_v, f_w = SLOPES
     a = damping - mass * f_w + normal * mu_v
@@ -109,9 +107,16 @@ def _equation() -> tuple[Expression, Expression]:
 EQUATION = _equation()
 
 
+def _of_block(body: BodyOnCharacteristics, normal: float, slopes: _Variables) -> tuple[Floats, Floats]:
+    """Return for each cell whether sliding is proven to be stable, and whether it is proven to be unstable."""
+    numbers = {"m": body.inertia, "D": body.damping, "K": body.stiffness, "S": normal}
+    a, h = (on_discs(one, numbers, slopes) for one in EQUATION)
+    return (a.centre > a.radius) & (h.centre > h.radius), (a.centre < -a.radius) | (h.centre < -h.radius)
+
+
 @dataclass(frozen=True)
 class _Contact:
-    """A block on a contact under a law with one state."""
+    """A body on a contact under a law with one state."""
 
     body: BodyOnCharacteristics
     normal: float
@@ -127,11 +132,8 @@ class _Contact:
         with np.errstate(all="ignore"):
             cells, encloses = self._cells(low, high)
             slopes = (*self._slopes(self.law.trees()[0], cells), *self._slopes(self._tree, cells))
-            body = self.body
-            numbers = {"m": body.inertia, "D": body.damping, "K": body.stiffness, "S": self.normal}
-            a, h = (on_discs(one, numbers, dict(zip(SLOPES, slopes, strict=True))) for one in EQUATION)
-            stable = (a.centre > a.radius) & (h.centre > h.radius)
-            unstable = (a.centre < -a.radius) | (h.centre < -h.radius)
+            of_body = of_slab if self.body.has_waves else _of_block
+            stable, unstable = of_body(self.body, self.normal, dict(zip(SLOPES, slopes, strict=True)))
         return np.where(encloses, 1.0 * stable - 1.0 * unstable, 0.0)
 
     @property

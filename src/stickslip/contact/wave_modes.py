@@ -46,6 +46,22 @@ def first_of(roots: NDArray[Any]) -> Growth:
     return Growth(float(root.real), float(abs(root.imag)))
 
 
+def roots_of(equation: Polynomial) -> NDArray[Any]:
+    """Return the roots of a polynomial without leading zeros, smallest first, each with the digits of its own size.
+
+    A companion matrix gives the largest roots with all their digits, and the one of 1/s the smallest.
+    """
+    if len(equation) < 2:
+        return np.zeros(0, complex)
+    large = poly.polyroots(equation).astype(complex)
+    with np.errstate(all="ignore"):
+        small = 1.0 / poly.polyroots(equation[::-1]).astype(complex)
+    large, small = (one[np.argsort(np.abs(one))] for one in (large, small))
+    if len(small) < len(large):  # some roots are 0
+        small = np.append(np.zeros(len(large) - len(small)), small)
+    return np.where(np.abs(large) ** 2 < np.abs(large[-1]) * np.abs(small[0]), small, large)
+
+
 @dataclass(frozen=True)
 class WaveModes:
     """The characteristic equation of a slab: a (1 + r E) + z (1 - r E) = 0, with polynomials a and z in s (lowest order first)."""
@@ -84,7 +100,7 @@ class WaveModes:
     def roots_beyond(self, line: float) -> float:
         """Return the number of roots with Re s > `line` (1/s); inf if there are roots of any frequency."""
         p, q = poly.polytrim(poly.polyadd(self.a, self.z)), poly.polytrim(poly.polysub(self.a, self.z))
-        count = int(np.sum(poly.polyroots(p).real > line)) if len(p) > 1 else 0
+        count = int(np.sum(roots_of(p).real > line))
         if self.is_matched:
             return count
         ring = self._ring(line)
@@ -105,7 +121,7 @@ class WaveModes:
         trimmed = np.trim_zeros(ring, "b")
         if len(trimmed) < 2:
             return np.zeros(0)
-        squares = poly.polyroots(trimmed)
+        squares = roots_of(trimmed)
         real = squares[np.abs(squares.imag) <= 1e-9 * np.abs(squares)].real
         return np.sqrt(np.sort(real[real > 0.0]))
 
@@ -116,7 +132,7 @@ class WaveModes:
         if self.is_neutral:
             return Growth(0.0, 0.0)
         if self.is_matched:
-            return first_of(poly.polyroots(poly.polytrim(poly.polyadd(self.a, self.z))))
+            return first_of(roots_of(poly.polytrim(poly.polyadd(self.a, self.z))))
         if len(self.a) == len(self.z) == 1:
             return self._growth_by_gain()
         line = self._rightmost()
@@ -157,7 +173,7 @@ class WaveModes:
         """Return frequencies (rad/s) near which a root may lie on a line that bounds them all."""
         p: Polynomial = poly.polyadd(self.a, self.z)
         q: Polynomial = poly.polysub(self.a, self.z)
-        found = [0.0, *self._edges(self._ring(line)), *np.abs(poly.polyroots(poly.polytrim(p)).imag)]
+        found = [0.0, *self._edges(self._ring(line)), *np.abs(roots_of(poly.polytrim(p)).imag)]
         ratio = float(p[-1] * q[-1] * self.reflection)
         first = (0.0 if ratio < 0.0 else math.pi) / self.round_trip
         return [*found, first, first + 2.0 * math.pi / self.round_trip]
@@ -187,7 +203,7 @@ class _Phase:
 
     def __init__(self, waves: WaveModes, p: Polynomial, q: Polynomial, line: float) -> None:
         self.waves, self.line = waves, line
-        self.zeros, self.poles = (poly.polyroots(one) if len(one) > 1 else np.zeros(0, complex) for one in (q, p))
+        self.zeros, self.poles = roots_of(q), roots_of(p)
         self.turned = 0.0 if q[-1] * p[-1] > 0.0 else math.pi
         self.level = 0.0 if waves.reflection < 0.0 else math.pi
 
