@@ -123,7 +123,7 @@ class WaveModes:
             return np.zeros(0)
         squares = roots_of(trimmed)
         real = squares[np.abs(squares.imag) <= 1e-9 * np.abs(squares)].real
-        return np.sqrt(np.sort(real[real > 0.0]))
+        return np.asarray(np.sqrt(np.sort(real[real > 0.0])))
 
     def growth(self) -> Growth:
         """Return the growth rate and the frequency of the mode that grows fastest, or fades most slowly."""

@@ -104,7 +104,7 @@ def _edges(c0: Range, c1: Range, c2: Range) -> tuple[Range, Range, Any, Any]:
     roots the vertex takes their place.
     """
     coefficients = c0, c1, c2
-    gap_most, gap_least = (_gap(*(one[side] for one in coefficients), outward) for side, outward in ((0, OUT), (1, -OUT)))
+    gap_most, gap_least = (_gap(*ends, outward=out) for ends, out in zip(zip(*coefficients, strict=True), (OUT, -OUT), strict=True))
     most, least = (np.sqrt(np.maximum(gap, 0.0)) for gap in (gap_most, gap_least))
     y2_high, y2_low = (
         np.where(one > 0.0, -2.0 * zero / (one + root), (root - one) / (2.0 * two))
@@ -116,7 +116,7 @@ def _edges(c0: Range, c1: Range, c2: Range) -> tuple[Range, Range, Any, Any]:
     return y1, y2, gap_least > 0.0, gap_most < 0.0
 
 
-def _gap(c0: Floats, c1: Floats, c2: Floats, outward: float) -> Floats:
+def _gap(c0: Floats, c1: Floats, c2: Floats, *, outward: float) -> Floats:
     """Return the discriminant, moved by `outward` times the size of its terms."""
     square, product = c1 * c1, 4.0 * c0 * c2
     return np.asarray(square - product + outward * (square + np.abs(product)))
