@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import stickslip as ss
+from stickslip.scenarios.examine import examine
 
 SCENARIOS = ("fig6-slab", "rate-and-state-block", "cycles-block", "tides-block", "stress-pulse-slab", "second-event-perfect-delay")
 """Runs that use, together, each part of the engine."""
@@ -13,8 +14,9 @@ SCENARIOS = ("fig6-slab", "rate-and-state-block", "cycles-block", "tides-block",
 def main() -> None:
     """Run, check and sweep; the machine code stays in the cache on disk."""
     for name in SCENARIOS:
-        repr(ss.simulate(name))  # with events and all else that a summary compiles
-        ss.uniqueness(name)
+        scenario = ss.load_scenario(name)
+        repr(ss.simulate(scenario))  # with events and all else that a summary compiles
+        examine(scenario)
     problem = ss.load_scenario("fig6-slab").problem
     ss.uniqueness(replace(problem, friction=ss.friction.FromExpression("0.6 - 0.2*tanh(u) + 0.1*v/(1 + v)")))
     ss.sweep("fig6-slab", {"friction.alpha": [0.5, 1.0]})
