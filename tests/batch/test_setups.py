@@ -11,9 +11,9 @@ import pytest
 
 import stickslip as ss
 from stickslip.batch import why_not
-from stickslip.batch.kernels.branch_search import RULES
 from stickslip.batch.setups import Setups, set_up
 from stickslip.batch.vectorised_problem import groups
+from stickslip.contact.rules.selection import OF_LEVELS
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Params
 from stickslip.engine.state.workspace import counts_in, state_in
@@ -99,7 +99,7 @@ def test_setups_of_a_batch_equal_those_of_single_runs(name: str) -> None:
             assert found[2:] == pytest.approx(setup.branches.T[2:], rel=0, abs=LEVEL * problem.strength)
 
 
-@pytest.mark.parametrize("rule", RULES)
+@pytest.mark.parametrize("rule", OF_LEVELS)
 @pytest.mark.parametrize("name", ["rate", "stribeck", "gauss", "power"])
 def test_branches_of_a_batch_equal_those_of_the_contact_equation(name: str, rule: str) -> None:
     """Over many decades of what makes the contact irregular, and next to where it becomes so."""

@@ -10,9 +10,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import stickslip as ss
-from stickslip.contact.branches import branches_of, rate_on
+from stickslip.contact.branches import Branch, branches_of, rate_on
 from stickslip.contact.equation import resistance
-from stickslip.contact.rules.selection import RULES, area, selection_table
+from stickslip.contact.rules.selection import OF_LEVELS, RULES, area, levels, selection_table
 from stickslip.problem.selection_rule import SELECTION_RULES
 
 from .laws import ALPHA_C, SLAB, S, Wavy, Z, hyperbolic, q_of, slab_problem, wavy_laws
@@ -162,6 +162,21 @@ def test_tables_of_coulomb_friction_have_their_closed_form(rule, stick_to, keep_
 def test_no_rule_matters_where_the_slip_rate_is_unique(law, rule):
     _, table = selection_table(slab_problem(law, rule))
     assert (table.stick_to, table.keep_from, table.keep_to) == (0.0, (0.0,), (math.inf,))
+
+
+@pytest.mark.parametrize("rule", OF_LEVELS)
+def test_levels_of_many_contacts_are_those_of_each(rule):
+    """Contacts with fewer branches than others leave the last columns empty."""
+    rng = np.random.default_rng(4)
+    ends = rng.uniform(-1.0, 1.0, (50, 4, 2))
+    many = rng.integers(1, 5, 50)
+    ends[np.arange(4) >= many[:, None]] = math.inf, -math.inf
+    stick_to, keep_from, keep_to = levels(rule, ends[..., 0], ends[..., 1])
+    for n, count in enumerate(many):
+        stable = tuple(Branch(1.0, 2.0, *pair) for pair in ends[n, :count].tolist())
+        table = RULES[rule](None, stable)
+        assert (stick_to[n], *keep_from[n, :count], *keep_to[n, :count]) == (table.stick_to, *table.keep_from, *table.keep_to)
+        assert (keep_from[n, count:] > keep_to[n, count:]).all()
 
 
 def best(rule, g, stable, excess):

@@ -7,9 +7,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stickslip.batch.kernels.branch_search import MOST_BRANCHES, RULES, Found, Resistances, search_branches
+from stickslip.batch.kernels.branch_search import MOST_BRANCHES, Found, Resistances, search_branches
 from stickslip.batch.kernels.runs import fill_constants
 from stickslip.batch.vectorised_problem import Values, member, shared, vectorised_problem
+from stickslip.contact.rules.selection import levels
 from stickslip.engine.codegen.compiler import compile_formula, keep_with
 from stickslip.engine.enclosure.formula import formulas_of
 from stickslip.engine.state.layout import Branch, Counts, Floats, Integers, LawPiece, Params, State
@@ -180,7 +181,7 @@ def steps_alone(problem: Problem) -> bool:
 # ---- the contact equation ---------------------------------------------------------------------------------------------------
 
 
-def branches_of(problem: Problem, group: Alike, constants: Floats, count: int) -> Found:
+def branches_of(problem: Problem, group: Alike, constants: Floats, count: int) -> tuple[Floats, Integers, Floats, Floats]:
     """Return the branches of each member's resistance g(v) = Z v + S mu(v), and what follows from them.
 
     The results are `Setups.branch_table`, the number of branches, 1 for members for which some load has several solutions,
@@ -188,21 +189,24 @@ def branches_of(problem: Problem, group: Alike, constants: Floats, count: int) -
     """
     branches, one = np.ones(count, np.int64), group.problem
     if group.counts.is_algebraic == 0:
-        return Found(table_of_branches(one, 0.0)[0][None], branches, np.zeros(count), np.zeros(count))
+        return table_of_branches(one, 0.0)[0][None], branches, np.zeros(count), np.zeros(count)
     law, body = problem.friction, problem.body
     own = problem.normal * law.variation / body.damping
     slowest, fastest = scales(law, spread(own, count), count)
     damping, normal, start = (spread(x, count) for x in (body.damping, problem.normal, -problem.normal * law.static_excess))
-    kind = one.friction.bends_one_way, RULES.index(one.rule)
-    table, irregular, stick_to = Branch.table(count, 1 if kind[0] else MOST_BRANCHES), np.empty(count), np.empty(count)
+    one_way = one.friction.bends_one_way
+    found = Found(Branch.table(count, 1 if one_way else MOST_BRANCHES), branches, np.empty(count))
     address = int(LawPiece(group.functions[0]).value_at)
     numbers = np.array([spread(getattr(law, name), count) for name in law.parameters()]).reshape(-1, count).T
     formulas = formulas_of(one.friction.trees()[:1], law.parameters(), numbers)
     slip = spread(problem.law_slip, count)
     contacts = Resistances(address, constants, damping, normal, start, slowest, fastest, formulas, slip)
-    found = Found(table, branches, irregular, stick_to)
-    search_branches(contacts, *kind, np.empty(4), found)
-    return found
+    search_branches(contacts, one_way, np.empty(4), found)
+    table = Branch.of(found.table)
+    exists = np.arange(found.table.shape[1]) < branches[:, None]
+    start, end = np.where(exists, table.excess_from, np.inf), np.where(exists, table.excess_to, -np.inf)
+    stick_to, table.keep_from[...], table.keep_to[...] = levels(one.rule, start, end)
+    return *found, stick_to
 
 
 def scales(law: FrictionLaw, own: Floats, count: int) -> tuple[Floats, Floats]:

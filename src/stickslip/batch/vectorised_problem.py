@@ -14,9 +14,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.batch.kernels.branch_search import RULES
 from stickslip.batch.kernels.reduction import COLUMNS
 from stickslip.bodies import ElasticSlab
+from stickslip.contact.rules.selection import OF_LEVELS
 from stickslip.engine.codegen.uncompiled import UNCOMPILED
 from stickslip.engine.state.layout import Floats
 from stickslip.engine_input.branch_table import is_algebraic
@@ -225,8 +225,8 @@ def _of_law(scenario: Scenario, parameters: Sequence[str]) -> Iterator[str]:
     if problem.folds_move:
         yield f"{name}: branches of the contact equation move with slip"
     chooses = is_algebraic(problem) or ("body.contact_mass" in parameters and law.depends_on_rate)
-    if chooses and problem.rule not in RULES:
-        yield f"selection rule '{problem.rule}' is calculated for one problem at a time; a batch supports {', '.join(RULES)}"
+    if chooses and problem.rule not in OF_LEVELS:
+        yield f"selection rule '{problem.rule}' is calculated for one problem at a time; a batch supports {', '.join(OF_LEVELS)}"
     if not law.variation < float("inf") or not law.range()[1] < float("inf"):
         yield f"{name}: friction grows without bound"
 

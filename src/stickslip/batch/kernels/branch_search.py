@@ -1,4 +1,4 @@
-"""Find the branches of many resistances g(s) = Z s + S mu(s): `contact.branches` and `contact.rules.selection` in compiled code.
+"""Find the branches of many resistances g(s) = Z s + S mu(s): `contact.branches` in compiled code.
 
 If mu is convex or concave, g has one fold at most, which is located to two neighbouring floating-point numbers. For any other law,
 folds come from bounds of g', as in `contact.folds`.
@@ -15,16 +15,13 @@ from stickslip.engine.codegen.compiler import ahead, bits_of, call_value, float_
 from stickslip.engine.enclosure.formula import Formulas
 from stickslip.engine.folds.turns import FASTEST, MOST_EVALUATIONS, Turns, find_turns, folds_of, new_cells, room_for_turns
 from stickslip.engine.folds.turns import Resistance as Bounded
-from stickslip.engine.state.layout import Branch, Floats, Integers
+from stickslip.engine.state.layout import Floats, Integers
 from stickslip.engine.state.workspace import branches_in
 
 MOST_BRANCHES = 4
 """Largest number of branches for which tables have room."""
 ROOM = 64
 """Largest number of turns of g, or of intervals in which these are not decided, that are told apart."""
-RULES = ("perfect-delay", "minimal", "maximal")
-"""Selection rules that a batch supports; their places are their codes in compiled code."""
-MINIMAL, MAXIMAL = RULES.index("minimal"), RULES.index("maximal")
 
 BELOW, ABOVE = 1e-8, 1e4
 """Between these multiples of the slowest and of the fastest scale of a contact lies the fold of a law that bends one way."""
@@ -68,7 +65,6 @@ class Found(NamedTuple):
     table: Floats  # (members, largest number of branches, Branch.total)
     branches: Integers  # number of branches; NEVER_RISES or TOO_MANY
     irregular: Floats  # 1 if several slip rates solve the contact equation at some load
-    stick_to: Floats  # Pa: load minus strength at which stick ends
 
 
 @kernel
@@ -167,32 +163,11 @@ def turns_of(of: Resistances, n: int, ends: Floats, table: Turns, cells: Floats)
 
 
 @kernel
-def keep_levels(rule: int, count: int, branches: Branch) -> float:
-    """Write between which loads the rule keeps each of a member's branches; return the load at which stick ends.
-
-    Loads are differences from the static strength (Pa).
-    """
-    stick_to = 0.0
-    for n in range(count):
-        low, high = branches[n].excess_from, branches[n].excess_to
-        if rule == MINIMAL:
-            low = max(low, 0.0)
-            for other in range(n):
-                low = max(low, branches[other].excess_to)
-        elif rule == MAXIMAL:
-            stick_to = min(stick_to, low)
-            for other in range(n + 1, count):
-                high = min(high, branches[other].excess_from)
-        branches[n].keep_from, branches[n].keep_to = low, high
-    return stick_to
-
-
-@kernel
-def search_branches(of: Resistances, one_way: bool, rule: int, work: Floats, found: Found) -> None:
+def search_branches(of: Resistances, one_way: bool, work: Floats, found: Found) -> None:
     """Find the branches of each member's resistance and what follows from them.
 
-    one_way: mu is convex or concave. rule: its place in RULES. work has room for what `value` returns and belongs to the caller,
-    because an array made here would be freed as soon as its address is taken.
+    one_way: mu is convex or concave. work has room for what `value` returns and belongs to the caller, because an array made here
+    would be freed as soon as its address is taken.
     """
     ends, table, cells = np.empty(2 * ROOM + 2), room_for_turns(ROOM), new_cells()
     out, size = floats(work.ctypes.data), of.constants.shape[1] * of.constants.shape[2] if len(of.constants) > 1 else 0
@@ -204,7 +179,7 @@ def search_branches(of: Resistances, one_way: bool, rule: int, work: Floats, fou
         else:
             count = turns_of(of, n, ends, table, cells)
             count = TOO_MANY if count > MOST_BRANCHES else count
-        found.branches[n], found.irregular[n], found.stick_to[n] = count, 0.0, 0.0
+        found.branches[n], found.irregular[n] = count, 0.0
         if count <= 0:
             continue
         branches = branches_in(found.table[n])
@@ -215,4 +190,3 @@ def search_branches(of: Resistances, one_way: bool, rule: int, work: Floats, fou
             branch.excess_to = math.inf if math.isinf(high) else excess_at(g, high)
             if low > 0.0 or branch.excess_from < 0.0:
                 found.irregular[n] = 1.0
-        found.stick_to[n] = keep_levels(rule, count, branches)

@@ -23,6 +23,7 @@ from stickslip.contact.folds import MOST_FOLDS, certificate, panels
 from stickslip.contact.roots import bracketed_newton
 from stickslip.engine.folds.panels import NODES, WEIGHTS
 from stickslip.engine.folds.turns import FASTEST
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SelectionRule, SelectionTable, registered
@@ -94,23 +95,41 @@ def area(g: Resistance, start: float, end: float, excess: float) -> float:
 Branches = tuple[Branch, ...]
 
 
+def levels(rule: str, start: Floats, end: Floats) -> tuple[Floats, Floats, Floats]:
+    """Return up to which load a rule keeps stick, and from and up to which load each branch, for any number of contacts.
+
+    A branch exists at loads from `start` to `end`; branches are along the last axis, slowest first. Where a contact has fewer of
+    them than others, the rest start at inf and end at -inf.
+    """
+    stick_to, last = np.zeros(start.shape[:-1]), start.shape[-1]
+    if rule == "minimal":
+        slower = np.maximum.accumulate(np.insert(end, 0, 0.0, axis=-1), axis=-1)[..., :last]
+        return stick_to, np.maximum(start, slower), end
+    if rule == "maximal":
+        faster = np.minimum.accumulate(np.insert(start, last, np.inf, axis=-1)[..., ::-1], axis=-1)[..., last - 1 :: -1]
+        return start.min(axis=-1, initial=0.0), start, np.minimum(end, faster)
+    return stick_to, start, end
+
+
+def _table(rule: str, stable: Branches) -> SelectionTable:
+    start, end = np.reshape([(b.excess_from, b.excess_to) for b in stable], (-1, 2)).T
+    stick_to, keep_from, keep_to = levels(rule, start, end)
+    return SelectionTable(float(stick_to), tuple(keep_from.tolist()), tuple(keep_to.tolist()))
+
+
 def perfect_delay(g: Resistance, stable: Branches, /) -> SelectionTable:
     """Keep the branch as long as it exists, then take the nearest one in the direction of the change of load."""
-    return SelectionTable(0.0, tuple(b.excess_from for b in stable), tuple(b.excess_to for b in stable))
+    return _table("perfect-delay", stable)
 
 
 def minimal(g: Resistance, stable: Branches, /) -> SelectionTable:
     """Take the smallest stable slip rate: a branch is left as soon as stick or a slower branch exists."""
-    slower = [max([0.0, *(b.excess_to for b in stable[:i])]) for i in range(len(stable))]
-    keep_from = tuple(max(b.excess_from, below) for b, below in zip(stable, slower, strict=True))
-    return SelectionTable(0.0, keep_from, tuple(b.excess_to for b in stable))
+    return _table("minimal", stable)
 
 
 def maximal(g: Resistance, stable: Branches, /) -> SelectionTable:
     """Take the largest stable slip rate: stick or a branch is left as soon as a faster branch exists."""
-    faster = [min([math.inf, *(b.excess_from for b in stable[i + 1 :])]) for i in range(len(stable))]
-    keep_to = tuple(min(b.excess_to, above) for b, above in zip(stable, faster, strict=True))
-    return SelectionTable(min([0.0, *(b.excess_from for b in stable)]), tuple(b.excess_from for b in stable), keep_to)
+    return _table("maximal", stable)
 
 
 @lru_cache(maxsize=16)  # it takes some hundredths of a second, and a run and its tables ask for it in turn
@@ -129,6 +148,8 @@ def maxwell(g: Resistance, stable: Branches, /) -> SelectionTable:
 
 RULES: dict[str, SelectionRule] = {rule.__name__.replace("_", "-"): rule for rule in (perfect_delay, maxwell, minimal, maximal)}
 """The built-in rules, keyed by their names in problems and scenarios (`stickslip.selection.SELECTION_RULES`)."""
+OF_LEVELS = ("perfect-delay", "minimal", "maximal")
+"""Names of the rules that need nothing but `levels`: a batch supports them."""
 
 
 def rule_of(problem: Problem) -> SelectionRule:
