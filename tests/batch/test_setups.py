@@ -20,6 +20,7 @@ from stickslip.engine.state.workspace import counts_in, state_in
 from stickslip.engine_input.limits import wait_for_creep
 from stickslip.engine_input.prepare import prepare
 from stickslip.friction import LAWS
+from stickslip.friction.formula.bounds import bends_one_way
 from stickslip.run.session import split_time
 from stickslip.scenarios.scenario import Scenario
 from stickslip.trajectory.slip_events import default_event_rate
@@ -125,7 +126,7 @@ def test_branches_of_a_batch_equal_those_of_the_contact_equation(name: str, rule
 
 
 @pytest.mark.parametrize("kind", [kind for kind, law in LAWS.items() if law.many])
-def test_laws_that_claim_to_bend_one_way_do(kind: str) -> None:
+def test_laws_that_are_proven_to_bend_one_way_do(kind: str) -> None:
     law = CASES_OF_KIND[kind]
     rates = np.geomspace(1e-6, 1e3, 4001)
     mu = law.coefficient(0.1, rates)
@@ -133,9 +134,20 @@ def test_laws_that_claim_to_bend_one_way_do(kind: str) -> None:
     bends = np.diff(slope)
     slack = 1e-15 / np.diff(rates)[1:]
     one_way = bool((bends >= -4 * slack).all() or (bends <= 4 * slack).all())
-    assert one_way or not law.bends_one_way
+    assert proven_to_bend_one_way(law) == one_way
     if kind in ("exponential-stribeck", "power-stribeck"):
-        assert not replace(law, exponent=2.0).bends_one_way
+        assert not proven_to_bend_one_way(replace(law, exponent=2.0))
+
+
+def proven_to_bend_one_way(law: ss.friction.FrictionLaw) -> bool:
+    return all(bool(bends_one_way(tree, law.numbers(i), 0.1)) for i, tree in enumerate(law.trees()))
+
+
+def test_members_of_a_batch_bend_one_way_each_for_itself() -> None:
+    """Friction of some rises with the slip rate and that of others falls: one interval of their numbers would decide nothing."""
+    law = ss.friction.HyperbolicRate(0.8, 0.3, 1.0)
+    values = {"static": np.array([0.8, 0.3, 0.5]), "dynamic": np.array([0.3, 0.8, 0.5]), "alpha": np.array([1.0, 1e-6, 1e6])}
+    assert bends_one_way(law.trees()[0], values, np.zeros(3)).all()
 
 
 CASES_OF_KIND = {case.scenario.problem.friction.kind: case.scenario.problem.friction for case in reversed(CASES.values())}

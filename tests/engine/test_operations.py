@@ -84,6 +84,14 @@ def check_bounds(operation: Operation) -> None:
             assert (low <= found * (1.0 + 1e-15) + 1e-15).all()
             assert (found * (1.0 - 1e-15) - 1e-15 <= high).all()
             assert width == 1.0 or high - low < 1e-3 or (low, high) == (-1.0, 1.0)
+    ends = np.array([-np.inf, -2.0, -0.5, 0.0, 0.3, 1.7, np.inf])
+    low, high = (one.ravel() for one in np.meshgrid(ends, ends))
+    slip, rate = (low[low <= high], high[low <= high]), (np.abs(ends[3:5])[:, None], ends[4:6][:, None])
+    for tree, _ in formulas(operation):
+        many = np.broadcast_arrays(*bounds(tree, {}, slip, rate), slip[0] + rate[0])
+        for n, k in np.ndindex(many[0].shape):
+            alone = bounds(tree, {}, (slip[0][k], slip[1][k]), (rate[0][n, 0], rate[1][n, 0]))
+            assert (many[0][n, k], many[1][n, k]) == alone
 
 
 def check_series(operation: Operation) -> None:

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 import stickslip as ss
 from stickslip.foundation.quantities import quantity
 from stickslip.friction import LAWS, FrictionLaw
-from stickslip.friction.formula.functions import exp
+from stickslip.friction.formula.functions import exp, sin, tanh
 from stickslip.friction.statements import check_statements
 from stickslip.scenarios.scenario import read_scenario
 from stickslip.scenarios.templates import template
@@ -39,10 +39,6 @@ class Own(FrictionLaw):
 
     def range(self) -> Any:
         return min(self.static, self.dynamic), max(self.static, self.dynamic)
-
-    @property
-    def bends_one_way(self) -> bool:
-        return True
 
 
 def lying(**statements: Any) -> type[Own]:
@@ -77,7 +73,6 @@ LIES: dict[str, tuple[dict[str, Any], str]] = {
         {
             "formula": staticmethod(lambda law, u, v: law.dynamic + 0.0 * v),
             "static_excess": property(lambda law: 0.6),
-            "bends_one_way": property(lambda law: True),
         },
         "range() says that mu is at most 0.8, but at rest it is 0.9 at slip rate 0 m/s",
     ),
@@ -91,10 +86,6 @@ LIES: dict[str, tuple[dict[str, Any], str]] = {
             "range": lambda law: (0.0, 0.8),
         },
         "range() says that mu is at least 0, but it is -0.0998201 at slip rate 1000 m/s;",
-    ),
-    "bends both ways": (
-        {"formula": staticmethod(lambda law, u, v: law.dynamic + (law.static - law.dynamic) * exp(-((v / law.rate) ** 2)))},
-        "bends_one_way says that mu is convex, or concave, over all slip rates, but dmu/dv rises again near slip rate",
     ),
     "too many knots": ({"knots": property(lambda law: (1.0,))}, "knots must be one fewer than pieces, got 1 knots and 1 pieces"),
     "knots that descend": (
@@ -123,13 +114,65 @@ def test_a_range_is_compared_at_slips_too() -> None:
         dataclass(frozen=True)(narrow)()
 
 
+def unstated(formula: Any, **statements: Any) -> type[FrictionLaw]:
+    """Return a class that states no range."""
+    fields = {"a": quantity("1", "a number", default=0.8), "b": quantity("m/s", "a scale", default=0.1)}
+    given = {"__module__": __name__, "__doc__": "A law.", "kind": "unstated", "formula": staticmethod(formula), **statements}
+    return dataclass(frozen=True)(
+        type("Unstated", (FrictionLaw,), given | fields | {"__annotations__": dict.fromkeys(fields, float)})
+    )
+
+
+UNSTATED: dict[str, tuple[type[FrictionLaw], tuple[float, float], bool]] = {
+    "falls": (unstated(lambda law, u, v: 0.3 + law.a / (1.0 + v / law.b)), (0.3, 1.1), False),
+    "rises for ever": (unstated(lambda law, u, v: law.a + v / law.b), (0.8, math.inf), False),
+    "steps at rest": (unstated(lambda law, u, v: law.a + 0.0 * v, static_excess=property(lambda law: 0.1)), (0.8, 0.9), False),
+    "waves": (unstated(lambda law, u, v: law.a + 0.5 * sin(7.0 * u)), (0.3, 1.3), False),
+    "waves below zero": (unstated(lambda law, u, v: 0.4 + law.a * sin(7.0 * u)), (0.0, 1.2), True),
+    "even power of net slip": (unstated(lambda law, u, v: law.a / (1.0 + u**2) + 0.1), (0.1, 0.9), False),
+    "odd power of net slip": (unstated(lambda law, u, v: law.a + tanh(u**3)), (0.0, 1.8), True),
+    "power of a path": (unstated(lambda law, u, v: law.a * (1.0 + u) ** -0.5, counts="path"), (0.0, 0.8), False),
+    "pieces": (
+        unstated(
+            None,
+            pieces=property(lambda law: (lambda law, u, v: law.a - v, lambda law, u, v: law.a - 0.5 + 0.0 * v)),
+            knots=property(lambda law: (0.5,)),
+            knot_variable="rate",
+        ),
+        (0.3, 0.8),
+        False,
+    ),
+    "a variable that occurs twice": (unstated(lambda law, u, v: 0.2 + v / law.b * exp(-v / law.b)), (0.2, math.inf), False),
+}
+
+
+@pytest.mark.parametrize("name", UNSTATED)
+def test_a_class_need_not_state_its_range(name: str) -> None:
+    """It is found from the formula, and holds at many slips and slip rates."""
+    kind, wanted, can_be_negative = UNSTATED[name]
+    law = kind()
+    low, high = law.range()
+    assert (low, high) == pytest.approx(wanted, rel=1e-15)
+    assert law.can_be_negative == can_be_negative
+    slips, rates = np.append(0.0, np.geomspace(1e-3, 30.0, 60))[:, None], np.append(0.0, np.geomspace(1e-4, 30.0, 60))
+    values = law.coefficient(np.concatenate((slips, -slips)) if law.counts == "net" else slips, rates)
+    assert (np.maximum(values, 0.0) >= low).all()
+    assert values.max() <= high
+    assert (values.min() < 0.0) == can_be_negative
+
+
+def test_a_run_ends_where_friction_of_a_class_without_a_range_falls_below_zero() -> None:
+    law = UNSTATED["waves below zero"][0]()
+    run = ss.simulate(ss.Problem(ss.ElasticSlab(2800, 3500, 1e4, 1e8), law, initial_excess=1e6, initial_slip=0.3), duration=6.0)
+    assert run.status.name == "negative friction"
+
+
 def test_friction_below_zero_is_allowed_where_the_law_says_so() -> None:
     falls = staticmethod(lambda law, u, v: law.static - law.static * v / (v + law.rate) - 0.1 * v / (v + 1.0))
     law = lying(
         formula=falls,
         range=lambda law: (0.0, 0.8),
         can_be_negative=property(lambda law: True),
-        bends_one_way=property(lambda law: False),
     )()
     assert float(law.coefficient(0.0, 1e3)) < 0.0
 

@@ -28,6 +28,7 @@ from stickslip.engine_input.prepare import (
 )
 from stickslip.foundation.quantities import quantities_of
 from stickslip.friction import FrictionLaw
+from stickslip.friction.formula.bounds import bends_one_way
 from stickslip.problem.problem import Problem
 from stickslip.scenarios.scenario import Scenario
 from stickslip.trajectory.slip_events import default_event_rate
@@ -194,11 +195,12 @@ def branches_of(problem: Problem, group: Alike, constants: Floats, count: int) -
     own = problem.normal * law.variation / body.damping
     slowest, fastest = scales(law, spread(own, count), count)
     damping, normal, start = (spread(x, count) for x in (body.damping, problem.normal, -problem.normal * law.static_excess))
-    one_way = one.friction.bends_one_way
+    tree, values = one.friction.trees()[0], {name: getattr(law, name) for name in law.parameters()}
+    one_way = not law.knots and bool(np.all(bends_one_way(tree, values, problem.law_slip)))
     found = Found(Branch.table(count, 1 if one_way else MOST_BRANCHES), branches, np.empty(count))
     address = int(LawPiece(group.functions[0]).value_at)
-    numbers = np.array([spread(getattr(law, name), count) for name in law.parameters()]).reshape(-1, count).T
-    formulas = formulas_of(one.friction.trees()[:1], law.parameters(), numbers)
+    numbers = np.array([spread(value, count) for value in values.values()]).reshape(-1, count).T
+    formulas = formulas_of((tree,), law.parameters(), numbers)
     slip = spread(problem.law_slip, count)
     contacts = Resistances(address, constants, damping, normal, start, slowest, fastest, formulas, slip)
     search_branches(contacts, one_way, np.empty(4), found)

@@ -5,7 +5,8 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+import math
+from abc import ABC
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
@@ -119,16 +120,20 @@ class LawContract(Declared, ABC):
         """
         raise TypeError(f"{type(law).__name__} has neither a formula nor pieces")
 
-    @abstractmethod
     def range(self) -> tuple[float, float]:
         """Return a lower and an upper bound of the friction coefficient (no unit), at rest and while slipping.
 
-        The lower bound must not be negative. The upper bound is inf if friction grows without bound.
+        Without a statement of the law they follow from its formula by interval arithmetic, which is sharp unless a variable
+        occurs more than once. The lower bound must not be negative. The upper bound is inf if friction grows without bound.
         """
+        return 0.0, math.inf
 
     @property
     def can_be_negative(self) -> bool:
-        """True if the friction coefficient is not known to stay above zero: the engine then watches it inside every step."""
+        """True if the friction coefficient is not known to stay above zero: the engine then watches it inside every step.
+
+        A law that states its `range` is believed.
+        """
         return False
 
     def check(self) -> None:
@@ -161,13 +166,6 @@ class LawContract(Declared, ABC):
     def knots(self) -> tuple[float, ...]:
         """The ascending places (m or m/s) at which one piece ends and the next begins: one fewer than `pieces`."""
         return ()
-
-    # ---- what a search for folds can use --------------------------------------------------------------------------------------
-
-    @property
-    def bends_one_way(self) -> bool:
-        """True if mu is convex, or concave, over all slip rates v > 0, so that Z v + S mu(v) turns at most once."""
-        return False
 
     # ---- state ----------------------------------------------------------------------------------------------------------------
 

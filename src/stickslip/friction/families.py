@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import reduce
 from typing import Any, Literal
@@ -85,13 +84,3 @@ class Stribeck(FrictionLaw):
     rate: Number = quantity("m/s", "slip rate v_s over which friction falls", above=0)
     exponent: float = quantity("1", "exponent of v / rate; whole", at_least=1, whole=True)
     viscosity: Number = quantity("s/m", "increase of friction with slip rate", at_least=0, default=0.0)
-
-    @override
-    def range(self) -> tuple[float, float]:
-        low, high = hull(self.static, self.dynamic)
-        return low, math.inf if self.viscosity > 0.0 else high
-
-    @property
-    @override
-    def bends_one_way(self) -> bool:
-        return self.exponent == 1.0

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, reduce
+from itertools import pairwise
 from types import SimpleNamespace
 from typing import Any
 
@@ -15,8 +16,10 @@ from typing_extensions import override
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, Series, fields_of, quantities_of
 from stickslip.friction.contract import Formula, LawContract, one_argument
+from stickslip.friction.formula.bounds import bounds
 from stickslip.friction.formula.differences import value_and_slopes
 from stickslip.friction.formula.expression import RATE, SLIP, STATES, Expression, Parameter, as_expression, depends_on
+from stickslip.friction.formula.operations.sets import Interval
 from stickslip.friction.statements import check_statements, is_known, stated_range
 
 Literals = tuple[tuple[str, float], ...]
@@ -45,11 +48,10 @@ class FrictionLaw(LawContract):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        low, _ = stated_range(self)
-        if low < 0:
-            raise InputError(f"{type(self).__name__}: friction must not be negative anywhere it slips, its minimum here is {low:g}")
         if not is_known(self):
             check_statements(self)
+        if self.states_range and (low := stated_range(self)[0]) < 0:
+            raise InputError(f"{type(self).__name__}: friction must not be negative anywhere it slips, its minimum here is {low:g}")
 
     # ---- the numbers in the formulas ----------------------------------------------------------------------------------------
 
@@ -59,7 +61,8 @@ class FrictionLaw(LawContract):
 
     def piece_values(self, i: int) -> tuple[float, ...]:
         """Return the values of `parameters` in piece i: the values of the law, unless its pieces have different values."""
-        return tuple(float(getattr(self, name)) for name in self.parameters())
+        values = (getattr(self, name) for name in self.parameters())
+        return tuple(value if np.ndim(value) else float(value) for value in values)
 
     def numbers(self, i: int = 0) -> dict[str, float]:
         """Return the values of `parameters` in piece i, by name."""
@@ -174,9 +177,34 @@ class FrictionLaw(LawContract):
         return not self.sticks and not self.reverses
 
     @property
+    def states_range(self) -> bool:
+        """True if the law states its `range`."""
+        return type(self).range is not FrictionLaw.range
+
     @override
-    def bends_one_way(self) -> bool:
-        return not self.depends_on_rate
+    def range(self) -> tuple[float, float]:
+        low, high = (np.maximum(end, 0.0) for end in self._bounds)
+        return (low, high) if low.ndim or high.ndim else (float(low), float(high))
+
+    @property
+    @override
+    def can_be_negative(self) -> bool:
+        return not self.states_range and not bool(np.all(self._bounds[0] >= 0.0))
+
+    @cached_property
+    def _bounds(self) -> Interval:
+        """Bounds of the formula over all slips, slip rates and states, and the largest friction at rest."""
+        found = []
+        edges = {"slip": (0.0 if self.counts == "path" else -np.inf, np.inf), "rate": (0.0, np.inf)}
+        first, last = edges[self.knot_variable]
+        for i, (tree, ends) in enumerate(zip(self.trees(), pairwise((first, *self.knots, last)), strict=True)):
+            numbers, place = self.numbers(i), edges | {self.knot_variable: ends}
+            found.append(bounds(tree, numbers, place["slip"], place["rate"]))
+            if np.any(self.static_excess):
+                rest = bounds(tree, numbers, place["slip"], (0.0, 0.0))
+                found.append((found[-1][0], rest[1] + self.static_excess))
+        lows, highs = zip(*found, strict=True)
+        return reduce(np.minimum, lows), reduce(np.maximum, highs)
 
     @cached_property
     def variation(self) -> float:

@@ -1,4 +1,4 @@
-"""Check by samples what the class of a law states about it: its range, its curvature, its knots, its step at rest.
+"""Check what the class of a law states about it: its knots, its step at rest, and by samples its range.
 
 Runs, proofs and searches for folds believe these statements. Tests check the statements of the package's laws. The statements of a
 user's class are compared with its formula when the law is made.
@@ -41,11 +41,13 @@ def is_known(law: FrictionLaw) -> bool:
 def check_statements(law: FrictionLaw) -> None:
     """Raise InputError, in one line, if a law contradicts its own formula at one of many slips, slip rates and states."""
     name = type(law).__name__
-    low, high = stated_range(law)
     _check_knots(law)
     step = _number(law.static_excess)
     if not (step >= 0.0 and math.isfinite(step)):
         raise InputError(f"{name}: static_excess must be a number of at least 0, got {law.static_excess!r}")
+    if not law.states_range:
+        return
+    low, high = stated_range(law)
     try:
         slips, rates = _slips(law), _rates(law)
         along_rate = _Samples.of(law, slips[::SOME], rates)
@@ -54,8 +56,6 @@ def check_statements(law: FrictionLaw) -> None:
         return  # a formula that cannot be evaluated like this has its own message where it is traced
     for samples in (along_rate, along_slip):
         samples.check_range(name, low, high, step, law.can_be_negative)
-    if law.bends_one_way and len(along_rate.slope):
-        along_rate.check_bends(name)
 
 
 def _number(value: Any) -> float:
@@ -87,13 +87,12 @@ def _check_knots(law: FrictionLaw) -> None:
 
 @dataclass(frozen=True)
 class _Samples:
-    """Friction coefficients and their slopes by the slip rate (s/m), at slips and states (rows) and at slip rates (columns)."""
+    """Friction coefficients at slips and states (rows) and at slip rates (columns)."""
 
     slip: Floats  # (rows,), m
     states: list[Floats]  # (rows,) each
     rate: Floats  # (columns,), ascending, m/s
     coefficient: Floats
-    slope: Floats
     law: FrictionLaw
 
     @classmethod
@@ -104,8 +103,7 @@ class _Samples:
         rows = [one[:, None] for one in states]
         with np.errstate(all="ignore"):
             value = law.coefficient(slip[:, None], rate, one_argument(rows))
-            slope = law.slopes(slip[:, None], rate, one_argument(rows))[1] if len(rate) > SOME else np.zeros((0, 1))
-        return cls(slip, states, rate, value, slope, law)
+        return cls(slip, states, rate, value, law)
 
     def place(self, row: int, column: int) -> str:
         where = [f"slip {self.slip[row]:.4g} m"] if self.law.depends_on_slip else []
@@ -126,21 +124,6 @@ class _Samples:
                 raise InputError(
                     f"{name}: range() says that mu is {word} {abs(bound):.6g}, but{rest} it is {value[row, column]:.6g} at"
                     f" {self.place(int(row), int(column))}; the bounds must hold at all slips and slip rates"
-                )
-
-    def check_bends(self, name: str) -> None:
-        """Compare the slopes with the statement that they only rise, or only fall, with the slip rate."""
-        for row, slope in enumerate(self.slope):
-            known = np.flatnonzero(np.isfinite(slope))
-            change = np.diff(slope[known])
-            size = np.abs(slope[known])
-            rounding = SLACK * (size[1:] + size[:-1]) + 1e-12 * np.max(size, initial=0.0)
-            rises, falls = change > rounding, change < -rounding
-            if rises.any() and falls.any():
-                turn = int(max(np.argmax(rises), np.argmax(falls)))
-                raise InputError(
-                    f"{name}: bends_one_way says that mu is convex, or concave, over all slip rates, but dmu/dv"
-                    f" {'falls' if rises[:turn].any() else 'rises'} again near {self.place(row, int(known[turn]))}; return False"
                 )
 
 

@@ -20,7 +20,6 @@ from stickslip.friction.contract import MOST_STATES, Formula, StateVariable
 from stickslip.friction.custom.sampled import check_samples
 from stickslip.friction.custom.typed_state import STATES, read_evolution, split, steady
 from stickslip.friction.families import RemembersSlip
-from stickslip.friction.formula.bounds import bounds
 from stickslip.friction.formula.dimensions import check_dimensions
 from stickslip.friction.formula.expression import SLIP, Expression, depends_on, nodes_of
 from stickslip.friction.formula.functions import evaluate
@@ -303,23 +302,10 @@ class FromExpression(RemembersSlip):
     def static_excess(self) -> float:
         return 0.0 if self.static is None else self.static - float(self.coefficient(0.0))
 
-    @override
-    def range(self) -> tuple[float, float]:
-        """Return bounds of the expression over all slips and slip rates, the lower one raised to 0 if it is negative.
-
-        The upper bound includes the coefficient at rest.
-        """
-        low, high = self._bounds()
-        return max(low, 0.0), max(high, self.static or 0.0)
-
     @property
     @override
     def can_be_negative(self) -> bool:
-        return self.at_reversal == "keeps-sign" and not self._bounds()[0] >= 0.0
-
-    def _bounds(self) -> tuple[float, float]:
-        slip = (0.0 if self.counts == "path" else -math.inf, math.inf)
-        return bounds(self.tree, self.numbers(), slip, (0.0, math.inf))
+        return self.at_reversal == "keeps-sign" and super().can_be_negative
 
     @property
     @override

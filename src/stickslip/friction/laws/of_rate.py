@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -12,7 +11,7 @@ from typing_extensions import override
 from stickslip.foundation.conversion import Number, Numbers
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, Series, declare, quantity
-from stickslip.friction.families import Stribeck, hull
+from stickslip.friction.families import Stribeck
 from stickslip.friction.formula.functions import exp, log
 from stickslip.friction.law import FrictionLaw
 from stickslip.friction.piecewise import PiecewiseLinearLaw
@@ -46,15 +45,6 @@ class Coulomb(FrictionLaw):
     def static_excess(self) -> float:
         return self.static - self.dynamic
 
-    @override
-    def range(self) -> tuple[float, float]:
-        return self.dynamic, self.static
-
-    @property
-    @override
-    def bends_one_way(self) -> bool:
-        return True
-
 
 @dataclass(frozen=True)
 class HyperbolicRate(FrictionLaw):
@@ -74,15 +64,6 @@ class HyperbolicRate(FrictionLaw):
     @override
     def formula(law: Any, u: Any, v: Any) -> Any:
         return law.dynamic + (law.static - law.dynamic) / (1.0 + law.alpha * v)
-
-    @override
-    def range(self) -> tuple[float, float]:
-        return hull(self.static, self.dynamic)
-
-    @property
-    @override
-    def bends_one_way(self) -> bool:
-        return True
 
 
 @dataclass(frozen=True)
@@ -164,7 +145,3 @@ class VelocityStrengthening(FrictionLaw):
     @override
     def formula(law: Any, u: Any, v: Any) -> Any:
         return law.static + law.a * log(1.0 + v / law.rate) + law.viscosity * v
-
-    @override
-    def range(self) -> tuple[float, float]:
-        return self.static, math.inf if self.a > 0.0 or self.viscosity > 0.0 else self.static

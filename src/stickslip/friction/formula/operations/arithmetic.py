@@ -25,7 +25,7 @@ from stickslip.friction.formula.operations.operation import (
     unit_text,
     without_zeros,
 )
-from stickslip.friction.formula.operations.sets import EVERYTHING, Disc, Interval, hull, times
+from stickslip.friction.formula.operations.sets import Disc, Interval, hull, times, unless
 
 MOST_PARTS = 3
 """Largest number of terms in which a linear combination is taken apart (see `Operation.parts`): longer sums are added as a tree."""
@@ -158,8 +158,8 @@ def _multiply(a: Interval, b: Interval) -> Interval:
 def _mul_bounds(node: Expression, a: Interval, b: Interval) -> Interval:
     if node.arguments[0] != node.arguments[1]:
         return _multiply(a, b)
-    high = max(times(a[0], a[0]), times(a[1], a[1]))
-    return (0.0 if a[0] <= 0.0 <= a[1] else min(a[0] * a[0], a[1] * a[1])), high
+    low, high = hull(a[0] * a[0], a[1] * a[1])
+    return np.where((a[0] <= 0.0) & (a[1] >= 0.0), 0.0, low), high
 
 
 def _mul_disc(a: Disc, b: Disc) -> Disc:
@@ -250,7 +250,7 @@ def _div_slope(end: Any, a: Change, b: Change) -> Any:
 
 
 def _div_bounds(_: Expression, a: Interval, b: Interval) -> Interval:
-    return EVERYTHING if b[0] <= 0.0 <= b[1] else _multiply(a, (1.0 / b[1], 1.0 / b[0]))
+    return unless((b[0] <= 0.0) & (b[1] >= 0.0), _multiply(a, (np.divide(1.0, b[1]), np.divide(1.0, b[0]))))
 
 
 def _div_disc(a: Disc, b: Disc) -> Disc:

@@ -25,7 +25,7 @@ from stickslip.friction.formula.operations.operation import (
     unit_text,
     without_zeros,
 )
-from stickslip.friction.formula.operations.sets import EVERYTHING, OF_FUNCTION, Disc, Interval, growing, hull
+from stickslip.friction.formula.operations.sets import OF_FUNCTION, Disc, Interval, growing, hull, unless
 
 
 def chained(outer: Any, inner: Any) -> Any:
@@ -53,9 +53,11 @@ def _pow_step(start: Any, end: Any, a: Change, b: Change) -> Any:
 
 
 def _pow_bounds(_: Expression, a: Interval, b: Interval) -> Interval:
-    if a[0] < 0.0 or b[0] != b[1] or (a[0] == 0.0 and b[0] < 0.0):
-        return EVERYTHING
-    return hull(*(float(np.power(np.float64(end), b[0])) for end in a))
+    exponent = b[0]
+    whole = (exponent == np.rint(exponent)) & (exponent >= 0.0)
+    low, high = hull(*(np.power(end, exponent) for end in a))
+    low = np.where((a[0] < 0.0) & (a[1] > 0.0) & (exponent % 2.0 == 0.0) & (exponent > 0.0), 0.0, low)
+    return unless((exponent != b[1]) | ((a[0] < 0.0) & ~whole) | ((a[0] <= 0.0) & (exponent < 0.0)), (low, high))
 
 
 def _pow_disc(a: Disc, b: Disc) -> Disc:

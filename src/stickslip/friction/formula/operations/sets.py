@@ -4,32 +4,40 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import reduce
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-Interval = tuple[float, float]
-"""Lower and upper end of an interval."""
+Interval = tuple[Any, Any]
+"""Lower and upper end of an interval: numbers, or arrays with the ends of many."""
 EVERYTHING: Interval = (-math.inf, math.inf)
 """The interval of a value about which nothing is known."""
 
 
-def hull(*ends: float) -> Interval:
-    """Return the smallest interval with these numbers; everything if one of them is not a number."""
-    return EVERYTHING if any(math.isnan(end) for end in ends) else (min(ends), max(ends))
+def hull(*ends: Any) -> Interval:
+    """Return the smallest interval with these numbers; everything where one of them is not a number."""
+    low = reduce(np.minimum, ends)
+    return unless(np.isnan(low), (low, reduce(np.maximum, ends)))
 
 
-def times(x: float, y: float) -> float:
+def unless(unknown: Any, known: Interval) -> Interval:
+    """Return an interval, or everything where nothing is known."""
+    return (np.where(unknown, -np.inf, known[0]), np.where(unknown, np.inf, known[1])) if np.any(unknown) else known
+
+
+def times(x: Any, y: Any) -> Any:
     """Return x y, with 0 times infinity equal to 0: an infinite end of an interval is never reached."""
-    return 0.0 if x == 0.0 or y == 0.0 else float(np.float64(x) * np.float64(y))
+    product = np.multiply(x, y)
+    return np.where(np.isnan(product), 0.0, product)
 
 
 def growing(function: Callable[[Any], Any], least: float = -math.inf) -> Callable[..., Interval]:
     """Return the rule that bounds a function which grows with its argument, from the least argument that it has on."""
 
     def bounds(_: Any, a: Interval) -> Interval:
-        return hull(*(float(function(np.maximum(np.float64(end), least))) for end in a))
+        return hull(*(function(np.maximum(end, least)) for end in a))
 
     return bounds
 
