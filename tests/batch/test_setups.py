@@ -139,15 +139,16 @@ def test_laws_that_are_proven_to_bend_one_way_do(kind: str) -> None:
         assert not proven_to_bend_one_way(replace(law, exponent=2.0))
 
 
-def proven_to_bend_one_way(law: ss.friction.FrictionLaw) -> bool:
-    return all(bool(bends_one_way(tree, law.numbers(i), 0.1)) for i, tree in enumerate(law.trees()))
+def proven_to_bend_one_way(law: ss.friction.FrictionLaw, **ends: tuple[float, float]) -> bool:
+    return all(bends_one_way(tree, law.numbers(i) | ends, (0.1, 0.1)) for i, tree in enumerate(law.trees()))
 
 
-def test_members_of_a_batch_bend_one_way_each_for_itself() -> None:
-    """Friction of some rises with the slip rate and that of others falls: one interval of their numbers would decide nothing."""
+def test_members_of_a_batch_are_proven_to_bend_one_way_all_at_once() -> None:
+    """Friction may fall with the slip rate, or rise, but not fall for some of the numbers and rise for others."""
     law = ss.friction.HyperbolicRate(0.8, 0.3, 1.0)
-    values = {"static": np.array([0.8, 0.3, 0.5]), "dynamic": np.array([0.3, 0.8, 0.5]), "alpha": np.array([1.0, 1e-6, 1e6])}
-    assert bends_one_way(law.trees()[0], values, np.zeros(3)).all()
+    assert proven_to_bend_one_way(law, static=(0.5, 0.9), dynamic=(0.1, 0.5), alpha=(1e-9, 1e9))
+    assert proven_to_bend_one_way(law, static=(0.1, 0.5), dynamic=(0.5, 0.9), alpha=(1e-9, 1e9))
+    assert not proven_to_bend_one_way(law, static=(0.2, 0.6))
 
 
 CASES_OF_KIND = {case.scenario.problem.friction.kind: case.scenario.problem.friction for case in reversed(CASES.values())}

@@ -9,7 +9,7 @@ import numpy as np
 
 from stickslip.batch.kernels.branch_search import MOST_BRANCHES, Found, Resistances, search_branches
 from stickslip.batch.kernels.runs import fill_constants
-from stickslip.batch.vectorised_problem import Values, member, shared, vectorised_problem
+from stickslip.batch.vectorised_problem import Values, member, vectorised_problem
 from stickslip.contact.rules.selection import levels
 from stickslip.engine.codegen.compiler import compile_formula, keep_with
 from stickslip.engine.enclosure.formula import formulas_of
@@ -26,6 +26,7 @@ from stickslip.engine_input.prepare import (
     start_of,
     together,
 )
+from stickslip.foundation.arrays import shared
 from stickslip.foundation.quantities import quantities_of
 from stickslip.friction import FrictionLaw
 from stickslip.friction.formula.bounds import bends_one_way
@@ -195,11 +196,12 @@ def branches_of(problem: Problem, group: Alike, constants: Floats, count: int) -
     own = problem.normal * law.variation / body.damping
     slowest, fastest = scales(law, spread(own, count), count)
     damping, normal, start = (spread(x, count) for x in (body.damping, problem.normal, -problem.normal * law.static_excess))
-    tree, values = one.friction.trees()[0], {name: getattr(law, name) for name in law.parameters()}
-    one_way = not law.knots and bool(np.all(bends_one_way(tree, values, problem.law_slip)))
+    tree, values = one.friction.trees()[0], [getattr(law, name) for name in law.parameters()]
+    *ends, slips = [(np.min(value), np.max(value)) for value in (*values, problem.law_slip)]
+    one_way = not law.knots and bends_one_way(tree, dict(zip(law.parameters(), ends, strict=True)), slips)
     found = Found(Branch.table(count, 1 if one_way else MOST_BRANCHES), branches, np.empty(count))
     address = int(LawPiece(group.functions[0]).value_at)
-    numbers = np.array([spread(value, count) for value in values.values()]).reshape(-1, count).T
+    numbers = np.array([spread(value, count) for value in values]).reshape(-1, count).T
     formulas = formulas_of((tree,), law.parameters(), numbers)
     slip = spread(problem.law_slip, count)
     contacts = Resistances(address, constants, damping, normal, start, slowest, fastest, formulas, slip)
@@ -217,10 +219,12 @@ def scales(law: FrictionLaw, own: Floats, count: int) -> tuple[Floats, Floats]:
     `own` is the contact's own scale S (variation of mu)/Z, m/s.
     """
     rates = {name: declared.unit for name, declared in quantities_of(type(law)).items() if declared.unit in ("m/s", "s/m")}
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore"):  # friction of a member that does not vary has no scale
         sizes = [np.abs(getattr(law, name)) if unit == "m/s" else 1.0 / np.abs(getattr(law, name)) for name, unit in rates.items()]
-    found = np.stack([own, *(spread(size, count) for size in sizes)])
-    counts = (found > 0.0) & np.isfinite(found) & (found <= np.where(np.arange(len(found)) == 0, np.inf, FASTEST)[:, None] * own)
+        found = np.stack([own, *(spread(size, count) for size in sizes)])
+        counts = (
+            (found > 0.0) & np.isfinite(found) & (found <= np.where(np.arange(len(found)) == 0, np.inf, FASTEST)[:, None] * own)
+        )
     none = ~counts.any(axis=0)
     lowest, highest = (np.where(counts, found, fill) for fill in (np.inf, -np.inf))
     return np.where(none, 1.0, lowest.min(axis=0)), np.where(none, 1.0, highest.max(axis=0))

@@ -21,6 +21,7 @@ from stickslip.engine.codegen.uncompiled import UNCOMPILED
 from stickslip.engine.state.layout import Floats
 from stickslip.engine_input.branch_table import is_algebraic
 from stickslip.engine_input.limits import LARGEST_SHARE, check_shortest_event
+from stickslip.foundation.arrays import shared
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import nearest
 from stickslip.foundation.quantities import Quantity, quantities_of
@@ -104,12 +105,6 @@ def vectorised_problem(scenario: Scenario, values: Values) -> Problem:
     static = shared(law.pieces[home](law, problem.law_slip, 0.0) + law.static_excess)
     strength = problem.normal * static
     return with_numbers(problem, {"strength": strength, "excess": excess_of(problem, strength)})
-
-
-def shared(numbers: Any) -> Any:
-    """Return a single number if all members have the same one, so that what depends on it is calculated only once."""
-    found = np.asarray(numbers)
-    return found.flat[0] if found.ndim and (found == found.flat[0]).all() else numbers
 
 
 def excess_of(problem: Problem, strength: Any) -> Any:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from typing_extensions import override
 
+from stickslip.foundation.arrays import shared
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, Series, fields_of, quantities_of
 from stickslip.friction.contract import Formula, LawContract, one_argument
@@ -204,7 +205,7 @@ class FrictionLaw(LawContract):
                 rest = bounds(tree, numbers, place["slip"], (0.0, 0.0))
                 found.append((found[-1][0], rest[1] + self.static_excess))
         lows, highs = zip(*found, strict=True)
-        return reduce(np.minimum, lows), reduce(np.maximum, highs)
+        return shared(reduce(np.minimum, lows)), shared(reduce(np.maximum, highs))
 
     @cached_property
     def variation(self) -> float:

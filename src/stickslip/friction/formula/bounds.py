@@ -19,24 +19,25 @@ from stickslip.friction.formula.slopes import slope_formula
 def bounds(tree: Expression, numbers: Mapping[str, Any], slip: Interval, rate: Interval) -> Interval:
     """Return bounds of the formula while slip (m) and slip rate (m/s) stay in their intervals, at any state.
 
-    The law's numbers and the ends of intervals may be arrays with one entry for each member of a batch.
+    The law's numbers and the ends of intervals may be arrays with one entry for each member of a batch. A number may also be an
+    interval: the bounds then hold for all numbers in it.
     """
-    given = {SLIP: slip, RATE: rate} | dict.fromkeys(STATES, EVERYTHING)
-    found: dict[Expression, Interval] = {
-        one: (np.asarray(low, float), np.asarray(high, float)) for one, (low, high) in given.items()
-    }
+    found: dict[Expression, Interval] = {SLIP: _ends(slip), RATE: _ends(rate)} | dict.fromkeys(STATES, _ends(EVERYTHING))
     with np.errstate(all="ignore"):
         for node in nodes_of(tree):
             if node.arguments:
                 found[node] = operation_of(node).bounds(node, *(found[argument] for argument in node.arguments))
             elif node not in found:
-                value = np.asarray(numbers[node.name] if node.operation == "parameter" else node.value, float)
-                found[node] = (value, value)
+                found[node] = _ends(numbers[node.name] if node.operation == "parameter" else node.value)
     return found[tree]
 
 
-def bends_one_way(tree: Expression, numbers: Mapping[str, Any], slip: Any) -> Any:
-    """Return True where a formula is proven to be convex, or concave, over all slip rates at a slip (m): see `bounds`."""
-    bend = slope_formula(slope_formula(tree, RATE), RATE)
-    low, high = bounds(bend, numbers, (slip, slip), (0.0, np.inf))
-    return (low >= 0.0) | (high <= 0.0)
+def _ends(given: Any) -> Interval:
+    low, high = given if isinstance(given, tuple) else (given, given)
+    return np.asarray(low, float), np.asarray(high, float)
+
+
+def bends_one_way(tree: Expression, numbers: Mapping[str, Any], slip: Interval) -> bool:
+    """Return True if a formula is proven to be convex, or concave, over all slip rates; slips (m) and numbers as in `bounds`."""
+    low, high = bounds(slope_formula(slope_formula(tree, RATE), RATE), numbers, slip, (0.0, np.inf))
+    return bool(np.all(low >= 0.0) or np.all(high <= 0.0))

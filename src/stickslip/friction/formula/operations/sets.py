@@ -24,13 +24,14 @@ def hull(*ends: Any) -> Interval:
 
 def unless(unknown: Any, known: Interval) -> Interval:
     """Return an interval, or everything where nothing is known."""
-    return (np.where(unknown, -np.inf, known[0]), np.where(unknown, np.inf, known[1])) if np.any(unknown) else known
+    return (np.where(unknown, -np.inf, known[0]), np.where(unknown, np.inf, known[1])) if unknown.any() else known
 
 
 def times(x: Any, y: Any) -> Any:
     """Return x y, with 0 times infinity equal to 0: an infinite end of an interval is never reached."""
     product = np.multiply(x, y)
-    return np.where(np.isnan(product), 0.0, product)
+    unknown = np.isnan(product)
+    return np.where(unknown, 0.0, product) if unknown.any() else product
 
 
 def growing(function: Callable[[Any], Any], least: float = -math.inf) -> Callable[..., Interval]:
