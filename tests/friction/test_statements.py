@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 import stickslip as ss
 from stickslip.foundation.quantities import quantity
 from stickslip.friction import LAWS, FrictionLaw
+from stickslip.friction.contract import StateVariable
 from stickslip.friction.formula.functions import exp, sin, tanh
 from stickslip.friction.statements import check_statements
 from stickslip.scenarios.scenario import read_scenario
@@ -159,6 +160,15 @@ def test_a_class_need_not_state_its_range(name: str) -> None:
     assert (np.maximum(values, 0.0) >= low).all()
     assert values.max() <= high
     assert (values.min() < 0.0) == can_be_negative
+
+
+@pytest.mark.parametrize("reverses", [False, True])
+def test_friction_of_a_state_that_reverses_may_be_below_zero(reverses: bool) -> None:
+    """Nothing is known of a state; bristles that spring back drive slip for a while."""
+    state = StateVariable("z", "m", "bending", reverses=reverses)
+    law = unstated(lambda law, u, v, z: z / law.b, state=state, state_rate=property(lambda law: lambda law, u, v, z: v - z))()
+    assert law.range() == (0.0, math.inf)
+    assert law.can_be_negative != reverses
 
 
 def test_a_run_ends_where_friction_of_a_class_without_a_range_falls_below_zero() -> None:

@@ -132,7 +132,7 @@ class LawContract(Declared, ABC):
     def can_be_negative(self) -> bool:
         """True if the friction coefficient is not known to stay above zero: the engine then watches it inside every step.
 
-        A law that states its `range` is believed.
+        A law that states its `range` is believed. A state that reverses may drive slip, and friction below zero is then no fault.
         """
         return False
 

@@ -190,7 +190,7 @@ class FrictionLaw(LawContract):
     @property
     @override
     def can_be_negative(self) -> bool:
-        return not self.states_range and not bool(np.all(self._bounds[0] >= 0.0))
+        return not (self.states_range or self.reverses) and not bool(np.all(self._bounds[0] >= 0.0))
 
     @cached_property
     def _bounds(self) -> Interval:

@@ -304,11 +304,6 @@ class FromExpression(RemembersSlip):
 
     @property
     @override
-    def can_be_negative(self) -> bool:
-        return self.at_reversal == "keeps-sign" and super().can_be_negative
-
-    @property
-    @override
     def variation(self) -> float:
         """The finite size by which friction changes (no unit).
 
