@@ -54,10 +54,8 @@ def _pow_step(start: Any, end: Any, a: Change, b: Change) -> Any:
 
 def _pow_bounds(_: Expression, a: Interval, b: Interval) -> Interval:
     exponent = b[0]
-    whole = (exponent == np.rint(exponent)) & (exponent >= 0.0)
-    low, high = hull(*(np.power(end, exponent) for end in a))
-    low = np.where((a[0] < 0.0) & (a[1] > 0.0) & (exponent % 2.0 == 0.0) & (exponent > 0.0), 0.0, low)
-    return unless((exponent != b[1]) | ((a[0] < 0.0) & ~whole) | ((a[0] <= 0.0) & (exponent < 0.0)), (low, high))
+    unknown = (a[0] < 0.0) | (exponent != b[1]) | ((a[0] == 0.0) & (exponent < 0.0))
+    return unless(unknown, hull(*(np.power(end, exponent) for end in a)))
 
 
 def _pow_disc(a: Disc, b: Disc) -> Disc:
