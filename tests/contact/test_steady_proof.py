@@ -1,4 +1,4 @@
-"""Proofs of where steady sliding changes its stability under a law with one state."""
+"""Proofs of where steady sliding changes its stability under a law with states."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import stickslip as ss
 from stickslip.contact import steady_proof
 from stickslip.contact.disturbance import Disturbed, Response
 from stickslip.contact.steady import proven_slidings, steady_slidings
-from stickslip.contact.wave_proof import SLOPES, of_slab
+from stickslip.contact.wave_proof import of_slab, slope_symbols
 from stickslip.friction.formula.discs import Disc
 
 NORMAL, DISTANCE, RATE = 1e6, 1e-5, 1e-6
@@ -61,13 +61,68 @@ def test_what_only_touches_is_not_proven_and_rounding_makes_no_changes():
     assert found.changes == ()
 
 
-def test_several_states_are_found_by_search():
-    two = ss.friction.TwoStateRateAndState(
-        a=0.01, b=0.009, second_b=0.006, distance=1e-5, second_distance=1e-5, rate=1e-6, reference=0.6
-    )
-    found = found_for(two, 2.0 * CRITICAL)
+TWO = {"a": 0.01, "b": 0.009, "second_b": 0.006, "distance": DISTANCE, "second_distance": DISTANCE, "rate": RATE, "reference": 0.6}
+
+
+def test_slabs_under_two_states_are_found_by_search():
+    slab = ss.ElasticSlab(2800.0, 3500.0, 10.0, NORMAL)
+    law = ss.friction.TwoStateRateAndState(**TWO)
+    found = proven_slidings(ss.Problem(slab, law, pull_rate=1e-6, initial_rate="steady"))
     assert not found.proven
-    assert "found between 1e-15 and 1000 m/s, not proven" in str(found) or not found.changes
+    assert len(found.changes) == 1
+    assert "found between 1e-15 and 1000 m/s, not proven" in str(found)
+
+
+@pytest.mark.parametrize("evolution", ["ageing", "slip"])
+def test_two_states_over_the_same_distance_act_as_one(evolution: str):
+    """The critical rate is then that of Rice & Ruina, sqrt(S a Dc/m) for twice the critical stiffness of slow sliding."""
+    found = found_for(ss.friction.TwoStateRateAndState(**TWO, evolution=evolution), 2.0 * CRITICAL)
+    (change,) = found.changes
+    exact = math.sqrt(NORMAL * 0.01 * DISTANCE / 10.0)
+    assert (found.proven, change.stable_above) == (True, False)
+    assert change.enclosure[0] < exact < change.enclosure[1] < change.enclosure[0] * (1.0 + 1e-6)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_blocks_under_two_states_change_where_eigenvalues_do(seed: int):
+    """Eigenvalues of four equations of motion, at 15 rates away from the changes; slopes from states alone, by hand."""
+    drawn = np.random.default_rng(seed)
+    (a, b, c), (one, two) = drawn.uniform(0.004, 0.012, 3), 10.0 ** drawn.uniform(-6, -3, 2)
+    c *= drawn.choice([-0.5, 1.0])
+    law = ss.friction.TwoStateRateAndState(**(TWO | {"a": a, "b": b, "second_b": c, "distance": one, "second_distance": two}))
+    mass, damping = 10.0 ** drawn.uniform(1, 5), drawn.choice([0.0, 1e4])
+    stiffness = NORMAL * max(b + c - a, 1e-3) / min(one, two) * drawn.choice([0.1, 0.5, 1.5])
+    found = found_for(law, stiffness, mass, damping)
+    assert found.proven
+    for rate in np.geomspace(1e-6, 1e2, 15).tolist():
+        if all(abs(rate / change.rate - 1.0) > 1e-2 for change in found.changes):
+            fade, sign = np.array([rate / one, rate / two]), np.array([b, c])
+            # the unknowns are the force of the spring, log v and the logarithms of the states; ageing: y' = v/L (1/y - v y)
+            matrix = np.zeros((4, 4))
+            matrix[0, 1] = -stiffness * rate
+            matrix[1] = np.array([1.0, -damping * rate - NORMAL * a, *(-NORMAL * sign)]) / (mass * rate)
+            matrix[2:, 1], matrix[2:, 2:] = -fade, -np.diag(fade)
+            assert bool(np.linalg.eigvals(matrix).real.max() < 0.0) == is_said_stable(found, rate), rate
+
+
+def test_states_that_feel_each_other_are_proven():
+    """mu = f + A z^2 with z' = (x - z)/T and x' = (v - x)/T - c z, against eigenvalues of equations written by hand."""
+    law = ss.friction.FromExpression(
+        "f + A*z**2",
+        {"f": 0.4, "A": -5.0, "T": 0.01, "c": 20.0},
+        evolution="dz/dt = (x - z)/T; dx/dt = (v - x)/T - c*z",
+    )
+    body = ss.SpringBlock(10.0, 2e4, 1e4, damping=50.0)
+    changes = steady_proof.proven_changes(body, 1e4, law, 0.0, (1e-4, 1.0))
+
+    def stable(v: float) -> bool:
+        z = v / 1.2  # x = z, and (v - z)/T = c z
+        matrix = [[0.0, -2e4, 0.0, 0.0], [0.1, -5.0, 1e3 * 10.0 * z, 0.0], [0.0, 0.0, -100.0, 100.0], [0.0, 100.0, -20.0, -100.0]]
+        return bool(np.linalg.eigvals(np.array(matrix)).real.max() < 0.0)
+
+    (change,) = changes
+    assert stable(change.low * (1.0 - 1e-6)) != stable(change.high * (1.0 + 1e-6))
+    assert change.stable_above == stable(0.9) != stable(1e-3)
 
 
 @pytest.mark.parametrize("kind", ["LuGre", "FlashHeating"])
@@ -292,7 +347,7 @@ def test_no_slopes_in_a_cell_that_is_decided_have_another_count_of_roots(width: 
         slab = close_to_its_edge(drawn, slab, middle, width or 0.1)
         discs = {
             name: Disc.of(np.array([at]), np.array([by]))
-            for name, at, by in zip(SLOPES, middle.tolist(), radius.tolist(), strict=True)
+            for name, at, by in zip(itertools.chain(*slope_symbols(1)), middle.tolist(), radius.tolist(), strict=True)
         }
         with np.errstate(all="ignore"):
             stable, unstable = (bool(one[0]) for one in of_slab(slab, 1.0, discs))

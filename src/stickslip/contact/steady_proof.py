@@ -1,31 +1,36 @@
-"""Prove where steady sliding gains or loses its stability under a law with one state, over a whole range of slip rates.
+"""Prove where steady sliding gains or loses its stability under a law with states, over a whole range of slip rates.
 
 The range is cut into cells. In each, bounds of the slopes of f in w' = f(v, w) enclose the steady states w(v) of all its rates, and
 then those of friction mu(v, w) and of f. They say whether all of the cell is stable, or none of it. A cell in which that is not
-certain is halved, until only narrow ones are left: there stability changes. `wave_proof` decides cells of a slab. A disturbance
-exp(s t) of a block solves a cubic equation
+certain is halved, until only narrow ones are left: there stability changes. `wave_proof` decides cells of a slab.
 
-    m s^3 + a s^2 + b s - K f_w = 0,   a = D - m f_w + S mu_v,   b = K - D f_w + S (mu_w f_v - mu_v f_w)
+A disturbance exp(s t) of a block under a law with one or two states solves, with n = D + S mu_v,
 
-so sliding is stable if and only if a > 0 and H = a b + m K f_w > 0 (Routh & Hurwitz, with f_w < 0).
+    (m s^2 + K) B(s) + s N(s) = 0,   one state: B = s + p, N = n s + k;   two: B = s^2 + t s + d, N = n s^2 + j s + k
+
+so sliding is stable if and only if all of these are positive (Routh & Hurwitz), without differences of large terms:
+
+    one state       K p,   m p + n,   n (K + k) + m p k
+    two states      K d,   a1 = K t + k,   a3 = m t + n,   j a1 a3 + (n K - m k) (a1 - d a3)
 
 Source: Rice & Ruina 1983, J. Appl. Mech. 50, 343; Rump 2010, Acta Numerica 19, for the arithmetic on discs.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache, reduce
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from stickslip.bodies import BodyOnCharacteristics
-from stickslip.contact.wave_proof import SLOPES, of_slab
+from stickslip.contact.wave_proof import of_slab, slope_symbols
 from stickslip.foundation.arrays import Floats
 from stickslip.friction.formula.differences import value_and_slopes
 from stickslip.friction.formula.discs import Disc, largest, on_discs
-from stickslip.friction.formula.expression import RATE, SLIP, STATE, Expression, Parameter
+from stickslip.friction.formula.expression import RATE, SLIP, STATES, Expression, Parameter
 from stickslip.friction.formula.slopes import slope_formula
 from stickslip.friction.law import FrictionLaw
 
@@ -59,7 +64,7 @@ def proven_changes(
 
     `normal` is the normal load (N or Pa), and `slip` (m) one on which friction and states do not depend.
     """
-    if not (body.has_waves or body.stiffness > 0.0) or len(law.states) != 1 or len(law.pieces) != 1:
+    if not (body.has_waves or body.stiffness > 0.0) or not 0 < len(law.states) <= 1 + (not body.has_waves) or len(law.pieces) != 1:
         return None
     contact = _Contact(body, normal, law, slip)
     edges = np.geomspace(*rates, 1 + int(CELLS * np.log10(rates[1] / rates[0])))
@@ -95,28 +100,36 @@ def _changes(cells: Floats) -> list[ProvenChange] | None:
     return found if open_from is None else None
 
 
-def _equation() -> tuple[Expression, Expression]:
-    """Return a and H of a block as formulas of the slopes and of the body's numbers."""
-    mass, damping, stiffness, normal = (Parameter(name) for name in ("m", "D", "K", "S"))
-    mu_v, mu_w, f_v, f_w = SLOPES
-    a = damping - mass * f_w + normal * mu_v
-    b = stiffness - damping * f_w + normal * (mu_w * f_v - mu_v * f_w)
-    return a, a * b + mass * stiffness * f_w
+@lru_cache
+def _conditions(many: int) -> tuple[Expression, ...]:
+    """Return what is positive if and only if a block is stable, as formulas of the slopes and of the body's numbers."""
+    stiffness, damping, mass, normal = (Parameter(name) for name in ("K", "D", "m", "S"))
+    (mu_v, *mu_w), *change = slope_symbols(many)
+    f_v, f_w = [row[0] for row in change], [row[1:] for row in change]
+    n = damping + normal * mu_v
+    if many == 1:
+        p = -f_w[0][0]
+        k = n * p + normal * mu_w[0] * f_v[0]
+        return stiffness * p, mass * p + n, n * (stiffness + k) + mass * p * k
+    (one, two), (three, four) = f_w
+    t, d = -(one + four), one * four - two * three
+    late = mu_w[0] * (two * f_v[1] - four * f_v[0]) + mu_w[1] * (three * f_v[0] - one * f_v[1])
+    k, j = n * d + normal * late, n * t + normal * (mu_w[0] * f_v[0] + mu_w[1] * f_v[1])
+    a1, a3 = stiffness * t + k, mass * t + n
+    return stiffness * d, a1, a3, j * a1 * a3 + (n * stiffness - mass * k) * (a1 - d * a3)
 
 
-EQUATION = _equation()
-
-
-def _of_block(body: BodyOnCharacteristics, normal: float, slopes: _Variables) -> tuple[Floats, Floats]:
+def _of_block(body: BodyOnCharacteristics, normal: float, slopes: _Variables, many: int) -> tuple[Floats, Floats]:
     """Return for each cell whether sliding is proven to be stable, and whether it is proven to be unstable."""
     numbers = {"m": body.inertia, "D": body.damping, "K": body.stiffness, "S": normal}
-    a, h = (on_discs(one, numbers, slopes) for one in EQUATION)
-    return (a.centre > a.radius) & (h.centre > h.radius), (a.centre < -a.radius) | (h.centre < -h.radius)
+    found = [on_discs(one, numbers, slopes) for one in _conditions(many)]
+    stable = reduce(np.logical_and, (one.centre > one.radius for one in found))
+    return stable, reduce(np.logical_or, (one.centre < -one.radius for one in found))
 
 
 @dataclass(frozen=True)
 class _Contact:
-    """A body on a contact under a law with one state."""
+    """A body on a contact under a law with states."""
 
     body: BodyOnCharacteristics
     normal: float
@@ -129,48 +142,83 @@ class _Contact:
 
     def judge(self, low: Floats, high: Floats) -> Floats:
         """Return for each cell of slip rates (m/s) 1 if all of it is stable, -1 if none is, and 0 if that is open."""
+        many = len(self._trees)
         with np.errstate(all="ignore"):
-            cells, encloses = self._cells(low, high)
-            slopes = (*self._slopes(self.law.trees()[0], cells), *self._slopes(self._tree, cells))
-            of_body = of_slab if self.body.has_waves else _of_block
-            stable, unstable = of_body(self.body, self.normal, dict(zip(SLOPES, slopes, strict=True)))
-        return np.where(encloses, 1.0 * stable - 1.0 * unstable, 0.0)
+            cells, is_sure = self._cells(low, high)
+            slopes = {
+                name: slope
+                for names, tree in zip(slope_symbols(many), (self.law.trees()[0], *self._trees), strict=True)
+                for name, slope in zip(names, self._slopes(tree, cells), strict=True)
+            }
+            if self.body.has_waves:
+                stable, unstable = of_slab(self.body, self.normal, slopes)
+                fade = slopes[slope_symbols(1)[1][1]]
+                is_sure &= fade.centre < -fade.radius
+            else:
+                stable, unstable = _of_block(self.body, self.normal, slopes, many)
+        return np.where(is_sure, 1.0 * stable - 1.0 * unstable, 0.0)
 
     @property
-    def _tree(self) -> Expression:
-        return self.law.state_trees()[0]
+    def _trees(self) -> tuple[Expression, ...]:
+        return self.law.state_trees()
 
     def _cells(self, low: Floats, high: Floats) -> tuple[_Variables, Any]:
-        """Return the discs of cells, and for which of them it is proven that all their steady states lie in the disc of the state.
+        """Return the discs of cells, and in which of them each rate is proven to have one steady state in the discs of the states.
 
-        With |f| <= miss at the centre, f_w <= -least < 0 and |f_v| <= most on the discs of radii r and q, they do if
-        least q > miss + most r.
+        Newton's step w - Y f(v, w), with Y close to the inverse of f_w, maps the discs of radius q into themselves if
+        |Y f(centre)| + |Y f_v| r + |1 - Y f_w| q < q, with bounds of the slopes on discs of the radii r and q.
         """
         rate = 0.5 * (low + high)
         radius = np.maximum(high - rate, rate - low) * (1.0 + 1e-15)
-        state = self._steady(rate)
-        _, (_, by_rate, by_state) = value_and_slopes(self._tree, self.numbers, self.slip, rate, state)
-        miss = largest(on_discs(self._tree, self.numbers, self._variables(Disc.of(rate), Disc.of(state))))
-        reach = np.maximum(np.abs(by_rate) * radius, LEAST_CHANGE * np.abs(by_state * state) * radius / rate)
-        state_radius = WIDER * (reach + miss) / np.abs(by_state)
-        cells = self._variables(Disc.of(rate, radius), Disc.of(state, state_radius))
-        f_v, f_w = self._slopes(self._tree, cells)
-        least = -(f_w.centre + f_w.radius)
-        return cells, least * state_radius > miss + radius * largest(f_v)
+        states = self._steady(rate)
+        _, by_rate, inverse = self._at(rate, states)
+        centre = self._variables(Disc.of(rate), [Disc.of(one) for one in states])
+        miss = _summed(np.abs(inverse), np.array([largest(on_discs(tree, self.numbers, centre)) for tree in self._trees]))
+        reach = np.maximum(np.abs(_summed(inverse, by_rate)), LEAST_CHANGE * np.abs(states) / rate) * radius
+        radii = WIDER * (reach + miss)
+        cells = self._variables(Disc.of(rate, radius), [Disc.of(*one) for one in zip(states, radii, strict=True)])
+        is_sure = np.ones(len(rate), bool)
+        slopes = [self._slopes(tree, cells) for tree in self._trees]
+        for i, row in enumerate(inverse):
+            most = [
+                np.abs(sum(one * f[k].centre for one, f in zip(row, slopes, strict=True)) - float(k == i + 1))
+                + sum(np.abs(one) * f[k].radius for one, f in zip(row, slopes, strict=True))
+                for k in range(len(row) + 1)
+            ]
+            reached = miss[i] + most[0] * radius + sum(one * q for one, q in zip(most[1:], radii, strict=True))
+            is_sure &= reached * (1.0 + 1e-9) < radii[i]
+        return cells, is_sure
 
-    def _variables(self, rate: Disc, state: Disc) -> _Variables:
-        return {SLIP: Disc.of(self.slip), RATE: rate, STATE: state}
+    def _variables(self, rate: Disc, states: Sequence[Disc]) -> _Variables:
+        return {SLIP: Disc.of(self.slip), RATE: rate, **dict(zip(STATES, states, strict=False))}
 
-    def _slopes(self, tree: Expression, cells: _Variables) -> tuple[Disc, Disc]:
-        """Return a formula's slopes by slip rate and by state in all of each cell."""
-        by_rate, by_state = (on_discs(slope_formula(tree, one), self.numbers, cells) for one in (RATE, STATE))
-        return by_rate, by_state
+    def _slopes(self, tree: Expression, cells: _Variables) -> list[Disc]:
+        """Return a formula's slopes by slip rate and by each state in all of each cell."""
+        by = RATE, *STATES[: len(self._trees)]
+        return [on_discs(slope_formula(tree, one), self.numbers, cells) for one in by]
+
+    def _at(self, rate: Floats, states: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return the rates of the states, their slopes by slip rate, and the inverse of their slopes by state."""
+        found = [value_and_slopes(tree, self.numbers, self.slip, rate, *states) for tree in self._trees]
+        slopes = np.array([one[1][1:] for one in found])
+        matrix = slopes[:, 1:]
+        if len(matrix) == 1:
+            inverse = 1.0 / matrix
+        else:
+            (one, two), (three, four) = matrix
+            inverse = np.array([[four, -two], [-three, one]]) / (one * four - two * three)
+        return np.array([one[0] for one in found]), slopes[:, 0], inverse
 
     def _steady(self, rate: Floats) -> Floats:
-        """Return the states, as formulas use them, in which the formula of the state's rate is zero."""
-        seen = np.broadcast_to(np.asarray(self.law.steady_state(rate), float).reshape(-1, len(rate))[0], rate.shape)
-        state = np.array([self.law.inner_states((one,))[0] for one in seen.tolist()])
+        """Return the states, as formulas use them, in which the formulas of their rates are zero."""
+        seen = np.asarray(self.law.steady_state(rate), float).reshape(-1, len(rate))
+        states = np.array([self.law.inner_states(one) for one in seen.T.tolist()]).T
         for _ in range(NEWTON_STEPS):
-            value, slopes = value_and_slopes(self._tree, self.numbers, self.slip, rate, state)
-            state = np.where(np.isfinite(step := value / slopes[2]), state - step, state)
-        return state
+            value, _, inverse = self._at(rate, states)
+            states = np.where(np.isfinite(step := _summed(inverse, value)), states - step, states)
+        return states
+
+
+def _summed(matrix: Floats, vector: Floats) -> Floats:
+    """Return the product of a matrix and a vector of each cell."""
+    return np.asarray(np.einsum("ij...,j...->i...", matrix, vector))

@@ -37,9 +37,13 @@ from stickslip.friction.formula.expression import Expression, Parameter
 
 OUT = 4e-15
 """Relative rounding of a few operations and of an arc tangent, by which bounds are moved outward."""
-SLOPES = tuple(Parameter(name) for name in ("mu_v", "mu_w", "f_v", "f_w"))
-"""Slopes of friction and of the state's rate, by slip rate and by state, as symbols."""
 SHARE, SQUARE = Parameter("q"), Parameter("y")
+
+
+def slope_symbols(many: int) -> tuple[tuple[Expression, ...], ...]:
+    """Return symbols of the slopes of friction, and then of the rate of each state, by slip rate and by each state."""
+    states = range(1, many + 1)
+    return tuple(tuple(Parameter(f"{of}_{by}") for by in ("v", *states)) for of in ("mu", *states))
 
 
 class Range(NamedTuple):
@@ -52,7 +56,7 @@ class Range(NamedTuple):
 def _equation() -> dict[str, Expression]:
     """Return numbers of the equation as formulas of the slopes and of the body's numbers; those with _re are real parts at y."""
     mass, damping, own, normal = (Parameter(name) for name in ("m", "D", "Z", "S"))
-    mu_v, mu_w, f_v, f_w = SLOPES
+    (mu_v, mu_w), (f_v, f_w) = slope_symbols(1)
     p, n, late = -f_w, damping - own + normal * mu_v, normal * mu_w * f_v
     k, b = n * p + late, mass * p + n
     real = k - mass * SQUARE
@@ -76,7 +80,7 @@ EQUATION = _equation()
 def of_slab(body: BodyOnCharacteristics, normal: float, slopes: Mapping[Expression, Disc]) -> tuple[Floats, Floats]:
     """Return for each cell whether sliding is proven to be stable, and whether it is proven to be unstable.
 
-    `slopes` holds the discs of SLOPES, and `normal` is the normal load (Pa).
+    `slopes` holds the discs of the slopes by their symbols, in which f_w < 0, and `normal` is the normal load (Pa).
     """
     slab = _Slab(body, normal, slopes)
     c0, c1, c2, still, damped = (slab.range(name) for name in ("c0", "c1", "c2", "P(0)", "P"))
