@@ -20,7 +20,7 @@ import mpmath
 import numpy as np
 
 import stickslip as ss
-from stickslip.engine.codegen import compiler
+from stickslip.engine import compiled_formula
 from stickslip.engine.codegen.taylor_series import FormulaWriter
 from stickslip.engine_input import prepare
 from stickslip.friction.formula import expression as e
@@ -97,7 +97,7 @@ class WrongWriter(FormulaWriter):
 def wrong_engine() -> Iterator[Callable[[tuple[str, str], float], None]]:
     """Let formulas be compiled with factors; yields a function that makes one of them 1 + e in the runs that follow."""
     wrong: list[tuple[tuple[str, str], float]] = []
-    writer, fill = compiler.FormulaWriter, compiler.CompiledFormula.fill
+    writer, fill = compiled_formula.FormulaWriter, compiled_formula.CompiledFormula.fill
 
     def filled(self: Any, values: Any, reference: float, constants: Any) -> None:
         fill(self, values, reference, constants)
@@ -112,13 +112,13 @@ def wrong_engine() -> Iterator[Callable[[tuple[str, str], float], None]]:
         wrong[:] = [(name, by)]
         forget()
 
-    compiler.FormulaWriter, compiler.CompiledFormula.fill = WrongWriter, filled  # type: ignore[misc, method-assign, assignment]
-    compiler.compile_formula.cache_clear()
+    compiled_formula.FormulaWriter, compiled_formula.CompiledFormula.fill = WrongWriter, filled  # type: ignore[misc, method-assign, assignment]
+    compiled_formula.compile_formula.cache_clear()
     try:
         yield make_wrong
     finally:
-        compiler.FormulaWriter, compiler.CompiledFormula.fill = writer, fill  # type: ignore[misc, method-assign]
-        compiler.compile_formula.cache_clear()
+        compiled_formula.FormulaWriter, compiled_formula.CompiledFormula.fill = writer, fill  # type: ignore[misc, method-assign]
+        compiled_formula.compile_formula.cache_clear()
         forget()
 
 

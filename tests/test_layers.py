@@ -45,7 +45,7 @@ ROOMS = {
         ("codegen",),
         ("enclosure", "state"),
         ("series",),
-        ("contact",),
+        ("compiled_formula", "contact"),
         ("folds", "radau"),
         ("contact_step",),
         ("waves",),
@@ -210,7 +210,7 @@ def _is_compiler(decorator: ast.expr) -> bool:
     word = node.id if isinstance(node, ast.Name) else node.attr if isinstance(node, ast.Attribute) else ""
     if word == "overload":
         return isinstance(decorator, ast.Call)  # numba's takes the function to compile; that of typing takes nothing
-    return word in ("kernel", "inlined", "njit", "intrinsic", "compiled_cfunc", "register_jitable")
+    return word in ("kernel", "inlined", "njit", "intrinsic", "register_jitable")
 
 
 def _file(module: str) -> Path | None:

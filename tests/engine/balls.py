@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 from stickslip.engine.codegen.taylor_series import FormulaWriter
 from stickslip.engine.codegen.uncompiled import MATHS
 from stickslip.engine.series import ball_radii, sine
-from stickslip.engine.series.called import FLOATS
 from stickslip.engine.state.layout import Ball
 from stickslip.friction.formula import expression as e
 from stickslip.friction.formula import functions
 from stickslip.friction.formula.operations import FUNCTIONS, OPERATIONS
+from tests.engine.formulas import FLOATS
 
 Complexes = NDArray[np.complex128]
 LEAVES = (e.SLIP, e.RATE, e.STATE)

@@ -28,7 +28,7 @@ NAMES = ("a", "b", "c")
 def text_of(formula: Expression, parameters: tuple[str, ...], state_rates: tuple[Expression, ...], order: int) -> str:
     """All functions that are written for a formula."""
     writer = FormulaWriter(formula, parameters, order, state_rates)
-    return "\n".join(f"{part}:\n" + "\n".join(writer.statements(part)) for part in SIGNATURES) + writer.describe(formula)
+    return "\n".join(f"{part}:\n" + "\n".join(writer.statements(part)) for part in SIGNATURES)
 
 
 def tree(rng: random.Random, depth: int, states: int) -> Expression:

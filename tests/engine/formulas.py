@@ -7,15 +7,15 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
+from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.engine.codegen.compiler import compile_formula
 from stickslip.engine.codegen.recurrences import Recurrences
 from stickslip.engine.codegen.taylor_series import ORDER, FormulaWriter
 from stickslip.engine.codegen.uncompiled import MATHS
+from stickslip.engine.compiled_formula import CALLED, compile_formula
 from stickslip.engine.enclosure.formula import bound_at_slips, bound_friction, formulas_of
 from stickslip.engine.series import sine
-from stickslip.engine.series.called import FLOATS
 from stickslip.friction.formula import expression as e
 from stickslip.friction.formula import functions as elementary
 from stickslip.friction.formula.expression import Expression
@@ -33,6 +33,9 @@ def enclose(
         found.append(np.array(bound_friction(formulas, 0, one, other)).reshape(3, 2) * [[1.0], [1.0], [2.0]])
     return np.stack(found, axis=-1)
 
+
+FLOATS = {name: njit(error_model="numpy", fastmath={"contract"})(function) for name, function in CALLED.items()}
+"""The functions that operations call, compiled by numba."""
 
 DOUBLE = ctypes.POINTER(ctypes.c_double)
 JET = ctypes.CFUNCTYPE(None, DOUBLE, DOUBLE, DOUBLE, DOUBLE)

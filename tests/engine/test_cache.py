@@ -71,16 +71,12 @@ def test_code_from_the_disk_makes_no_compiler_ready_and_code_compiled_after_it_r
 
 
 TWICE = """
-from stickslip.engine.codegen.cache import CACHE, load_module
-text = '''
-from numba import types
-from stickslip.engine.codegen.kernels import compiled_cfunc
-@compiled_cfunc(types.float64(types.float64), nopython=True)
+from stickslip.engine.codegen.cache import CACHE
+from stickslip.engine.codegen.compiler import kernel
 def twice(x):
     return 2.0 * x
-'''
-found = load_module("twice_1", text).twice
-print(found.ctypes(21.0), found.cache_hits, CACHE)
+twice = kernel(twice)
+print(twice(21.0), sum(twice.entry.stats.cache_hits.values()), CACHE)
 """
 
 
@@ -147,10 +143,9 @@ def test_without_a_cache_folder_each_process_compiles_for_itself(tmp_path: Path)
 
 def test_a_file_in_place_of_a_folder_of_the_cache_is_no_fault_but_one_line(tmp_path: Path) -> None:
     folder = twice(tmp_path)[2]
-    (kept,) = (path for path in folder.iterdir() if path.name.startswith("formulas"))
+    (kept,) = folder.iterdir()
     shutil.rmtree(kept)
     kept.touch()
-    (folder / "formulas").touch()
     value, hits, _, said = twice(tmp_path)
     assert (value, hits) == (42.0, 0)
     assert said == f"stickslip: compiled code cannot be kept in {folder}: File exists; {LATER}\n"
@@ -158,8 +153,7 @@ def test_a_file_in_place_of_a_folder_of_the_cache_is_no_fault_but_one_line(tmp_p
 
 def test_a_full_disk_costs_the_cache_and_one_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     from stickslip.engine.codegen import cache, sealed_cache
-    from stickslip.engine.codegen.compiler import compile_formula
-    from stickslip.friction.formula.parse import parse
+    from stickslip.engine.codegen.compiler import kernel
 
     def full(path: Path, write: Callable[[Path], object]) -> Path:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
@@ -167,8 +161,7 @@ def test_a_full_disk_costs_the_cache_and_one_line(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(FunctionCache, "_load_overload", lambda *_: None)
     monkeypatch.setattr(sealed_cache, "write_atomically", full)
     cache.tell.cache_clear()
-    compile_formula.cache_clear()
-    assert compile_formula(parse("0.6 + 0.0123*u", ()), (), ()).address("value") != 0
+    assert kernel(lambda x: 2.0 * x)(21.0) == 42.0
     assert f"cannot be kept in {cache.CACHE}: No space left on device; {LATER}\n" in capsys.readouterr().err
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import gc
 import math
-import sys
 import weakref
 
 import mpmath
@@ -13,8 +12,7 @@ import pytest
 from numpy.polynomial import Polynomial
 
 import stickslip as ss
-from stickslip.engine.codegen.compiler import compile_formula
-from stickslip.engine.codegen.taylor_series import SIGNATURES, FormulaWriter
+from stickslip.engine.compiled_formula import compile_formula
 from stickslip.engine.state.layout import TERMS
 from stickslip.engine_input import prepare
 from stickslip.friction.formula import expression as e
@@ -125,19 +123,6 @@ def test_a_law_compiles_once() -> None:
     assert compile_formula(tree, (), ()) is compile_formula(tree, (), ())
 
 
-def test_formulas_that_differ_in_numbers_and_names_alone_share_all_functions_but_one() -> None:
-    """The numbers enter through `prepare`, which is compiled in a tenth of the time of a series."""
-    one = ss.friction.FromExpression("0.6 + 0.05*exp(-((u - 1)/0.1)**2)")
-    same = ss.friction.FromExpression("a + b*exp(-((u - c)/w)**2)", {"a": 0.7, "b": 0.01, "c": 2.0, "w": 0.3})
-    other = ss.friction.FromExpression("0.6 + 0.05*exp(-((v - 1)/0.1)**2)")
-    texts = [
-        {part: FormulaWriter(law.trees()[0], law.parameters()).module(part) for part in SIGNATURES if part != "state_value"}
-        for law in (one, same, other)
-    ]
-    assert [part for part in texts[0] if texts[0][part] != texts[1][part]] == ["prepare"]
-    assert [part for part in texts[0] if texts[0][part] == texts[2][part]] == []
-
-
 def test_a_formula_lives_as_long_as_a_table_that_holds_its_addresses_and_no_longer() -> None:
     """The caches hold a few; a run that goes on keeps its own, whatever is compiled meanwhile."""
     problem = ss.Problem(ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8), "0.3 + 0.5/(1 + v)", initial_excess=1e5)
@@ -148,7 +133,6 @@ def test_a_formula_lives_as_long_as_a_table_that_holds_its_addresses_and_no_long
         cache.cache_clear()
     gc.collect()
     assert formula() is not None
-    assert not [name for name in sys.modules if name.startswith(("value_", "radii_", "rate_jet_", "prepare_"))]
     del setup, memory
     gc.collect()
     assert formula() is None

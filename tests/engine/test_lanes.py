@@ -25,8 +25,7 @@ Block = Any
 FUNCTIONS: dict[str, Callable[[Any], Any]] = {
     "sums": lambda c: c[0] + 2.0 * c[1] - c[2] / 3.0 + 1 - (-c[3]),
     "bounds": lambda c: min(max(c[0], c[1]), abs(c[2])),
-    "functions": lambda c: math.sin(c[0]) + math.cos(c[1]) + math.exp(c[2]) + math.sqrt(abs(c[3])),
-    "more functions": lambda c: math.tanh(c[0]) * math.asinh(c[1]) + math.log1p(abs(c[2])) - np.floor(3.0 * c[3]),
+    "functions": lambda c: math.sqrt(abs(c[0])) - np.floor(3.0 * c[1]),
     "sine": lambda c: sine(40.0 * c[0]) + 3.0 * versine(c[1]),
     "magnitude": lambda c: magnitude(c),
     "total": lambda c: total(c),

@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 import ctypes
-from functools import cache
 from typing import Any
 
 import numpy as np
 from hypothesis import assume
 from hypothesis import strategies as st
-from numba import cfunc
 from numpy.typing import NDArray
 
 from stickslip import InputError
-from stickslip.engine.codegen.lean_compiler import LeanCompiler
-from stickslip.engine.codegen.taylor_series import FormulaWriter
+from stickslip.engine.compiled_formula import compile_formula
 from stickslip.engine.state.layout import LawValue
 from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, Text, fields_of
 from stickslip.friction import LAWS, FrictionLaw, FromExpression
-from stickslip.friction.formula.expression import Expression
 
 SIZES = {"1": (0.0, 1.5), "m": (1e-3, 2.0), "m/s": (1e-3, 2.0), "s/m": (0.0, 5.0), "1/m": (-10.0, 10.0), "s": (1e-3, 1.0)}
 """Plausible values by unit."""
@@ -29,18 +25,11 @@ EXPRESSIONS: dict[str, dict[str, float | str]] = {
     "0.4 + 0.1*tanh(u)**2 + 0.1*sqrt(1 + v**2) + arcsinh(v) * 1e-2 + (1 + v)**-0.5 - cos(pi*u)/9": {},
     "0.6 - 0.1*v + 0.01*v**3": {},
 }
-SAVED = "from stickslip.engine.codegen.kernels import compiled_cfunc"
-NOT_KEPT = "from tests.friction.drawn import unsaved_cfunc as compiled_cfunc"
-"""A line of generated code, and another in its place: what the tests compile is not kept on disk."""
 PAIRS = [
     ("linear-slip-weakening", "hyperbolic-rate"),
     ("sinusoidal-slip", "piecewise-linear-rate"),
     ("table", "exponential-stribeck"),
 ]
-
-
-def unsaved_cfunc(signature: Any, **options: Any) -> Any:
-    return cfunc(signature, pipeline_class=LeanCompiler, **options)
 
 
 @st.composite
@@ -91,22 +80,12 @@ def _number(declared: Quantity) -> st.SearchStrategy[float]:
 
 def compiled_value(law: FrictionLaw, i: int, reference: float, slip: float, rate: float) -> NDArray[np.float64]:
     """mu(slip, rate) - mu(reference, 0) by the compiled piece i, and its slopes by rate and slip; with all states 0."""
-    prepare, value, size = _compiled(law.trees()[i], law.parameters(), law.state_trees())
-    double = ctypes.POINTER(ctypes.c_double)
-    numbers, constants, out = np.array(law.piece_values(i)), np.zeros(size), np.zeros(LawValue.total)
-    at_zero = np.zeros(len(law.states))
-    pointers = [array.ctypes.data_as(double) for array in (numbers, constants, out, at_zero)]
-    prepare(pointers[0], reference, pointers[1])
-    value(pointers[1], slip - reference, rate, *(pointers[3:] if law.states else ()), pointers[2])
+    formula = compile_formula(law.trees()[i], law.parameters(), law.state_trees())
+    constants, out, at_zero = np.zeros(formula.size), np.zeros(LawValue.total), np.zeros(len(law.states))
+    formula.fill(np.array(law.piece_values(i)), reference, constants)
+    arrays = (constants, at_zero, out) if law.states else (constants, out)
+    first, *others = (array.ctypes.data for array in arrays)
+    kinds = [ctypes.c_void_p, ctypes.c_double, ctypes.c_double, *[ctypes.c_void_p] * len(others)]
+    address = formula.address("state_value" if law.states else "value")
+    ctypes.CFUNCTYPE(None, *kinds)(address)(first, slip - reference, rate, *others)
     return out[:3]
-
-
-@cache
-def _compiled(tree: Expression, parameters: tuple[str, ...], changes: tuple[Expression, ...]) -> tuple[Any, Any, int]:
-    """`prepare` and `value` as the engine compiles them, without the series, which take seconds each."""
-    writer = FormulaWriter(tree, parameters, state_rates=changes)
-    value = "state_value" if changes else "value"
-    scope: dict[str, Any] = {}
-    for part in ("prepare", value):
-        exec(writer.module(part).replace(SAVED, NOT_KEPT), scope)
-    return scope["prepare"].ctypes, scope[value].ctypes, writer.size

@@ -11,7 +11,7 @@ from stickslip.batch.kernels.branch_search import MOST_BRANCHES, Found, Resistan
 from stickslip.batch.kernels.runs import fill_constants
 from stickslip.batch.vectorised_problem import Values, member, vectorised_problem
 from stickslip.contact.rules.selection import levels
-from stickslip.engine.codegen.compiler import compile_formula, keep_with
+from stickslip.engine.compiled_formula import compile_formula, keep_with
 from stickslip.engine.enclosure.formula import formulas_of
 from stickslip.engine.state.layout import Branch, Counts, Floats, Integers, LawPiece, Params, State
 from stickslip.engine_input.branch_table import is_algebraic, table_of_branches

@@ -34,7 +34,7 @@ from typing import Self
 import numpy as np
 
 from stickslip.creep.pattern import Pattern
-from stickslip.engine.codegen.compiler import CompiledFormula, compile_formula
+from stickslip.engine.compiled_formula import CompiledFormula, compile_formula
 from stickslip.engine.contact_step.certificate import NEGLIGIBLE
 from stickslip.engine.state.layout import Ball, Floats
 from stickslip.engine_input.branch_table import strength_change

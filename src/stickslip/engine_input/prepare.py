@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from stickslip.contact.rules.selection import rule_of
-from stickslip.engine.codegen.compiler import CompiledFormula, compile_formula, keep_with
+from stickslip.engine.compiled_formula import CompiledFormula, compile_formula, keep_with
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, FirstLoad, Integers, LawPiece, LoadingSegment, Params, Setup, State
 from stickslip.engine.state.workspace import counts_in, lend_problem, memory_of, params_in

@@ -1,7 +1,7 @@
 """Keep compiled code in a cache on disk that belongs to this user.
 
 Machine code and pickles from the cache folder are executed. The folder must therefore belong to this user alone (see
-`private_folder`). If there is no such folder, each process compiles for itself. The text of formulas stays in memory.
+`private_folder`). If there is no such folder, each process compiles for itself.
 
 The name of the folder contains a hash of all code that is compiled (`sources.py`), so that an edited kernel never meets its old
 machine code. Numba's own comparison does not suffice: it looks at the date of a function's file, and not at the files of the
@@ -19,7 +19,6 @@ from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
-from types import ModuleType
 
 import numba
 import platformdirs
@@ -30,7 +29,7 @@ from stickslip.engine.codegen.uncompiled import UNCOMPILED
 from stickslip.foundation.errors import InputError
 
 LARGEST_CACHE = 500_000_000
-"""Size (bytes) of all functions in the cache above which the least recently used are removed; a formula takes up to 2 MB."""
+"""Size (bytes) of all functions in the cache above which the least recently used are removed."""
 
 if UNCOMPILED:
     numba.config.DISABLE_JIT = True
@@ -123,15 +122,3 @@ def announce_by(show: Callable[[str], None]) -> None:
     """Show messages about compilation with the given function instead of on standard error."""
     global announce
     announce = show
-
-
-def load_module(name: str, text: str) -> ModuleType:
-    """Return a new module with a given name and source text, which has the name of a file but needs none."""
-    module = ModuleType(name)
-    path = (CACHE or cache_root()) / "formulas" / f"{name}.py"  # numba keeps the functions of a file together
-    sys.modules[name] = module  # numba finds the module of a cached function by its name while it loads it
-    try:
-        exec(compile(text, str(path), "exec"), module.__dict__)
-    finally:
-        del sys.modules[name]
-    return module

@@ -1,31 +1,23 @@
-"""Compile the engine once and each friction formula once, and keep both on disk (see `cache`).
+"""Compile the engine once, and keep it on disk (see `cache`).
 
-The engine calls formulas through their addresses, so that a new law compiles its own few functions and nothing of the engine. The
+The engine calls formulas through their addresses (see `compiled_formula`), so that a new law compiles nothing of the engine. The
 intrinsics of this module are the operations on addresses and bits that compiled code needs; plain Python versions replace them if
 the compiler is switched off (see `uncompiled`).
 """
 
 from __future__ import annotations
 
-import ctypes
-import hashlib
-import weakref
-from collections.abc import Callable, Sequence
-from functools import lru_cache
+from collections.abc import Callable
 from typing import Any, TypeVar
 
 import llvmlite.ir as ir
 import numpy as np
 from numba import types
 from numba.extending import intrinsic
-from numpy.typing import NDArray
 
-from stickslip.engine.codegen.cache import load_module
 from stickslip.engine.codegen.kernels import Kernel
-from stickslip.engine.codegen.records import FLOATS, INTEGERS, Floats
-from stickslip.engine.codegen.taylor_series import ORDER, FormulaWriter
-from stickslip.engine.codegen.uncompiled import MATHS, UNCOMPILED, Pointer, as_python, call, handle_of, pointer_at
-from stickslip.friction.formula.expression import Expression
+from stickslip.engine.codegen.records import FLOATS, INTEGERS
+from stickslip.engine.codegen.uncompiled import UNCOMPILED, Pointer, as_python, call, pointer_at
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -44,70 +36,6 @@ def _compiled(function: F, **options: bool) -> F:
     """Return a function as a `Kernel`, or as plain Python if the compiler is switched off."""
     compiled: Any = as_python(function) if UNCOMPILED else Kernel(function, **options)
     return compiled
-
-
-class CompiledFormula:
-    """The compiled functions of a friction formula (see `codegen.taylor_series`); `size` is the number of constants they need.
-
-    Each function is generated, compiled and loaded when it is first needed. What an earlier run compiled comes from the disk.
-    """
-
-    def __init__(self, formula: Expression, parameters: tuple[str, ...], state_rates: tuple[Expression, ...]) -> None:
-        self._writer = FormulaWriter(formula, parameters, ORDER, state_rates)
-        self._functions: dict[str, Any] = {}
-        self.size = self._writer.size
-
-    def address(self, part: str) -> int:
-        """Return the address of one of the functions, given its name in `taylor_series.SIGNATURES`."""
-        function = self._function(part)
-        return int(function.handle if UNCOMPILED else function.address)
-
-    def fill(self, values: Floats, reference: float, constants: Floats) -> None:
-        """Fill `constants`, of length `size`, from the values of the formula's parameters and the reference slip (m)."""
-        prepare = self._function("prepare")
-        if UNCOMPILED:
-            prepare(values, reference, constants)
-        else:
-            prepare.ctypes(values.ctypes.data_as(_DOUBLE), reference, constants.ctypes.data_as(_DOUBLE))
-
-    def fill_radii(self, constants: Floats, ball: Floats) -> None:
-        """Fill in the radii of friction and of dw/dt in `ball`, the numbers of a `layout.Ball` with centres and discs."""
-        balls = self._function("balls")
-        if UNCOMPILED:
-            balls(constants, ball, ball)
-        else:
-            numbers = ball.ctypes.data_as(_DOUBLE)
-            balls.ctypes(constants.ctypes.data_as(_DOUBLE), numbers, numbers)
-
-    def _function(self, part: str) -> Any:
-        """Return one of the functions, and generate and load it first if this has not been done yet."""
-        if part not in self._functions:
-            text = self._writer.module(part)
-            name = f"{part}_{hashlib.sha256(text.encode()).hexdigest()[:20]}"
-            function = getattr(load_module(name, text), part)
-            if UNCOMPILED:
-                function.__globals__.update(vars(MATHS))
-                function.handle = handle_of(function)
-            self._functions[part] = function
-        return self._functions[part]
-
-
-_DOUBLE = ctypes.POINTER(ctypes.c_double)
-
-
-@lru_cache(maxsize=32)
-def compile_formula(formula: Expression, parameters: tuple[str, ...], state_rates: tuple[Expression, ...]) -> CompiledFormula:
-    """Return the compiled functions of a formula; equal formulas share one object in problems that follow each other.
-
-    `state_rates` are the formulas of the time derivatives of the law's states. Who hands on an address makes its table the owner
-    of the formula (`keep_with`): each takes 1 MB, which is given back when no table and no later problem needs it.
-    """
-    return CompiledFormula(formula, parameters, state_rates)
-
-
-def keep_with(table: NDArray[Any], owners: Sequence[CompiledFormula | NDArray[Any]]) -> None:
-    """Keep formulas, or tables that do, alive as long as a table that holds addresses of their functions."""
-    weakref.finalize(table, len, tuple(owners)).atexit = False  # it refers to the owners until the table is gone
 
 
 @intrinsic

@@ -1,4 +1,4 @@
-"""Compile kernels and the functions of formulas: by `one_module` or, where that cannot be, by `plain_numba`."""
+"""Compile kernels: by `one_module` or, where that cannot be, by `plain_numba`."""
 
 from __future__ import annotations
 
@@ -17,10 +17,9 @@ from stickslip.engine.codegen.uncompiled import MATHS, UNCOMPILED
 if UNCOMPILED:
     pass
 elif WHY_PLAIN:
-    from stickslip.engine.codegen.plain_numba import cfunc_of, dispatchers
+    from stickslip.engine.codegen.plain_numba import dispatchers
 else:
     from stickslip.engine.codegen.one_module import dispatchers
-    from stickslip.engine.codegen.sealed_cache import cfunc_of
 
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "fastmath": {"contract"}, "no_cfunc_wrapper": True}
 """Options of all kernels: divisions by zero give infinity or NaN as in numpy, the interpreter's lock is released, and a product and
@@ -72,8 +71,3 @@ def _as_python(value: Any) -> Any:
 def _type_of_kernel(kernel: Kernel, context: Any) -> Any:
     """Return the type that compiled code sees when it calls a kernel: that of its part."""
     return types.Dispatcher(kernel.part)
-
-
-def compiled_cfunc(signature: Any, **options: Any) -> Callable[[Callable[..., Any]], Any]:
-    """Return a decorator like numba's `cfunc` with our cache; without the compiler it returns the function unchanged."""
-    return lambda function: function if UNCOMPILED else cfunc_of(signature, function, options)

@@ -1,6 +1,6 @@
 """Compile with numba, but without what our code never needs: half of the time of a compilation otherwise.
 
-A formula's code is thousands of sums and products of floats. For each of them numba twice searches all definitions of the operator,
+Our code is thousands of sums and products of floats. For each of them numba twice searches all definitions of the operator,
 those for arrays included, for the one that fits: when it infers types, and when it writes the code. Here the first search for an
 operator and types of arguments is remembered. The machine code is the same.
 """

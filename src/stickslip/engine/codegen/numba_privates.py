@@ -56,11 +56,9 @@ if not UNCOMPILED:
         if os.environ.get("STICKSLIP_PLAIN_NUMBA", "") not in ("", "0"):
             raise ImportError("STICKSLIP_PLAIN_NUMBA is set")
         from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile, UserProvidedCacheLocator
-        from numba.core.ccallback import CFunc
         from numba.core.codegen import JITCodeLibrary
         from numba.core.compiler import Compiler
         from numba.core.runtime import rtsys
-        from numba.core.sigutils import normalize_signature
         from numba.core.typed_passes import InlineOverloads, NopythonRewrites
         from numba.core.types import Function
         from numba.core.untyped_passes import InlineClosureLikes, InlineInlinables, LiteralUnroll, WithLifting
@@ -73,7 +71,6 @@ if not UNCOMPILED:
         _has(Compiler, "define_pipelines", "compile_extra")
         _has(rtsys, "initialize")
         _takes(Function.get_call_type, "self", "context", "args", "kws")
-        _takes(CFunc.__init__, "self", "pyfunc", "sig", "locals", "options", "pipeline_class")
         _takes(IndexDataCacheFile.__init__, "self", "cache_path", "filename_base", "source_stamp")
     except (ImportError, AttributeError, TypeError, ValueError) as error:
         WHY_PLAIN = " ".join(str(error).split())
@@ -83,7 +80,6 @@ __all__ = [
     "WHY_PLAIN",
     "AbstractTemplate",
     "AttributeTemplate",
-    "CFunc",
     "CompileResultCacheImpl",
     "Compiler",
     "Function",
@@ -99,7 +95,6 @@ __all__ = [
     "WithLifting",
     "infer_getattr",
     "infer_global",
-    "normalize_signature",
     "rtsys",
     "signature",
 ]

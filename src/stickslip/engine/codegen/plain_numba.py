@@ -5,8 +5,6 @@ It makes machine code of every function by itself, so that a first start takes l
 
 from __future__ import annotations
 
-import inspect
-import pathlib
 from collections.abc import Callable
 from typing import Any
 
@@ -24,21 +22,12 @@ tell(f"numba {numba.__version__} is used plainly ({WHY_PLAIN}): what is new is c
 
 def dispatchers(function: Callable[..., Any], entry: dict[str, Any], part: dict[str, Any]) -> tuple[Any, Any]:
     """Return what compiled code and what Python calls: here they are the same."""
-    both = _kept(numba.njit, function, **entry, **part)
-    return both, both
-
-
-def cfunc_of(signature: Any, function: Callable[..., Any], options: dict[str, Any]) -> Any:
-    """Return a function of a formula with an address in C."""
-    return _kept(lambda **kept: numba.cfunc(signature, **kept), function, **options)
-
-
-def _kept(decorate: Callable[..., Any], function: Callable[..., Any], **options: Any) -> Any:
-    """Return a function that a decorator of numba compiles, with its machine code kept in FOLDER if the function has a file."""
-    if FOLDER is None or not pathlib.Path(inspect.getfile(function)).exists():
-        return decorate(**options)(function)
+    if FOLDER is None:
+        both = numba.njit(**entry, **part)(function)
+        return both, both
     before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(FOLDER)
     try:
-        return decorate(cache=True, **options)(function)
+        both = numba.njit(cache=True, **entry, **part)(function)
     finally:
         numba.config.CACHE_DIR = before
+    return both, both

@@ -16,14 +16,11 @@ from typing import Any, ClassVar
 
 from stickslip.engine.codegen import cache
 from stickslip.engine.codegen.cache import CACHE, NOTICED, OTHERS, SLOW, SOURCES, cache_root, tell, tidy
-from stickslip.engine.codegen.lean_compiler import LeanCompiler
 from stickslip.engine.codegen.numba_privates import (
-    CFunc,
     CompileResultCacheImpl,
     FunctionCache,
     IndexDataCacheFile,
     UserProvidedCacheLocator,
-    normalize_signature,
     rtsys,
 )
 from stickslip.foundation.atomic_write import write_atomically
@@ -165,11 +162,3 @@ class SealedCache(FunctionCache):
                 f"compiled code cannot be kept in {CACHE}: {error.strerror}; later starts compile again; "
                 "STICKSLIP_CACHE_DIR names another folder"
             )
-
-
-def cfunc_of(signature: Any, function: Callable[..., Any], options: dict[str, Any]) -> Any:
-    """Return a function of a formula with an address in C, kept in this cache."""
-    found: Any = CFunc(function, normalize_signature(signature), locals={}, options=options, pipeline_class=LeanCompiler)
-    found._cache = SealedCache(function)
-    found.compile()
-    return found

@@ -13,12 +13,11 @@ from typing import Any
 
 import llvmlite.ir as ir
 import numpy as np
-from numba import njit, types
+from numba import types
 from numba.extending import intrinsic, lower_builtin, lower_cast, models, register_model
 
 from stickslip.engine.codegen.numba_privates import AbstractTemplate, infer_global, signature
 from stickslip.engine.codegen.uncompiled import UNCOMPILED
-from stickslip.friction.formula.operations import OPERATIONS
 
 WIDTH = 8
 """Number of lanes, which fills the widest registers of today's processors; narrower processors use several registers."""
@@ -116,21 +115,6 @@ def _comparison(sign: str) -> Writer:
     return write
 
 
-def _each_by_itself(function: Any) -> Writer:
-    """Return the writer of a function that is called for one lane after the other, to get the same bits as for floats."""
-    of_float = signature(types.float64, types.float64)
-
-    def write(context: Any, builder: Any, args: list[Any]) -> Any:
-        result = ir.Constant(VECTOR, ir.Undefined)
-        for n in range(WIDTH):
-            place = ir.Constant(INDEX, n)
-            one = context.compile_internal(builder, lambda x: function(x), of_float, [builder.extract_element(args[0], place)])
-            result = builder.insert_element(result, one, place)
-        return result
-
-    return write
-
-
 for _operators, _name in (
     ((operator.add, operator.iadd), "fadd"),
     ((operator.sub, operator.isub), "fsub"),
@@ -147,9 +131,6 @@ _define(math.sqrt, 1, _of_the_processor("sqrt"))
 _define(np.floor, 1, _of_the_processor("floor"))
 _define(min, 2, _smaller)
 _define(max, 2, _larger)
-for _function in (getattr(math, _one.in_math) for _one in OPERATIONS.values() if not _one.sign):
-    if _function is not math.sqrt:
-        _define(_function, 1, _each_by_itself(_function))
 
 
 @intrinsic
@@ -237,44 +218,6 @@ def power_of_two(typingctx: Any, n: Any) -> Any:
 def _constant(kind: Any, number: int) -> Any:
     """Return an integer constant of the given type, in every lane if the type has lanes."""
     return ir.Constant(kind, [number] * WIDTH if kind == WHOLES else number)
-
-
-@intrinsic
-def _lane(typingctx: Any, numbers: Any, n: Any) -> Any:
-    """Return a tuple of floats: the lane n of each of the given numbers; a single float is returned as it is."""
-
-    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        given = [builder.extract_value(args[0], i) for i in range(len(numbers))]
-        own = [builder.extract_element(x, args[1]) if kind == LANES else x for x, kind in zip(given, numbers, strict=True)]
-        return context.make_tuple(builder, signature.return_type, own)
-
-    return types.UniTuple(types.float64, len(numbers))(numbers, types.int64), codegen
-
-
-@intrinsic
-def _joined(typingctx: Any, numbers: Any) -> Any:
-    """Return WIDTH floats, given as a tuple, as lanes."""
-
-    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        result = ir.Constant(VECTOR, ir.Undefined)
-        for n in range(WIDTH):
-            result = builder.insert_element(result, builder.extract_value(args[0], n), ir.Constant(INDEX, n))
-        return result
-
-    return LANES(numbers), codegen
-
-
-def lane_by_lane(function: Any) -> Any:
-    """Return a compiled function of lanes that calls a compiled function of floats in each lane."""
-
-    @njit
-    def of_lanes(*numbers: Any) -> Any:
-        return _joined((
-            function(*_lane(numbers, 0)), function(*_lane(numbers, 1)), function(*_lane(numbers, 2)), function(*_lane(numbers, 3)),
-            function(*_lane(numbers, 4)), function(*_lane(numbers, 5)), function(*_lane(numbers, 6)), function(*_lane(numbers, 7)),
-        ))  # fmt: skip
-
-    return of_lanes
 
 
 @intrinsic

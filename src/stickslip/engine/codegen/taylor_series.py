@@ -28,7 +28,6 @@ from collections.abc import Callable
 from stickslip.engine.codegen.balls import Balls
 from stickslip.engine.codegen.recurrences import Recurrences
 from stickslip.friction.formula.expression import RATE, SLIP, STATES, Expression
-from stickslip.friction.formula.operations import OPERATIONS, operation_of
 
 ORDER = 18
 """Order of the Taylor series, and therefore degree of the polynomials in the history."""
@@ -48,34 +47,8 @@ SIGNATURES = {
 }
 """Names of the functions and of their arguments: arrays of floats if marked by [], otherwise single floats."""
 
-MODULE_HEADER = '''"""Generated for the friction formula {formula}; do not edit."""
-
-from math import {maths}
-
-from numba import types
-
-from stickslip.engine.codegen.kernels import compiled_cfunc
-from stickslip.engine.codegen.simd import fused
-from stickslip.engine.series.called import {called} as _called
-from stickslip.engine.series.sine import sine, versine
-{lanes}
-{functions}
-_options = dict(nopython=True, error_model="numpy", fastmath={{"contract"}})
-
-'''
-
-RADII_HEADER = """from stickslip.engine.series.ball_radii import arcsinh_radius, exp_above, exp_radius, log_radius
-from stickslip.engine.series.ball_radii import power_radius, sine_radius, tanh_radius
-"""
-"""Further lines of the header for functions that work out radii."""
-
 SIDE_BY_SIDE = {"rate_jets", "motion_jets", "radii_in_lanes", "values_in_lanes"}
 """Functions that work on lanes."""
-RADII = {"radii", "radii_in_lanes", "balls"}
-"""Functions that work out radii."""
-
-ONE, SIDE = "_array = types.CPointer(types.float64)", "from stickslip.engine.codegen.simd import POINTER as _array"
-"""Lines that say what the arrays of a function consist of: floats, or lanes."""
 
 
 class FormulaWriter(Recurrences):
@@ -233,37 +206,6 @@ class FormulaWriter(Recurrences):
             "motion_jets": self.motion_jet,
         }
         return write[part]()
-
-    def describe(self, node: Expression) -> str:
-        """Return a formula in ordinary notation, with places of `c` for its constants.
-
-        Formulas that differ in their constants alone so have the same functions, but for `prepare`, and share their machine code.
-        """
-        if not self.varies[node]:
-            return self.reference(node)
-        if not node.arguments:
-            return node.name or node.operation
-        sign, given = operation_of(node).sign, [self.describe(argument) for argument in node.arguments]
-        return f"({given[0]} {sign} {given[1]})" if sign else f"{node.operation}({given[0]})"
-
-    def module(self, part: str) -> str:
-        """Return the source text of a module that has one of the functions."""
-        arguments = SIGNATURES[part]
-        kinds = ", ".join("_array" if name.endswith("[]") else "types.float64" for name in arguments)
-        head = (
-            f"@compiled_cfunc(types.void({kinds}), **_options)\ndef {part}({', '.join(name.strip('[]') for name in arguments)}):\n"
-        )
-        body = "".join(f"    {line}\n" for line in self.statements(part))
-        called, lanes = ("LANES", SIDE) if part in SIDE_BY_SIDE else ("FLOATS", ONE)
-        names = dict.fromkeys(function.__name__ for one in OPERATIONS.values() for function in one.called)
-        header = MODULE_HEADER.format(
-            formula=self.describe(self.formula),
-            maths=", ".join(one.in_math for one in OPERATIONS.values() if not one.sign),
-            called=called,
-            functions="\n".join(f"{name} = _called[{name!r}]" for name in names),
-            lanes=RADII_HEADER + lanes if part in RADII else lanes,
-        )
-        return header + head + body
 
 
 def _integral(name: str, k: int) -> str:
