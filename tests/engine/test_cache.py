@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 from numba.core.caching import FunctionCache
 
+from stickslip.engine.codegen import sealed_cache, sealed_file
 from stickslip.engine.codegen.private_folder import NotPrivateError, private_folder
 
 SCRIPT = """
@@ -152,14 +153,14 @@ def test_a_file_in_place_of_a_folder_of_the_cache_is_no_fault_but_one_line(tmp_p
 
 
 def test_a_full_disk_costs_the_cache_and_one_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    from stickslip.engine.codegen import cache, sealed_cache
+    from stickslip.engine.codegen import cache
     from stickslip.engine.codegen.compiler import kernel
 
     def full(path: Path, write: Callable[[Path], object]) -> Path:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
 
     monkeypatch.setattr(FunctionCache, "_load_overload", lambda *_: None)
-    monkeypatch.setattr(sealed_cache, "write_atomically", full)
+    monkeypatch.setattr(sealed_file, "write_atomically", full)
     cache.tell.cache_clear()
     assert kernel(lambda x: 2.0 * x)(21.0) == 42.0
     assert f"cannot be kept in {cache.CACHE}: No space left on device; {LATER}\n" in capsys.readouterr().err
@@ -247,7 +248,7 @@ def test_compiling_the_engine_is_announced(
     spent: float, name: str, has_engine: bool, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The engine takes long to compile; of others something is said once they have taken long, and of a small one nothing."""
-    from stickslip.engine.codegen import cache, sealed_cache
+    from stickslip.engine.codegen import cache
     from stickslip.engine.loop import run_until
     from stickslip.engine.series.polynomial import total
 
@@ -266,3 +267,29 @@ def test_compiling_the_engine_is_announced(
         assert entry._cache.load_overload(None, entry.targetctx) is None
         entry._cache.save_overload(None, None)
     assert said == ([(cache.SLOW | {"others": cache.OTHERS})[message]] if message else [])
+
+
+@pytest.mark.parametrize("damage", ["cut", "zeros", "another file", "gone"])
+def test_machine_code_of_a_formula_is_kept_and_made_again_where_its_file_is_damaged(
+    damage: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sealed_file, "CACHE", tmp_path)
+    made: list[bytes] = []
+
+    def make() -> bytes:
+        made.append(b"code")
+        return b"code"
+
+    assert sealed_file.kept("a text", make) == sealed_file.kept("a text", make) == b"code"
+    assert len(made) == 1
+    (file,) = (tmp_path / "formulas").iterdir()
+    sealed_file.kept("another text", lambda: b"other")
+    (other,) = (path for path in (tmp_path / "formulas").iterdir() if path != file)
+    content = {"cut": file.read_bytes()[:-1], "zeros": bytes(len(file.read_bytes())), "another file": other.read_bytes()}
+    file.unlink()
+    if damage in content:
+        file.write_bytes(content[damage])
+    assert sealed_file.kept("a text", make) == b"code"
+    assert len(made) == 2
+    assert sealed_file.kept("a text", make) == b"code"
+    assert len(made) == 2

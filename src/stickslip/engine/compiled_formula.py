@@ -1,4 +1,4 @@
-"""Compile the functions of friction formulas, which the engine calls through their addresses; nothing of them is kept on disk."""
+"""Compile the functions of friction formulas, which the engine calls through their addresses."""
 
 from __future__ import annotations
 

@@ -81,8 +81,8 @@ CACHE = cache_folder()
 def make_room(largest: int = LARGEST_CACHE) -> None:
     """Remove the least recently used functions from the caches of all versions until they take at most `largest` bytes together."""
     files: dict[tuple[Path, str], list[Path]] = {}
-    for path in cache_root().glob("compiled-*/*/*.nb[ic]"):  # NAME.nbi is the index of a function, NAME.1.nbc its code
-        files.setdefault((path.parent, path.name.rsplit(".", 1 if path.suffix == ".nbi" else 2)[0]), []).append(path)
+    for path in cache_root().glob("compiled-*/*/*.nb[ico]"):  # NAME.nbi is the index of a function, NAME.1.nbc its code; KEY.nbo
+        files.setdefault((path.parent, path.name.rsplit(".", 2 if path.suffix == ".nbc" else 1)[0]), []).append(path)
     found = []
     for paths in files.values():
         with suppress(FileNotFoundError):  # another process removes it, too

@@ -11,13 +11,15 @@ from __future__ import annotations
 import ast
 import inspect
 from collections.abc import Mapping, Sequence
-from functools import reduce
+from functools import cache, reduce
 from typing import Any
 
+import llvmlite
 import llvmlite.binding as llvm
 import llvmlite.ir as ir
 from numba import config
 
+from stickslip.engine.codegen.sealed_file import kept
 from stickslip.engine.codegen.simd import VECTOR, WIDTH
 
 llvm.initialize_native_target()
@@ -39,42 +41,49 @@ class MachineCode:
     """A function in machine code, with its `address`; the code lives as long as this object."""
 
     def __init__(self, statements: Sequence[str], arguments: Sequence[str], lanes: bool, names: Mapping[str, Any]) -> None:
-        """Compile a function without result from its statements.
+        """Compile a function without result from its statements, or take it from the cache.
 
         Arguments are arrays if they are marked by [], otherwise floats; `names` has what the statements call.
         """
-        module, kind = ir.Module(), VECTOR if lanes else NUMBER
-        types = [kind.as_pointer() if name.endswith("[]") else kind for name in arguments]
-        function = ir.Function(module, ir.FunctionType(NOTHING, types), "formula")
-        body = _Body(function, kind, [name.strip("[]") for name in arguments], names)
-        body.write(ast.parse("\n".join(statements)).body)
-        body.builder.ret_void()
-        self._engine = _compiled(module)
+        text = "\n".join([*_processor(), llvmlite.__version__, str(config.OPT), str(lanes), ", ".join(arguments), *statements])
+        code = kept(text, lambda: _object_code(statements, arguments, VECTOR if lanes else NUMBER, names))
+        self._engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _target_machine())
+        self._engine.add_object_file(llvm.ObjectFileRef.from_data(code))
+        self._engine.finalize_object()
         self.address = int(self._engine.get_function_address("formula"))
 
 
-def _compiled(module: ir.Module) -> Any:
-    """Return the engine that holds the optimised machine code of a module, for the processor that numba compiles for."""
-    module.triple = llvm.get_process_triple()
-    target = llvm.Target.from_triple(module.triple)
+@cache
+def _processor() -> tuple[str, str]:
+    """Return the name and the features of the processor that numba compiles for."""
     features = llvm.get_host_cpu_features()
     for name in features:
         features[name] = features[name] and (bool(config.ENABLE_AVX) or not name.startswith("avx"))
-    machine = target.create_target_machine(
-        opt=config.OPT,
-        cpu=llvm.get_host_cpu_name() if config.CPU_NAME is None else config.CPU_NAME,
-        features=features.flatten() if config.CPU_FEATURES is None else config.CPU_FEATURES,
-        reloc="static" if target.name.startswith("x86") else "default",
-        codemodel="jitdefault",
-        jit=True,
+    return (
+        llvm.get_host_cpu_name() if config.CPU_NAME is None else config.CPU_NAME,
+        features.flatten() if config.CPU_FEATURES is None else config.CPU_FEATURES,
     )
-    module.data_layout = str(machine.target_data)
+
+
+def _target_machine() -> Any:
+    target, (cpu, features) = llvm.Target.from_triple(llvm.get_process_triple()), _processor()
+    reloc = "static" if target.name.startswith("x86") else "default"
+    return target.create_target_machine(opt=config.OPT, cpu=cpu, features=features, reloc=reloc, codemodel="jitdefault", jit=True)
+
+
+def _object_code(statements: Sequence[str], arguments: Sequence[str], kind: ir.Type, names: Mapping[str, Any]) -> bytes:
+    """Return the optimised machine code of a function named `formula`, as an object file."""
+    module, machine = ir.Module(), _target_machine()
+    types = [kind.as_pointer() if name.endswith("[]") else kind for name in arguments]
+    function = ir.Function(module, ir.FunctionType(NOTHING, types), "formula")
+    body = _Body(function, kind, [name.strip("[]") for name in arguments], names)
+    body.write(ast.parse("\n".join(statements)).body)
+    body.builder.ret_void()
+    module.triple, module.data_layout = llvm.get_process_triple(), str(machine.target_data)
     made = llvm.parse_assembly(str(module))
     passes = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(config.OPT))
     passes.getModulePassManager().run(made, passes)
-    engine = llvm.create_mcjit_compiler(made, machine)
-    engine.finalize_object()
-    return engine
+    return bytes(machine.emit_object(made))
 
 
 class _Body:

@@ -5,7 +5,6 @@ Every file that numba writes carries a checksum; a damaged file counts as missin
 
 from __future__ import annotations
 
-import hashlib
 import os
 import pickle
 import time
@@ -23,11 +22,7 @@ from stickslip.engine.codegen.numba_privates import (
     UserProvidedCacheLocator,
     rtsys,
 )
-from stickslip.foundation.atomic_write import write_atomically
-
-SEAL = b"stickslip cache 1\n"
-"""First bytes of each file of the cache; the checksum of its name and content follows, then the content."""
-DAMAGED = f"the cache of compiled code in {CACHE} is damaged: what is damaged is compiled again"
+from stickslip.engine.codegen.sealed_file import read_sealed, write_sealed
 
 
 class _SealedFile(IndexDataCacheFile):
@@ -35,47 +30,23 @@ class _SealedFile(IndexDataCacheFile):
 
     def _load_index(self) -> dict[Any, str]:
         path = Path(self._index_path)
-        content = self._unsealed(path)
+        content = read_sealed(path)
         stamp, overloads = pickle.loads(content) if content else (None, {})
         with suppress(OSError):
             os.utime(path)  # this function has been used
         return overloads if stamp == self._source_stamp else {}
 
     def _save_index(self, overloads: dict[Any, str]) -> None:
-        self._seal(Path(self._index_path), self._dump((self._source_stamp, overloads)))
+        write_sealed(Path(self._index_path), self._dump((self._source_stamp, overloads)))
 
     def _load_data(self, name: str) -> Any:
-        content = self._unsealed(Path(self._data_path(name)))
+        content = read_sealed(Path(self._data_path(name)))
         if content is None:
             raise FileNotFoundError(name)  # numba then compiles the function
         return pickle.loads(content)
 
     def _save_data(self, name: str, data: Any) -> None:
-        self._seal(Path(self._data_path(name)), self._dump(data))
-
-    def _seal(self, path: Path, content: bytes) -> None:
-        """Write content to a file, after the mark SEAL and the checksum."""
-        sealed = SEAL + _checksum(path, content) + content
-        write_atomically(path, lambda draft: draft.write_bytes(sealed))
-
-    def _unsealed(self, path: Path) -> bytes | None:
-        """Return the content of a file, or None if it is missing or its checksum is wrong; remove it in the second case."""
-        try:
-            sealed = path.read_bytes()
-        except (FileNotFoundError, NotADirectoryError):
-            return None
-        start = len(SEAL) + hashlib.sha256().digest_size
-        content = sealed[start:]
-        if sealed[:start] == SEAL + _checksum(path, content):
-            return content
-        tell(DAMAGED)
-        path.unlink(missing_ok=True)
-        return None
-
-
-def _checksum(path: Path, content: bytes) -> bytes:
-    """Return the SHA-256 digest of a file's name and content; with the name, a file copied over another one does not pass."""
-    return hashlib.sha256(path.name.encode() + b"\n" + content).digest()
+        write_sealed(Path(self._data_path(name)), self._dump(data))
 
 
 class _Locator(UserProvidedCacheLocator):
