@@ -6,9 +6,7 @@ import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
-
-import pandas as pd
+from typing import TYPE_CHECKING, Any
 
 from stickslip.contact.sliding import FROM_REST_WITHIN, FromRest, SteadySlidings
 from stickslip.contact.steady import steady_slidings
@@ -26,6 +24,9 @@ from stickslip.scenarios.source import read_source
 from stickslip.solution.solution import Solution
 from stickslip.studies.study import Study, TextProgress, telling, uninterrupted
 from stickslip.trajectory.slip_events import share_sticking
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 WHAT: dict[str, Callable[[Solution], bool | int]] = {
     "sticking": lambda run: share_sticking(run.history) > 0.0,
@@ -258,6 +259,8 @@ class _Search:
             else:
                 low = middle
         one, values = self.parameter, list(self.seen.values())
+        import pandas as pd  # takes half a second to load, which `check` does not need
+
         table = pd.DataFrame({one.name: list(self.seen), self.name: values})
         return Edge(one.name, one.unit, self.name, low, high, at_low, at_high, table, self.duration, one.declared.meaning)
 
