@@ -62,7 +62,7 @@ ROOMS = {
         ("central_differences", "characteristics", "newmark", "sbp"),
         ("registry", "run"),
     ),
-    "reference": (("rate_and_state",), ("block", "planar", "slab"), ("method_of_steps",)),
+    "reference": (("rate_and_state",), ("block", "planar", "slab")),
     "cli": (
         ("output", "overrides"),
         ("long_run", "options", "installation"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from importlib.util import find_spec, module_from_spec
 from typing import Any
 
 import llvmlite.ir as ir
@@ -80,6 +81,18 @@ def _lane_by_lane(function: Any) -> Any:
     return of_lanes
 
 
+def _copy_of(name: str) -> dict[str, Any]:
+    """Return the names of a module that is loaded once more."""
+    spec = find_spec(name)
+    assert spec is not None
+    assert spec.loader is not None
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return vars(module)
+
+
+RADII = _copy_of("stickslip.engine.series.ball_radii")
+"""Functions of radii that nothing else has compiled: numba gives them other last bits if they were first called from Python."""
 IN_LANES = {name: _lane_by_lane(one) for name, one in FLOATS.items()}
 
 
@@ -88,7 +101,7 @@ def by_numba(writer: FormulaWriter, part: str) -> Any:
     lanes = part in SIDE_BY_SIDE
     array = simd.POINTER if lanes else types.CPointer(types.float64)
     kinds = [array if name.endswith("[]") else types.float64 for name in SIGNATURES[part]]
-    scope = {**NAMES, **MATHS, **(IN_LANES if lanes else FLOATS)}
+    scope = {**NAMES, **RADII, **MATHS, **(IN_LANES if lanes else FLOATS)}
     head = f"def {part}({', '.join(name.strip('[]') for name in SIGNATURES[part])}):\n"
     exec(head + "".join(f"    {line}\n" for line in writer.statements(part)), scope)
     return cfunc(types.void(*kinds), nopython=True, pipeline_class=LeanCompiler, **OPTIONS)(scope[part])

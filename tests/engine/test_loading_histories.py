@@ -11,8 +11,8 @@ from scipy.optimize import brentq
 
 import stickslip as ss
 from stickslip.loading import HoldAndSlide, LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
-from stickslip.reference.method_of_steps import method_of_steps
 from tests.engine.problems import away_from_jumps
+from tests.reference.method_of_steps import method_of_steps
 
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)
 LOSSY = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8, driver_impedance=4e6)

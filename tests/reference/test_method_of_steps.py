@@ -9,10 +9,10 @@ from scipy.optimize import brentq
 
 import stickslip as ss
 from stickslip.reference.block import CoulombBlock, LinearBlock
-from stickslip.reference.method_of_steps import method_of_steps
 from stickslip.reference.slab.coulomb import CoulombSlab
 from stickslip.reference.slab.pulse_period import PulseTrain
 from stickslip.reference.slab.stuck import StuckSlab
+from tests.reference.method_of_steps import method_of_steps
 
 V = 0.05 / 31_557_600.0
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)

@@ -1,1 +1,1 @@
-"""Independent solutions to compare the engine with: closed forms, and a slow integrator that shares no code with it."""
+"""Independent solutions to compare the engine with: closed forms, and slow methods for a fault in 2D and 3D."""
