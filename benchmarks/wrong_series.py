@@ -80,7 +80,7 @@ class WrongWriter(FormulaWriter):
         """Return the lines of a function, with a factor in each line that sets a value or a coefficient."""
         lines = super().statements(part)
         if part == "prepare":
-            return [*lines, f"for n in range({self.first}, {self.size}):", "    c[n] = 1.0"]
+            return [*lines, *(f"c[{n}] = 1.0" for n in range(self.first, self.size))]
         if part not in self.parts_with_factors():
             return lines
         return [self._with_factor(part, line) for line in lines]
