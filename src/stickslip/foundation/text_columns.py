@@ -10,6 +10,7 @@ import csv
 import io
 import math
 import re
+from array import array
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain, islice, zip_longest
 from pathlib import Path
@@ -32,7 +33,6 @@ from stickslip.foundation.headings import (
     find,
     has_unit,
     is_number,
-    is_signed,
     note_units,
 )
 
@@ -40,8 +40,6 @@ LONGEST_LINE = 50_000
 """Largest number of characters of a line."""
 PREAMBLE = 200
 """Number of lines before the header in which notes of an instrument are looked for."""
-BLOCK = 4096
-"""Number of lines that are read at once."""
 NO_NUMBER = ("", "nan", "-", "–", "na", "n/a", "null", "none")
 """What instruments and people write where a number is missing."""
 DECIMAL_COMMA = (
@@ -112,17 +110,10 @@ def _read(stream: TextIO, wanted: Sequence[str], place: str, most: int, *, raw: 
     if not chosen:  # the caller says what is missing
         return Table({}, place, np.array([head.number]), "line", header, at_header)
     rows = _Rows(place, head.separator, len(header), chosen, raw)
-    numbers, blocks, count = [np.zeros(0, np.intp)], [np.zeros((0, len(chosen)))], 0
-    for at, block in rows.blocks(body, number):
-        count += len(at)
-        if count > most:
-            raise InputError(f"{place}, line {at[most - count]}: more than {most} rows")
-        numbers.append(at)
-        blocks.append(block)
-    found = np.concatenate(blocks)
+    at_lines, found = rows.read(body, number, most)
     columns = {name: scaled(found[:, k], one.factor) for k, (name, one) in enumerate(chosen.items())}
     note_units(chosen, columns, at_header)
-    return Table(columns, place, np.concatenate(numbers) if count else np.array([head.number]), "line", header, at_header)
+    return Table(columns, place, at_lines if len(at_lines) else np.array([head.number]), "line", header, at_header)
 
 
 def _lines(stream: TextIO, place: str) -> Iterator[str]:
@@ -232,10 +223,6 @@ def _bare(unit: str) -> str:
     return unit.strip(" ()[]")
 
 
-Block = tuple[NDArray[np.intp], Floats]
-"""The numbers of lines, and the numbers in the chosen columns, shape (lines, columns), as they are written."""
-
-
 class _Rows(NamedTuple):
     """How the rows of a text are read: the place for messages, the separator, the number of headings, and the columns."""
 
@@ -245,47 +232,18 @@ class _Rows(NamedTuple):
     chosen: Mapping[str, Found]
     raw: bool
 
-    def blocks(self, lines: Iterator[str], number: int) -> Iterator[Block]:
-        """Yield the rows of a text in blocks; `number` lines stand before them. Raises InputError."""
-        begun = False
-        while part := list(islice(lines, BLOCK)):
-            if any('"' in line for line in part):  # a quoted cell may go on in the next line
-                yield from self._with_care(chain(part, lines), number, begun)
-                return
-            fast = self._at_once(part, number)
-            for block in self._with_care(iter(part), number, begun) if fast is None else [fast]:
-                begun = True
-                yield block
-            number += len(part)
+    def read(self, lines: Iterator[str], number: int, most: int) -> tuple[NDArray[np.int64], Floats]:
+        """Return the lines of the rows of a text, and their numbers as they are written, shape (rows, columns).
 
-    def _at_once(self, part: Sequence[str], number: int) -> Block | None:
-        """Return a block of plain rows of numbers; None if one of them needs a closer look."""
-        kept = [i for i, line in enumerate(part) if not _is_empty(line)]
-        rows = [part[i] for i in kept]
-        if self.separator == BLANKS:
-            wrong = any(len(line.split()) != self.width for line in rows)
-        else:
-            wrong = any(line.count(self.separator) != self.width - 1 for line in rows)
-        if wrong or not rows:
-            return None
-        places = [one.place for one in self.chosen.values()]
-        delimiter = None if self.separator == BLANKS else self.separator
-        try:
-            found = np.loadtxt(rows, delimiter=delimiter, usecols=places, comments=None, ndmin=2)
-        except ValueError:
-            return None
-        unsigned = [k for k, name in enumerate(self.chosen) if not is_signed(name)]
-        if not self.raw and not (np.isfinite(found).all() and (found[:, unsigned] >= 0.0).all()):
-            return None
-        return np.array(kept, np.intp) + number + 1, found
-
-    def _with_care(self, lines: Iterator[str], number: int, begun: bool) -> Iterator[Block]:
-        """Yield the rows of lines in blocks, cell by cell. Raises InputError for the first cell that cannot be read."""
-        rows = self._split(lines, number)
-        while part := list(islice(rows, BLOCK)):
-            read = [self._numbers(row, at, first=not (begun or k)) for k, (at, row) in enumerate(part)]
-            begun = True
-            yield np.array([at for at, _ in part], np.intp), np.array(read).reshape(len(part), len(self.chosen))
+        `number` lines stand before the rows. Raises InputError for the first row that cannot be read, and for one too many.
+        """
+        at_lines, numbers = array("q"), array("d")
+        for at, row in self._split(lines, number):
+            if len(at_lines) == most:
+                raise InputError(f"{self.place}, line {at}: more than {most} rows")
+            numbers.extend(self._numbers(row, at, first=not at_lines))
+            at_lines.append(at)
+        return np.array(at_lines), np.array(numbers).reshape(-1, len(self.chosen))
 
     def _split(self, lines: Iterator[str], number: int) -> Iterator[tuple[int, list[str]]]:
         """Yield the cells of lines that are neither blank nor comments, each with the number of its line."""
@@ -295,7 +253,7 @@ class _Rows(NamedTuple):
         read = csv.reader(lines, delimiter=self.separator)
         try:
             for row in read:
-                if any(cell.strip() for cell in row) and not row[0].lstrip().startswith("#"):
+                if any(map(str.strip, row)) and not row[0].lstrip().startswith("#"):
                     yield number + read.line_num, row
         except csv.Error as error:
             raise InputError(f"{self.place}, line {number + read.line_num}: {error}") from None
