@@ -178,7 +178,7 @@ def test_a_note_says_slow_where_the_sliding_is_slow_and_steady_only_where_it_has
 
 def test_a_leap_that_lands_wrongly_is_undone(monkeypatch: pytest.MonkeyPatch) -> None:
     later = slow.SlowMotion.later
-    monkeypatch.setattr(slow.SlowMotion, "later", lambda self, y, trips: later(self, y, trips) + 0.1 * (trips > 0))
+    monkeypatch.setattr(slow.SlowMotion, "later", lambda self, y, trips: later(self, y, trips) + 1e-3 * (trips > 0))
     problem, _ = CASES["backward"]
     assert len(ss.simulate(problem, 7e3 * TURN).creep) == 0
 

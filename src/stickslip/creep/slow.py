@@ -35,13 +35,13 @@ from stickslip.friction.formula.slopes import slope_formula
 from stickslip.problem.problem import Problem
 
 NODES = 12
-"""Number of offsets in each piece of the pattern at which the motion is followed."""
+"""Number of offsets in each stretch of the round trip at which the motion is followed."""
 ROUNDS = 3
 """Number of rounds in which the averaged motion is matched to a round trip."""
 BOTH, PLAIN, HEAVY = range(3)
 """The three motions that are followed side by side: with ripple, without it, and with ripple and inertia."""
-RIPPLES = np.array([1.0, 0.0, 1.0])
-INERTIA = np.array([[0.0], [0.0], [1.0]])
+RIPPLES, INERTIA = np.array([1.0, 0.0, 1.0]), np.array([[0.0], [0.0], [1.0]])
+"""Which of them have ripple, and which inertia."""
 
 
 def _in_powers(series: np.polynomial.Chebyshev) -> Floats:

@@ -9,10 +9,13 @@ import numpy as np
 
 from stickslip.creep.leaping_run import LeapingRun
 from stickslip.creep.slow import BOTH, NODES, PLACES, RoundTrip, to_powers
-from stickslip.creep.slow_leaps import SlowLeap
+from stickslip.creep.slow_leaps import RATE_SHARE, SlowLeap
 from stickslip.creep.steady import integrals
 from stickslip.creep.steady_landing import continue_after, write_piece
 from stickslip.engine.state.layout import Floats
+
+ROUNDINGS = 64.0
+"""Number of roundings of the slip within which a round trip after the landing is compared with the leap."""
 
 
 @dataclass(frozen=True)
@@ -45,11 +48,16 @@ class SlowLanding:
         states = end[BOTH, leap.motion.size : -1] + leap.motion.at(end).state_begins[BOTH]
         continue_after(run, begun + leap.trips, first, first + pieces, states)
 
-    def expected(self, run: LeapingRun, trips: int) -> tuple[float, float]:
-        """Return the slip (m) that is expected some exact round trips after the landing, and by how much it may differ."""
-        motion, sign = self.leap.motion, int(run.count.mode)
+    def expected(self, run: LeapingRun, trips: int, tolerance: float) -> tuple[float, float]:
+        """Return the slip (m) that is expected some exact round trips after the landing, and by how much it may differ.
+
+        What these round trips add may differ by as much as the slip rate may, and by the roundings of all slip so far.
+        """
+        motion, slip, sign = self.leap.motion, float(run.state.slip_now), int(run.count.mode)
         landed, end = motion.later(self.leap.landing, 1), motion.later(self.leap.landing, 1 + trips)
-        return float(run.state.slip_now) + sign * (self._slip(end) - self._slip(landed)), self.leap.error
+        grown = self._slip(end) - self._slip(landed)
+        rounded = ROUNDINGS * float(np.spacing(max(abs(slip), self._slip(end))))
+        return slip + sign * grown, RATE_SHARE * tolerance * grown + rounded
 
     def _slip(self, y: Floats) -> float:
         """Return the slip since the leap began (m) where a round trip begins."""
@@ -73,7 +81,7 @@ class SlowLanding:
             self._move(run, stretch * grown[k])
 
     def _write_round_trip(self, run: LeapingRun, first: int, trip: int) -> None:
-        """Write the round trip on which the leap lands, with the pieces of the last one, and move the contact to its end."""
+        """Write the round trip on which the leap lands, a piece for each stretch, and move the contact to its end."""
         motion, store, last = self.leap.motion, run.store, int(run.count.previous_to) - 1
         there = RoundTrip(motion, self.leap.landing, motion.later(self.leap.landing, 1))
         states = there.states()[BOTH] + there.at_begin.ripple[:, BOTH]

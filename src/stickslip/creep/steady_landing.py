@@ -33,11 +33,12 @@ class SteadyLanding:
         """Write the leap into the history of a run, and set the engine to its end."""
         write(run, self.leap, self.deviation)
 
-    def expected(self, run: LeapingRun, trips: int) -> tuple[float, float]:
+    def expected(self, run: LeapingRun, trips: int, tolerance: float) -> tuple[float, float]:
         """Return the slip (m) that is expected some exact round trips after the landing, and by how much it may differ."""
         turn = trips * run.problem.round_trip_time
+        slip = float(run.state.slip_now) + turn * self.deviation.rate_there
         deviates = turn * abs(self.leap.factor) * self.deviation.largest_rate
-        return float(run.state.slip_now) + turn * self.deviation.rate_there, self.leap.error + deviates
+        return slip, max(self.leap.error + deviates, tolerance * abs(slip))
 
 
 def write(run: LeapingRun, leap: Leap, deviation: Deviation) -> None:

@@ -214,8 +214,7 @@ class CreepLeaps:
         self.taken[count.creep_leaps :] = [(begun, found.trips, *found.errors)]
         count.creep_leaps += 1
         count.pause_at = count.trip + CHECKED
-        expected, missed = found.expected(run, CHECKED)
-        allowed = max(missed, self.tolerance * abs(expected))
+        expected, allowed = found.expected(run, CHECKED, self.tolerance)
         if self._goes_on(run, int(count.trip) + CHECKED) and abs(float(run.state.slip_now) - expected) <= allowed:
             return True
         run.restore(before)
