@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,8 +24,9 @@ from stickslip.engine_input.limits import LARGEST_SHARE, check_shortest_event
 from stickslip.foundation.arrays import shared
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import nearest
+from stickslip.foundation.other_values import unchecked
 from stickslip.foundation.quantities import Quantity, quantities_of
-from stickslip.problem.parameters import with_numbers
+from stickslip.problem.parameters import put_many
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import DURATION, LARGEST_RTOL, RTOL, check_rtol
 from stickslip.run.session import MOST_ROUND_TRIPS, check_round_trips
@@ -40,28 +41,6 @@ QUANTITIES = COLUMNS
 """Names of the quantities to which a batch can reduce a run."""
 RUN = {"duration": DURATION, "rtol": RTOL}
 """The entries of [run] in a scenario that may be varied."""
-
-
-class Numbers(NamedTuple):
-    """The numbers that vary, sorted by the object to which they belong, and by the name of the field there."""
-
-    body: dict[str, Any]
-    friction: dict[str, Any]
-    problem: dict[str, Any]
-    run: dict[str, Any]
-
-    @classmethod
-    def of(cls, values: Mapping[str, Any]) -> Numbers:
-        """Sort numbers by their keys. A varied initial load replaces the initial excess, and vice versa."""
-        found = cls({}, {}, {}, {})
-        for key, value in values.items():
-            table, _, name = key.partition(".")
-            if table == "initial":
-                other = {"load": {"initial_excess": None}, "excess": {"initial_load": None}}
-                found.problem.update({f"initial_{name}": value} | other.get(name, {}))
-            else:
-                {"body": found.body, "friction": found.friction, "loading": found.problem, "run": found.run}[table][name] = value
-        return found
 
 
 def declared_at(scenario: Scenario, key: str) -> Quantity | None:
@@ -81,30 +60,31 @@ def declared_at(scenario: Scenario, key: str) -> Quantity | None:
 
 def member(scenario: Scenario, values: Mapping[str, float]) -> Scenario:
     """Return the scenario of one member. Raises InputError if its numbers make no valid scenario."""
-    numbers = Numbers.of(values)
-    body, law = replace(scenario.problem.body, **numbers.body), replace(scenario.problem.friction, **numbers.friction)
-    run = {name: RUN[name].check("run", name, value) for name, value in numbers.run.items()}
+    problem = put_many(scenario.problem, _of_problem(values))
+    run = {name: declared.check("run", name, values[f"run.{name}"]) for name, declared in RUN.items() if f"run.{name}" in values}
     if "rtol" in run:
         check_rtol(run["rtol"], "run")
-    problem = replace(scenario.problem, body=body, friction=law, **numbers.problem)
     check_shortest_event(problem, scenario.shortest_event, "run")
     check_round_trips(run.get("duration", scenario.duration), problem.round_trip_time, "run")
     return replace(scenario, problem=problem, **run)  # type: ignore[arg-type] # by name
 
 
-def with_values(problem: Problem, numbers: Numbers) -> Problem:
+def _members(scenario: Scenario, values: Mapping[str, Any]) -> Problem:
     """Return the problem with other numbers, which may be arrays; what follows from them is neither checked nor calculated."""
-    parts = {"body": with_numbers(problem.body, numbers.body), "friction": with_numbers(problem.friction, numbers.friction)}
-    return with_numbers(problem, parts | numbers.problem)
+    return put_many(scenario.problem, _of_problem(values), unchecked)
+
+
+def _of_problem(values: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in values.items() if not name.startswith("run.")}
 
 
 def vectorised_problem(scenario: Scenario, values: Values) -> Problem:
     """Return the problem with arrays for the numbers that vary, and with `strength` and `excess` calculated from them."""
-    problem = with_values(scenario.problem, Numbers.of(values))
+    problem = _members(scenario, values)
     law, home = problem.friction, int(pieces_at_start(problem).flat[0])
     static = shared(law.pieces[home](law, problem.law_slip, 0.0) + law.static_excess)
     strength = problem.normal * static
-    return with_numbers(problem, {"strength": strength, "excess": excess_of(problem, strength)})
+    return unchecked(problem, strength=strength, excess=excess_of(problem, strength))
 
 
 def excess_of(problem: Problem, strength: Any) -> Any:
@@ -131,19 +111,18 @@ def pieces_at_start(problem: Problem) -> Places:
 
 def are_fine(scenario: Scenario, values: Values) -> Booleans:
     """Return True for the members whose parameters are valid: bodies, laws, problems and scenarios check the same for one."""
-    numbers = Numbers.of(values)
     fine = np.ones(len(next(iter(values.values()))), bool)
     for key, value in values.items():
         declared = declared_at(scenario, key)
         assert declared is not None
         fine &= declared.allows(value)
-    problem = with_values(scenario.problem, numbers)
+    problem = _members(scenario, values)
     body, law = problem.body, problem.friction
     fine &= (law.range()[0] >= 0.0) & (np.asarray(law.static_excess) >= 0.0)
-    fine &= np.asarray(numbers.run.get("rtol", scenario.rtol)) <= LARGEST_RTOL
+    fine &= np.asarray(values.get("run.rtol", scenario.rtol)) <= LARGEST_RTOL
     with np.errstate(all="ignore"):  # members that are refused already may overflow or divide by zero
         longest = MOST_ROUND_TRIPS * np.asarray(problem.round_trip_time)
-        fine &= np.asarray(numbers.run.get("duration", scenario.duration)) <= longest
+        fine &= np.asarray(values.get("run.duration", scenario.duration)) <= longest
     if isinstance(body, ElasticSlab):
         if body.p_wave_speed is not None:
             fine &= np.asarray(body.p_wave_speed > body.wave_speed * math.sqrt(4 / 3))
@@ -167,7 +146,7 @@ def groups(scenario: Scenario, values: Values) -> Iterator[tuple[int, Places, di
     The kind encodes what the members of a group have in common: whether their drivers are rigid, whether their contacts have mass,
     and the piece of the law in which they start.
     """
-    problem, count = with_values(scenario.problem, Numbers.of(values)), len(next(iter(values.values())))
+    problem, count = _members(scenario, values), len(next(iter(values.values())))
     kind = np.broadcast_to(4 * pieces_at_start(problem), (count,)).copy()
     body = problem.body
     if isinstance(body, ElasticSlab):

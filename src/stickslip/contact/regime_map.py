@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from itertools import pairwise, product
 
@@ -15,7 +16,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import NamedNumbers, Part, Quantity, Series, fields_of
 from stickslip.friction import FrictionLaw
-from stickslip.problem.parameters import Parameter
+from stickslip.problem.parameters import Parameter, put_many
 from stickslip.problem.problem import Problem
 
 _POINTS = 65
@@ -140,12 +141,8 @@ def two_parameters(problem: Problem, x: Axis, y: Axis, where: str) -> tuple[Para
 
 def put_both(names: tuple[Parameter, Parameter], values: tuple[float, float]) -> Problem | None:
     """Return the problem with other values of two parameters, or None if it refuses them."""
-    pairs = list(zip(names, values, strict=True))
-    for (first, one), (second, other) in (pairs, pairs[::-1]):  # one value alone may be refused although both together are not
-        try:
-            return first.put(one).parameters[second.name].put(other)
-        except InputError:
-            continue
+    with suppress(InputError):
+        return put_many(names[0].problem, {names[0].name: values[0], names[1].name: values[1]})
     return None
 
 

@@ -12,16 +12,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.foundation.errors import InputError, full_name
+from stickslip.foundation.other_values import unchecked, with_values
 from stickslip.foundation.quantities import Quantity, in_units, quantities_of
 from stickslip.friction import FrictionLaw
 from stickslip.friction.contract import one_argument
 from stickslip.friction.formula.functions import evaluate
-from stickslip.problem.parameters import law_with, with_numbers
+from stickslip.problem.parameters import put_many
 from stickslip.problem.problem import LOAD, Problem
 
 Floats = NDArray[np.float64]
-START = {"initial.load": "initial_load", "initial.excess": "initial_excess", "initial.state": "initial_state"}
-"""Names of numbers of the start that may vary beside those in `problem.parameters`, and the fields of `Problem` that hold them."""
 MANY = 256
 """Number of different nodes up to which each is checked as a problem of its own; of more, the extremes are, and some others."""
 MAY_VARY = ("friction.", "body.normal_stress", "initial.")
@@ -124,7 +123,7 @@ def node_values(problem: Problem, along: Mapping[str, Floats], shape: tuple[int,
 
     def at(places: Any) -> list[Problem]:
         values = (rows[place].tolist() for place in places)
-        return [_with(problem, dict(zip(different, row, strict=True))) for row in values]
+        return [put_many(problem, dict(zip(different, row, strict=True))) for row in values]
 
     if len(rows) <= MANY:
         problems = at(range(len(rows)))
@@ -183,14 +182,14 @@ def _extremes(rows: Floats) -> list[int]:
 def _of_many(problem: Problem, rows: Mapping[str, Floats]) -> dict[str, Any]:
     """Return what `_of_problems` returns of the problems with these values, each of which is allowed, from arrays."""
     count, law = len(next(iter(rows.values()))), problem.friction
-    of_law = {name: values for name, values in rows.items() if name.startswith("friction.")}
+    of_law = {name.removeprefix("friction."): values for name, values in rows.items() if name.startswith("friction.")}
     laws, which = [law], np.zeros(count, int)
     if of_law and law.many:
         found = _of_arrays(problem, of_law)
     else:
         if of_law:
             kinds, which = np.unique(np.stack(list(of_law.values()), axis=1), axis=0, return_inverse=True)
-            laws = [law_with(law, dict(zip(of_law, kind, strict=True))) for kind in kinds.tolist()]
+            laws = [with_values(law, dict(zip(of_law, kind, strict=True))) for kind in kinds.tolist()]
         found = {name: np.asarray(values)[..., which] for name, values in _of_laws(laws).items() if name != "numbers"}
         found["numbers"] = [{name: np.asarray(one)[which] for name, one in piece.items()} for piece in _of_laws(laws)["numbers"]]
     slip = rows.get("initial.slip", np.full(count, problem.initial_slip))
@@ -210,10 +209,10 @@ def _of_many(problem: Problem, rows: Mapping[str, Floats]) -> dict[str, Any]:
 def _of_arrays(problem: Problem, rows: Mapping[str, Floats]) -> dict[str, Any]:
     """Return what `_of_laws` returns of the laws with these values, for a law that takes arrays. Raises InputError."""
     law, count = problem.friction, len(next(iter(rows.values())))
-    law = with_numbers(law, {name.removeprefix("friction."): values for name, values in rows.items()})
+    law = with_values(law, rows, unchecked)
     fine = np.broadcast_to((np.asarray(law.range()[0]) >= 0.0) & (np.asarray(law.static_excess) >= 0.0), count)
     for place in np.flatnonzero(~fine)[:1]:
-        _with(problem, {name: float(values[place]) for name, values in rows.items()})  # says what is wrong
+        with_values(problem.friction, {name: float(values[place]) for name, values in rows.items()})  # says what is wrong
     numbers = {name: np.broadcast_to(getattr(law, name), count) for name in law.parameters()}
     knots = np.reshape([np.broadcast_to(one, count) for one in law.knots], (-1, count))
     return {"static_excess": np.broadcast_to(law.static_excess, count), "knots": knots, "numbers": [numbers] * len(law.pieces)}
@@ -253,7 +252,7 @@ def varying(problem: Problem) -> dict[str, tuple[Quantity, float]]:
     """Return the numbers of a problem that may vary along a contact, by name: what is declared of each, and its value (SI)."""
     found = {one.name: (one.declared, one.value) for one in problem.parameters.values() if one.name.startswith(MAY_VARY)}
     for name, value in (("initial.load", problem.load), ("initial.excess", problem.excess)):
-        found[name] = in_units(quantities_of(Problem)[START[name]], {LOAD: problem.load_unit}), value
+        found[name] = in_units(quantities_of(Problem)[name.replace(".", "_")], {LOAD: problem.load_unit}), value
     for state, value in zip(problem.friction.states[:1], problem.given_states, strict=False):
         found["initial.state"] = Quantity(state.unit, state.meaning), value
     return found
@@ -270,14 +269,3 @@ def full_names(problem: Problem, names: Iterable[str], who: str) -> dict[str, st
     if {"initial.load", "initial.excess"} <= set(given):
         raise InputError(f"{who}: initial.load and initial.excess exclude each other")
     return found
-
-
-def _with(problem: Problem, values: Mapping[str, float]) -> Problem:
-    """Return the problem with other values of some of its numbers."""
-    for name, value in values.items():
-        if name in START:
-            others: dict[str, Any] = {"initial_load": None, "initial_excess": None} if START[name] != "initial_state" else {}
-            problem = replace(problem, **(others | {START[name]: value}))
-        else:
-            problem = problem.parameters[name].put(value)
-    return problem

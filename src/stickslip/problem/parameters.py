@@ -7,13 +7,14 @@ enough if only one name ends with it. `PRESSING` has no place in a file: it is t
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError, full_name
 from stickslip.foundation.formatting import brief
+from stickslip.foundation.other_values import with_values
 from stickslip.foundation.quantities import (
     Choice,
     NamedNumbers,
@@ -39,17 +40,13 @@ STRESSES = ("far_stress", "far_stress_rate")
 
 
 class Entry(NamedTuple):
-    """An entry of a problem: its name, its declaration, its value (None if it is not given), and what puts another in its place."""
+    """An entry of a problem: its name, its declaration, and its value (None if it is not given)."""
 
     name: str
     declared: Quantity | Choice
     value: Any
-    put: Callable[[Any], Problem]
     written: str = ""
     """Unit that follows the number in a scenario file (only parameters of a formula have one)."""
-
-
-Owner = TypeVar("Owner")
 
 
 @dataclass(frozen=True)
@@ -59,7 +56,7 @@ class Parameter:
     name: str
     value: float
     declared: Quantity
-    _put: Callable[[float], Problem]
+    problem: Problem
 
     def __repr__(self) -> str:
         return f"Parameter({self.name} = {brief(self.value, self.unit)}, {self.declared.meaning})"
@@ -71,7 +68,7 @@ class Parameter:
 
     def put(self, value: float) -> Problem:
         """Return a new problem with another value (SI) of this number. Raises InputError if the problem does not allow it."""
-        return self._put(value)
+        return put_many(self.problem, {self.name: value})
 
 
 class Parameters(Mapping[str, Parameter]):
@@ -87,10 +84,9 @@ class Parameters(Mapping[str, Parameter]):
 
     @cached_property
     def _found(self) -> dict[str, Parameter]:
-        entries = entries_of(self._problem)
         return {
-            one.name: Parameter(one.name, one.value, one.declared, one.put)
-            for one in entries
+            one.name: Parameter(one.name, one.value, one.declared, self._problem)
+            for one in entries_of(self._problem)
             if isinstance(one.declared, Quantity) and one.value is not None and not isinstance(one.value, str)  # "steady"
         }
 
@@ -115,37 +111,55 @@ class Parameters(Mapping[str, Parameter]):
 
 def entries_of(problem: Problem) -> Iterator[Entry]:
     """Yield every entry of a problem that can have another value, given or not: numbers, and words such as those of a law."""
-    yield from _entries_in(problem.friction, "friction", _field_of(problem, "friction"))
-    yield from _entries_in(problem.body, "body", _field_of(problem, "body"))
+    yield from _entries_in(problem.friction, "friction")
+    yield from _entries_in(problem.body, "body")
     for name in LOADING:
         declared, value = quantities_of(type(problem))[name], getattr(problem, name)
         varies = isinstance(value, LoadingHistory)
-        yield Entry(f"loading.{name}", declared, None if varies else value, _field_of(problem, name))
+        yield Entry(f"loading.{name}", declared, None if varies else value)
         if varies:
-            yield from _entries_in(value, f"loading.{name}", _field_of(problem, name), {VARYING: declared.unit})
+            yield from _entries_in(value, f"loading.{name}", {VARYING: declared.unit})
     yield from _of_start(problem)
 
 
 def _of_start(problem: Problem) -> Iterator[Entry]:
     """Yield the entries of the start. An initial load replaces an initial excess, and an excess a load."""
     declared = quantities_of(type(problem))
-    yield Entry("initial.slip", declared["initial_slip"], problem.initial_slip, _field_of(problem, "initial_slip"))
-    for name, other in (("load", "excess"), ("excess", "load")):
+    yield Entry("initial.slip", declared["initial_slip"], problem.initial_slip)
+    for name in ("load", "excess"):
         one = replace(declared[f"initial_{name}"], unit=problem.load_unit)
-        yield Entry(f"initial.{name}", one, getattr(problem, f"initial_{name}"), _instead(problem, name, other))
+        yield Entry(f"initial.{name}", one, getattr(problem, f"initial_{name}"))
     given = dict(zip(STATE_NAMES, problem.given_states, strict=False))
     for name, state in zip(STATE_NAMES, problem.friction.states, strict=False):
-        put = _field_of(problem, f"initial_{name}")
-        yield Entry(f"initial.{name}", Quantity(state.unit, state.meaning), given.get(name), put)
-    yield Entry("initial.rate", declared["initial_rate"], problem.initial_rate, _field_of(problem, "initial_rate"))
+        yield Entry(f"initial.{name}", Quantity(state.unit, state.meaning), given.get(name))
+    yield Entry("initial.rate", declared["initial_rate"], problem.initial_rate)
 
 
 def _derived(problem: Problem) -> Iterator[Parameter]:
     """Yield the numbers that follow from others."""
-    for name, other, value in (("load", "excess", problem.load), ("excess", "load", problem.excess)):
+    for name, value in (("load", problem.load), ("excess", problem.excess)):
         declared = replace(quantities_of(type(problem))[f"initial_{name}"], unit=problem.load_unit)
-        yield Parameter(f"initial.{name}", value, declared, _instead(problem, name, other))
-    yield Parameter(PRESSING, problem.normal, pressing_of(problem), lambda value: pressed(problem, value))
+        yield Parameter(f"initial.{name}", value, declared, problem)
+    yield Parameter(PRESSING, problem.normal, pressing_of(problem), problem)
+
+
+def put_many(problem: Problem, values: Mapping[str, Any], make: Callable[..., Any] = replace) -> Problem:
+    """Return a problem with other values (SI) of its numbers, by their full names; an initial load replaces an excess, and back.
+
+    A contact is pressed harder before other numbers are put. `make` is as for `foundation.other_values.with_values`.
+
+    Raises InputError if the problem does not allow the values.
+    """
+    problem = pressed(problem, values[PRESSING]) if PRESSING in values else problem
+    changes: dict[str, Any] = {}
+    for name, value in values.items():
+        table, _, inner = name.partition(".")
+        if table == "initial":
+            changes |= dict.fromkeys(("initial_load", "initial_excess")) if inner in ("load", "excess") else {}
+            changes[f"initial_{inner}"] = value
+        elif name != PRESSING:
+            changes[inner if table == "loading" else name] = value
+    return with_values(problem, changes, make) if changes else problem
 
 
 def normal_field(problem: Problem) -> str:
@@ -186,54 +200,18 @@ def _scaled(value: Any, factor: float) -> Any:
     return replace(value, **fields)  # type: ignore[type-var] # every history is a dataclass
 
 
-def _entries_in(owner: Any, place: str, put: Callable[[Any], Problem], units: Mapping[str, str] | None = None) -> Iterator[Entry]:
+def _entries_in(owner: Any, place: str, units: Mapping[str, str] | None = None) -> Iterator[Entry]:
     """Yield the entries of a body, a law or a loading history; `units` are as for `in_units`."""
     for name, (given, _) in fields_of(type(owner)).items():
         declared, value = in_units(given, units or {}), getattr(owner, name)
         if isinstance(declared, Quantity | Choice):
-            yield Entry(f"{place}.{name}", declared, value, _in_field(owner, name, put))
+            yield Entry(f"{place}.{name}", declared, value)
         elif isinstance(declared, Series) and value:
             for i, one in enumerate(value):
-                yield Entry(f"{place}.{name}[{i}]", declared.item, one, _in_series(owner, name, i, put))
+                yield Entry(f"{place}.{name}[{i}]", declared.item, one)
         elif isinstance(declared, NamedNumbers):
-            for i, one in enumerate(value):
+            for one in value:
                 number = Quantity(one.unit or "1", "parameter of the formula")
-                yield Entry(f"{place}.{declared.key}.{one.name}", number, one.value, _in_names(owner, name, i, put), one.unit)
+                yield Entry(f"{place}.{declared.key}.{one.name}", number, one.value, one.unit)
         elif isinstance(declared, Part):
-            yield from _entries_in(value, f"{place}.{name}", _in_field(owner, name, put))
-
-
-def _field_of(problem: Problem, name: str) -> Callable[[Any], Problem]:
-    return lambda value: replace(problem, **{name: value})
-
-
-def _instead(problem: Problem, name: str, other: str) -> Callable[[Any], Problem]:
-    return lambda value: replace(problem, **{f"initial_{name}": value, f"initial_{other}": None})
-
-
-def law_with(law: Any, values: Mapping[str, float]) -> Any:
-    """Return a friction law with other values (SI) of its numbers, by names such as "friction.alpha". Raises InputError."""
-    for name, value in values.items():
-        law = next(one for one in _entries_in(law, "friction", lambda law: law) if one.name == name).put(value)
-    return law
-
-
-def with_numbers(owner: Owner, numbers: Mapping[str, Any]) -> Owner:
-    """Return a body, law or problem with other numbers, which may be arrays and are not checked."""
-    made = object.__new__(type(owner))  # without what the owner remembers that follows from its numbers
-    vars(made).update({one.name: getattr(owner, one.name) for one in fields(cast(Any, owner))} | dict(numbers))
-    return made
-
-
-def _in_field(owner: Any, name: str, put: Callable[[Any], Problem]) -> Callable[[Any], Problem]:
-    return lambda value: put(replace(owner, **{name: value}))
-
-
-def _in_series(law: Any, name: str, i: int, put: Callable[[Any], Problem]) -> Callable[[float], Problem]:
-    values = getattr(law, name)
-    return lambda value: put(replace(law, **{name: (*values[:i], value, *values[i + 1 :])}))
-
-
-def _in_names(law: Any, name: str, i: int, put: Callable[[Any], Problem]) -> Callable[[float], Problem]:
-    values = getattr(law, name)
-    return lambda value: put(replace(law, **{name: (*values[:i], values[i]._replace(value=value), *values[i + 1 :])}))
+            yield from _entries_in(value, f"{place}.{name}")

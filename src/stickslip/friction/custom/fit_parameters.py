@@ -13,6 +13,7 @@ import numpy as np
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.other_values import with_values
 from stickslip.foundation.quantities import NamedNumbers, Part, Quantity, Series, fields_of
 from stickslip.friction.contract import states_in
 from stickslip.friction.law import FrictionLaw
@@ -22,9 +23,13 @@ STEP = 1e-100
 
 
 class Leaf(NamedTuple):
-    """One parameter: its name in the formula, its declaration and its value; `optional` ones are 0 if they are not given."""
+    """One parameter: its names in the formula and in the law, its declaration and its value.
+
+    `optional` ones are 0 if they are not given.
+    """
 
     inner: str
+    full: str
     declared: Quantity
     value: float
     optional: bool = False
@@ -86,9 +91,11 @@ def leaves(law: FrictionLaw, inner: str = "", outer: str = "") -> dict[str, Leaf
     for name, (declared, default) in fields_of(type(law)).items():
         value = getattr(law, name)
         if isinstance(declared, Quantity) and value is not None and not _is_expression(law):
-            found[outer + name] = Leaf(inner + name, declared, value, default == 0.0)
+            found[outer + name] = Leaf(inner + name, outer + name, declared, value, default == 0.0)
         elif isinstance(declared, NamedNumbers):
-            found |= {outer + one.name: Leaf(inner + one.name, Quantity(one.unit or "1", ""), one.value) for one in value}
+            for one in value:
+                full = f"{outer}{declared.key}.{one.name}"
+                found[outer + one.name] = Leaf(inner + one.name, full, Quantity(one.unit or "1", ""), one.value)
         elif isinstance(declared, Part):
             found |= leaves(value, f"{inner}{name}_", f"{outer}{name}.")
     return found
@@ -100,20 +107,16 @@ def _is_expression(law: FrictionLaw) -> bool:
 
 def rebuilt(law: FrictionLaw, values: Mapping[str, float], *, checked: bool = True) -> FrictionLaw:
     """Return the law with other values of parameters. Raises InputError if it is no law; unchecked ones are only evaluated."""
-    changes: dict[str, Any] = {}
-    for name, (declared, _) in fields_of(type(law)).items():
-        inside = {key.removeprefix(f"{name}."): value for key, value in values.items() if key.startswith(f"{name}.")}
-        if isinstance(declared, Part) and inside:
-            changes[name] = rebuilt(getattr(law, name), inside, checked=checked)
-        elif isinstance(declared, NamedNumbers):
-            changes[name] = tuple(one._replace(value=values.get(one.name, one.value)) for one in getattr(law, name))
-        elif name in values:
-            changes[name] = values[name]
-    if checked:
-        return dataclasses.replace(law, **changes)
+    known = leaves(law)
+    return with_values(
+        law, {known[name].full: value for name, value in values.items()}, dataclasses.replace if checked else _changed
+    )
+
+
+def _changed(law: Any, **changes: Any) -> Any:
+    """Return a law with other fields, which are not checked, and all that it remembers: its formula stays."""
     made = copy.copy(law)
-    for name, value in changes.items():
-        object.__setattr__(made, name, value)
+    vars(made).update(changes)
     return made
 
 

@@ -14,8 +14,8 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity
 from stickslip.loading import LoadingHistory, PiecewiseLinear, Steps
+from stickslip.problem.parameters import put_many
 from stickslip.problem.problem import Problem
-from stickslip.studies.inference.free import LOAD
 from stickslip.studies.inference.noise import first_value, noise_of
 from stickslip.studies.inference.record import Record
 
@@ -155,27 +155,7 @@ def approached(pull: LoadingHistory | float, time: float) -> LoadingHistory | fl
 
 def changed(problem: Problem, values: Mapping[str, float]) -> Problem:
     """Return a problem with other numbers, by their full names; those of the record are passed over. Raises InputError."""
-    law: dict[str, float] = {}
-    body: dict[str, float] = {}
-    start: dict[str, Any] = {}
-    others: dict[str, float] = {}
-    for name, value in values.items():
-        place, _, last = name.partition(".")
-        if place == "friction" and last.isidentifier() and hasattr(problem.friction, last):
-            law[last] = value
-        elif place == "body":
-            body[last] = value
-        elif place == "initial":
-            start[f"initial_{last}"] = value
-            start |= {"initial_excess": None} if name == LOAD else {}
-        elif place != "record":
-            others[name] = value
-    new_law = replace(problem.friction, **law) if law else problem.friction
-    new_body = replace(problem.body, **body) if body else problem.body
-    problem = replace(problem, friction=new_law, body=new_body, **start)
-    for name, value in others.items():
-        problem = problem.parameters[name].put(value)
-    return problem
+    return put_many(problem, {name: value for name, value in values.items() if not name.startswith("record.")})
 
 
 def first_sizes(parts: Sequence[Part]) -> dict[str, float]:
