@@ -43,7 +43,7 @@ ROOMS = {
     ),
     "engine": (
         ("codegen",),
-        ("enclosure", "state"),
+        ("state",),
         ("series",),
         ("compiled_formula", "contact"),
         ("folds", "radau"),

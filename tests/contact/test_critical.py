@@ -1,6 +1,8 @@
 """Critical values: closed forms against the root finder and against a dense scan of slopes."""
 
 import math
+import subprocess
+import sys
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,7 +11,6 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import stickslip as ss
-from stickslip.contact import folds, proofs
 from stickslip.contact.branches import branches_of
 from stickslip.contact.critical import critical_normal_stress, margin, steepest_fall
 from stickslip.contact.equation import resistance
@@ -69,16 +70,17 @@ def test_the_critical_value_is_told_however_far_it_is(exponent, rate):
     assert ss.uniqueness(slab_problem(law)).critical_value == pytest.approx(value, rel=1e-14, abs=0)
 
 
-@pytest.mark.parametrize("law", [F.ExponentialStribeck, F.PowerStribeck])
-@pytest.mark.parametrize("exponent", [1, 2, 4])
-def test_a_first_uniqueness_waits_for_no_compiler(law, exponent, monkeypatch):
-    """All of its bounds are worked out in plain Python, for which a process has patience for 1000."""
-    monkeypatch.setattr(folds, "compiled", None)
-    for static in (0.61, 0.31):
-        monkeypatch.setattr(proofs._Patience, "left", 1000)
-        found = ss.uniqueness(slab_problem(law(static, 0.4, 0.1, exponent)))
-        assert (found.critical_value is None) == (static < 0.4)
-        assert 0 < proofs._Patience.left < 1000
+def test_proofs_wait_for_no_compiler():
+    """Neither `uniqueness` nor a critical value imports the compiler, in a process of its own."""
+    code = """
+import sys
+import stickslip as ss
+from stickslip.contact.critical import critical_value
+problem = ss.Problem(ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8), ss.friction.PowerStribeck(0.6, 0.4, 0.1, 4), initial_excess=0.0)
+print(ss.uniqueness(problem).certificate, critical_value(problem, "rate").certificate, "numba" in sys.modules)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "proven proven False\n"
 
 
 def test_the_edge_of_what_a_problem_accepts_can_be_critical():

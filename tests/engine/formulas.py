@@ -14,10 +14,10 @@ from stickslip.engine.codegen.recurrences import Recurrences
 from stickslip.engine.codegen.taylor_series import ORDER, FormulaWriter
 from stickslip.engine.codegen.uncompiled import MATHS
 from stickslip.engine.compiled_formula import CALLED, compile_formula
-from stickslip.engine.enclosure.formula import bound_at_slips, bound_friction, formulas_of
 from stickslip.engine.series import sine
 from stickslip.friction.formula import expression as e
 from stickslip.friction.formula import functions as elementary
+from stickslip.friction.formula.bounds import Enclosure
 from stickslip.friction.formula.expression import Expression
 
 
@@ -25,13 +25,13 @@ def enclose(
     tree: Expression, parameters: Mapping[str, float], slip: float | tuple[float, float], low: ArrayLike, high: ArrayLike
 ) -> NDArray[np.float64]:
     """Bounds of mu, dmu/dv and d2mu/dv2, shape (3, 2, cells), at a slip or between two, on cells of slip rates."""
-    formulas = formulas_of([tree], tuple(parameters), np.array([list(parameters.values())], float).reshape(1, -1))
-    slips = slip if isinstance(slip, tuple) else (slip, slip)
-    found = []
-    for one, other in zip(np.atleast_1d(low).tolist(), np.atleast_1d(high).tolist(), strict=True):
-        bound_at_slips(formulas, 0, *slips)
-        found.append(np.array(bound_friction(formulas, 0, one, other)).reshape(3, 2) * [[1.0], [1.0], [2.0]])
-    return np.stack(found, axis=-1)
+    ends = np.broadcast_arrays(np.atleast_1d(np.asarray(low, float)), np.asarray(high, float))
+    bounds = Enclosure(tree, parameters, slip).on(*ends, np.arange(len(ends[0])))
+    found = np.zeros((3, 2, len(ends[0])))
+    found[: bounds.shape[1]] = np.moveaxis(bounds, 0, 1)
+    with np.errstate(over="ignore"):
+        found[2] *= 2.0
+    return found
 
 
 FLOATS = {name: njit(error_model="numpy", fastmath={"contract"})(function) for name, function in CALLED.items()}

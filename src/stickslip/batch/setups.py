@@ -7,12 +7,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stickslip.batch.kernels.branch_search import MOST_BRANCHES, Found, Resistances, search_branches
+from stickslip.batch.kernels.branch_search import MOST_BRANCHES, NEVER_RISES, TOO_MANY, Found, Resistances, search_branches
 from stickslip.batch.kernels.runs import fill_constants
 from stickslip.batch.vectorised_problem import Values, member, vectorised_problem
+from stickslip.contact import turns
 from stickslip.contact.rules.selection import levels
 from stickslip.engine.compiled_formula import compile_formula, keep_with
-from stickslip.engine.enclosure.formula import formulas_of
 from stickslip.engine.state.layout import Branch, Counts, Floats, Integers, LawPiece, Params, State
 from stickslip.engine_input.branch_table import is_algebraic, table_of_branches
 from stickslip.engine_input.limits import set_lumping, wait_for_creep
@@ -30,6 +30,7 @@ from stickslip.foundation.arrays import shared
 from stickslip.foundation.quantities import quantities_of
 from stickslip.friction import FrictionLaw
 from stickslip.friction.formula.bounds import bends_one_way
+from stickslip.friction.formula.differences import difference
 from stickslip.problem.problem import Problem
 from stickslip.scenarios.scenario import Scenario
 from stickslip.trajectory.slip_events import default_event_rate
@@ -37,6 +38,10 @@ from stickslip.trajectory.slip_events import default_event_rate
 LOADING = Lock()
 """Lock around the compilation of formulas: if two threads loaded the same formula, machine code whose address the other thread
 holds would be freed."""
+PARTS = 4
+"""Parts into which the interval of a fold is cut: few, because many folds are found together."""
+MOST_TURNS = 64
+"""Largest number of turns of g, or of intervals in which these are not decided, that are told apart."""
 FASTEST = 1e9
 """Slip rates beyond this multiple of the contact's own scale S (variation of mu)/Z do not matter, as in `contact.equation`."""
 
@@ -199,18 +204,43 @@ def branches_of(problem: Problem, group: Alike, constants: Floats, count: int) -
     tree, values = one.friction.trees()[0], [getattr(law, name) for name in law.parameters()]
     *ends, slips = [(np.min(value), np.max(value)) for value in (*values, problem.law_slip)]
     one_way = not law.knots and bends_one_way(tree, dict(zip(law.parameters(), ends, strict=True)), slips)
+    edges = np.empty((0, 0))
+    if not one_way:
+        numbers = {name: spread(value, count) for name, value in zip(law.parameters(), values, strict=True)}
+        members, slip = np.arange(count), spread(problem.law_slip, count)
+        ends_of_search = np.zeros(count), np.full(count, turns.FASTEST)
+        of = turns.Pieces((tree,), 0 * members, members, numbers, slip, damping, normal, slowest, fastest, *ends_of_search)
+        branches, edges = ends_of_branches(of)
     found = Found(Branch.table(count, 1 if one_way else MOST_BRANCHES), branches, np.empty(count))
     address = int(LawPiece(group.functions[0]).value_at)
-    numbers = np.array([spread(value, count) for value in values]).reshape(-1, count).T
-    formulas = formulas_of((tree,), law.parameters(), numbers)
-    slip = spread(problem.law_slip, count)
-    contacts = Resistances(address, constants, damping, normal, start, slowest, fastest, formulas, slip)
-    search_branches(contacts, one_way, np.empty(4), found)
+    search_branches(Resistances(address, constants, damping, normal, start, slowest, fastest), edges, np.empty(4), found)
     table = Branch.of(found.table)
     exists = np.arange(found.table.shape[1]) < branches[:, None]
     start, end = np.where(exists, table.excess_from, np.inf), np.where(exists, table.excess_to, -np.inf)
     stick_to, table.keep_from[...], table.keep_to[...] = levels(one.rule, start, end)
     return *found, stick_to
+
+
+def ends_of_branches(of: turns.Pieces) -> tuple[Integers, Floats]:
+    """Return the number of branches of each member, NEVER_RISES or TOO_MANY, and the slip rates (m/s) of their ends."""
+
+    def slope(rate: Floats, member: Integers) -> Floats:
+        numbers = {name: values[member] for name, values in of.numbers.items()}
+        return of.damping[member] + of.normal[member] * difference(of.trees[0], numbers, of.slip[member], 0.0, rate)[1]
+
+    found = turns.find_turns(of, most=MOST_TURNS)
+    rates, member = turns.folds_of(found, slope, PARTS)
+    count = np.bincount(member, minlength=len(of.slip))
+    rises = count % 2 == 0
+    branches = (count + rises + 1) // 2
+    branches[(branches > MOST_BRANCHES) | (np.bincount(found.cells.piece, minlength=len(count)) > MOST_TURNS)] = TOO_MANY
+    branches[(branches != TOO_MANY) & (found.at_end < 0)] = NEVER_RISES
+    ends = np.full((len(count), 2 * MOST_BRANCHES), np.inf)
+    ends[rises, 0] = 0.0
+    place = np.arange(len(member)) - np.searchsorted(member, member) + rises[member]
+    fits = place < ends.shape[1]
+    ends[member[fits], place[fits]] = rates[fits]
+    return branches, ends
 
 
 def scales(law: FrictionLaw, own: Floats, count: int) -> tuple[Floats, Floats]:

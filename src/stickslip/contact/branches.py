@@ -52,28 +52,8 @@ def branches_of(g: Resistance, proof: Certificate | None = None) -> tuple[Branch
     if not g.law.depends_on_rate:
         return (Branch(0.0, math.inf, g.start, math.inf),)
     proof = proof or certificate(g)
-    folds = [_fold(g, proof, rate) for rate in proof.rates]
-    ends = [*([0.0] if len(folds) % 2 == 0 else []), *folds, math.inf]  # g rises at high rates
+    ends = [*([0.0] if len(proof.rates) % 2 == 0 else []), *proof.rates, math.inf]  # g rises at high rates
     return tuple(_branch(g, low, high) for low, high in zip(ends[::2], ends[1::2], strict=True))
-
-
-def _fold(g: Resistance, proof: Certificate, rate: float) -> float:
-    """Return a fold as the last, or the first, slip rate (m/s) at which g still rises, within its proven interval.
-
-    Batches stop at the same floating-point number.
-    """
-    low, high = proof.enclosure(rate) or (rate, rate)
-    if not low < high:
-        return rate
-    first = bool(g.slope(low) > 0.0)
-    for _ in range(40):
-        rates = np.linspace(low, high, 65)
-        other = np.flatnonzero((g.slope(rates[1:]) > 0.0) != first)
-        k = int(other[0]) if other.size else 63
-        low, high = float(rates[k]), float(rates[k + 1])
-        if high - low <= 2.0 * np.spacing(high):
-            break
-    return low if first else high
 
 
 def _branch(g: Resistance, low: float, high: float) -> Branch:

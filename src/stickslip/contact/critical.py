@@ -7,14 +7,14 @@ smallest g' over all slip rates vanishes. A law names the parameter of which `un
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from itertools import pairwise, zip_longest
+from itertools import pairwise
 from typing import Literal
 
 from stickslip.contact.equation import Resistance, resistance
-from stickslip.contact.folds import Verdict, certificate, lowest_slope
-from stickslip.contact.roots import sign_change
+from stickslip.contact.folds import Verdict, certificate, lowest_slope, lowest_slopes
+from stickslip.contact.roots import sign_change, sign_changes
 from stickslip.foundation.arguments import NamesAttributes, for_users
 from stickslip.foundation.brief_repr import brief_repr
 from stickslip.foundation.errors import InputError
@@ -69,16 +69,21 @@ def steepest_fall(g: Resistance) -> tuple[float, float]:
     return lowest.rate, lowest.slope
 
 
-def margin(problem: Problem, law_slip: float | None = None, **tolerance: float) -> float:
+def margin(problem: Problem, law_slip: float | None = None) -> float:
     """Return the smallest g'/Z over all slip rates at a law slip (m; default: the initial one).
 
-    It is negative in the irregular regime, and -inf if friction steps down as slip begins. Raises InputError for a block. The
-    `tolerance` is that of `lowest_slope`.
+    It is negative in the irregular regime, and -inf if friction steps down as slip begins. Raises InputError for a block.
     """
-    g = resistance(problem, law_slip)
-    if not g.law.depends_on_rate:
-        return 1.0
-    return -math.inf if g.law.static_excess > 0.0 else lowest_slope(g, **tolerance).slope / g.damping
+    return margins([resistance(problem, law_slip)])[0]
+
+
+def margins(contacts: Sequence[Resistance], **tolerance: float) -> list[float]:
+    """Return the `margin` of each contact, under laws of one kind; the `tolerance` is that of `lowest_slopes`."""
+    found = [-math.inf if g.law.static_excess > 0.0 else 1.0 for g in contacts]
+    searched = [k for k, g in enumerate(contacts) if g.law.depends_on_rate and found[k] > 0.0]
+    for k, lowest in zip(searched, lowest_slopes([contacts[k] for k in searched], **tolerance), strict=True):
+        found[k] = lowest.slope / contacts[k].damping
+    return found
 
 
 def check_no_contact_mass(problem: Problem, where: str) -> None:
@@ -117,19 +122,20 @@ def critical_value(problem: Problem, name: str, law_slip: float | None = None) -
     if found.declared.whole:
         raise InputError(f"critical value: {found.name} is whole and cannot be varied continuously")
 
-    def margin_at(value: float) -> float:
-        return margin(found.put(value), law_slip)
+    def margins_at(values: Iterable[float]) -> list[float]:
+        return margins([resistance(found.put(value), law_slip) for value in values])
 
-    here = margin_at(found.value)
-    points = sorted([*_walk(found, margin_at, -1), (found.value, here), *_walk(found, margin_at, 1)])
-    values = [sign_change(margin_at, low[0], high[0]) for low, high in pairwise(points) if (low[1] < 0.0) != (high[1] < 0.0)]
-    changes = [points[0][1] < 0.0, *(high[1] < 0.0 for low, high in pairwise(points) if (low[1] < 0.0) != (high[1] < 0.0))]
+    points = sorted([*_walk(found, -1), found.value, *_walk(found, 1)])
+    falls = [one < 0.0 for one in margins_at(points)]
+    pairs = [ends for ends, (one, other) in zip(pairwise(points), pairwise(falls), strict=True) if one != other]
+    values = sign_changes(lambda wanted: margins_at(value for _, value in wanted), pairs)
+    changes = [falls[0], *(after for before, after in pairwise(falls) if before != after)]
     regimes: tuple[Regime, ...] = tuple("irregular" if falls else "regular" for falls in changes)
     enclosures = tuple(_proven_change(found, value, law_slip) for value in values)
     verdict: Verdict = "proven" if None not in enclosures else "not decided"
-    if _proven(found, found.value, law_slip) != ("irregular" if here < 0.0 else "regular"):
+    if _proven(found, found.value, law_slip) != ("irregular" if falls[points.index(found.value)] else "regular"):
         verdict = "not decided"
-    return Critical(found.name, found.unit, found.value, tuple(values), regimes, (points[0][0], points[-1][0]), verdict, enclosures)
+    return Critical(found.name, found.unit, found.value, tuple(values), regimes, (points[0], points[-1]), verdict, enclosures)
 
 
 def nearest_critical(problem: Problem, name: str, law_slip: float | None = None) -> float | None:
@@ -142,28 +148,26 @@ def nearest_critical(problem: Problem, name: str, law_slip: float | None = None)
     except InputError as error:
         raise InputError(f"{type(problem.friction).__name__}: critical: {error}") from None
 
-    def margin_at(value: float) -> float:
-        return margin(found.put(value), law_slip)
+    def margins_at(values: Iterable[float], **tolerance: float) -> list[float]:
+        return margins([resistance(found.put(value), law_slip) for value in values], **tolerance)
 
     def roughly(value: float) -> float:
         try:
-            return margin(found.put(value), law_slip, tolerance=_ROUGH)
+            return margins_at([value], tolerance=_ROUGH)[0]
         except InputError:
             return math.nan
 
-    here = found.value, margin_at(found.value)
-    zeros = _zeros_if_straight(here, roughly)
+    here = margins_at([found.value])[0]
+    zeros = _zeros_if_straight((found.value, here), roughly)
     if zeros is not None:
         return next((float(f"{zero:.15g}") for zero in zeros), None)
-    last = [here, here]
-    for pair in zip_longest(_walk(found, margin_at, -1), _walk(found, margin_at, 1)):
-        for side, one in enumerate(pair):
-            if one is None:
-                continue
-            if (one[1] < 0.0) != (here[1] < 0.0):
-                return float(f"{sign_change(margin_at, *sorted((last[side][0], one[0]))):.15g}")
-            last[side] = one
-    return None
+    sides = [[found.value, *_walk(found, way)] for way in (-1, 1)]
+    falls = [[one < 0.0 for one in margins_at(side)] for side in sides]
+    steps = [(k, n) for n, side in enumerate(falls) for k in range(1, len(side)) if side[k] != side[0]]
+    if not steps:
+        return None
+    k, n = min(steps)
+    return float(f"{sign_change(lambda value: margins_at([value])[0], *sorted(sides[n][k - 1 : k + 1])):.15g}")
 
 
 def _zeros_if_straight(here: tuple[float, float], margin_at: Callable[[float], float]) -> list[float] | None:
@@ -215,27 +219,27 @@ def _proven_change(found: Parameter, value: float, law_slip: float | None) -> tu
     return None
 
 
-def _walk(found: Parameter, margin_at: Callable[[float], float], way: int) -> Iterator[tuple[float, float]]:
-    """Yield values and margins on one side of the present value, away from it, up to where the problem refuses them."""
-    walked: list[tuple[float, float]] = []
+def _walk(found: Parameter, way: int) -> list[float]:
+    """Return values on one side of the present value, away from it, up to the last one that the problem accepts.
+
+    That one counts, because the regime may change there.
+    """
+    walked = [found.value]
 
     def taken(value: float) -> bool:
         try:
-            walked.append((value, margin_at(value)))
+            found.put(value)
         except InputError:
             return False
         return True
 
     for value in _values(found.value, way):
-        if not taken(value):  # a refusal at 0 needs no bisection, because the progression has come close enough to it
-            last = walked[-1][0] if walked else found.value
-            yielded = len(walked)
-            if value:  # the edge itself counts, because the regime may change there
-                edge = sign_change(lambda x: 1.0 if taken(x) else -1.0, last, value)
-                taken(float(f"{edge:.15g}"))
-            yield from sorted(walked[yielded:], reverse=way < 0)
-            return
-        yield walked[-1]
+        if not taken(value):
+            edge = sign_change(lambda x: 1.0 if taken(x) else -1.0, walked[-1], value) if value else walked[-1]
+            walked += [one for one in (float(f"{edge:.15g}"), edge) if one != walked[-1] and taken(one)][:1]
+            break
+        walked.append(value)
+    return walked[1:]
 
 
 def _values(present: float, way: int) -> list[float]:

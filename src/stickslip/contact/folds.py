@@ -1,29 +1,26 @@
 """Folds of the resistance g(v) = Z v + S mu(v), and its smallest slope, each with a proof by bounds of g' and g''.
 
-The proofs are those of `engine.folds.turns` and `engine.folds.lowest_slope`; here they meet a contact, and `contact.proofs` says
-how they run.
+The proofs are those of `contact.turns` and `contact.lowest_slope`; here they meet a contact.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
 from stickslip.contact.equation import Resistance
-from stickslip.contact.proofs import Way, compiled, run_proof, way_of_next
-from stickslip.engine.codegen.kernels import in_python
-from stickslip.engine.enclosure.formula import formulas_of
-from stickslip.engine.folds import turns
-from stickslip.engine.folds.lowest_slope import find_lowest, polished
-from stickslip.engine.folds.panels import MOST_PANELS, panels_between
-from stickslip.engine.folds.turns import FASTEST, find_turns, folds_of, new_cells, room_for_turns
+from stickslip.contact.lowest_slope import find_lowest, polished
+from stickslip.contact.panels import panels_between
+from stickslip.contact.turns import FASTEST, MOST_EVALUATIONS, PROVEN, Pieces, find_turns, folds_of
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.brief_repr import brief_repr
 from stickslip.foundation.errors import InputError
+from stickslip.friction.formula.expression import Expression
 
 Verdict = Literal["proven", "not decided"]
 """proven: by interval arithmetic. not decided: proven except on some intervals of slip rates."""
@@ -36,8 +33,6 @@ _ROUNDING = 8.0 * float(np.finfo(float).eps)
 """Relative rounding error allowed for three operations."""
 MOST_FOLDS = 1024
 """Largest number of folds that a contact may have. Friction that rises and falls with the slip rate for ever has any number."""
-FEW_PANELS = 200
-"""Number of panels of an integral from which on they are found in compiled code."""
 _MOST_SHOWN = 6
 """Largest number of folds that a sentence names; more would make it unreadable."""
 
@@ -99,67 +94,50 @@ class Lowest:
     rate: float
 
 
-def bounds_of(g: Resistance) -> turns.Resistance:
-    """Return what compiled code needs for bounds of g' of a contact.
-
-    Raises InputError for a law with a state, under which the slip rate is no root of the contact equation.
-    """
-    knots = np.array(g.rate_knots)
-    pieces = np.atleast_1d(g.law.piece_at(g.law_slip, np.array([0.0, *g.rate_knots])))
-    values = np.array([g.law.piece_values(i) for i in range(len(g.trees))]).reshape(len(g.trees), -1)
-    formulas = formulas_of(g.trees, g.law.parameters(), values)
-    return turns.Resistance(
-        formulas, knots, pieces.astype(np.int64), g.damping, g.normal, min(g.scales), max(g.scales), in_python(new_cells)()
-    )
+def pieces_of(contacts: Sequence[Resistance], reach: float = FASTEST) -> Pieces:
+    """Return what bounds of g' are worked out from, up to a slip rate (m/s), for contacts under laws of one kind."""
+    formulas: dict[Expression, int] = {}
+    rows, values = [], []
+    for n, g in enumerate(contacts):
+        knots = [knot for knot in g.rate_knots if knot < reach]
+        pieces = np.atleast_1d(g.law.piece_at(g.law_slip, np.array([0.0, *knots]))).tolist()
+        scales = min(g.scales), max(g.scales)
+        for i, begin, end in zip(pieces, [0.0, *knots], [*knots, reach], strict=True):
+            formula = formulas.setdefault(g.trees[i], len(formulas))
+            rows.append((formula, n, g.law_slip, g.damping, g.normal, *scales, begin, end))
+            values.append(g.law.piece_values(i))
+    formula_of, contact, *numbers = np.array(rows).T
+    named = dict(zip(contacts[0].law.parameters(), np.array(values, float).reshape(len(rows), -1).T, strict=True))
+    return Pieces(tuple(formulas), formula_of.astype(int), contact.astype(int), named, *numbers)
 
 
 @lru_cache(maxsize=64)
-def certificate(g: Resistance, budget: int = turns.MOST_EVALUATIONS) -> Certificate:
+def certificate(g: Resistance, budget: int = MOST_EVALUATIONS) -> Certificate:
     """Prove where g' changes its sign, with at most so many evaluations.
 
-    Raises InputError if friction falls at least as fast as Z v rises even at the fastest rate of the search, unless Z is 0.
+    Raises InputError if the law has a state, under which the slip rate is no root of the contact equation, or if friction falls at
+    least as fast as Z v rises even at the fastest rate of the search, unless Z is 0.
     """
-    bounds, reach = bounds_of(g), FASTEST
-    found, table, way = _turns(bounds, g, reach, budget)
-    if found.intervals < 0:
+    reach = FASTEST
+    found = find_turns(pieces_of([g]), budget, MOST_FOLDS)
+    if len(found.known) > MOST_FOLDS:
         reach = g.reach if g.damping else FASTEST
-        found, table, way = _turns(bounds, g, reach, budget)
-    if found.intervals < 0:
+        found = find_turns(pieces_of([g], reach), budget, MOST_FOLDS)
+    if len(found.known) > MOST_FOLDS:
         raise InputError(
             f"{type(g.law).__name__}: g = Z v + S mu(v) turns more than {MOST_FOLDS} times up to {reach:.3g} m/s: friction that "
             "rises and falls so often with the slip rate cannot be followed; make its features wider, or their height smaller"
         )
-    if found.at_end < 0 and reach == FASTEST and g.damping:
+    if found.at_end[-1] < 0 and reach == FASTEST and g.damping:
         raise InputError(f"{type(g.law).__name__}: friction still falls at least as fast as Z v rises at {FASTEST:.3g} m/s")
-    intervals = zip(*(column[: found.intervals].tolist() for column in (table.low, table.high, table.proven)), strict=True)
-    sure: list[Interval] = []
-    open_: list[Interval] = []
-    for low, high, proven in intervals:
-        (sure if proven == 1 else open_).append((low, high))
-    at_rest = None if found.at_rest == 0 else found.at_rest > 0
-    folds = np.empty(2 * MOST_FOLDS)
-    rates = tuple(folds[: way(folds_of)(table, found.intervals, folds)].tolist())
+    ends = list(zip(found.cells.low.tolist(), found.cells.high.tolist(), strict=True))
+    sure = [end for end, known in zip(ends, found.known.tolist(), strict=True) if known == PROVEN]
+    open_ = [end for end, known in zip(ends, found.known.tolist(), strict=True) if known != PROVEN]
+    at_rest = None if found.at_rest[0] == 0 else bool(found.at_rest[0] > 0)
+    rates = tuple(folds_of(found, lambda rate, _: g.slope(rate))[0].tolist())
     if reach < FASTEST and rates and g.slope(reach) <= 0.0:
         rates, sure = rates[:-1], sure[:-1]  # the last branch counts as endless, and its end is at a load that is never reached
     return Certificate("not decided" if open_ else "proven", rates, tuple(sure), tuple(open_), at_rest, found.evaluations, reach)
-
-
-def _turns(bounds: turns.Resistance, g: Resistance, reach: float, budget: int) -> tuple[turns.Account, turns.Turns, Way]:
-    """Return the turns of g up to a slip rate (m/s), and the way in which they were found.
-
-    The number of intervals is -1 if there are more than MOST_FOLDS.
-    """
-
-    def search(way: Way, most: int) -> tuple[int, tuple[turns.Account, turns.Turns]]:
-        for room in (64, MOST_FOLDS):
-            table = in_python(room_for_turns)(room)
-            found = way(find_turns)(bounds, g.law_slip, reach, most, table)
-            if found.intervals >= 0:
-                break
-        return found.evaluations, (found, table)
-
-    (found, table), way = run_proof(search, budget)
-    return found, table, way
 
 
 def panels(g: Resistance, low: float, high: float) -> Floats:
@@ -167,43 +145,30 @@ def panels(g: Resistance, low: float, high: float) -> Floats:
 
     For one contact the same slip rates always give the same edges, so that areas which should cancel do.
     """
-    bounds, way = bounds_of(g), _way_of(g)
-    if way is in_python:
-        with np.errstate(all="ignore"):
-            edges, is_whole = _panels(bounds, g.law_slip, (low, high), way, FEW_PANELS)
-        if is_whole:
-            return edges
-    return _panels(bounds, g.law_slip, (low, high), compiled, MOST_PANELS)[0]
-
-
-def _panels(bounds: turns.Resistance, slip: float, ends: Interval, way: Way, most: int) -> tuple[Floats, bool]:
-    """Return the edges of panels, and whether so many panels are enough for them to be as short as they should be."""
-    edges = np.empty(most + len(bounds.pieces) + 4)
-    count = way(panels_between)(bounds, slip, *ends, edges)
-    return edges[: count + 1], count <= most
+    return panels_between(pieces_of([g]), low, high)
 
 
 @lru_cache(maxsize=64)
-def _way_of(g: Resistance) -> Way:
-    """Return the way in which the panels of a contact are found, for as long as the contact is remembered."""
-    return way_of_next(FEW_PANELS)
+def lowest_slope(g: Resistance) -> Lowest:
+    """Return `lowest_slopes` of one contact."""
+    return lowest_slopes([g])[0]
 
 
-@lru_cache(maxsize=64)
-def lowest_slope(g: Resistance, tolerance: float = _TOLERANCE) -> Lowest:
-    """Bound the smallest g' to a tolerance relative to the larger of Z and its own magnitude, and find it to rounding."""
-    bounds = bounds_of(g)
+def lowest_slopes(contacts: Sequence[Resistance], tolerance: float = _TOLERANCE) -> list[Lowest]:
+    """Bound the smallest g' of each contact, and find it to rounding, for contacts under laws of one kind.
 
-    def search(way: Way, most: int) -> tuple[int, Any]:
-        found = way(find_lowest)(bounds, g.law_slip, tolerance, most)
-        return found.evaluations, found
-
-    found, way = run_proof(search, turns.MOST_EVALUATIONS)
-    with np.errstate(all="ignore"):
-        rate, slope = map(float, way(polished)(bounds, g.law_slip, found))
-    least, most = float(found.at_least), float(found.at_most)
-    near = most - least <= _NEAR * tolerance * max(g.damping, abs(most))
-    return Lowest("proven" if near else "not decided", least, most, slope, rate)
+    The tolerance of the bounds is relative to the larger of Z and the smallest g' itself.
+    """
+    if not contacts:
+        return []
+    pieces = pieces_of(contacts)
+    found = find_lowest(pieces, tolerance)
+    columns = (one.tolist() for one in (found.at_least, found.at_most, *polished(pieces, found)))
+    lowest = []
+    for g, least, most, rate, slope in zip(contacts, *columns, strict=True):
+        near = most - least <= _NEAR * tolerance * max(g.damping, abs(most))
+        lowest.append(Lowest("proven" if near else "not decided", least, most, slope, rate))
+    return lowest
 
 
 def critical_stress_between(g: Resistance) -> Interval | None:

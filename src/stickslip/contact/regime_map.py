@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import pairwise, product
 
 import numpy as np
 
-from stickslip.contact.critical import Regime, check_no_contact_mass, margin
-from stickslip.contact.roots import sign_change, sign_changes
+from stickslip.contact.critical import Regime, check_no_contact_mass, margin, margins
+from stickslip.contact.equation import resistance
+from stickslip.contact.roots import sign_changes
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import NamedNumbers, Part, Quantity, Series, fields_of
@@ -73,10 +74,13 @@ def regimes_along_slip(problem: Problem) -> tuple[RegimeInterval, ...]:
         return (RegimeInterval(start, end, "irregular" if margin(problem) < 0.0 else "regular"),)
     knots = problem.friction.knots if problem.friction.knot_variable == "slip" else ()
     slips = np.unique([*np.linspace(start, end, _POINTS), *(knot for knot in knots if start < knot < end)]).tolist()
-    falls = [margin(problem, slip) < 0.0 for slip in slips]
-    pairs = zip(pairwise(slips), pairwise(falls), strict=True)
-    changes = [sign_change(lambda slip: margin(problem, slip), *ends) for ends, (one, other) in pairs if one != other]
-    edges = [start, *changes, end]
+
+    def margins_at(slips: Iterable[float]) -> list[float]:
+        return margins([resistance(problem, slip) for slip in slips])
+
+    falls = [one < 0.0 for one in margins_at(slips)]
+    pairs = [ends for ends, (one, other) in zip(pairwise(slips), pairwise(falls), strict=True) if one != other]
+    edges = [start, *sign_changes(lambda wanted: margins_at(slip for _, slip in wanted), pairs), end]
     regimes: tuple[Regime, Regime] = ("irregular", "regular") if falls[0] else ("regular", "irregular")
     return tuple(RegimeInterval(low, high, regimes[k % 2]) for k, (low, high) in enumerate(pairwise(edges)))
 
@@ -159,7 +163,8 @@ def regime_map(problem: Problem, x: Axis, y: Axis, progress: Callable[[int, int]
     def at(points: Sequence[tuple[float, float]]) -> Floats:
         problems = [put_both(names, point) for point in points]
         found = np.full(len(points), math.nan)
-        found[[problem is not None for problem in problems]] = [margin(problem) for problem in problems if problem is not None]
+        contacts = [resistance(problem) for problem in problems if problem is not None]
+        found[[problem is not None for problem in problems]] = margins(contacts)
         return found
 
     points = [(x_value, y_value) for y_value in y.values.tolist() for x_value in x.values.tolist()]

@@ -32,14 +32,13 @@ from typing import NamedTuple
 import numpy as np
 
 from stickslip.contact.equation import Resistance
-from stickslip.contact.folds import bounds_of
 from stickslip.contact.sliding import Sliding
 from stickslip.contact.steady import steady_slidings
 from stickslip.creep.leaping_run import LeapingRun
 from stickslip.creep.pattern import Pattern, monotone_parts
-from stickslip.engine.enclosure.formula import bound_at_slips, bound_friction
 from stickslip.engine.state.layout import TERMS, Branch, Floats
 from stickslip.foundation.errors import InputError
+from stickslip.friction.formula.bounds import Enclosure
 from stickslip.problem.problem import Problem
 
 SHORTEST_LEAP = 16
@@ -195,10 +194,9 @@ class SteadyLeaps:
 
     def _slopes(self, low: float, high: float, piece: int) -> tuple[float, float]:
         """Return the least and the greatest slope of friction between two slip rates (m/s), Pa s/m or N s/m."""
-        bounds, slip, normal = bounds_of(self._resistance), self.problem.law_slip, self.problem.normal
-        bound_at_slips(bounds.formulas, piece, slip, slip)
-        mu = bound_friction(bounds.formulas, piece, max(low, 0.0), high)
-        return normal * float(mu[2]), normal * float(mu[3])
+        law, slip, normal = self.problem.friction, self.problem.law_slip, self.problem.normal
+        mu = Enclosure(law.trees()[piece], law.numbers(piece), slip).on(np.array([max(low, 0.0)]), np.array([high]))
+        return (normal * float(mu[0, 1, 0]), normal * float(mu[1, 1, 0])) if mu.shape[1] > 1 else (0.0, 0.0)
 
     def _of_length(self, run: LeapingRun, sliding: Sliding, deviation: Deviation, trips: int) -> Leap | None:
         """Return the leap over so many round trips, None if what a deviation does in them is not known."""

@@ -1,7 +1,7 @@
 """Find the branches of many resistances g(s) = Z s + S mu(s): `contact.branches` in compiled code.
 
 If mu is convex or concave, g has one fold at most, which is located to two neighbouring floating-point numbers. For any other law,
-folds come from bounds of g', as in `contact.folds`.
+the ends of branches come from `contact.turns`.
 """
 
 from __future__ import annotations
@@ -12,17 +12,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stickslip.engine.codegen.compiler import ahead, bits_of, call_value, float_of, floats, kernel
-from stickslip.engine.enclosure.formula import Formulas
-from stickslip.engine.folds.turns import FASTEST, MOST_EVALUATIONS, Turns, find_turns, folds_of, new_cells, room_for_turns
-from stickslip.engine.folds.turns import Resistance as Bounded
 from stickslip.engine.state.layout import Floats, Integers
 from stickslip.engine.state.workspace import branches_in
 
 MOST_BRANCHES = 4
 """Largest number of branches for which tables have room."""
-ROOM = 64
-"""Largest number of turns of g, or of intervals in which these are not decided, that are told apart."""
-
 BELOW, ABOVE = 1e-8, 1e4
 """Between these multiples of the slowest and of the fastest scale of a contact lies the fold of a law that bends one way."""
 NEVER_RISES, TOO_MANY = 0, -1
@@ -55,8 +49,6 @@ class Resistances(NamedTuple):
     start: Floats  # g(0+) minus the static strength, Pa
     slowest: Floats  # slowest and fastest scale of the contact, m/s
     fastest: Floats
-    formulas: Formulas  # the formula with the numbers of each member
-    slip: Floats  # m: law slip
 
 
 class Found(NamedTuple):
@@ -141,50 +133,26 @@ def turns_once(g: Resistance, slowest: float, fastest: float, ends: Floats) -> i
 
 
 @kernel
-def turns_of(of: Resistances, n: int, ends: Floats, table: Turns, cells: Floats) -> int:
-    """Write the ends of the branches (m/s) of member n into `ends`; return their number, NEVER_RISES or TOO_MANY."""
-    knots, pieces = np.zeros(0), np.full(1, n)
-    g = Bounded(of.formulas, knots, pieces, of.damping[n], of.normal[n], of.slowest[n], of.fastest[n], cells)
-    found = find_turns(g, of.slip[n], FASTEST, MOST_EVALUATIONS, table)
-    if found.intervals >= 0 and found.at_end < 0:
-        return NEVER_RISES
-    folds = folds_of(table, found.intervals, ends[1:])
-    rises = folds % 2 == 0
-    if found.intervals < 0 or folds + 2 > len(ends):
-        return TOO_MANY
-    if not rises:
-        for k in range(folds):
-            ends[k] = ends[k + 1]
-    else:
-        ends[0] = 0.0
-    count = folds + 1 if rises else folds
-    ends[count] = math.inf
-    return (count + 1) // 2
-
-
-@kernel
-def search_branches(of: Resistances, one_way: bool, work: Floats, found: Found) -> None:
+def search_branches(of: Resistances, ends: Floats, work: Floats, found: Found) -> None:
     """Find the branches of each member's resistance and what follows from them.
 
-    one_way: mu is convex or concave. work has room for what `value` returns and belongs to the caller, because an array made here
+    `ends` holds the ends of the branches (m/s) of each member, whose number is in `found`; without members mu is convex or concave,
+    and they are found here. work has room for what `value` returns and belongs to the caller, because an array made here
     would be freed as soon as its address is taken.
     """
-    ends, table, cells = np.empty(2 * ROOM + 2), room_for_turns(ROOM), new_cells()
+    own = np.empty(2)
     out, size = floats(work.ctypes.data), of.constants.shape[1] * of.constants.shape[2] if len(of.constants) > 1 else 0
     for n in range(len(found.table)):
         c = ahead(floats(of.constants.ctypes.data), n * size)
         g = Resistance(of.address, c, of.damping[n], of.normal[n], of.start[n], out)
-        if one_way:
-            count = turns_once(g, of.slowest[n], of.fastest[n], ends)
-        else:
-            count = turns_of(of, n, ends, table, cells)
-            count = TOO_MANY if count > MOST_BRANCHES else count
-        found.branches[n], found.irregular[n] = count, 0.0
+        if len(ends) == 0:
+            found.branches[n] = turns_once(g, of.slowest[n], of.fastest[n], own)
+        count, found.irregular[n] = found.branches[n], 0.0
         if count <= 0:
             continue
-        branches = branches_in(found.table[n])
+        branches, edges = branches_in(found.table[n]), own if len(ends) == 0 else ends[n]
         for i in range(count):
-            branch, low, high = branches[i], ends[2 * i], ends[2 * i + 1]
+            branch, low, high = branches[i], edges[2 * i], edges[2 * i + 1]
             branch.rate_from, branch.rate_to = low, high
             branch.excess_from = excess_at(g, low)
             branch.excess_to = math.inf if math.isinf(high) else excess_at(g, high)

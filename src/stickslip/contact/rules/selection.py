@@ -20,9 +20,9 @@ import numpy as np
 from stickslip.contact.branches import Branch, branches_of, rate_on
 from stickslip.contact.equation import Resistance, resistance
 from stickslip.contact.folds import MOST_FOLDS, certificate, panels
+from stickslip.contact.panels import NODES, WEIGHTS
 from stickslip.contact.roots import bracketed_newton
-from stickslip.engine.folds.panels import NODES, WEIGHTS
-from stickslip.engine.folds.turns import FASTEST
+from stickslip.contact.turns import FASTEST
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
-from functools import cache
-from types import FunctionType, ModuleType, SimpleNamespace
 from typing import Any
 
 from numba import types
 from numba.extending import typeof_impl
 
 from stickslip.engine.codegen.numba_privates import WHY_PLAIN
-from stickslip.engine.codegen.uncompiled import MATHS, UNCOMPILED
+from stickslip.engine.codegen.uncompiled import UNCOMPILED
 
 if UNCOMPILED:
     pass
@@ -37,34 +34,6 @@ class Kernel:
     def __call__(self, *arguments: Any) -> Any:
         """Call the machine code, which the first call compiles or loads."""
         return self.entry(*arguments)
-
-
-@cache
-def in_python(kernel: Any) -> Callable[..., Any]:
-    """Return a kernel as plain Python, with all kernels that it calls: a thousand times slower, but there is nothing to compile.
-
-    It serves kernels whose arguments are numbers, tuples and arrays; addresses need machine code.
-    """
-    function = kernel.__wrapped__ if isinstance(kernel, Kernel) else kernel
-    return FunctionType(function.__code__, _Names(function.__globals__), function.__name__, function.__defaults__)
-
-
-class _Names(dict[str, Any]):
-    """The names of a module, in which kernels are plain Python, and `math` has the functions of numpy."""
-
-    def __init__(self, names: dict[str, Any]) -> None:
-        super().__init__({name: _as_python(value) for name, value in names.items()})
-
-
-def _as_python(value: Any) -> Any:
-    """Return what plain Python uses in place of a kernel, of `math`, or of a module of kernels; all else stays as it is."""
-    if isinstance(value, Kernel):
-        return lambda *arguments: in_python(value)(*arguments)  # made when it is first called, since kernels call each other
-    if value is math:
-        return MATHS
-    if isinstance(value, ModuleType) and any(isinstance(one, Kernel) for one in vars(value).values()):
-        return SimpleNamespace(**_Names(vars(value)))
-    return value
 
 
 @typeof_impl.register(Kernel)

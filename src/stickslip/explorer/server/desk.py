@@ -205,13 +205,11 @@ class Warming:
 
     def _warm(self) -> None:
         try:
-            from stickslip.contact.proofs import compile_proofs
             from stickslip.engine.codegen.cache import announce_by, tell
             from stickslip.explorer.model.strip import strip_of
             from stickslip.run.simulate import simulate
             from stickslip.scenarios.scenario import load_scenario
 
-            compile_proofs()  # a page asks for some with each move of a slider
             announce_by(lambda text: self._say(f"{text[0].upper()}{text[1:]}."))
             try:
                 for name, duration in FIRST_RUNS:

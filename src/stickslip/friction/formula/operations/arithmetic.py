@@ -8,8 +8,15 @@ from typing import Any
 
 import numpy as np
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.friction.formula.expression import Expression
+from stickslip.friction.formula.operations.enclosures import (
+    difference_of_series,
+    product_of_series,
+    quotient_of_series,
+    sum_of_series,
+)
 from stickslip.friction.formula.operations.operation import (
     TINIEST,
     UNITS,
@@ -25,7 +32,7 @@ from stickslip.friction.formula.operations.operation import (
     unit_text,
     without_zeros,
 )
-from stickslip.friction.formula.operations.sets import Disc, Interval, hull, times, unless
+from stickslip.friction.formula.operations.sets import Disc, known, multiplied, squared, unless
 
 MOST_PARTS = 3
 """Largest number of terms in which a linear combination is taken apart (see `Operation.parts`): longer sums are added as a tree."""
@@ -112,7 +119,8 @@ ADD = Operation(
     step=lambda start, end, a, b: a.step + b.step,
     slope=lambda end, a, b: a.slope + b.slope,
     slope_formula=lambda node, da, db: da + db,
-    bounds=lambda node, a, b: hull(a[0] + b[0], a[1] + b[1]),
+    bounds=lambda node, a, b: known(a + b),
+    taylor=sum_of_series,
     disc=lambda a, b: Disc(a.centre + b.centre, a.radius + b.radius, 0.0).rounded(least=_apart(a, b)),
     unit=_same,
     order_zero=_add_order_zero,
@@ -132,7 +140,8 @@ SUB = Operation(
     step=lambda start, end, a, b: a.step - b.step,
     slope=lambda end, a, b: a.slope - b.slope,
     slope_formula=lambda node, da, db: da - db,
-    bounds=lambda node, a, b: hull(a[0] - b[1], a[1] - b[0]),
+    bounds=lambda node, a, b: known(a - b[::-1]),
+    taylor=difference_of_series,
     disc=lambda a, b: Disc(a.centre - b.centre, a.radius + b.radius, 0.0).rounded(least=_apart(a, b)),
     unit=_same,
     order_zero=_sub_order_zero,
@@ -151,15 +160,8 @@ def _of_factors(a: Dimension, b: Dimension, sign: int) -> Dimension:
     return without_zeros({base: a.get(base, Fraction(0)) + sign * b.get(base, Fraction(0)) for base in {**a, **b}})
 
 
-def _multiply(a: Interval, b: Interval) -> Interval:
-    return hull(*(times(x, y) for x in a for y in b))
-
-
-def _mul_bounds(node: Expression, a: Interval, b: Interval) -> Interval:
-    if node.arguments[0] != node.arguments[1]:
-        return _multiply(a, b)
-    low, high = hull(a[0] * a[0], a[1] * a[1])
-    return np.where((a[0] <= 0.0) & (a[1] >= 0.0), 0.0, low), high
+def _mul_bounds(node: Expression, a: Floats, b: Floats) -> Floats:
+    return squared(a) if node.arguments[0] == node.arguments[1] else multiplied(a, b)
 
 
 def _mul_disc(a: Disc, b: Disc) -> Disc:
@@ -218,6 +220,7 @@ MUL = Operation(
     slope=lambda end, a, b: a.slope * b.value + a.value * b.slope,
     slope_formula=lambda node, da, db: da * node.arguments[1] + node.arguments[0] * db,
     bounds=_mul_bounds,
+    taylor=product_of_series,
     disc=_mul_disc,
     unit=lambda node, a, b: _of_factors(a, b, 1),
     order_zero=_mul_order_zero,
@@ -249,8 +252,17 @@ def _div_slope(end: Any, a: Change, b: Change) -> Any:
         return np.where(np.isinf(b.value), 0.0, (a.slope - end * b.slope) / b.value)
 
 
-def _div_bounds(_: Expression, a: Interval, b: Interval) -> Interval:
-    return unless((b[0] <= 0.0) & (b[1] >= 0.0), _multiply(a, (np.divide(1.0, b[1]), np.divide(1.0, b[0]))))
+def _div_bounds(_: Expression, a: Floats, b: Floats) -> Floats:
+    return unless((b[0] <= 0.0) & (b[1] >= 0.0), multiplied(a, 1.0 / b[::-1]))
+
+
+def _logistic_form(node: Expression) -> Expression:
+    """Return y / (1 + exp(z)) as y logistic(z), which does not overflow."""
+    above, below = node.arguments
+    for one, other in (below.arguments, below.arguments[::-1]) if below.operation == "add" else ():
+        if one.operation == "constant" and one.value == 1.0 and other.operation == "exp":
+            return above * Expression("logistic", other.arguments)
+    return node
 
 
 def _div_disc(a: Disc, b: Disc) -> Disc:
@@ -308,6 +320,8 @@ DIV = Operation(
     slope=_div_slope,
     slope_formula=lambda node, da, db: (da - node * db) / node.arguments[1],
     bounds=_div_bounds,
+    taylor=quotient_of_series,
+    bounded=_logistic_form,
     disc=_div_disc,
     unit=lambda node, a, b: _of_factors(a, b, -1),
     order_zero=_div_order_zero,

@@ -7,7 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from stickslip.foundation.arrays import Floats
 from stickslip.friction.formula.expression import Expression
+from stickslip.friction.formula.operations.enclosures import LIBRARY, function, outward
 from stickslip.friction.formula.operations.operation import (
     LARGEST_EXPONENT,
     TINIEST,
@@ -48,6 +50,12 @@ def _exp_step(start: Any, end: Any, a: Change) -> Any:
 def _exp_slope(end: Any, a: Change) -> Any:
     with np.errstate(invalid="ignore"):
         return end * a.slope
+
+
+def _exp_slopes(a: Floats) -> tuple[Floats, Floats]:
+    """Return bounds of f' and f''/2 of an exponential on an interval."""
+    value = outward(np.exp(a), LIBRARY)
+    return value, 0.5 * value
 
 
 def _exp_disc(a: Disc) -> Disc:
@@ -113,6 +121,7 @@ EXP = Operation(
     slope=_exp_slope,
     slope_formula=lambda node, da: node * da,
     bounds=growing(np.exp),
+    taylor=function(growing(np.exp), lambda value, a: (value, 0.5 * value)),
     disc=_exp_disc,
     order_zero=_exp_order_zero,
     derivative=_exp_derivative,
@@ -155,6 +164,7 @@ EXPM1 = Operation(
     slope=lambda end, a: _exp_slope(np.exp(a.value), a),
     slope_formula=lambda node, da: exp_of(node) * da,
     bounds=growing(np.expm1),
+    taylor=function(growing(np.expm1), lambda value, a: _exp_slopes(a), within=(-1.0, np.inf)),
     disc=_expm1_disc,
     order_zero=_expm1_order_zero,
     derivative=lambda writer, node, da: f"{writer.coefficient(exp_of(node), 0)} * {da}",

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
+from stickslip.foundation.arrays import Floats
 from stickslip.friction.formula.expression import Expression, nodes_of
+from stickslip.friction.formula.operations.enclosures import LIBRARY, function, multiply, negative, outward, square
 from stickslip.friction.formula.operations.operation import Change, Levels, Operation, Radius, Recurrence, Series
 from stickslip.friction.formula.operations.sets import OF_FUNCTION, Disc, growing
 
@@ -42,6 +45,33 @@ def _tanh_disc(a: Disc) -> Disc:
     return Disc(centre, np.fmin(near, far), 0.0).rounded(OF_FUNCTION)
 
 
+def _falling(function: Callable[[Floats], Floats], a: Floats, error: float) -> Floats:
+    """Bound a function that falls from 1 to 0 with the magnitude of its argument."""
+    sizes = np.array([np.maximum(-a[0], a[1]), np.maximum(np.maximum(a[0], -a[1]), 0.0)])
+    return np.minimum(outward(function(sizes), error), 1.0)
+
+
+def _across(x: Floats) -> Floats:
+    """Return 1 / cosh(x)**2 for x >= 0."""
+    e = np.exp(-2.0 * np.minimum(x, 1e3))
+    return 4.0 * e / ((1.0 + e) * (1.0 + e))
+
+
+def _tanh_slopes(value: Floats, a: Floats) -> tuple[Floats, Floats]:
+    slope = _falling(_across, a, 4.0 * LIBRARY)
+    return slope, negative(multiply(value, slope))
+
+
+def _logistic_slopes(_: Floats, a: Floats) -> tuple[Floats, Floats]:
+    half = outward(np.tanh(0.5 * a), LIBRARY)
+    slope = 0.25 * _falling(_across, 0.5 * a, 4.0 * LIBRARY)
+    return negative(slope), 0.5 * multiply(half, slope)
+
+
+logistic = function(lambda _, a: 1.0 / (1.0 + np.exp(a[::-1])), _logistic_slopes, 2.0 * LIBRARY, within=(0.0, 1.0))
+"""The rule of `Operation.taylor` for 1 / (1 + exp(a)), which is no operation of its own but in `Operation.bounded`."""
+
+
 def tanh_difference(value: float, now: float, step: float) -> float:
     """Return tanh(now) minus its value at the reference."""
     if abs(step) < 1.0 or (abs(step) < 300.0 and now * value > 0.0):  # on one side both may be 1 but for their last digits
@@ -72,6 +102,7 @@ TANH = Operation(
     slope=_tanh_slope,
     slope_formula=lambda node, da: (1.0 - node * node) * da,
     bounds=growing(np.tanh),
+    taylor=function(growing(np.tanh), _tanh_slopes, within=(-1.0, 1.0)),
     disc=_tanh_disc,
     order_zero=_tanh_order_zero,
     derivative=_tanh_derivative,
@@ -100,6 +131,11 @@ def _arcsinh_step(start: Any, end: Any, a: Change) -> Any:
         gap = np.where(xy > 0.0, (1.0 + x * x + y * y) / (p * q + np.abs(xy)), p * q - xy)
         step = np.arcsinh(a.step * (1.0 + gap) / (p + q))
     return np.where(np.maximum(p, q) > 1e150, end - start, step)
+
+
+def _arcsinh_slopes(_: Floats, a: Floats) -> tuple[Floats, Floats]:
+    slope = _falling(lambda x: 1.0 / np.hypot(1.0, x), a, 2.0 * LIBRARY)
+    return slope, -0.5 * multiply(a, multiply(square(slope), slope))[::-1]
 
 
 def arcsinh_difference(reference: float, now: float, step: float) -> float:
@@ -134,6 +170,7 @@ ARCSINH = Operation(
     slope=lambda end, a: a.slope / np.hypot(1.0, a.value),
     slope_formula=lambda node, da: da / root_of(node),
     bounds=growing(np.arcsinh),
+    taylor=function(growing(np.arcsinh), _arcsinh_slopes),
     # its derivative 1 / sqrt((z - i)(z + i)) has its singularities at i and -i
     disc=lambda a: Disc(np.arcsinh(a.centre), -np.log1p(-a.radius / np.hypot(1.0, a.centre)), 0.0).rounded(OF_FUNCTION),
     order_zero=_arcsinh_order_zero,

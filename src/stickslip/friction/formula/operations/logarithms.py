@@ -6,7 +6,9 @@ import math
 
 import numpy as np
 
+from stickslip.foundation.arrays import Floats
 from stickslip.friction.formula.expression import Expression
+from stickslip.friction.formula.operations.enclosures import ONE_STEP, function, of_positive, outward, square
 from stickslip.friction.formula.operations.operation import Levels, Operation, Radius, Recurrence, Series
 from stickslip.friction.formula.operations.sets import OF_FUNCTION, Disc, growing
 
@@ -16,6 +18,12 @@ def log_difference(reference: float, now: float, step: float) -> float:
     if abs(step) < 0.5 * abs(reference):
         return math.log1p(step / reference)
     return math.log(now / reference)
+
+
+def _slopes(a: Floats) -> tuple[Floats, Floats]:
+    """Return bounds of f' and f''/2 of a logarithm."""
+    inverse = of_positive(a)
+    return inverse, -0.5 * square(inverse)[::-1]
 
 
 def _coefficient(writer: Series, node: Expression, k: int) -> str:
@@ -35,6 +43,7 @@ LOG = Operation(
     slope=lambda end, a: a.slope / a.value,
     slope_formula=lambda node, da: da / node.arguments[0],
     bounds=growing(np.log, least=0.0),
+    taylor=function(growing(np.log, least=0.0), lambda value, a: _slopes(a)),
     disc=lambda a: Disc(np.log(a.centre), a.turned, 0.0).rounded(OF_FUNCTION),
     order_zero=_log_order_zero,
     derivative=lambda writer, node, da: f"{da} / {writer.coefficient(node.arguments[0], 0)}",
@@ -59,6 +68,7 @@ LOG1P = Operation(
     slope=lambda end, a: a.slope / (1.0 + a.value),
     slope_formula=lambda node, da: da / (1.0 + node.arguments[0]),
     bounds=growing(np.log1p, least=-1.0),
+    taylor=function(growing(np.log1p, least=-1.0), lambda value, a: _slopes(outward(1.0 + a, ONE_STEP, 0.0))),
     disc=lambda a: Disc(np.log1p(a.centre), Disc(1.0 + a.centre, a.radius, 0.0).turned, 0.0).rounded(OF_FUNCTION),
     order_zero=_log1p_order_zero,
     derivative=lambda writer, node, da: f"{da} / (1.0 + {writer.coefficient(node.arguments[0], 0)})",

@@ -14,9 +14,11 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.friction.formula.expression import Expression, as_expression
-from stickslip.friction.formula.operations.sets import Disc, Interval
+from stickslip.friction.formula.operations.enclosures import Rule
+from stickslip.friction.formula.operations.sets import Disc
 
 LARGEST_EXPONENT = 150.0
 """Largest exponent, dimensionless, of an exp whose overflow is harmless; larger ones are replaced by it. A quotient over e^150 is
@@ -206,8 +208,10 @@ class Operation:
     """Its derivative at the end point: from its value there, and each argument's `Change`."""
     slope_formula: Callable[..., Expression]
     """The formula of its derivative: from the node, and the formula of each argument's derivative."""
-    bounds: Callable[..., Interval]
-    """Bounds of its value: from the node and the interval of each argument. They need not be sharp, and leave out rounding."""
+    bounds: Callable[..., Floats]
+    """Bounds of its value: from the node and the interval of each argument, both ends as one array. They leave out rounding."""
+    taylor: Rule
+    """Its Taylor coefficients by the slip rate as intervals, rounding included: from the node and those of its arguments."""
     disc: Callable[..., Disc]
     """The disc that holds its values, rounding included: from that of each argument."""
     order_zero: Callable[[Levels, Expression], Mapping[str, str]]
@@ -220,6 +224,8 @@ class Operation:
     """Functions of numbers that its lines call by their names, in plain Python with `math`; the engine compiles them."""
     unit: Callable[..., Dimension] = pure
     """The dimension of its value: from the node and the dimension of each argument. Raises InputError with what is wrong."""
+    bounded: Callable[[Expression], Expression] = lambda node: node
+    """The node as `taylor` should see it."""
     sign: str = ""
     """How it is written between its arguments; nothing for a function."""
     rank: int = 0

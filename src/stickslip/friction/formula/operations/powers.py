@@ -9,8 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.friction.formula.expression import Expression
+from stickslip.friction.formula.expression import RATE, Expression, depends_on
+from stickslip.friction.formula.operations.enclosures import LIBRARY, ONE_STEP, chain, function, multiply, of_positive, outward
 from stickslip.friction.formula.operations.operation import (
     Balls,
     Change,
@@ -25,7 +27,7 @@ from stickslip.friction.formula.operations.operation import (
     unit_text,
     without_zeros,
 )
-from stickslip.friction.formula.operations.sets import OF_FUNCTION, Disc, Interval, growing, hull, unless
+from stickslip.friction.formula.operations.sets import OF_FUNCTION, Disc, growing, hull, unless
 
 
 def chained(outer: Any, inner: Any) -> Any:
@@ -52,10 +54,26 @@ def _pow_step(start: Any, end: Any, a: Change, b: Change) -> Any:
     return np.where(near, start * np.expm1(b.reference * np.log1p(ratio)), end - start)
 
 
-def _pow_bounds(_: Expression, a: Interval, b: Interval) -> Interval:
-    exponent = b[0]
-    unknown = (a[0] < 0.0) | (exponent != b[1]) | ((a[0] == 0.0) & (exponent < 0.0))
-    return unless(unknown, hull(*(np.power(end, exponent) for end in a)))
+def _pow_bounds(_: Expression, a: Floats, b: Floats) -> Floats:
+    return unless(a[0] < 0.0, hull(*(np.power(base, exponent) for base in a for exponent in b)))
+
+
+def _pow_taylor(node: Expression, a: Floats, b: Floats) -> Floats:
+    """Return the coefficients of a power; with an exponent that varies it is `bounded` as an exponential."""
+
+    def power(exponent: Floats) -> Floats:
+        return outward(_pow_bounds(node, a[:, :1], exponent), 2.0 * LIBRARY)
+
+    def slopes() -> tuple[Floats, Floats]:
+        less, twice_less = (outward(b - k, ONE_STEP, 0.0) for k in (1.0, 2.0))
+        return multiply(b, power(less)), 0.5 * multiply(multiply(b, less), power(twice_less))
+
+    return chain(power(b), slopes, a)
+
+
+def _pow_bounded(node: Expression) -> Expression:
+    base, exponent = node.arguments
+    return Expression("exp", (exponent * Expression("log", (base,)),)) if depends_on(exponent, RATE) else node
 
 
 def _pow_disc(a: Disc, b: Disc) -> Disc:
@@ -125,6 +143,8 @@ POW = Operation(
     slope=lambda end, a, b: chained(b.reference * np.power(a.value, b.reference - 1.0), a.slope),
     slope_formula=lambda node, da, _: node.arguments[1] * node.arguments[0] ** (node.arguments[1] - 1.0) * da,
     bounds=_pow_bounds,
+    taylor=_pow_taylor,
+    bounded=_pow_bounded,
     disc=_pow_disc,
     unit=_pow_unit,
     order_zero=_pow_order_zero,
@@ -145,6 +165,11 @@ POW = Operation(
 
 def _sqrt_step(start: Any, end: Any, a: Change) -> Any:
     return np.divide(a.step, start + end, where=np.asarray(start + end) > 0, out=np.zeros(np.shape(end)))
+
+
+def _sqrt_slopes(value: Floats, a: Floats) -> tuple[Floats, Floats]:
+    slope = of_positive(2.0 * value)
+    return slope, -0.25 * multiply(slope, of_positive(a))[::-1]
 
 
 def _sqrt_disc(a: Disc) -> Disc:
@@ -170,6 +195,7 @@ SQRT = Operation(
     slope=lambda end, a: chained(np.divide(0.5, end), a.slope),
     slope_formula=lambda node, da: 0.5 * da / node,
     bounds=growing(np.sqrt, least=0.0),
+    taylor=function(growing(np.sqrt, least=0.0), _sqrt_slopes),
     disc=_sqrt_disc,
     unit=lambda node, a: _raised(a, Fraction(1, 2)),
     order_zero=_sqrt_order_zero,

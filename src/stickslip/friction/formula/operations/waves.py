@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
+from stickslip.foundation.arrays import Floats
 from stickslip.friction.formula.expression import Expression
+from stickslip.friction.formula.operations.enclosures import LIBRARY, chain, negative, outward
 from stickslip.friction.formula.operations.operation import Balls, Change, Levels, Operation, Radius, Recurrence, Scaled, Series
 from stickslip.friction.formula.operations.sets import OF_FUNCTION, Disc
 
@@ -24,6 +27,46 @@ def _sin_step(start: Any, end: Any, a: Change) -> Any:
 def _cos_step(start: Any, end: Any, a: Change) -> Any:
     half = np.sin(0.5 * a.step)
     return -2.0 * half * (np.sin(a.reference) * np.cos(0.5 * a.step) + np.cos(a.reference) * half)
+
+
+TURN = 2.0 * np.pi
+"""One period of sin and cos (rad)."""
+
+
+def _bounds(function: Callable[[Any], Any], top: float) -> Callable[..., Floats]:
+    """Return the rule that bounds sin or cos, whose largest value is `top` turns beyond 0."""
+
+    def bounds(_: Any, a: Floats) -> Floats:
+        low, high = a
+        is_short = (np.abs(low) < 1e15) & (np.abs(high) < 1e15) & (high - low < TURN)
+        ends = np.sort(function(np.where(is_short, a, 0.0)), axis=0)
+        ends[0, ~is_short | _holds_a_turn(low, high, top + 0.5)] = -1.0
+        ends[1, ~is_short | _holds_a_turn(low, high, top)] = 1.0
+        return ends
+
+    return bounds
+
+
+def _holds_a_turn(a: Any, b: Any, offset: float) -> Any:
+    """Return True where `offset` plus a whole number of turns may lie in [a, b] (rad), rounding included."""
+    first, last = a / TURN - offset, b / TURN - offset
+    slack = LIBRARY * (2.0 + np.maximum(np.abs(first), np.abs(last)))
+    return np.floor(last + slack) >= np.ceil(first - slack)
+
+
+_sin_bounds, _cos_bounds = _bounds(np.sin, 0.25), _bounds(np.cos, 0.0)
+
+
+def _sine(a: Floats) -> Floats:
+    return _within_one(_sin_bounds(None, a))
+
+
+def _cosine(a: Floats) -> Floats:
+    return _within_one(_cos_bounds(None, a))
+
+
+def _within_one(found: Floats) -> Floats:
+    return np.clip(outward(found, 0.0, LIBRARY, positive=False), -1.0, 1.0)
 
 
 def _disc(own: Any, other: Any, radius: Any) -> Disc:
@@ -66,7 +109,8 @@ SIN = Operation(
     step=_sin_step,
     slope=lambda end, a: np.cos(a.value) * a.slope,
     slope_formula=lambda node, da: both(node)[1] * da,
-    bounds=lambda node, a: (-1.0, 1.0),
+    bounds=_sin_bounds,
+    taylor=lambda node, a: chain(_sine(a[:, :1]), lambda: (_cosine(a[:, :1]), -0.5 * _sine(a[:, :1])[::-1]), a),
     disc=lambda a: _disc(np.sin(a.centre), np.cos(a.centre), a.radius),
     order_zero=lambda writer, node: _order_zero(writer, node, is_sine=True),
     derivative=lambda writer, node, da: f"{writer.coefficient(both(node)[1], 0)} * {da}",
@@ -81,7 +125,8 @@ COS = Operation(
     step=_cos_step,
     slope=lambda end, a: -np.sin(a.value) * a.slope,
     slope_formula=lambda node, da: 0.0 - both(node)[0] * da,
-    bounds=lambda node, a: (-1.0, 1.0),
+    bounds=_cos_bounds,
+    taylor=lambda node, a: chain(_cosine(a[:, :1]), lambda: (negative(_sine(a[:, :1])), -0.5 * _cosine(a[:, :1])[::-1]), a),
     disc=lambda a: _disc(np.cos(a.centre), np.sin(a.centre), a.radius),
     order_zero=lambda writer, node: _order_zero(writer, node, is_sine=False),
     derivative=lambda writer, node, da: f"-{writer.coefficient(both(node)[0], 0)} * {da}",

@@ -1,0 +1,43 @@
+"""Panels of slip rates on which Gauss's rule integrates g = Z v + S mu to rounding, found from bounds of friction's derivatives.
+
+On a panel that is short beside |mu'| / |mu''| friction is as smooth as an exponential over a few of its lengths. A panel on
+which mu'' is so small that the area hardly depends on it is short enough, too. Any other panel is cut in two, so that no narrow
+feature of the law lies between two nodes unseen.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from stickslip.contact.turns import NARROW, Pieces, cut_between
+from stickslip.foundation.arrays import Floats
+
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
+"""Gauss's rule on [-1, 1]."""
+SMOOTH = 4.0
+"""Length of a panel in units of |mu'| / |mu''|, up to which 16 nodes are enough for rounding."""
+NEGLIGIBLE = 1e-16
+"""Share of S times the length of the whole integral (1) that a panel may miss."""
+MOST_PANELS = 4096
+"""Largest number of panels of one integral, beside one for each piece of the law; when they are reached, panels are as long as
+they are."""
+
+
+def panels_between(of: Pieces, low: float, high: float) -> Floats:
+    """Return the edges (m/s) of panels from one slip rate to another of a single contact."""
+    first, last, piece = np.maximum(of.begin, low), np.minimum(of.end, high), np.arange(len(of.begin))
+    some, missed = first < last, NEGLIGIBLE * (high - low)
+    first, last, piece, most = first[some], last[some], piece[some], MOST_PANELS + len(piece)
+    edges = [np.array([high])]
+    while len(first):
+        friction = np.abs(of.friction(piece, first, last)[:, 1:]).max(axis=0)
+        slope, bend, length = friction[0], 2.0 * friction[1], last - first
+        with np.errstate(invalid="ignore"):
+            fits = (length * bend <= SMOOTH * slope) | (bend * length**3 <= missed) | (length <= NARROW * last)
+        if sum(map(len, edges)) + 2 * len(first) > most:
+            fits[:] = True
+        edges.append(first[fits])
+        first, last, piece = first[~fits], last[~fits], piece[~fits]
+        middle = cut_between(first, last)
+        first, last, piece = np.concatenate((first, middle)), np.concatenate((middle, last)), np.tile(piece, 2)
+    return np.sort(np.concatenate(edges))
