@@ -7,7 +7,8 @@ import pytest
 
 import stickslip as ss
 from stickslip.contact.equation import Resistance
-from stickslip.contact.folds import certificate, lowest_slope, lowest_slopes, pieces_of
+from stickslip.contact.folds import certificate, lowest_slope, lowest_slopes
+from stickslip.contact.slopes import pieces_of
 from stickslip.contact.turns import PROVEN, find_turns
 
 from .laws import S, Z

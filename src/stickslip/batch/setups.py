@@ -10,8 +10,10 @@ import numpy as np
 from stickslip.batch.kernels.branch_search import MOST_BRANCHES, NEVER_RISES, TOO_MANY, Found, Resistances, search_branches
 from stickslip.batch.kernels.runs import fill_constants
 from stickslip.batch.vectorised_problem import Values, member, vectorised_problem
-from stickslip.contact import turns
 from stickslip.contact.rules.selection import levels
+from stickslip.contact.slopes import FASTEST as FASTEST_SEARCHED
+from stickslip.contact.slopes import Pieces
+from stickslip.contact.turns import find_turns, folds_of
 from stickslip.engine.compiled_formula import compile_formula, keep_with
 from stickslip.engine.state.layout import Branch, Counts, Floats, Integers, LawPiece, Params, State
 from stickslip.engine_input.branch_table import is_algebraic, table_of_branches
@@ -208,8 +210,8 @@ def branches_of(problem: Problem, group: Alike, constants: Floats, count: int) -
     if not one_way:
         numbers = {name: spread(value, count) for name, value in zip(law.parameters(), values, strict=True)}
         members, slip = np.arange(count), spread(problem.law_slip, count)
-        ends_of_search = np.zeros(count), np.full(count, turns.FASTEST)
-        of = turns.Pieces((tree,), 0 * members, members, numbers, slip, damping, normal, slowest, fastest, *ends_of_search)
+        ends_of_search = np.zeros(count), np.full(count, FASTEST_SEARCHED)
+        of = Pieces((tree,), 0 * members, members, numbers, slip, damping, normal, slowest, fastest, *ends_of_search)
         branches, edges = ends_of_branches(of)
     found = Found(Branch.table(count, 1 if one_way else MOST_BRANCHES), branches, np.empty(count))
     address = int(LawPiece(group.functions[0]).value_at)
@@ -221,15 +223,15 @@ def branches_of(problem: Problem, group: Alike, constants: Floats, count: int) -
     return *found, stick_to
 
 
-def ends_of_branches(of: turns.Pieces) -> tuple[Integers, Floats]:
+def ends_of_branches(of: Pieces) -> tuple[Integers, Floats]:
     """Return the number of branches of each member, NEVER_RISES or TOO_MANY, and the slip rates (m/s) of their ends."""
 
     def slope(rate: Floats, member: Integers) -> Floats:
         numbers = {name: values[member] for name, values in of.numbers.items()}
         return of.damping[member] + of.normal[member] * difference(of.trees[0], numbers, of.slip[member], 0.0, rate)[1]
 
-    found = turns.find_turns(of, most=MOST_TURNS)
-    rates, member = turns.folds_of(found, slope, PARTS)
+    found = find_turns(of, most=MOST_TURNS)
+    rates, member = folds_of(found, slope, PARTS)
     count = np.bincount(member, minlength=len(of.slip))
     rises = count % 2 == 0
     branches = (count + rises + 1) // 2

@@ -16,11 +16,11 @@ import numpy as np
 from stickslip.contact.equation import Resistance
 from stickslip.contact.lowest_slope import find_lowest, polished
 from stickslip.contact.panels import panels_between
-from stickslip.contact.turns import FASTEST, MOST_EVALUATIONS, PROVEN, Pieces, find_turns, folds_of
+from stickslip.contact.slopes import FASTEST, MOST_EVALUATIONS, pieces_of
+from stickslip.contact.turns import PROVEN, find_turns, folds_of
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.brief_repr import brief_repr
 from stickslip.foundation.errors import InputError
-from stickslip.friction.formula.expression import Expression
 
 Verdict = Literal["proven", "not decided"]
 """proven: by interval arithmetic. not decided: proven except on some intervals of slip rates."""
@@ -92,23 +92,6 @@ class Lowest:
     at_most: float
     slope: float
     rate: float
-
-
-def pieces_of(contacts: Sequence[Resistance], reach: float = FASTEST) -> Pieces:
-    """Return what bounds of g' are worked out from, up to a slip rate (m/s), for contacts under laws of one kind."""
-    formulas: dict[Expression, int] = {}
-    rows, values = [], []
-    for n, g in enumerate(contacts):
-        knots = [knot for knot in g.rate_knots if knot < reach]
-        pieces = np.atleast_1d(g.law.piece_at(g.law_slip, np.array([0.0, *knots]))).tolist()
-        scales = min(g.scales), max(g.scales)
-        for i, begin, end in zip(pieces, [0.0, *knots], [*knots, reach], strict=True):
-            formula = formulas.setdefault(g.trees[i], len(formulas))
-            rows.append((formula, n, g.law_slip, g.damping, g.normal, *scales, begin, end))
-            values.append(g.law.piece_values(i))
-    formula_of, contact, *numbers = np.array(rows).T
-    named = dict(zip(contacts[0].law.parameters(), np.array(values, float).reshape(len(rows), -1).T, strict=True))
-    return Pieces(tuple(formulas), formula_of.astype(int), contact.astype(int), named, *numbers)
 
 
 @lru_cache(maxsize=64)

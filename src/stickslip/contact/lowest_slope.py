@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stickslip.contact.turns import MOST_EVALUATIONS, NARROW, SLOWEST, Integers, Pieces, cut_between
+from stickslip.contact.slopes import MOST_EVALUATIONS, NARROW, SLOWEST, Integers, Pieces, cut_between
 from stickslip.foundation.arrays import Floats
 
 CUTS = 8

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from stickslip.contact.turns import NARROW, Pieces, cut_between
+from stickslip.contact.slopes import NARROW, Pieces, cut_between
 from stickslip.foundation.arrays import Floats
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)

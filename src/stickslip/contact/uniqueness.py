@@ -19,7 +19,7 @@ from stickslip.contact.equation import Plateau, Resistance, resistance
 from stickslip.contact.folds import Certificate, Fold, Verdict, certificate, critical_stress_between, sentence
 from stickslip.contact.rules.loop import Jump, Loop, jumps_of, loop_of
 from stickslip.contact.rules.selection import table_of
-from stickslip.contact.turns import FASTEST
+from stickslip.contact.slopes import FASTEST
 from stickslip.foundation.arguments import NamesAttributes
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError

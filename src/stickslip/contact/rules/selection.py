@@ -22,7 +22,7 @@ from stickslip.contact.equation import Resistance, resistance
 from stickslip.contact.folds import MOST_FOLDS, certificate, panels
 from stickslip.contact.panels import NODES, WEIGHTS
 from stickslip.contact.roots import bracketed_newton
-from stickslip.contact.turns import FASTEST
+from stickslip.contact.slopes import FASTEST
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem

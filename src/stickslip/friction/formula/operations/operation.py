@@ -186,15 +186,6 @@ def without_zeros(powers: Dimension) -> Dimension:
     return {base: powers[base] for base in sorted(powers) if powers[base]}
 
 
-def itself(node: Expression) -> Sequence[Expression]:
-    """Return the node alone, which needs no companions."""
-    return (node,)
-
-
-def no_parts(_: Series, __: Expression) -> None:
-    """Return None: the result is no linear combination of other nodes."""
-
-
 @dataclass(frozen=True)
 class Operation:
     """All that is known about an operation: the code that walks over formulas asks it, and knows no operation by its name."""
@@ -234,9 +225,9 @@ class Operation:
     """Its name in numpy, where it is another one."""
     math_name: str = ""
     """Its name in Python's math, where it is another one."""
-    companions: Callable[[Expression], Sequence[Expression]] = itself
+    companions: Callable[[Expression], Sequence[Expression]] = lambda node: (node,)
     """The node and those that its rules need beside it, such as cos for sin, in order of computation."""
-    parts: Callable[[Series, Expression], dict[Expression, str] | None] = no_parts
+    parts: Callable[[Series, Expression], dict[Expression, str] | None] = lambda writer, node: None
     """The nodes of which a node is a linear combination, but for a constant, with their factors as texts; None if it is none."""
     linear: tuple[tuple[int, ...], ...] = ()
     """Places of arguments in which it is linear together, where the others do not vary."""

@@ -1,0 +1,143 @@
+"""Bounds of g' = Z + S dmu/dv and of g'' on cells of slip rates, for many contacts side by side.
+
+The formulas of their laws are bounded by interval arithmetic that includes rounding (`friction.formula.bounds.Enclosure`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.contact.equation import Resistance
+from stickslip.foundation.arrays import Floats
+from stickslip.friction.formula.bounds import Enclosure
+from stickslip.friction.formula.expression import Expression
+from stickslip.friction.formula.operations.enclosures import add, multiply
+
+Integers = NDArray[np.int64]
+
+FASTEST = 1e30
+"""Slip rate (m/s) up to which g' is bounded; no contact is that fast."""
+SLOWEST = 1e-100
+"""Slip rate (m/s) below which a cell is not cut any more."""
+BELOW, ABOVE = 1e-4, 1e4
+"""The first cells have ends in the ratio RATIO between these multiples of the slowest and the fastest scale of a contact."""
+RATIO, FAR = 16.0, 1e12
+"""Ratio of the ends of the first cells, and of those beyond the fastest scale, where g' hardly changes."""
+NARROW = 1e-15
+"""Width of a cell, relative to its upper end, below which it is not cut any more."""
+MOST_EVALUATIONS = 200_000
+"""Largest number of cells and single rates at which g' is bounded for one contact; cells that remain are left undecided."""
+AT_ONCE = 10_000
+"""Number of cells whose bounds are worked out at once, which limits the memory that this takes."""
+
+
+class Slopes(NamedTuple):
+    """Hold bounds of g' (Pa s/m) and of g'' (Pa s2/m2) on cells."""
+
+    low: Floats
+    high: Floats
+    bend_low: Floats
+    bend_high: Floats
+
+    @property
+    def sign(self) -> Integers:
+        """The sign that all values of g' in a cell share, or 0 if they do not share one."""
+        return 1 * (self.low > 0.0) - 1 * (self.high < 0.0)
+
+    @property
+    def bends(self) -> NDArray[np.bool_]:
+        """True if g'' keeps its sign in a cell."""
+        return (self.bend_low > 0.0) | (self.bend_high < 0.0)
+
+    def reach(self, low: Floats, middle: Floats, high: Floats) -> Floats:
+        """Return how far g' may be from its value in the middle of a cell, by the mean value theorem."""
+        steepest = np.maximum(np.abs(self.bend_low), np.abs(self.bend_high))
+        return steepest * np.maximum(high - middle, middle - low) * (1.0 + 1e-15)
+
+
+@dataclass(frozen=True)
+class Pieces:
+    """The pieces of the laws of many contacts, with one entry for each: those of a contact follow each other, slowest first."""
+
+    trees: Sequence[Expression]
+    formula: Integers
+    """Place of each piece's formula in `trees`."""
+    contact: Integers
+    """Number of each piece's contact, ascending."""
+    numbers: dict[str, Floats]
+    """The law's numbers, by name."""
+    slip: Floats  # m: law slip
+    damping: Floats  # Z, Pa s/m, or that of a block, N s/m
+    normal: Floats  # S, Pa
+    slowest: Floats  # slowest and fastest scale of the contact, m/s
+    fastest: Floats
+    begin: Floats  # m/s: slip rates from and up to which the piece applies
+    end: Floats
+
+    def friction(self, piece: Integers, low: Floats, high: Floats) -> Floats:
+        """Bound mu, dmu/dv and half of d2mu/dv2 on cells of slip rates (m/s), shape (2, 3, cells)."""
+        found = np.zeros((2, 3, len(low)))
+        for first in range(0, len(low), AT_ONCE):
+            some = slice(first, first + AT_ONCE)
+            for k, formula in enumerate(self._enclosures):
+                cells = some if len(self.trees) == 1 else first + np.flatnonzero(self.formula[piece[some]] == k)
+                bounds = formula.on(low[cells], high[cells], piece[cells])
+                found[:, : bounds.shape[1], cells] = bounds
+        return found
+
+    @cached_property
+    def _enclosures(self) -> list[Enclosure]:
+        return [Enclosure(tree, self.numbers, self.slip) for tree in self.trees]
+
+    def slopes(self, piece: Integers, low: Floats, high: Floats) -> Slopes:
+        """Bound g' and g'' on cells of slip rates (m/s)."""
+        normal = self.normal[piece] * np.array([[1.0], [2.0]])
+        friction = self.friction(piece, low, high)[:, 1:]
+        with np.errstate(all="ignore"):
+            found = multiply(np.array([normal, normal]), friction)
+            found[:, :1] = add(self.damping[piece], found[:, :1])
+        return Slopes(*found[:, 0], *found[:, 1])
+
+    def seen(self, piece: Integers, low: Floats, middle: Floats, high: Floats) -> tuple[Slopes, Slopes]:
+        """Bound g' and g'' on cells, and in the middle of each."""
+        both = self.slopes(np.tile(piece, 2), np.concatenate((low, middle)), np.concatenate((high, middle)))
+        return Slopes._make(one[: len(low)] for one in both), Slopes._make(one[len(low) :] for one in both)
+
+    def first_edges(self) -> Floats:
+        """Return the edges (m/s) of the first cells of each piece, shape (edges, pieces): its upper end is repeated."""
+        start = np.maximum(BELOW * self.slowest, SLOWEST)
+        edges = [self.begin]
+        while (edges[-1] < self.end).any():
+            after = np.where(edges[-1] < ABOVE * self.fastest, RATIO, FAR) * edges[-1]
+            after = np.where(edges[-1] < 0.5 * start, start, after)
+            edges.append(np.where(2.0 * after > self.end, self.end, after))
+        return np.array(edges)
+
+
+def pieces_of(contacts: Sequence[Resistance], reach: float = FASTEST) -> Pieces:
+    """Return what bounds of g' are worked out from, up to a slip rate (m/s), for contacts under laws of one kind."""
+    formulas: dict[Expression, int] = {}
+    rows, values = [], []
+    for n, g in enumerate(contacts):
+        knots = [knot for knot in g.rate_knots if knot < reach]
+        pieces = np.atleast_1d(g.law.piece_at(g.law_slip, np.array([0.0, *knots]))).tolist()
+        scales = min(g.scales), max(g.scales)
+        for i, begin, end in zip(pieces, [0.0, *knots], [*knots, reach], strict=True):
+            formula = formulas.setdefault(g.trees[i], len(formulas))
+            rows.append((formula, n, g.law_slip, g.damping, g.normal, *scales, begin, end))
+            values.append(g.law.piece_values(i))
+    formula_of, contact, *numbers = np.array(rows).T
+    named = dict(zip(contacts[0].law.parameters(), np.array(values, float).reshape(len(rows), -1).T, strict=True))
+    return Pieces(tuple(formulas), formula_of.astype(int), contact.astype(int), named, *numbers)
+
+
+def cut_between(low: Floats, high: Floats) -> Floats:
+    """Return where cells are cut: in the geometric middle if their ends differ by more than a factor of four."""
+    middle = np.where(high > 4.0 * low, np.sqrt(low) * np.sqrt(high), 0.5 * (low + high))
+    return np.where(low == 0.0, high / RATIO, middle)
