@@ -257,6 +257,11 @@ class RoundTrip:
         """Return the averaged states (3, states, offsets) when the round trip has come to each offset."""
         return self._cubic(*(one[:, self.motion.size : -1, None] for one in self._ends))
 
+    def with_ripple(self) -> tuple[Floats, Floats]:
+        """Return the slip rate (m/s) and the states (states, offsets) of the contact at each offset, not averaged."""
+        now = self.at_begin
+        return np.exp(self.log_rate()[BOTH] + now.quicker[BOTH]), self.states()[BOTH] + now.ripple[:, BOTH]
+
     @property
     def _ends(self) -> tuple[Floats, Floats, Floats, Floats]:
         return self.begin, self.end, self.at_begin.change, self.at_end.change

@@ -84,8 +84,7 @@ class SlowLanding:
         """Write the round trip on which the leap lands, a piece for each stretch, and move the contact to its end."""
         motion, store, last = self.leap.motion, run.store, int(run.count.previous_to) - 1
         there = RoundTrip(motion, self.leap.landing, motion.later(self.leap.landing, 1))
-        states = there.states()[BOTH] + there.at_begin.ripple[:, BOTH]
-        rate = np.exp(there.log_rate()[BOTH] + there.at_begin.quicker[BOTH])
+        rate, states = there.with_ripple()
         load = motion.friction(rate, states) + run.problem.body.impedance * rate
         for k, ends in enumerate(pairwise(motion.offsets.edges.tolist())):
             n, here = first + k, slice(k * NODES, (k + 1) * NODES)
