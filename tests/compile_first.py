@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import stickslip as ss
 from stickslip.scenarios.examine import examine
 
@@ -17,8 +15,7 @@ def main() -> None:
         scenario = ss.load_scenario(name)
         repr(ss.simulate(scenario))  # with events and all else that a summary compiles
         examine(scenario)
-    problem = ss.load_scenario("fig6-slab").problem
-    ss.uniqueness(replace(problem, friction=ss.friction.FromExpression("0.6 - 0.2*tanh(u) + 0.1*v/(1 + v)")))
+
     ss.sweep("fig6-slab", {"friction.alpha": [0.5, 1.0]})
 
 

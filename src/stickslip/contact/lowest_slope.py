@@ -15,7 +15,7 @@ from stickslip.foundation.arrays import Floats
 
 CUTS = 8
 """Number of parts into which a cell is cut."""
-PARTS = np.linspace(0.0, 1.0, 65)
+PARTS = np.linspace(0.0, 1.0, 257)
 """Places in a cell at which the sign of g'' is asked for at once."""
 
 
@@ -30,39 +30,29 @@ class Lowest(NamedTuple):
     high: Floats
 
 
-class _Cells(NamedTuple):
-    """Hold cells (m/s) with the lower bounds of g' (Pa s/m) at their ends."""
-
-    piece: Integers
-    low: Floats
-    high: Floats
-    at_low: Floats
-    at_high: Floats
-
-
 def find_lowest(of: Pieces, tolerance: float) -> Lowest:
     """Bound the smallest g' of each contact until both bounds agree to a tolerance, relative to Z or to g' if that is larger."""
     many = int(of.contact[-1]) + 1
-    least, left = np.full(many, np.inf), np.full(many, MOST_EVALUATIONS)
-    found = Lowest(least, least.copy(), np.zeros(many, np.int64), *np.zeros((3, many)))
+    nothing, left = np.full(many, np.inf), np.full(many, MOST_EVALUATIONS)
+    found = Lowest(nothing, nothing.copy(), np.zeros(many, np.int64), *np.zeros((3, many)))
     damping = of.damping[np.searchsorted(of.contact, np.arange(many))]
-    cells = _cells_between(of, found, np.arange(len(of.begin)), of.first_edges())
-    while True:
-        contact, width = of.contact[cells.piece], cells.high - cells.low
-        seen = of.slopes(cells.piece, cells.low, cells.high)
-        left -= CUTS * np.bincount(contact, minlength=many)
-        at_ends = np.minimum(cells.at_low, cells.at_high)
+    piece, edges = np.arange(len(of.begin)), of.first_edges()
+    while len(piece):
+        low, high, pieces = edges[:-1], edges[1:], np.broadcast_to(piece, edges.shape)
+        there, seen = of.slopes_between(pieces, edges)
+        contact = of.contact[pieces]
+        left -= 2 * np.bincount(contact.ravel(), minlength=many)
+        _lower(found, contact, there.high, pieces, edges)
+        contact = contact[1:]
+        least = np.minimum(there.low[:-1], there.low[1:])
         with np.errstate(invalid="ignore"):
-            reach = seen.reach(cells.low, cells.low + 0.5 * width, cells.high)
-            least = np.fmax(seen.low, np.where(seen.bends, at_ends, at_ends - reach))
+            reach = seen.reach(low, low + 0.5 * (high - low), high)
+            least = np.fmax(seen.low, np.where(seen.bends, least, least - reach))
         enough = found.at_most - tolerance * np.maximum(damping, np.abs(found.at_most))
         done = seen.bends | (least >= enough[contact]) | (left < 0)[contact]
-        done |= (width <= NARROW * cells.high) | (cells.high <= SLOWEST)
+        done |= (high - low <= NARROW * high) | (high <= SLOWEST)
         np.minimum.at(found.at_least, contact[done], least[done])
-        if done.all():
-            break
-        cells = _Cells._make(column[~done] for column in cells)
-        cells = _cells_between(of, found, cells.piece, _edges_in(cells.low, cells.high))
+        piece, edges = pieces[1:][~done], _edges_in(low[~done], high[~done])
     return found._replace(at_least=np.minimum(found.at_least, found.at_most))
 
 
@@ -74,21 +64,15 @@ def _edges_in(low: Floats, high: Floats) -> Floats:
     return np.array(edges)
 
 
-def _cells_between(of: Pieces, found: Lowest, piece: Integers, edges: Floats) -> _Cells:
-    """Return the cells of pieces between edges of shape (edges, pieces), and take g' at the edges into account."""
-    pieces = np.broadcast_to(piece, edges.shape)
-    there = of.slopes(pieces.ravel(), edges.ravel(), edges.ravel())
-    contact, at_most = of.contact[pieces.ravel()], there.high
-    order = np.lexsort((at_most, contact))
-    best = order[np.append(True, contact[order][1:] != contact[order][:-1])[: len(order)]]
-    best = best[at_most[best] < found.at_most[contact[best]]]
-    above, below = (np.roll(edges, shift, axis=0) for shift in (-1, 1))
-    above[-1], below[0] = edges[-1], edges[0]
-    news = at_most, pieces.ravel(), edges.ravel(), below.ravel(), above.ravel()
-    for column, values in zip(found[1:], news, strict=True):
-        column[contact[best]] = values[best]
-    at, some = there.low.reshape(edges.shape), edges[:-1] < edges[1:]
-    return _Cells._make(one[some] for one in (pieces[1:], edges[:-1], edges[1:], at[:-1], at[1:]))
+def _lower(found: Lowest, contact: Integers, at_most: Floats, piece: Integers, edges: Floats) -> None:
+    """Note that g' is at most this small at edges, where this is news; the smallest g' is then sought between their neighbours."""
+    order = np.lexsort((at_most.ravel(), contact.ravel()))
+    by_contact = contact.ravel()[order]
+    best = order[np.append(True, by_contact[1:] != by_contact[:-1])]
+    best = best[at_most.ravel()[best] < found.at_most[contact.ravel()[best]]]
+    below, above = np.vstack((edges[:1], edges[:-1])), np.vstack((edges[1:], edges[-1:]))
+    for column, values in zip(found[1:], (at_most, piece, edges, below, above), strict=True):
+        column[contact.ravel()[best]] = values.ravel()[best]
 
 
 def polished(of: Pieces, found: Lowest) -> tuple[Floats, Floats]:

@@ -109,6 +109,13 @@ class Pieces:
         both = self.slopes(np.tile(piece, 2), np.concatenate((low, middle)), np.concatenate((high, middle)))
         return Slopes._make(one[: len(low)] for one in both), Slopes._make(one[len(low) :] for one in both)
 
+    def slopes_between(self, piece: Integers, edges: Floats) -> tuple[Slopes, Slopes]:
+        """Bound g' and g'' at edges, and on the cells between those that follow each other along the first axis."""
+        low, high = np.concatenate((edges, edges[:-1])), np.concatenate((edges, edges[1:]))
+        both = self.slopes(np.concatenate((piece, piece[1:])).ravel(), low.ravel(), high.ravel())
+        columns = [column.reshape(low.shape) for column in both]
+        return Slopes._make(one[: len(edges)] for one in columns), Slopes._make(one[len(edges) :] for one in columns)
+
     def first_edges(self) -> Floats:
         """Return the edges (m/s) of the first cells of each piece, shape (edges, pieces): its upper end is repeated."""
         start = np.maximum(BELOW * self.slowest, SLOWEST)
