@@ -57,12 +57,12 @@ def test_a_sound_installation_is_well(command: Command) -> None:
 
 NOTED = """
 import sys
-from stickslip.engine.codegen.sealed_cache import SealedCache
-names, load = set(), SealedCache.load_overload
+from stickslip.engine.codegen.one_module import KernelCache
+names, load = set(), KernelCache.load_overload
 def noted(self, *rest):
-    names.add(self._impl.filename_base)
+    names.add(self._function.__qualname__)
     return load(self, *rest)
-SealedCache.load_overload = noted
+KernelCache.load_overload = noted
 from stickslip.cli.main import main
 try:
     main(sys.argv[1:])

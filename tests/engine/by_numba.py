@@ -12,8 +12,8 @@ from numba import cfunc, njit, types
 from numba.extending import intrinsic
 
 from stickslip.engine.codegen import simd
-from stickslip.engine.codegen.lean_compiler import LeanCompiler
 from stickslip.engine.codegen.numba_privates import signature
+from stickslip.engine.codegen.one_module import LeanCompiler
 from stickslip.engine.codegen.simd import INDEX, LANES, VECTOR, WIDTH
 from stickslip.engine.codegen.taylor_series import SIDE_BY_SIDE, SIGNATURES, FormulaWriter
 from stickslip.engine.compiled_formula import NAMES

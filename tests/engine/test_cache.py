@@ -9,11 +9,11 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
-from numba.core.caching import FunctionCache
 
-from stickslip.engine.codegen import sealed_cache, sealed_file
+from stickslip.engine.codegen import one_module
 from stickslip.engine.codegen.private_folder import NotPrivateError, private_folder
 
 SCRIPT = """
@@ -71,29 +71,57 @@ def test_code_from_the_disk_makes_no_compiler_ready_and_code_compiled_after_it_r
     assert shown == "2\nFalse\n-5.0\n"
 
 
-TWICE = """
+KEPT = """
+import ctypes
+from stickslip.engine.codegen import formula_machine
 from stickslip.engine.codegen.cache import CACHE
 from stickslip.engine.codegen.compiler import kernel
+
+@kernel
 def twice(x):
     return 2.0 * x
-twice = kernel(twice)
-print(twice(21.0), sum(twice.entry.stats.cache_hits.values()), CACHE)
+
+@kernel
+def thrice(x):
+    return 3.0 * x
+
+made, write = [], formula_machine._object_code
+formula_machine._object_code = lambda *rest: made.append(rest) or write(*rest)
+
+def formula(line):
+    code, out = formula_machine.MachineCode([line], ["x", "out[]"], False, {}), ctypes.c_double()
+    ctypes.CFUNCTYPE(None, ctypes.c_double, ctypes.c_void_p)(code.address)(21.0, ctypes.byref(out))
+    return out.value
+
+print(twice(21.0), thrice(21.0), formula("out[0] = 2.0*x"), formula("out[0] = 3.0*x"))
+print(sum(sum(one.entry._cache_hits.values()) for one in (twice, thrice)) + 2 - len(made), CACHE)
 """
+"""Compiles or loads two kernels and two formulas; prints their values, how many it has loaded, and the folder."""
 
 
-def twice(root: Path) -> tuple[float, int, Path, str]:
-    """Compile or load a small function in another process: its value, its hits of the cache, the folder, what was said."""
-    environment = os.environ | {"STICKSLIP_CACHE_DIR": str(root)}
-    done = subprocess.run([sys.executable, "-c", TWICE], capture_output=True, text=True, check=True, env=environment)
-    value, hits, folder = done.stdout.split()
-    return float(value), int(hits), Path(folder), done.stderr
+@pytest.fixture(scope="module")
+def script(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The file of KEPT: numba's own cache looks at its place and date."""
+    path = tmp_path_factory.mktemp("script") / "small.py"
+    path.write_text(KEPT)
+    return path
+
+
+def kept(script: Path, root: Path, plain: str = "0") -> tuple[int, Path, str]:
+    """Run KEPT in another process: how many it has loaded of four, the folder, and what was said."""
+    settings = os.environ | {"STICKSLIP_CACHE_DIR": str(root), "STICKSLIP_PLAIN_NUMBA": plain}
+    done = subprocess.run([sys.executable, script], capture_output=True, text=True, check=True, env=settings)
+    values, loaded = done.stdout.splitlines()
+    assert values == "42.0 63.0 42.0 63.0"
+    count, folder = loaded.split()
+    return int(count), Path(folder), done.stderr
 
 
 LATER = "later starts compile again; STICKSLIP_CACHE_DIR names another folder"
 
 
-def files_in(folder: Path) -> list[Path]:
-    return [path for path in folder.rglob("*") if path.suffix in (".nbi", ".nbc")]
+def files_in(root: Path) -> list[Path]:
+    return sorted(path for path in root.rglob("*") if path.is_file())
 
 
 def flip(content: bytes) -> bytes:
@@ -101,55 +129,78 @@ def flip(content: bytes) -> bytes:
     return content[:middle] + bytes([content[middle] ^ 1]) + content[middle + 1 :]
 
 
-DAMAGE: dict[str, Callable[[bytes], bytes]] = {
-    "empty": lambda _: b"",
-    "truncated": lambda content: content[: len(content) // 2],
-    "flipped bit": flip,
-    "another program": lambda _: b"raise SystemExit('ran')",
+DAMAGE: dict[str, Callable[[Path, bytes], object]] = {
+    "empty": lambda path, _: path.write_bytes(b""),
+    "truncated": lambda path, _: path.write_bytes(path.read_bytes()[:-1]),
+    "zeros": lambda path, _: path.write_bytes(bytes(path.stat().st_size)),
+    "a flipped bit": lambda path, _: path.write_bytes(flip(path.read_bytes())),
+    "another file's bytes": lambda path, other: path.write_bytes(other),
+    "a folder": lambda path, _: (path.unlink(), path.mkdir(), (path / "inside").touch()),
+    "unreadable": lambda path, _: (path.unlink(), path.symlink_to(path)),
 }
+KINDS = {
+    "key": ("0", "keys/*", 4, 1),
+    "kernels": ("0", "compiled-*/__main__.*", 2, 1),
+    "formulas": ("0", "compiled-*/formula-*", 2, 1),
+    "numba's own": ("1", "compiled-*/plain/*/*", 2, 0),
+    "numba's own checksums": ("1", "compiled-*/plain.*", 2, 1),
+}
+"""Kinds of files: whether numba is used plainly, names, how many of four are loaded if they are damaged, and lines that say so."""
 
 
-@pytest.mark.sampled(every=2)
-@pytest.mark.parametrize("damage", DAMAGE.values(), ids=DAMAGE)
-def test_damaged_files_are_compiled_again(tmp_path: Path, damage: Callable[[bytes], bytes]) -> None:
-    value, hits, folder, said = twice(tmp_path)
-    assert (value, hits, said) == (42.0, 0, "")
-    assert {path.suffix for path in files_in(folder)} == {".nbi", ".nbc"}
-    for path in files_in(folder):
-        path.write_bytes(damage(path.read_bytes()))
-    value, hits, _, said = twice(tmp_path)
-    assert (value, hits) == (42.0, 0)
-    assert said.count("\n") == 1
-    assert "is damaged: what is damaged is compiled again" in said
-    assert twice(tmp_path) == (42.0, 1, folder, "")
+@pytest.fixture(scope="module")
+def sound(script: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """Folders of a sound cache, by whether numba is used plainly."""
+    roots = {plain: tmp_path_factory.mktemp("sound") for plain in "01"}
+    for plain, root in roots.items():
+        assert [kept(script, root, plain)[0] for _ in range(2)] == [0, 4]
+    return roots
 
 
-def test_damaged_machine_code_is_detected_behind_an_intact_index(tmp_path: Path) -> None:
-    folder = twice(tmp_path)[2]
-    (code,) = folder.rglob("*.nbc")
-    code.write_bytes(flip(code.read_bytes()))
-    value, hits, _, said = twice(tmp_path)
-    assert (value, hits, said.count("\n")) == (42.0, 0, 1)
-    assert twice(tmp_path)[1] == 1
+@pytest.mark.sampled(every=5)
+@pytest.mark.parametrize("damage", DAMAGE)
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_is_damaged_is_compiled_again(kind: str, damage: str, tmp_path: Path, script: Path, sound: dict[str, Path]) -> None:
+    plain, names, left, said_of = KINDS[kind]
+    root = tmp_path / "root"
+    shutil.copytree(sound[plain], root)
+    before = files_in(root)
+    damaged = sorted(root.glob(names))
+    contents = [path.read_bytes() for path in damaged]
+    others = [*contents[1:], contents[0]] if len(contents) > 1 else [before[0].read_bytes()]
+    for path, other in zip(damaged, others, strict=True):
+        DAMAGE[damage](path, other)
+    loaded, _, said = kept(script, root, plain)
+    assert loaded == left
+    assert said.count("\n") == said_of + (plain == "1")
+    assert said.count("is damaged: what is damaged is compiled again") == said_of
+    assert kept(script, root, plain)[0] == 4
+    assert files_in(root) == before
 
 
-def test_without_a_cache_folder_each_process_compiles_for_itself(tmp_path: Path) -> None:
+@pytest.mark.parametrize("plain", ["0", "1"])
+def test_without_a_cache_folder_each_process_compiles_for_itself(plain: str, script: Path, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    value, hits, folder, said = twice(tmp_path / "file")
-    assert (value, hits, folder) == (42.0, 0, Path("None"))
+    loaded, folder, said = kept(script, tmp_path / "file", plain)
+    assert (loaded, folder) == (0, Path("None"))
     assert said.startswith("stickslip: no cache for compiled code: ")
-    assert said.count("\n") == 1
+    assert said.count("\n") == 1 + (plain == "1")
     assert (tmp_path / "file").read_text() == ""
 
 
-def test_a_file_in_place_of_a_folder_of_the_cache_is_no_fault_but_one_line(tmp_path: Path) -> None:
-    folder = twice(tmp_path)[2]
-    (kept,) = folder.iterdir()
-    shutil.rmtree(kept)
-    kept.touch()
-    value, hits, _, said = twice(tmp_path)
-    assert (value, hits) == (42.0, 0)
-    assert said == f"stickslip: compiled code cannot be kept in {folder}: File exists; {LATER}\n"
+@pytest.mark.parametrize(
+    ("names", "plain", "loaded"), [("keys", "0", 4), ("compiled-*", "0", 0), ("*/plain", "1", 2), ("*/plain/*", "1", 2)]
+)
+def test_a_file_in_place_of_a_folder_of_the_cache_is_no_fault(
+    names: str, plain: str, loaded: int, script: Path, tmp_path: Path, sound: dict[str, Path]
+) -> None:
+    shutil.copytree(sound[plain], tmp_path / "root")
+    for path in (tmp_path / "root").glob(names):
+        shutil.rmtree(path)
+        path.touch()
+    found, _, said = kept(script, tmp_path / "root", plain)
+    assert found == loaded
+    assert said.count("\n") <= 1 + (plain == "1")
 
 
 def test_a_full_disk_costs_the_cache_and_one_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
@@ -159,40 +210,37 @@ def test_a_full_disk_costs_the_cache_and_one_line(monkeypatch: pytest.MonkeyPatc
     def full(path: Path, write: Callable[[Path], object]) -> Path:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
 
-    monkeypatch.setattr(FunctionCache, "_load_overload", lambda *_: None)
-    monkeypatch.setattr(sealed_file, "write_atomically", full)
+    monkeypatch.setattr(cache, "write_atomically", full)
     cache.tell.cache_clear()
     assert kernel(lambda x: 2.0 * x)(21.0) == 42.0
     assert f"cannot be kept in {cache.CACHE}: No space left on device; {LATER}\n" in capsys.readouterr().err
 
 
-def test_the_cache_keeps_the_functions_that_were_used_last(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_cache_keeps_the_files_that_were_used_last(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from stickslip.engine.codegen import cache
 
     monkeypatch.setenv("STICKSLIP_CACHE_DIR", str(tmp_path))
-    folder = tmp_path / "compiled-0" / "formulas_0"
+    folder = tmp_path / "compiled-0" / "plain" / "formulas_0"
     folder.mkdir(parents=True)
-    for used, name in enumerate(["old", "older", "new"], 1000):
-        for file in (f"{name}_0.value-9.py311.nbi", f"{name}_0.value-9.py311.1.nbc"):
-            (folder / file).write_bytes(bytes(50))
-            os.utime(folder / file, (used, used))
-    os.utime(folder / "old_0.value-9.py311.nbi", (2000, 2000))  # read since
+    for used, file in enumerate([folder / "old.nbi", folder / "older.1.nbc", tmp_path / "compiled-0" / "new.nbc"], 1000):
+        file.write_bytes(bytes(100))
+        os.utime(file, (used, used))
+    os.utime(folder / "old.nbi", (2000, 2000))  # read since
     for file in (folder / "own.txt", tmp_path / "own.nbi"):
         file.touch()
     cache.make_room(250)
-    assert {path.name.split("_")[0] for path in folder.glob("*.nb[ic]")} == {"old", "new"}
+    assert {path.stem for path in tmp_path.rglob("*.nb[ic]")} == {"old", "new", "own"}
     cache.make_room(100)
-    assert [path.name.split("_")[0] for path in folder.glob("*.nb[ic]")] == ["old", "old"]
+    assert {path.stem for path in tmp_path.rglob("*.nb[ic]")} == {"old", "own"}
     assert (folder / "own.txt").exists()
-    assert (tmp_path / "own.nbi").exists()
 
 
-def test_a_function_that_another_process_removed_is_compiled_again(tmp_path: Path) -> None:
-    folder = twice(tmp_path)[2]
-    (code,) = folder.rglob("*.nbc")
-    code.unlink()
-    assert twice(tmp_path) == (42.0, 0, folder, "")
-    assert twice(tmp_path) == (42.0, 1, folder, "")
+def test_what_another_process_removed_is_compiled_again(script: Path, tmp_path: Path) -> None:
+    folder = kept(script, tmp_path)[1]
+    for code in folder.iterdir():
+        code.unlink()
+    assert kept(script, tmp_path) == (0, folder, "")
+    assert kept(script, tmp_path) == (4, folder, "")
 
 
 def test_a_private_folder_is_closed_to_others(tmp_path: Path) -> None:
@@ -253,43 +301,16 @@ def test_compiling_the_engine_is_announced(
     from stickslip.engine.series.polynomial import total
 
     said: list[str] = []
-    (tmp_path / "engine").mkdir()
     if has_engine:
-        (tmp_path / "engine" / "loop.run_until-65.py311.nbi").touch()
-    monkeypatch.setattr(sealed_cache, "CACHE", tmp_path)
-    monkeypatch.setattr(FunctionCache, "_load_overload", lambda *_: None)
-    monkeypatch.setattr(FunctionCache, "save_overload", lambda *_: None)
+        (tmp_path / "loop.run_until-0.nbc").touch()
+    monkeypatch.setattr(one_module, "CACHE", tmp_path)
+    monkeypatch.setattr(one_module.Kept, "read", lambda _: None)
     monkeypatch.setattr(cache, "announce", said.append)
-    monkeypatch.setattr(sealed_cache._Wait, "spent", spent)
-    monkeypatch.setattr(sealed_cache._Wait, "told", set())
+    monkeypatch.setattr(one_module._Wait, "spent", spent)
+    monkeypatch.setattr(one_module._Wait, "told", set())
     entry = {"total": total, "run_until": run_until}[name].entry  # type: ignore[attr-defined]
     for _ in range(2):
         assert entry._cache.load_overload(None, entry.targetctx) is None
-        entry._cache.save_overload(None, None)
+        monkeypatch.setattr(one_module.Kept, "write", lambda *_: None)
+        entry._cache.save_overload(None, Mock())
     assert said == ([(cache.SLOW | {"others": cache.OTHERS})[message]] if message else [])
-
-
-@pytest.mark.parametrize("damage", ["cut", "zeros", "another file", "gone"])
-def test_machine_code_of_a_formula_is_kept_and_made_again_where_its_file_is_damaged(
-    damage: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(sealed_file, "CACHE", tmp_path)
-    made: list[bytes] = []
-
-    def make() -> bytes:
-        made.append(b"code")
-        return b"code"
-
-    assert sealed_file.kept("a text", make) == sealed_file.kept("a text", make) == b"code"
-    assert len(made) == 1
-    (file,) = (tmp_path / "formulas").iterdir()
-    sealed_file.kept("another text", lambda: b"other")
-    (other,) = (path for path in (tmp_path / "formulas").iterdir() if path != file)
-    content = {"cut": file.read_bytes()[:-1], "zeros": bytes(len(file.read_bytes())), "another file": other.read_bytes()}
-    file.unlink()
-    if damage in content:
-        file.write_bytes(content[damage])
-    assert sealed_file.kept("a text", make) == b"code"
-    assert len(made) == 2
-    assert sealed_file.kept("a text", make) == b"code"
-    assert len(made) == 2

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.engine.codegen.sources import compiled_sources
+from stickslip.engine.codegen.cache import compiled_sources
 from stickslip.engine.codegen.taylor_series import SIGNATURES, FormulaWriter
 from stickslip.engine.series.polynomial import MOST_CROSSINGS, NONE, crossings, first_descent, maximum
 from stickslip.engine.state.layout import TERMS

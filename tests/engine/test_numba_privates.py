@@ -14,8 +14,8 @@ PRINTED = (
 )
 
 MISSING = {
-    "a name": ("import numba.core.caching as m; del m.FunctionCache", "cannot import name 'FunctionCache'"),
-    "a method": ("import numba.core.caching as m; del m.Cache._load_overload", "FunctionCache has no _load_overload"),
+    "a name": ("import numba.core.caching as m; del m.NullCache", "cannot import name 'NullCache'"),
+    "a method": ("import numba.core.compiler as m; del m.CompileResult._rebuild", "CompileResult has no _rebuild"),
     "a parameter": (
         "import numba.core.types as m; m.Function.get_call_type = lambda self, args: None",
         "<lambda> takes self, args",

@@ -16,8 +16,8 @@ import pytest
 from numba import njit, types
 from numba.core.errors import TypingError
 
-from stickslip.engine.codegen.lean_compiler import LeanCompiler
-from stickslip.engine.codegen.sources import compiled_sources, key_of, remembered_key
+from stickslip.engine.codegen.cache import compiled_sources, key_of, read_sealed, remembered_key, write_sealed
+from stickslip.engine.codegen.one_module import LeanCompiler
 from tests.engine.uncompiled_runs import RUNS, results
 
 TEXT = b'''"""Say what this is."""
@@ -57,12 +57,14 @@ def test_a_key_is_remembered_and_a_damaged_one_is_made_anew(tmp_path: Path) -> N
     key = key_of(path.read_bytes() for path in compiled_sources())
     assert remembered_key(tmp_path) == key
     (kept,) = tmp_path.iterdir()
-    kept.write_text("0" * len(key))
+    write_sealed(kept, b"0" * len(key))
     assert remembered_key(tmp_path) == "0" * len(key)  # what is read is used
-    kept.write_bytes(b"\xff damaged")
-    assert remembered_key(tmp_path) == key
-    assert kept.read_text() == key
-    assert remembered_key(tmp_path / "missing") == key_of(path.read_bytes() for path in compiled_sources())
+    write_sealed(tmp_path / "another", b"1" * len(key))
+    for damaged in (b"\xff damaged", b"1" * len(key), (tmp_path / "another").read_bytes()):
+        kept.write_bytes(damaged)
+        assert remembered_key(tmp_path) == key
+        assert read_sealed(kept) == key.encode()
+    assert remembered_key(tmp_path / "missing") == key
 
 
 def steps(x: float, n: int) -> float:

@@ -3,19 +3,25 @@
 Machine code and pickles from the cache folder are executed. The folder must therefore belong to this user alone (see
 `private_folder`). If there is no such folder, each process compiles for itself.
 
-The name of the folder contains a hash of all code that is compiled (`sources.py`), so that an edited kernel never meets its old
-machine code. Numba's own comparison does not suffice: it looks at the date of a function's file, and not at the files of the
-functions that it calls.
+Every file carries a checksum, because LLVM does not look what it loads: of 300 machine codes with one wrong bit 30 ended the
+process and 6 gave wrong numbers. A file that is damaged in any way counts as missing, and its code is compiled again.
 
-The cache has a largest size. The functions that have not been used for longest are removed, whichever version of the code they
-belong to; a process that still needs one compiles it again.
+The name of the folder contains a hash of all code that is compiled, so that an edited kernel never meets its old machine code. It
+is made from the syntax trees without their docstrings: an edited comment, docstring or line break leaves it as it is. To make the
+trees takes a quarter of a second, so the hash is kept on disk, too, under a hash of the files themselves.
+
+The cache has a largest size. The files that have not been used for longest are removed, whichever version of the code they belong
+to; a process that still needs one compiles it again.
 """
 
 from __future__ import annotations
 
+import ast
+import hashlib
 import os
+import shutil
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
@@ -24,12 +30,33 @@ import numba
 import platformdirs
 
 from stickslip.engine.codegen.private_folder import private_folder
-from stickslip.engine.codegen.sources import remembered_key
 from stickslip.engine.codegen.uncompiled import UNCOMPILED
+from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
 
 LARGEST_CACHE = 500_000_000
-"""Size (bytes) of all functions in the cache above which the least recently used are removed."""
+"""Size (bytes) of all files in the cache above which the least recently used are removed."""
+SEAL = b"stickslip cache 1\n"
+"""First bytes of each file of the cache; the checksum of its name and content follows, then the content."""
+NOT_COMPILED = ("cache.py", "private_folder.py")
+"""Files in the compiled folders that decide where machine code is kept, but not what it does; the hash leaves them out."""
+COMPILED_FOLDERS = ("engine", "batch/kernels", "friction/formula/operations")
+"""Folders of the package whose files all enter the hash, because they hold compiled functions or write them."""
+COMPILED_FILES = (
+    "engine_input/branch_table.py",
+    "foundation/constants.py",
+    "friction/formula/expression.py",
+    "trajectory/history.py",
+    "trajectory/phase_index.py",
+    "trajectory/slip_events.py",
+    "trajectory/status.py",
+    "trajectory/turning_points.py",
+)
+"""Other files that hold compiled functions, or constants that compiled functions use; tests/test_layers.py checks the list."""
+VERSIONS = f"{numba.__version__} {sys.version}"
+"""The versions of numba and Python, on which machine code depends, too."""
+DIGITS = 16
+"""Number of hexadecimal digits of a key."""
 
 if UNCOMPILED:
     numba.config.DISABLE_JIT = True
@@ -49,22 +76,113 @@ def cache_root() -> Path:
     return Path(chosen) if chosen else platformdirs.user_cache_path("stickslip")
 
 
+# ---- files with a checksum -------------------------------------------------------------------------------------------------
+
+
+def write_sealed(path: Path, content: bytes) -> None:
+    """Write content to a file, after the mark SEAL and the checksum."""
+    sealed = SEAL + _checksum(path, content) + content
+    write_atomically(path, lambda draft: draft.write_bytes(sealed))
+
+
+def read_sealed(path: Path) -> bytes | None:
+    """Return the content of a file, or None if it is missing or damaged; remove it in the second case."""
+    start = len(SEAL) + hashlib.sha256().digest_size
+    with suppress(OSError):  # it cannot be read
+        sealed = path.read_bytes()
+        content = sealed[start:]
+        if sealed[:start] == SEAL + _checksum(path, content):
+            return content
+    if os.path.lexists(path):
+        tell(f"the cache of compiled code in {path.parent} is damaged: what is damaged is compiled again")
+        remove(path)
+    return None
+
+
+def _checksum(path: Path, content: bytes) -> bytes:
+    """Return the SHA-256 digest of a file's name and content; with the name, a file copied over another one does not pass."""
+    return hashlib.sha256(path.name.encode() + b"\n" + content).digest()
+
+
+def remove(path: Path) -> None:
+    """Remove what stands in place of a sound file of the cache."""
+    with suppress(OSError):
+        if not path.is_symlink() and path.is_dir():
+            shutil.rmtree(path)
+        else:
+            path.unlink()
+
+
+# ---- the key of all code ---------------------------------------------------------------------------------------------------
+
+
+def compiled_sources() -> list[Path]:
+    """Return the paths of all files whose content is compiled, sorted."""
+    package = Path(__file__).parents[2]
+    folders = [path for folder in COMPILED_FOLDERS for path in (package / folder).rglob("*.py")]
+    inside = [path for path in folders if path.name not in NOT_COMPILED]
+    return sorted([*inside, *(package / name for name in COMPILED_FILES)])
+
+
+def key_of(texts: Iterable[bytes]) -> str:
+    """Return the hash of the code in some source files: comments, docstrings and the layout of lines do not enter it."""
+    digest = hashlib.sha256(VERSIONS.encode())
+    for text in texts:
+        digest.update(ast.dump(_without_docstrings(ast.parse(text))).encode())
+    return digest.hexdigest()[:DIGITS]
+
+
+def _without_docstrings(tree: ast.Module) -> ast.Module:
+    """Remove every statement that is only a text from a syntax tree, and return the tree."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef):
+            node.body = [statement for statement in node.body if not _is_text(statement)]
+    return tree
+
+
+def _is_text(statement: ast.stmt) -> bool:
+    return isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant) and isinstance(statement.value.value, str)
+
+
+def remembered_key(folder: Path) -> str:
+    """Return the key of all compiled sources.
+
+    It is kept in `folder`, in a file that is named for the hash of the unchanged files. The folder must be private: a wrong key
+    would lead to other machine code. Where it cannot be written, the key is made anew.
+    """
+    texts = [path.read_bytes() for path in compiled_sources()]
+    digest = hashlib.sha256(VERSIONS.encode())
+    for text in texts:
+        digest.update(text)
+    kept = folder / digest.hexdigest()
+    found = read_sealed(kept)
+    if found is not None:
+        return found.decode()
+    key = key_of(texts)
+    with suppress(OSError):  # the folder of machine code will meet the same fault, and says so
+        write_sealed(kept, key.encode())
+    return key
+
+
 def sources_key() -> str:
     """Return the key of the code that is compiled, kept in the cache if there is a private folder for it."""
     try:
         return remembered_key(private_folder(cache_root() / "keys"))
     except OSError:
-        return remembered_key(None)
+        return key_of(path.read_bytes() for path in compiled_sources())
 
 
 SOURCES = sources_key()
 """Hash that identifies the code that is compiled, together with the versions of numba and Python that compile it."""
 
 
-def cache_folder() -> Path | None:
-    """Return the folder of compiled code in `cache_root`, or None if it cannot be made there or would not be private."""
+# ---- the folder of machine code --------------------------------------------------------------------------------------------
+
+
+def cache_folder(name: str) -> Path | None:
+    """Return a folder of compiled code in `cache_root`, or None if it cannot be made there or would not be private."""
     try:
-        return private_folder(cache_root() / f"compiled-{SOURCES}")
+        return private_folder(cache_root() / name)
     except OSError as error:
         reason = f"{error.filename}: {error.strerror}" if error.strerror else str(error)
     tell(
@@ -74,27 +192,51 @@ def cache_folder() -> Path | None:
     return None
 
 
-CACHE = cache_folder()
+CACHE = cache_folder(f"compiled-{SOURCES}")
 """The folder of compiled code, or None if this process has to compile for itself."""
 
 
+class Kept:
+    """A file of machine code, named for what it holds and for a hash of the text that decides its content."""
+
+    def __init__(self, name: str, text: str) -> None:
+        self.path = None if CACHE is None else CACHE / f"{name}-{hashlib.sha256(text.encode()).hexdigest()}.nbc"
+
+    def read(self) -> bytes | None:
+        """Return the machine code, or None if it must be compiled."""
+        if self.path is None:
+            return None
+        with suppress(OSError):  # it is not there, or belongs to a medium that cannot be written
+            os.utime(self.path)  # it has been used
+        return read_sealed(self.path)
+
+    def write(self, code: bytes) -> None:
+        """Keep machine code for later starts, or say that it cannot be written."""
+        if self.path is None:
+            return
+        try:
+            write_sealed(self.path, code)
+            tidy()
+        except OSError as error:
+            tell(
+                f"compiled code cannot be kept in {CACHE}: {error.strerror}; later starts compile again; "
+                "STICKSLIP_CACHE_DIR names another folder"
+            )
+
+
 def make_room(largest: int = LARGEST_CACHE) -> None:
-    """Remove the least recently used functions from the caches of all versions until they take at most `largest` bytes together."""
-    files: dict[tuple[Path, str], list[Path]] = {}
-    for path in cache_root().glob("compiled-*/*/*.nb[ico]"):  # NAME.nbi is the index of a function, NAME.1.nbc its code; KEY.nbo
-        files.setdefault((path.parent, path.name.rsplit(".", 2 if path.suffix == ".nbc" else 1)[0]), []).append(path)
+    """Remove the least recently used files from the caches of all versions until they take at most `largest` bytes together."""
     found = []
-    for paths in files.values():
-        with suppress(FileNotFoundError):  # another process removes it, too
-            stats = [path.stat() for path in paths]
-            found.append((max(one.st_mtime for one in stats), sum(one.st_size for one in stats), paths))
+    for path in cache_root().glob("compiled-*/**/*.nb[ico]"):  # numba's own cache has all of these endings
+        with suppress(OSError):  # another process removes it, too, or it is damaged
+            about = path.stat()
+            found.append((about.st_mtime, about.st_size, path))
     excess = sum(size for _, size, _ in found) - largest
-    for _, size, paths in sorted(found):
+    for _, size, path in sorted(found):
         if excess <= 0:
             return
         with suppress(OSError):  # on Windows a file that is being read stays
-            for path in paths:
-                path.unlink(missing_ok=True)
+            path.unlink(missing_ok=True)
             excess -= size
 
 
@@ -103,6 +245,8 @@ def tidy() -> None:
     """Make room once in each process that writes: to look at all files for each function would slow down a first start."""
     make_room()
 
+
+# ---- announcements ---------------------------------------------------------------------------------------------------------
 
 SLOW = {
     "run_until": "compiling the engine for this machine: about half a minute until the first summary, once",

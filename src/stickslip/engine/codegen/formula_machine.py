@@ -19,7 +19,7 @@ import llvmlite.binding as llvm
 import llvmlite.ir as ir
 from numba import config
 
-from stickslip.engine.codegen.sealed_file import kept
+from stickslip.engine.codegen.cache import Kept
 from stickslip.engine.codegen.simd import VECTOR, WIDTH
 
 llvm.initialize_native_target()
@@ -46,7 +46,11 @@ class MachineCode:
         Arguments are arrays if they are marked by [], otherwise floats; `names` has what the statements call.
         """
         text = "\n".join([*_processor(), llvmlite.__version__, str(config.OPT), str(lanes), ", ".join(arguments), *statements])
-        code = kept(text, lambda: _object_code(statements, arguments, VECTOR if lanes else NUMBER, names))
+        kept = Kept("formula", text)
+        code = kept.read()
+        if code is None:
+            code = _object_code(statements, arguments, VECTOR if lanes else NUMBER, names)
+            kept.write(code)
         self._engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _target_machine())
         self._engine.add_object_file(llvm.ObjectFileRef.from_data(code))
         self._engine.finalize_object()

@@ -1,26 +1,78 @@
-"""Compile kernels: by `one_module` or, where that cannot be, by `plain_numba`."""
+"""Compile kernels: by `one_module` or, where that cannot be, plainly: by numba's public compiler with its own cache.
+
+Numba's compiler makes machine code of every function by itself, so that a first start takes longer; the results are the same. The
+files that it keeps have no checksums: they are noted when a process ends, and at the next start files with others are removed.
+"""
 
 from __future__ import annotations
 
+import atexit
+import hashlib
 from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
+import numba
 from numba import types
 from numba.extending import typeof_impl
 
+from stickslip.engine.codegen.cache import CACHE, cache_folder, read_sealed, remove, tell, write_sealed
 from stickslip.engine.codegen.numba_privates import WHY_PLAIN
 from stickslip.engine.codegen.uncompiled import UNCOMPILED
-
-if UNCOMPILED:
-    pass
-elif WHY_PLAIN:
-    from stickslip.engine.codegen.plain_numba import dispatchers
-else:
-    from stickslip.engine.codegen.one_module import dispatchers
 
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "fastmath": {"contract"}, "no_cfunc_wrapper": True}
 """Options of all kernels: divisions by zero give infinity or NaN as in numpy, the interpreter's lock is released, and a product and
 a sum may be fused into one operation."""
+
+
+class Plain:
+    """Numba's public compiler, with its own cache."""
+
+    def __init__(self) -> None:
+        tell(f"numba {numba.__version__} is used plainly ({WHY_PLAIN}): what is new is compiled several times as long, once")
+        self.folder = cache_folder(f"{CACHE.name}/plain") if CACHE else None
+        if CACHE and self.folder:
+            self._noted = CACHE / "plain.checksums"
+            noted = (read_sealed(self._noted) or b"").split()
+            for path in self._files():
+                if _checksum_of(path) not in noted:
+                    remove(path)
+            atexit.register(self._note)
+
+    def _files(self) -> list[Path]:
+        """Return all files, and folders where numba has files."""
+        if self.folder is None:
+            return []
+        return [path for path in self.folder.rglob("*") if not path.is_dir() or path.suffix in (".nbi", ".nbc")]
+
+    def _note(self) -> None:
+        """Note the checksums of all files that numba has kept."""
+        with suppress(OSError):  # the next process compiles again
+            write_sealed(self._noted, b"\n".join(map(_checksum_of, self._files())))
+
+    def dispatchers(self, function: Callable[..., Any], entry: dict[str, Any], part: dict[str, Any]) -> tuple[Any, Any]:
+        """Return what compiled code and what Python calls: here they are the same."""
+        before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(self.folder or "")
+        try:
+            both = numba.njit(cache=self.folder is not None, **entry, **part)(function)
+        finally:
+            numba.config.CACHE_DIR = before
+        return both, both
+
+
+def _checksum_of(path: Path) -> bytes:
+    """Return the checksum of a file's place and content, or nothing if it cannot be read."""
+    try:
+        return hashlib.sha256(f"{path.parent.name}/{path.name}\n".encode() + path.read_bytes()).hexdigest().encode()
+    except OSError:
+        return b""
+
+
+if WHY_PLAIN and not UNCOMPILED:
+    dispatchers = Plain().dispatchers
+elif not UNCOMPILED:
+    from stickslip.engine.codegen.one_module import dispatchers
 
 
 class Kernel:

@@ -55,23 +55,22 @@ if not UNCOMPILED:
     try:
         if os.environ.get("STICKSLIP_PLAIN_NUMBA", "") not in ("", "0"):
             raise ImportError("STICKSLIP_PLAIN_NUMBA is set")
-        from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile, UserProvidedCacheLocator
+        from numba.core.caching import NullCache
         from numba.core.codegen import JITCodeLibrary
-        from numba.core.compiler import Compiler
+        from numba.core.compiler import Compiler, CompileResult
         from numba.core.runtime import rtsys
+        from numba.core.serialize import dumps
         from numba.core.typed_passes import InlineOverloads, NopythonRewrites
         from numba.core.types import Function
         from numba.core.untyped_passes import InlineClosureLikes, InlineInlinables, LiteralUnroll, WithLifting
         from numba.core.utils import OPERATORS_TO_BUILTINS
 
         _has(JITCodeLibrary, "finalize", "_optimize_final_module", "_get_module_for_linking", "_raise_if_finalized")
-        _has(FunctionCache, "_load_overload", "save_overload", "_impl_class")
-        _has(IndexDataCacheFile, "_load_index", "_save_index", "_load_data", "_save_data", "_dump", "_data_path")
-        _has(CompileResultCacheImpl, "_locator_classes", "locator", "filename_base")
+        _has(NullCache, "load_overload", "save_overload")
+        _has(CompileResult, "_reduce", "_rebuild")
         _has(Compiler, "define_pipelines", "compile_extra")
         _has(rtsys, "initialize")
         _takes(Function.get_call_type, "self", "context", "args", "kws")
-        _takes(IndexDataCacheFile.__init__, "self", "cache_path", "filename_base", "source_stamp")
     except (ImportError, AttributeError, TypeError, ValueError) as error:
         WHY_PLAIN = " ".join(str(error).split())
 
@@ -80,19 +79,18 @@ __all__ = [
     "WHY_PLAIN",
     "AbstractTemplate",
     "AttributeTemplate",
-    "CompileResultCacheImpl",
+    "CompileResult",
     "Compiler",
     "Function",
-    "FunctionCache",
-    "IndexDataCacheFile",
     "InlineClosureLikes",
     "InlineInlinables",
     "InlineOverloads",
     "JITCodeLibrary",
     "LiteralUnroll",
     "NopythonRewrites",
-    "UserProvidedCacheLocator",
+    "NullCache",
     "WithLifting",
+    "dumps",
     "infer_getattr",
     "infer_global",
     "rtsys",
