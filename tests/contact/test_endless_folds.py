@@ -14,7 +14,9 @@ from stickslip.contact.rules.selection import load_bound
 
 F = ss.friction
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)
-FORMULAS = "0.6 - 0.1*v/(v+0.5) + 0.006*sin(50*v)", "0.6 - 0.1*v/(v+0.4) + 0.007*sin(40*v)"
+FEW = "0.675 + 0.125*sin(2*v)"
+"""So few folds up to the loads of a run that each of its branches is told."""
+FORMULAS = "0.6 - 0.1*v/(v+0.5) + 0.006*sin(50*v)", "0.6 - 0.1*v/(v+0.4) + 0.007*sin(40*v)", FEW
 
 
 def endless(formula: str = FORMULAS[0], **given: object) -> ss.Problem:

@@ -243,7 +243,7 @@ def _determined(problem: Problem, slip: float | None) -> Uniqueness:
     table, folds = table_of(problem, g, stable), _folds(g, stable, proof)
     between = critical_stress_between(g)
     window, critical, endless = _window(stable), _critical(problem, g, slip), proof.reach < FASTEST
-    jumps = jumps_of(g, stable, table, MOST_LEFT if endless else len(stable)) if window else ()
+    jumps = jumps_of(g, stable, table, min(len(stable), MOST_LEFT) if endless else len(stable)) if window else ()
     return Uniqueness(
         regime=_regime(g, window),
         rule=problem.rule,
