@@ -13,7 +13,8 @@ from numba import njit
 
 from stickslip.batch.workspace import apart
 from stickslip.engine.codegen.compiler import ahead, floats, integers
-from stickslip.engine.codegen.simd import WIDTH, chosen, lanes_at, store_across
+from stickslip.engine.codegen.pointers import rows_of
+from stickslip.engine.codegen.simd import WIDTH, chosen, store_across
 from stickslip.engine.series.polynomial import bound_below, magnitude, moment, multiply, powers_of, total
 from stickslip.engine.series.sine import sine, versine
 from stickslip.engine.series.step_size import length_at
@@ -56,7 +57,7 @@ def test_functions_have_the_same_bits_in_lanes_and_floats(name: str) -> None:
 
     @njit
     def side_by_side(block: int, out: int) -> None:
-        lanes_at(out)[0] = function(lanes_at(block))
+        rows_of(out)[0] = function(rows_of(block))
 
     @njit
     def alone(address: int) -> float:
@@ -72,8 +73,8 @@ def test_functions_have_the_same_bits_in_lanes_and_floats(name: str) -> None:
 def test_multiplying_by_powers_has_the_same_bits_in_lanes() -> None:
     @njit
     def side_by_side(block: int, powers: int, out: int) -> None:
-        powers_of(lanes_at(block)[0], lanes_at(powers))
-        multiply(lanes_at(block), lanes_at(powers), lanes_at(out))
+        powers_of(rows_of(block)[0], rows_of(powers))
+        multiply(rows_of(block), rows_of(powers), rows_of(out))
 
     @njit
     def alone(address: int, powers: int, out: int) -> None:
@@ -91,9 +92,9 @@ def test_multiplying_by_powers_has_the_same_bits_in_lanes() -> None:
 def test_comparisons_choose_lane_by_lane() -> None:
     @njit
     def side_by_side(block: int, out: int) -> int:
-        a, b = lanes_at(block)[0], lanes_at(block)[1]
-        lanes_at(out)[0] = chosen((a > b) & ~(a >= 3.0), a, -b)
-        lanes_at(out)[1] = chosen(a == b, 1.0, b)
+        a, b = rows_of(block)[0], rows_of(block)[1]
+        rows_of(out)[0] = chosen((a > b) & ~(a >= 3.0), a, -b)
+        rows_of(out)[1] = chosen(a == b, 1.0, b)
         return (a < b) | (a <= 0.0)
 
     block, out = aligned(2), aligned(2)
@@ -108,7 +109,7 @@ def test_comparisons_choose_lane_by_lane() -> None:
 def test_rows_in_lanes_are_stored_across_as_columns() -> None:
     @njit
     def store(block: int, targets: int) -> None:
-        store_across(lanes_at(block), integers(targets), 2)
+        store_across(rows_of(block), integers(targets), 2)
 
     block, out = aligned(WIDTH + 2), np.zeros((WIDTH, WIDTH + 3))
     block[:] = np.arange(block.size).reshape(block.shape)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from stickslip.engine.codegen.compiler import inlined
-from stickslip.engine.codegen.lane_records import all_lanes, one_lane
+from stickslip.engine.codegen.pointers import all_lanes, one_lane
 from stickslip.engine.codegen.records import Record, floats_inside, inside
 from stickslip.engine.contact.contact_equation import constants_of
 from stickslip.engine.contact_step.certificate import RATIOS, SHRUNK, SHRUNK_SLOPE

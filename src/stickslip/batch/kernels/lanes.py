@@ -23,7 +23,7 @@ from stickslip.batch.kernels.lane_block import (
     take_out,
 )
 from stickslip.engine.codegen.compiler import ahead, call_jet, call_radii, call_values, inlined, integers, kernel
-from stickslip.engine.codegen.lane_records import floats_of, rows_of
+from stickslip.engine.codegen.pointers import numbers_of, rows_of
 from stickslip.engine.codegen.simd import WIDTH, chosen, first_of, store_across
 from stickslip.engine.contact.pieces import note_slip
 from stickslip.engine.contact.stiffness import CHECKED, judge_stiffness
@@ -177,7 +177,7 @@ def choose_length(formula: Integers, step: Step) -> None:
     table, block, taking, moves, degree = step
     rows, lane_0 = block_in_all_lanes(block), block_in_one_lane(block)
     begin(rows, degree)
-    call_jet(formula[0], floats_of(rows.constants), floats_of(rows.k), floats_of(rows.load_along_slip), floats_of(rows.jet))
+    call_jet(formula[0], numbers_of(rows.constants), numbers_of(rows.k), numbers_of(rows.load_along_slip), numbers_of(rows.jet))
     rows.usable = length_at(rows.jet, rows.tolerance, 0.5)
     odd = taking & ~((rows.usable >= FAR_FROM_GUESS) & ~(rows.jet[TERMS - 1] == 0.0))
     while odd != 0:
@@ -230,7 +230,7 @@ def prove(rows: Block, radii: int, moves: bool, degree: int) -> None:
     powers = rows.disc_powers
     powers_of(rows.ratio * rows.length, powers)
     put_discs(rows.k, rows.jet, powers, rows.ball)
-    call_radii(radii, floats_of(rows.constants), floats_of(rows.jet), floats_of(rows.ball))
+    call_radii(radii, numbers_of(rows.constants), numbers_of(rows.jet), numbers_of(rows.ball))
     force = force_on_disc(rows.k, rows.ball, load_on_disc(rows.load_along_slip, powers, degree))
     size = rows.tolerance * size_of_rate(rows.jet, rows.length)
     if moves:
@@ -290,7 +290,7 @@ def check_end(rows: Block, values: int, moves: bool, degree: int) -> int:
     """
     k, rate, place, value = rows.k, rows.rate, rows.at_end, rows.value
     place[0], place[1] = k.slip + k.chi * rows.grown, rows.rate_end
-    call_values(values, floats_of(rows.constants), floats_of(place), floats_of(value))
+    call_values(values, numbers_of(rows.constants), numbers_of(place), numbers_of(value))
     missing = imbalance(k, load_at_end(rows.load_along_slip, rows.powers, degree), value, rows.rate_end, rows.state.unbalanced)
     if moves:
         missed, rough = missed_by_motion(k, missing, rate, rows.length, rows.grown), ROUGH_SLOPE

@@ -11,7 +11,8 @@ import math
 from typing import Any, NamedTuple
 
 from stickslip.engine.codegen.compiler import kernel
-from stickslip.engine.codegen.records import Record, numbers_of, record_at
+from stickslip.engine.codegen.pointers import numbers_of, record_at
+from stickslip.engine.codegen.records import Record
 from stickslip.engine.contact.contact_equation import friction_of
 from stickslip.engine.series.polynomial import evaluate, integral
 from stickslip.engine.state.layout import Floats, HistoryPiece, Integers, Stop

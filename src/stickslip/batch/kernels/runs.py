@@ -19,7 +19,7 @@ from numba.extending import intrinsic
 from stickslip.batch.kernels.lanes import Side, Waits, step_side_by_side
 from stickslip.batch.kernels.reduction import COLUMNS, Found, Reduced, fold_events, fold_first, fold_whole, reached, reduced_at
 from stickslip.engine.codegen.compiler import address_of, ahead, call_prepare, floats, inlined, integers, kernel
-from stickslip.engine.codegen.records import numbers_of, whole_numbers_of
+from stickslip.engine.codegen.pointers import numbers_of, whole_numbers_of
 from stickslip.engine.codegen.simd import WIDTH
 from stickslip.engine.loop import run_until
 from stickslip.engine.state.layout import Counts, Floats, Integers, Params, State, Stop

@@ -8,6 +8,7 @@ the compiler is switched off (see `uncompiled`).
 from __future__ import annotations
 
 from collections.abc import Callable
+from inspect import Parameter, Signature
 from typing import Any, TypeVar
 
 import llvmlite.ir as ir
@@ -16,7 +17,8 @@ from numba import types
 from numba.extending import intrinsic
 
 from stickslip.engine.codegen.kernels import Kernel
-from stickslip.engine.codegen.records import FLOATS, INTEGERS
+from stickslip.engine.codegen.pointers import numbers_of, whole_numbers_of
+from stickslip.engine.codegen.records import FLOATS
 from stickslip.engine.codegen.uncompiled import UNCOMPILED, Pointer, as_python, call, pointer_at
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -38,47 +40,36 @@ def _compiled(function: F, **options: bool) -> F:
     return compiled
 
 
-@intrinsic
-def call_prepare(typingctx: Any, address: Any, parameters: Any, reference: Any, c: Any) -> Any:
-    """Call `prepare(parameters, reference, c)`, the function of a formula at `address`."""
-    return types.void(types.int64, FLOATS, types.float64, FLOATS), _call
+def calls(kinds: str) -> Any:
+    """Return a function for compiled code that calls a C function without result at an address, its first argument.
+
+    `kinds` are those of the other arguments: p for a pointer to floats, d for a float.
+    """
+    if UNCOMPILED:
+        return call
+    types_of = types.void(types.int64, *(FLOATS if kind == "p" else types.float64 for kind in kinds))
+
+    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        kind = ir.FunctionType(ir.VoidType(), [argument.type for argument in args[1:]])
+        builder.call(builder.inttoptr(args[0], kind.as_pointer()), args[1:])
+        return context.get_dummy_value()
+
+    def calling(typingctx: Any, *arguments: Any) -> Any:
+        return types_of, codegen
+
+    names = ("typingctx", "address", *(f"{kind}{n}" for n, kind in enumerate(kinds)))  # numba counts arguments by their names
+    calling.__signature__ = Signature([Parameter(name, Parameter.POSITIONAL_ONLY) for name in names])  # type: ignore[attr-defined]
+    return intrinsic(calling)
 
 
-@intrinsic
-def call_value(typingctx: Any, address: Any, c: Any, dx: Any, s: Any, out: Any) -> Any:
-    """Call `value(c, dx, s, out)`, the function of a formula at `address`."""
-    return types.void(types.int64, FLOATS, types.float64, types.float64, FLOATS), _call
-
-
-@intrinsic
-def call_state_value(typingctx: Any, address: Any, c: Any, dx: Any, s: Any, states: Any, out: Any) -> Any:
-    """Call `state_value(c, dx, s, states, out)`, the function of a formula at `address`."""
-    return types.void(types.int64, FLOATS, types.float64, types.float64, FLOATS, FLOATS), _call
-
-
-@intrinsic
-def call_radii(typingctx: Any, address: Any, c: Any, s: Any, k: Any) -> Any:
-    """Call `radii(c, s, k)` or `balls(c, s, k)`, or the version for lanes: the function at `address`."""
-    return types.void(types.int64, FLOATS, FLOATS, FLOATS), _call
-
-
-@intrinsic
-def call_values(typingctx: Any, address: Any, c: Any, at: Any, out: Any) -> Any:
-    """Call `values_in_lanes(c, at, out)`, the function of a formula at `address`; `at` holds slip (m) and slip rate (m/s)."""
-    return types.void(types.int64, FLOATS, FLOATS, FLOATS), _call
-
-
-@intrinsic
-def call_jet(typingctx: Any, address: Any, c: Any, k: Any, load: Any, s: Any) -> Any:
-    """Call `rate_jet(c, k, L, s)` or `motion_jet(c, k, L, s)`, or their versions for lanes: the function at `address`."""
-    return types.void(types.int64, FLOATS, FLOATS, FLOATS, FLOATS), _call
-
-
-def _call(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-    """Write the call of a C function without result: its address is the first argument, its own arguments are the others."""
-    kind = ir.FunctionType(ir.VoidType(), [argument.type for argument in args[1:]])
-    builder.call(builder.inttoptr(args[0], kind.as_pointer()), args[1:])
-    return context.get_dummy_value()
+call_prepare = calls("pdp")
+"""Call `prepare(parameters, reference, c)` of a formula."""
+call_value, call_state_value = calls("pddp"), calls("pddpp")
+"""Call `value(c, dx, s, out)` or `state_value(c, dx, s, states, out)` of a formula."""
+call_values = call_radii = calls("ppp")
+"""Call `values_in_lanes(c, at, out)`, or `radii(c, s, k)` or `balls(c, s, k)`; `at` holds slip (m) and slip rate (m/s)."""
+call_jet = calls("pppp")
+"""Call `rate_jet(c, k, L, s)` or `motion_jet(c, k, L, s)`."""
 
 
 PART = (types.int64, types.int64, types.float64)
@@ -106,21 +97,8 @@ def call_part(typingctx: Any, address: Any, run: Any, task: Any, number: Any) ->
     return types.float64(types.int64, run, types.int64, types.float64), codegen
 
 
-@intrinsic
-def floats(typingctx: Any, address: Any) -> Any:
-    """Return an address as a pointer to floats, which is indexed like an array."""
-    return FLOATS(types.int64), _cast
-
-
-@intrinsic
-def integers(typingctx: Any, address: Any) -> Any:
-    """Return an address as a pointer to 64-bit integers."""
-    return INTEGERS(types.int64), _cast
-
-
-def _cast(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-    """Write the conversion of an address to a pointer."""
-    return builder.inttoptr(args[0], context.get_value_type(signature.return_type))
+floats, integers = numbers_of, whole_numbers_of
+"""An address as a pointer to floats, or to 64-bit integers, which is indexed like an array."""
 
 
 @intrinsic
@@ -154,7 +132,7 @@ def float_of(typingctx: Any, bits: Any) -> Any:
 
 
 if UNCOMPILED:
-    call_prepare = call_value = call_state_value = call_radii = call_values = call_jet = call_part = call
+    call_part = call
 
     def floats(address: int) -> Pointer:
         """Return the pointer to floats at an address."""

@@ -11,18 +11,14 @@ wraps the same memory as an object: `State(numbers).xi`.
 
 from __future__ import annotations
 
-import operator
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self, get_type_hints
 
-import llvmlite.ir as ir
 import numpy as np
 from numba import types
-from numba.extending import intrinsic, lower_builtin, lower_getattr_generic, lower_setattr_generic, models, register_model
 from numpy.typing import NDArray
 
-from stickslip.engine.codegen.numba_privates import AbstractTemplate, AttributeTemplate, infer_getattr, infer_global, signature
-from stickslip.engine.codegen.uncompiled import UNCOMPILED, Pointer, pointer_at
+from stickslip.engine.codegen.uncompiled import Pointer, pointer_at
 
 Floats = NDArray[np.float64]
 FLOATS, INTEGERS = types.CPointer(types.float64), types.CPointer(types.int64)
@@ -198,136 +194,3 @@ def _descriptor(place: Slot, name: str, memory_type: type) -> Any:
     if place.kind in (float, int):
         return _Number(place.first)
     return _Inside(place, name) if place.inside else _Address(place)
-
-
-class RecordPointer(types.Type):  # type: ignore[misc] # numba is untyped
-    """The type of a record in compiled code: a pointer to its first place."""
-
-    def __init__(self, record: type[Record]) -> None:
-        self.record = record
-        super().__init__(name=f"pointer to {record.__module__}.{record.__name__}")
-
-
-@register_model(RecordPointer)
-class _PointerModel(models.PrimitiveModel):  # type: ignore[misc]
-    """The representation of such a pointer in machine code: the address of a 64-bit place."""
-
-    def __init__(self, manager: Any, kind: RecordPointer) -> None:
-        super().__init__(manager, kind, ir.IntType(64).as_pointer())
-
-
-def _type_of(place: Slot) -> Any:
-    """Return the type that a field has in compiled code."""
-    if place.kind is float:
-        return types.float64
-    if place.kind is int:
-        return types.int64
-    return RecordPointer(place.kind) if isinstance(place.kind, type) else place.kind
-
-
-@infer_getattr
-class _Fields(AttributeTemplate):  # type: ignore[misc]
-    """Tells numba which fields a record has, and their types."""
-
-    key = RecordPointer
-
-    def generic_resolve(self, kind: RecordPointer, name: str) -> Any:
-        """Return the type of a field, or None if the record has no field of this name."""
-        place = kind.record.places.get(name)
-        return None if place is None else _type_of(place)
-
-
-def _address(builder: Any, pointer: Any, place: Slot) -> Any:
-    """Write the calculation of a field's address from that of its record."""
-    return builder.gep(pointer, [ir.Constant(ir.IntType(64), place.first)], inbounds=True)
-
-
-@lower_getattr_generic(RecordPointer)
-def _get(context: Any, builder: Any, kind: RecordPointer, pointer: Any, name: str) -> Any:
-    """Write the reading of a field: a pointer if the field lies inside the record, otherwise its value."""
-    place = kind.record.places[name]
-    wanted = context.get_value_type(_type_of(place))
-    address = _address(builder, pointer, place)
-    if place.inside:
-        return builder.bitcast(address, wanted)
-    return builder.load(builder.bitcast(address, wanted.as_pointer()))
-
-
-@lower_setattr_generic(RecordPointer)
-def _set(context: Any, builder: Any, called: Any, arguments: Any, name: str) -> None:
-    """Write the assignment of a number or an address to a field."""
-    pointer, value = arguments
-    place = called.args[0].record.places[name]
-    builder.store(value, builder.bitcast(_address(builder, pointer, place), value.type.as_pointer()))
-
-
-@infer_global(operator.getitem)
-class _Nth(AbstractTemplate):  # type: ignore[misc]
-    """Tells numba that a record pointer can be indexed: `pointer[n]` is the record n records later."""
-
-    def generic(self, arguments: Any, keywords: Any) -> Any:
-        """Return the signature of the indexing, or None if the arguments are something else."""
-        if isinstance(arguments[0], RecordPointer) and isinstance(arguments[1], types.Integer):
-            return signature(arguments[0], arguments[0], types.int64)
-        return None
-
-
-@lower_builtin(operator.getitem, RecordPointer, types.Integer)
-def _nth(context: Any, builder: Any, called: Any, arguments: Any) -> Any:
-    """Write the calculation of the address of a record in a row of records."""
-    size = ir.Constant(ir.IntType(64), called.args[0].record.total)
-    return builder.gep(arguments[0], [builder.mul(arguments[1], size)])
-
-
-@intrinsic
-def numbers_of(typingctx: Any, record: Any) -> Any:
-    """Return a pointer to the numbers of a record that has only floats."""
-
-    def codegen(context: Any, builder: Any, called: Any, arguments: Any) -> Any:
-        return builder.bitcast(arguments[0], context.get_value_type(FLOATS))
-
-    return FLOATS(record), codegen
-
-
-@intrinsic
-def whole_numbers_of(typingctx: Any, record: Any) -> Any:
-    """Return a pointer to the numbers of a record that has only 64-bit integers."""
-
-    def codegen(context: Any, builder: Any, called: Any, arguments: Any) -> Any:
-        return builder.bitcast(arguments[0], context.get_value_type(INTEGERS))
-
-    return INTEGERS(record), codegen
-
-
-def record_at(record: type[Record]) -> Any:
-    """Return a function with which kernels turn memory (an array, or a pointer to it) or a record into the first record there."""
-    if UNCOMPILED:
-        return lambda memory: (
-            memory
-            if isinstance(memory, record)
-            else record(Pointer(memory.reshape(-1)) if getattr(memory, "ndim", 1) > 1 else memory)
-        )
-    kind, pointer = RecordPointer(record), ir.IntType(64).as_pointer()
-
-    @intrinsic
-    def at(typingctx: Any, memory: Any) -> Any:
-        def codegen(context: Any, builder: Any, called: Any, arguments: Any) -> Any:
-            given = called.args[0]
-            if isinstance(given, types.Array):
-                return builder.bitcast(context.make_array(given)(context, builder, arguments[0]).data, pointer)
-            if isinstance(given, types.Integer):
-                return builder.inttoptr(arguments[0], pointer)
-            return builder.bitcast(arguments[0], pointer)
-
-        return kind(memory), codegen
-
-    return at
-
-
-if UNCOMPILED:
-
-    def numbers_of(record: Record) -> Pointer:
-        """Return a pointer to the numbers of a record."""
-        return Pointer(record.numbers)
-
-    whole_numbers_of = numbers_of

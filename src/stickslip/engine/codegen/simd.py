@@ -220,16 +220,6 @@ def _constant(kind: Any, number: int) -> Any:
     return ir.Constant(kind, [number] * WIDTH if kind == WHOLES else number)
 
 
-@intrinsic
-def lanes_at(typingctx: Any, address: Any) -> Any:
-    """Return an address (bytes, a multiple of 64) as a pointer to lanes, which is indexed like an array."""
-
-    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        return builder.inttoptr(args[0], context.get_value_type(signature.return_type))
-
-    return POINTER(types.int64), codegen
-
-
 if UNCOMPILED:
 
     def fused(a: Any, b: Any, c: Any) -> Any:

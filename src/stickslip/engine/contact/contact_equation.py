@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from stickslip.engine.codegen.compiler import ahead, call_state_value, call_value, kernel
-from stickslip.engine.codegen.records import numbers_of
+from stickslip.engine.codegen.pointers import numbers_of
 from stickslip.engine.contact.pieces import note_jump
 from stickslip.engine.series.polynomial import NONE, evaluate, first_descent, restrict, restrict_low
 from stickslip.engine.state import layout as at

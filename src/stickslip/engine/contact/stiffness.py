@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from stickslip.engine.codegen.compiler import ahead, call_state_value, call_value, kernel
-from stickslip.engine.codegen.records import numbers_of
+from stickslip.engine.codegen.pointers import numbers_of
 from stickslip.engine.contact.contact_equation import constants_of
 from stickslip.engine.series.polynomial import copy, evaluate, fill
 from stickslip.engine.state.layout import STATES, TERMS, Floats

@@ -23,7 +23,7 @@ import math
 import numpy as np
 
 from stickslip.engine.codegen.compiler import call_radii, call_value, inlined, kernel
-from stickslip.engine.codegen.records import numbers_of
+from stickslip.engine.codegen.pointers import numbers_of
 from stickslip.engine.contact.contact_equation import constants_of
 from stickslip.engine.series.polynomial import RECIPROCAL, powers_of
 from stickslip.engine.series.step_size import quick_exp2, quick_log2

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from stickslip.engine.codegen.compiler import call_jet, inlined, kernel
-from stickslip.engine.codegen.records import numbers_of
+from stickslip.engine.codegen.pointers import numbers_of
 from stickslip.engine.contact.contact_equation import TIE, constants_of, load_ahead, rate_from_here, rate_on_branch
 from stickslip.engine.contact.law_knots import settle_piece
 from stickslip.engine.contact.pieces import note_jump

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.engine.codegen.compiler import ahead, call_radii, kernel
-from stickslip.engine.codegen.records import numbers_of
+from stickslip.engine.codegen.pointers import numbers_of
 from stickslip.engine.contact.contact_equation import constants_of
 from stickslip.engine.contact.stiffness import contact_at
 from stickslip.engine.radau.stages import WIDTH, yielding, yielding_of_state

@@ -13,7 +13,7 @@ import math
 from typing import Any
 
 from stickslip.engine.codegen.compiler import ahead, kernel
-from stickslip.engine.codegen.records import record_at
+from stickslip.engine.codegen.pointers import record_at
 from stickslip.engine.contact.stiffness import contact_at, states_at_point
 from stickslip.engine.series.polynomial import evaluate, fill
 from stickslip.engine.series.radau_nodes import (

@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.engine.codegen.records import Record, floats_at, floats_inside, inside, record_at, records_at
+from stickslip.engine.codegen.pointers import record_at
+from stickslip.engine.codegen.records import Record, floats_at, floats_inside, inside, records_at
 from stickslip.engine.codegen.uncompiled import UNCOMPILED, lend_memory
 from stickslip.engine.state.layout import (
     STATES,
