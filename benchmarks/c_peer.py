@@ -14,9 +14,9 @@ import numpy as np
 from benchmarks import ours
 from benchmarks.problems import Case
 from benchmarks.runner import Runner, UnavailableError
-from stickslip.engine.codegen.records import FLOATS, Record
-from stickslip.engine.codegen.taylor_series import SIGNATURES, FormulaWriter
 from stickslip.engine.contact_step import certificate
+from stickslip.engine.formula_code.taylor_series import SIGNATURES, FormulaWriter
+from stickslip.engine.memory.records import FLOATS, Record
 from stickslip.engine.state import layout, workspace
 from stickslip.friction.formula.expression import Expression
 

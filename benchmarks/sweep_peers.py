@@ -22,7 +22,7 @@ from stickslip.batch.setups import set_up
 from stickslip.batch.vectorised_problem import member
 from stickslip.batch.workspace import new_workspace, table_of
 from stickslip.bodies import ElasticSlab
-from stickslip.engine.codegen.simd import WIDTH
+from stickslip.engine.memory.simd import WIDTH
 from stickslip.friction import SinusoidalSlip
 from stickslip.scenarios.scenario import Scenario
 

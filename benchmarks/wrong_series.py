@@ -21,7 +21,7 @@ import numpy as np
 
 import stickslip as ss
 from stickslip.engine import compiled_formula
-from stickslip.engine.codegen.taylor_series import FormulaWriter
+from stickslip.engine.formula_code.taylor_series import FormulaWriter
 from stickslip.engine_input import prepare
 from stickslip.friction.formula import expression as e
 from stickslip.friction.formula.operations import FUNCTIONS, OPERATIONS

@@ -42,7 +42,9 @@ ROOMS = {
         ("laws", "custom"),
     ),
     "engine": (
-        ("codegen",),
+        ("compile",),
+        ("memory",),
+        ("formula_code",),
         ("state",),
         ("series",),
         ("compiled_formula", "contact"),
@@ -178,7 +180,7 @@ def test_heavy_libraries_are_known_to_few() -> None:
 
 def test_the_key_of_the_compile_cache_covers_all_that_is_compiled() -> None:
     """Each file with compiled functions, and each file from which such functions take a name."""
-    from stickslip.engine.codegen.cache import NOT_COMPILED, compiled_sources
+    from stickslip.engine.compile.cache import NOT_COMPILED, compiled_sources
 
     covered = set(compiled_sources())
     assert all(path.is_file() for path in covered)

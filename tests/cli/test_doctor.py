@@ -57,7 +57,7 @@ def test_a_sound_installation_is_well(command: Command) -> None:
 
 NOTED = """
 import sys
-from stickslip.engine.codegen.one_module import KernelCache
+from stickslip.engine.compile.one_module import KernelCache
 names, load = set(), KernelCache.load_overload
 def noted(self, *rest):
     names.add(self._function.__qualname__)
@@ -186,7 +186,7 @@ def test_a_run_that_cannot_be_made_is_a_fault(command: Command, monkeypatch: pyt
 
 
 def test_an_engine_that_is_not_compiled_is_a_fault(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("stickslip.engine.codegen.uncompiled.UNCOMPILED", True)
+    monkeypatch.setattr("stickslip.engine.compile.uncompiled.UNCOMPILED", True)
     without_trials(monkeypatch)
     assert fault(command("doctor")).endswith("unset it")
 

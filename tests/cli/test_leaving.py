@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from stickslip.engine.codegen.cache import SLOW
+from stickslip.engine.compile.cache import SLOW
 
 INTERRUPT_AT = """
 import signal, sys

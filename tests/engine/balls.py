@@ -11,8 +11,8 @@ import mpmath
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.codegen.taylor_series import FormulaWriter
-from stickslip.engine.codegen.uncompiled import MATHS
+from stickslip.engine.compile.uncompiled import MATHS
+from stickslip.engine.formula_code.taylor_series import FormulaWriter
 from stickslip.engine.series import ball_radii, sine
 from stickslip.engine.state.layout import Ball
 from stickslip.friction.formula import expression as e

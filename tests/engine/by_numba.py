@@ -11,12 +11,12 @@ import llvmlite.ir as ir
 from numba import cfunc, njit, types
 from numba.extending import intrinsic
 
-from stickslip.engine.codegen import simd
-from stickslip.engine.codegen.numba_privates import signature
-from stickslip.engine.codegen.one_module import LeanCompiler
-from stickslip.engine.codegen.simd import INDEX, LANES, VECTOR, WIDTH
-from stickslip.engine.codegen.taylor_series import SIDE_BY_SIDE, SIGNATURES, FormulaWriter
+from stickslip.engine.compile.numba_privates import signature
+from stickslip.engine.compile.one_module import LeanCompiler
 from stickslip.engine.compiled_formula import NAMES
+from stickslip.engine.formula_code.taylor_series import SIDE_BY_SIDE, SIGNATURES, FormulaWriter
+from stickslip.engine.memory import simd
+from stickslip.engine.memory.simd import INDEX, LANES, VECTOR, WIDTH
 from stickslip.friction.formula.operations import OPERATIONS
 from tests.engine.formulas import FLOATS
 

@@ -11,7 +11,7 @@ import random
 from collections.abc import Iterator
 from pathlib import Path
 
-from stickslip.engine.codegen.taylor_series import ORDER, SIGNATURES, FormulaWriter
+from stickslip.engine.formula_code.taylor_series import ORDER, SIGNATURES, FormulaWriter
 from stickslip.friction import LAWS
 from stickslip.friction.formula import expression as e
 from stickslip.friction.formula.expression import Expression

@@ -10,10 +10,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.engine.codegen.recurrences import Recurrences
-from stickslip.engine.codegen.taylor_series import ORDER, FormulaWriter
-from stickslip.engine.codegen.uncompiled import MATHS
+from stickslip.engine.compile.uncompiled import MATHS
 from stickslip.engine.compiled_formula import CALLED, compile_formula
+from stickslip.engine.formula_code.recurrences import Recurrences
+from stickslip.engine.formula_code.taylor_series import ORDER, FormulaWriter
 from stickslip.engine.series import sine
 from stickslip.friction.formula import expression as e
 from stickslip.friction.formula import functions as elementary

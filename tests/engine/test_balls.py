@@ -14,8 +14,8 @@ from numpy.polynomial import Polynomial
 from numpy.polynomial import polynomial as poly
 
 from stickslip.batch.workspace import apart
-from stickslip.engine.codegen.simd import WIDTH
 from stickslip.engine.compiled_formula import compile_formula
+from stickslip.engine.memory.simd import WIDTH
 from stickslip.engine.series import ball_radii
 from stickslip.engine.series.polynomial import MOST_CROSSINGS, NONE, crossings, evaluate, first_descent, maximum, restrict
 from stickslip.engine.state.layout import TERMS, Ball

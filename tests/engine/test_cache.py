@@ -13,8 +13,8 @@ from unittest.mock import Mock
 
 import pytest
 
-from stickslip.engine.codegen import one_module
-from stickslip.engine.codegen.private_folder import NotPrivateError, private_folder
+from stickslip.engine.compile import one_module
+from stickslip.engine.compile.private_folder import NotPrivateError, private_folder
 
 SCRIPT = """
 import stickslip as ss
@@ -73,9 +73,9 @@ def test_code_from_the_disk_makes_no_compiler_ready_and_code_compiled_after_it_r
 
 KEPT = """
 import ctypes
-from stickslip.engine.codegen import formula_machine
-from stickslip.engine.codegen.cache import CACHE
-from stickslip.engine.codegen.compiler import kernel
+from stickslip.engine.formula_code import formula_machine
+from stickslip.engine.compile.cache import CACHE
+from stickslip.engine.compile.kernels import kernel
 
 @kernel
 def twice(x):
@@ -204,8 +204,8 @@ def test_a_file_in_place_of_a_folder_of_the_cache_is_no_fault(
 
 
 def test_a_full_disk_costs_the_cache_and_one_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    from stickslip.engine.codegen import cache
-    from stickslip.engine.codegen.compiler import kernel
+    from stickslip.engine.compile import cache
+    from stickslip.engine.compile.kernels import kernel
 
     def full(path: Path, write: Callable[[Path], object]) -> Path:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
@@ -217,7 +217,7 @@ def test_a_full_disk_costs_the_cache_and_one_line(monkeypatch: pytest.MonkeyPatc
 
 
 def test_the_cache_keeps_the_files_that_were_used_last(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from stickslip.engine.codegen import cache
+    from stickslip.engine.compile import cache
 
     monkeypatch.setenv("STICKSLIP_CACHE_DIR", str(tmp_path))
     folder = tmp_path / "compiled-0" / "plain" / "formulas_0"
@@ -296,7 +296,7 @@ def test_compiling_the_engine_is_announced(
     spent: float, name: str, has_engine: bool, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The engine takes long to compile; of others something is said once they have taken long, and of a small one nothing."""
-    from stickslip.engine.codegen import cache
+    from stickslip.engine.compile import cache
     from stickslip.engine.loop import run_until
     from stickslip.engine.series.polynomial import total
 

@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import stickslip as ss
-from stickslip.engine.codegen.taylor_series import FormulaWriter
+from stickslip.engine.formula_code.taylor_series import FormulaWriter
 
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)
 EXCESS = 2e6

@@ -12,7 +12,7 @@ from numba import njit
 from scipy.integrate import solve_ivp
 
 import stickslip as ss
-from stickslip.engine.codegen.taylor_series import ORDER
+from stickslip.engine.formula_code.taylor_series import ORDER
 from stickslip.engine.series.sine import sine, versine
 from stickslip.friction.formula.expression import RATE, SLIP
 from stickslip.friction.formula.functions import COMPOSED, expm1, log1p

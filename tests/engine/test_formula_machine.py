@@ -11,10 +11,10 @@ import pytest
 from numpy.typing import NDArray
 
 from stickslip.batch.workspace import apart
-from stickslip.engine.codegen.formula_machine import MachineCode
-from stickslip.engine.codegen.simd import WIDTH
-from stickslip.engine.codegen.taylor_series import SIDE_BY_SIDE, SIGNATURES, FormulaWriter
 from stickslip.engine.compiled_formula import CALLED, NAMES
+from stickslip.engine.formula_code.formula_machine import MachineCode
+from stickslip.engine.formula_code.taylor_series import SIDE_BY_SIDE, SIGNATURES, FormulaWriter
+from stickslip.engine.memory.simd import WIDTH
 from stickslip.friction import LAWS
 from tests.engine.by_numba import by_numba
 from tests.engine.drawn import example_law

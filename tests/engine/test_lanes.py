@@ -12,9 +12,9 @@ import pytest
 from numba import njit
 
 from stickslip.batch.workspace import apart
-from stickslip.engine.codegen.compiler import ahead, floats, integers
-from stickslip.engine.codegen.pointers import rows_of
-from stickslip.engine.codegen.simd import WIDTH, chosen, store_across
+from stickslip.engine.memory.addresses import ahead, floats, integers
+from stickslip.engine.memory.pointers import rows_of
+from stickslip.engine.memory.simd import WIDTH, chosen, store_across
 from stickslip.engine.series.polynomial import bound_below, magnitude, moment, multiply, powers_of, total
 from stickslip.engine.series.sine import sine, versine
 from stickslip.engine.series.step_size import length_at

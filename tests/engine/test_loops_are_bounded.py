@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.engine.codegen.cache import compiled_sources
-from stickslip.engine.codegen.taylor_series import SIGNATURES, FormulaWriter
+from stickslip.engine.compile.cache import compiled_sources
+from stickslip.engine.formula_code.taylor_series import SIGNATURES, FormulaWriter
 from stickslip.engine.series.polynomial import MOST_CROSSINGS, NONE, crossings, first_descent, maximum
 from stickslip.engine.state.layout import TERMS
 from stickslip.friction.piecewise import PiecewiseLaw

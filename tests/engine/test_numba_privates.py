@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 PRINTED = (
-    "from stickslip.engine.codegen import numba_privates as found; print(repr(found.WHY_PLAIN), hasattr(found, 'JITCodeLibrary'))"
+    "from stickslip.engine.compile import numba_privates as found; print(repr(found.WHY_PLAIN), hasattr(found, 'JITCodeLibrary'))"
 )
 
 MISSING = {

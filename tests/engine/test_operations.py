@@ -10,7 +10,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from stickslip.engine.codegen.taylor_series import ORDER
+from stickslip.engine.formula_code.taylor_series import ORDER
 from stickslip.foundation.errors import InputError
 from stickslip.friction.formula.bounds import bounds
 from stickslip.friction.formula.denominators import limited

@@ -16,8 +16,8 @@ import pytest
 from numba import njit, types
 from numba.core.errors import TypingError
 
-from stickslip.engine.codegen.cache import compiled_sources, key_of, read_sealed, remembered_key, write_sealed
-from stickslip.engine.codegen.one_module import LeanCompiler
+from stickslip.engine.compile.cache import compiled_sources, key_of, read_sealed, remembered_key, write_sealed
+from stickslip.engine.compile.one_module import LeanCompiler
 from tests.engine.uncompiled_runs import RUNS, results
 
 TEXT = b'''"""Say what this is."""
@@ -121,7 +121,7 @@ def test_plain_python_gives_what_compiled_code_gives(uncompiled: dict[str, dict[
 
 
 def test_a_place_outside_an_array_is_an_error() -> None:
-    from stickslip.engine.codegen.uncompiled import Pointer, lend_memory, pointer_at
+    from stickslip.engine.compile.uncompiled import Pointer, lend_memory, pointer_at
 
     numbers = np.arange(6.0)
     lend_memory(numbers)

@@ -16,7 +16,7 @@ from stickslip.batch.long_member import run_alone
 from stickslip.batch.setups import Alike, alike, set_up
 from stickslip.batch.vectorised_problem import Values, are_fine, groups, member, why_not
 from stickslip.batch.workspace import LARGEST_CAPACITY, new_workspace, table_of
-from stickslip.engine.codegen.simd import WIDTH
+from stickslip.engine.memory.simd import WIDTH
 from stickslip.engine.on_demand import lend_part
 from stickslip.engine.state.layout import Floats, Integers, Stop
 from stickslip.foundation.errors import InputError

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from stickslip.batch.kernels.reduction import COLUMNS
 from stickslip.bodies import ElasticSlab
 from stickslip.contact.rules.selection import OF_LEVELS
-from stickslip.engine.codegen.uncompiled import UNCOMPILED
+from stickslip.engine.compile.uncompiled import UNCOMPILED
 from stickslip.engine.state.layout import Floats
 from stickslip.engine_input.branch_table import is_algebraic
 from stickslip.engine_input.limits import LARGEST_SHARE, check_shortest_event

@@ -11,7 +11,7 @@ from stickslip.batch.kernels.lane_block import Block
 from stickslip.batch.kernels.lanes import Waits
 from stickslip.batch.kernels.runs import Stage
 from stickslip.batch.setups import Setups
-from stickslip.engine.codegen.simd import WIDTH
+from stickslip.engine.memory.simd import WIDTH
 from stickslip.engine.on_demand import lend_parts_of_batch
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, EchoNode, Floats, Integers, Params, Setup, Store

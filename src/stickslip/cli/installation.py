@@ -108,12 +108,12 @@ def terminal() -> Finding:
 def engine() -> Iterator[Finding]:
     """Yield the compiler with the processor for which it compiles, and the cache of compiled code. Imports the compiler."""
     with redirect_stderr(io.StringIO()):  # a cache that cannot be used is reported below, with the cure
-        from stickslip.engine.codegen import cache
+        from stickslip.engine.compile import cache
     from llvmlite import __version__ as version
     from llvmlite.binding import get_host_cpu_name
 
-    from stickslip.engine.codegen.numba_privates import WHY_PLAIN
-    from stickslip.engine.codegen.uncompiled import UNCOMPILED
+    from stickslip.engine.compile.numba_privates import WHY_PLAIN
+    from stickslip.engine.compile.uncompiled import UNCOMPILED
 
     way = f", plainly ({WHY_PLAIN}): first starts take some three times as long" if WHY_PLAIN else ""
     shown = f"llvmlite {version} for {get_host_cpu_name()}{way}"
@@ -124,7 +124,7 @@ def engine() -> Iterator[Finding]:
 
 def compiled_code(root: Path, name: str) -> Finding:
     """Return how much compiled code is kept in a folder of the cache; a folder that cannot be written is a fault."""
-    from stickslip.engine.codegen.private_folder import private_folder
+    from stickslip.engine.compile.private_folder import private_folder
 
     try:
         folder = private_folder(root / name)

@@ -10,11 +10,11 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from stickslip.engine.codegen.formula_machine import MachineCode
-from stickslip.engine.codegen.records import Floats
-from stickslip.engine.codegen.simd import fused
-from stickslip.engine.codegen.taylor_series import ORDER, SIDE_BY_SIDE, SIGNATURES, FormulaWriter
-from stickslip.engine.codegen.uncompiled import MATHS, UNCOMPILED, as_python, handle_of
+from stickslip.engine.compile.uncompiled import MATHS, UNCOMPILED, as_python, handle_of
+from stickslip.engine.formula_code.formula_machine import MachineCode
+from stickslip.engine.formula_code.taylor_series import ORDER, SIDE_BY_SIDE, SIGNATURES, FormulaWriter
+from stickslip.engine.memory.records import Floats
+from stickslip.engine.memory.simd import fused
 from stickslip.engine.series import ball_radii
 from stickslip.engine.series.sine import sine, versine
 from stickslip.friction.formula.expression import Expression
@@ -28,7 +28,7 @@ NAMES: dict[str, Any] = {**vars(ball_radii), **CALLED, "fused": fused, "sine": s
 
 
 class CompiledFormula:
-    """The compiled functions of a friction formula (see `codegen.taylor_series`); `size` is the number of constants they need.
+    """The compiled functions of a friction formula (see `formula_code.taylor_series`); `size` is the number of constants they need.
 
     Each function is written and compiled when it is first needed.
     """

@@ -40,7 +40,7 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.codegen.compiler import kernel
+from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import needs_branches
 from stickslip.engine.contact.pieces import xi_at
 from stickslip.engine.contact.stiffness import is_implicit

@@ -8,9 +8,10 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
-from stickslip.engine.codegen.compiler import PART, address_of, kernel
-from stickslip.engine.codegen.uncompiled import UNCOMPILED, handle_of
+from stickslip.engine.compile.kernels import address_of, kernel
+from stickslip.engine.compile.uncompiled import UNCOMPILED, handle_of
 from stickslip.engine.folds.fold_ahead import way_to_fold
+from stickslip.engine.memory.addresses import PART
 from stickslip.engine.radau.step import collocate
 from stickslip.engine.state.layout import Counts, EnginePart, Integers, Params, Task
 from stickslip.engine.state.workspace import Run, borrow

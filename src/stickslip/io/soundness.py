@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.codegen.records import Record
+from stickslip.engine.memory.records import Record
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Branch, Cause, Counts, HistoryPiece, Incoming, Setup, State, Stop
 from stickslip.engine.state.workspace import WORK_ROWS, counts_in

@@ -9,7 +9,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.engine.codegen.compiler import kernel
+from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.state.layout import Integers, Store
 from stickslip.engine_input.forcing import inflow_of
 from stickslip.foundation.arrays import Floats

@@ -7,9 +7,9 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.codegen.compiler import kernel
-from stickslip.engine.codegen.pointers import record_at
-from stickslip.engine.codegen.records import Record
+from stickslip.engine.compile.kernels import kernel
+from stickslip.engine.memory.pointers import record_at
+from stickslip.engine.memory.records import Record
 from stickslip.engine.series.polynomial import MOST_CROSSINGS, evaluate
 from stickslip.engine.state.layout import Floats, HistoryPiece, Integers
 from stickslip.engine.state.workspace import pieces_in

@@ -9,7 +9,7 @@ from dataclasses import dataclass, fields, replace
 from functools import cache
 from pathlib import Path
 
-from stickslip.engine.codegen.cache import SOURCES
+from stickslip.engine.compile.cache import SOURCES
 from stickslip.engine.state.layout import Counts, Floats, Integers, Stop
 from stickslip.foundation.formatting import brief
 

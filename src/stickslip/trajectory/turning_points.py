@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from stickslip.engine.codegen.compiler import inlined, kernel
-from stickslip.engine.codegen.pointers import record_at
-from stickslip.engine.codegen.records import Record, floats_inside
+from stickslip.engine.compile.kernels import inlined, kernel
+from stickslip.engine.memory.pointers import record_at
+from stickslip.engine.memory.records import Record, floats_inside
 from stickslip.engine.series.polynomial import MOST_CROSSINGS, bound_below, crossings, evaluate, total
 from stickslip.engine.state.layout import TERMS, Floats, HistoryPiece, Integers
 from stickslip.engine.state.workspace import pieces_in

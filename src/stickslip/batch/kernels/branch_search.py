@@ -11,7 +11,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stickslip.engine.codegen.compiler import ahead, bits_of, call_value, float_of, floats, kernel
+from stickslip.engine.compile.kernels import kernel
+from stickslip.engine.memory.addresses import ahead, bits_of, call_value, float_of, floats
 from stickslip.engine.state.layout import Floats, Integers
 from stickslip.engine.state.workspace import branches_in
 

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from stickslip.engine.codegen.compiler import inlined
-from stickslip.engine.codegen.pointers import all_lanes, one_lane
-from stickslip.engine.codegen.records import Record, floats_inside, inside
+from stickslip.engine.compile.kernels import inlined
 from stickslip.engine.contact.contact_equation import constants_of
 from stickslip.engine.contact_step.certificate import RATIOS, SHRUNK, SHRUNK_SLOPE
+from stickslip.engine.memory.pointers import all_lanes, one_lane
+from stickslip.engine.memory.records import Record, floats_inside, inside
 from stickslip.engine.series.polynomial import powers_of
 from stickslip.engine.state.layout import TERMS, Ball, Floats, HistoryPiece, LawValue, SeriesInput, State
 from stickslip.engine.state.workspace import Run

@@ -22,9 +22,7 @@ from stickslip.batch.kernels.lane_block import (
     put_in,
     take_out,
 )
-from stickslip.engine.codegen.compiler import ahead, call_jet, call_radii, call_values, inlined, integers, kernel
-from stickslip.engine.codegen.pointers import numbers_of, rows_of
-from stickslip.engine.codegen.simd import WIDTH, chosen, first_of, store_across
+from stickslip.engine.compile.kernels import inlined, kernel
 from stickslip.engine.contact.pieces import note_slip
 from stickslip.engine.contact.stiffness import CHECKED, judge_stiffness
 from stickslip.engine.contact_step.certificate import (
@@ -55,6 +53,9 @@ from stickslip.engine.contact_step.negative_friction import goes_below_zero
 from stickslip.engine.contact_step.step_events import knot_crossing
 from stickslip.engine.contact_step.taylor_step import duration_of, guess_from, note_shock
 from stickslip.engine.loop import ROOM
+from stickslip.engine.memory.addresses import ahead, call_jet, call_radii, call_values, integers
+from stickslip.engine.memory.pointers import numbers_of, rows_of
+from stickslip.engine.memory.simd import WIDTH, chosen, first_of, store_across
 from stickslip.engine.series.polynomial import NONE, bound_below, moment, multiply, powers_of, scale_low, shift_low, total
 from stickslip.engine.series.step_size import FAR_FROM_GUESS, length_at, usable_length
 from stickslip.engine.state.layout import TERMS, HistoryPiece, Integers, State

@@ -10,10 +10,10 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from stickslip.engine.codegen.compiler import kernel
-from stickslip.engine.codegen.pointers import numbers_of, record_at
-from stickslip.engine.codegen.records import Record
+from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import friction_of
+from stickslip.engine.memory.pointers import numbers_of, record_at
+from stickslip.engine.memory.records import Record
 from stickslip.engine.series.polynomial import evaluate, integral
 from stickslip.engine.state.layout import Floats, HistoryPiece, Integers, Stop
 from stickslip.engine.state.workspace import Run, pieces_in

@@ -18,10 +18,11 @@ from numba.extending import intrinsic
 
 from stickslip.batch.kernels.lanes import Side, Waits, step_side_by_side
 from stickslip.batch.kernels.reduction import COLUMNS, Found, Reduced, fold_events, fold_first, fold_whole, reached, reduced_at
-from stickslip.engine.codegen.compiler import address_of, ahead, call_prepare, floats, inlined, integers, kernel
-from stickslip.engine.codegen.pointers import numbers_of, whole_numbers_of
-from stickslip.engine.codegen.simd import WIDTH
+from stickslip.engine.compile.kernels import address_of, inlined, kernel
 from stickslip.engine.loop import run_until
+from stickslip.engine.memory.addresses import ahead, call_prepare, floats, integers
+from stickslip.engine.memory.pointers import numbers_of, whole_numbers_of
+from stickslip.engine.memory.simd import WIDTH
 from stickslip.engine.state.layout import Counts, Floats, Integers, Params, State, Stop
 from stickslip.engine.state.workspace import ADDRESSES, RUN_SIZE, Run, borrow
 from stickslip.trajectory.slip_events import EventTurns, events_in, group_turns

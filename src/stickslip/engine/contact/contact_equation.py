@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.codegen.compiler import ahead, call_state_value, call_value, kernel
-from stickslip.engine.codegen.pointers import numbers_of
+from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.pieces import note_jump
+from stickslip.engine.memory.addresses import ahead, call_state_value, call_value
+from stickslip.engine.memory.pointers import numbers_of
 from stickslip.engine.series.polynomial import NONE, evaluate, first_descent, restrict, restrict_low
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Branch, Cause, Floats, Incoming, Stop

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from stickslip.engine.codegen.compiler import kernel
+from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import NEAR_KNOT, friction_of, is_knot, piece_at
 from stickslip.engine.series.polynomial import NONE, first_descent
 from stickslip.engine.state import layout as at

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.codegen.compiler import inlined, kernel
+from stickslip.engine.compile.kernels import inlined, kernel
 from stickslip.engine.series.polynomial import degree, fill
 from stickslip.engine.state.workspace import Run
 

@@ -6,7 +6,7 @@ Let g be what the contact equation lacks along a step, for the polynomials of th
 
 The first n Taylor coefficients of g vanish, because the series of the step was made so: n is ORDER + 1, and ORDER with inertia. If
 g is analytic on the disc |xi| <= r, and |g| <= M there, then |g(xi)| <= M (xi / r)^n on the disc. M follows from one evaluation of
-the law's formula in ball arithmetic (`engine.codegen.balls`). Whatever a law hides, a singularity, a narrow feature, a number that
+the law's formula in ball arithmetic (`formula_code.balls`). Whatever a law hides, a singularity, a narrow feature, a number that
 overflows, makes M large or infinite, wherever it lies in the disc.
 
 A bound counts as a share: the slip rate that it makes, in units of the tolerance times the slip rate of the step. That the first
@@ -22,9 +22,10 @@ import math
 
 import numpy as np
 
-from stickslip.engine.codegen.compiler import call_radii, call_value, inlined, kernel
-from stickslip.engine.codegen.pointers import numbers_of
+from stickslip.engine.compile.kernels import inlined, kernel
 from stickslip.engine.contact.contact_equation import constants_of
+from stickslip.engine.memory.addresses import call_radii, call_value
+from stickslip.engine.memory.pointers import numbers_of
 from stickslip.engine.series.polynomial import RECIPROCAL, powers_of
 from stickslip.engine.series.step_size import quick_exp2, quick_log2
 from stickslip.engine.state.layout import TERMS, Ball, Floats, LawValue, SeriesInput, Stop

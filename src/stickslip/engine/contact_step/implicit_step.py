@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.codegen.compiler import ahead, call_part, kernel
+from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import onset_of_slip
 from stickslip.engine.contact.law_knots import settle_piece
 from stickslip.engine.contact.pieces import record
@@ -17,6 +17,7 @@ from stickslip.engine.contact_step.keep_step import keep_step
 from stickslip.engine.contact_step.negative_friction import last_place_above_zero, place_below_zero
 from stickslip.engine.contact_step.step_events import Cut, cut_at_first_event, resolve, stretch
 from stickslip.engine.contact_step.taylor_step import note_shock
+from stickslip.engine.memory.addresses import ahead, call_part
 from stickslip.engine.series.polynomial import NONE, copy, fill, scale, total, turn_over
 from stickslip.engine.series.radau_nodes import POINTS
 from stickslip.engine.state import layout as at

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.codegen.compiler import inlined, kernel
+from stickslip.engine.compile.kernels import inlined, kernel
 from stickslip.engine.contact.contact_equation import friction_at
 from stickslip.engine.contact.pieces import record
 from stickslip.engine.contact_step.step_events import growth

@@ -6,7 +6,7 @@ two ends, and friction that drives slip must not pass unnoticed.
 
 from __future__ import annotations
 
-from stickslip.engine.codegen.compiler import kernel
+from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.stiffness import contact_at, states_in_step
 from stickslip.engine.contact_step.certificate import NEGLIGIBLE, rough
 from stickslip.engine.contact_step.step_events import growth

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from stickslip.engine.codegen.compiler import inlined, kernel
+from stickslip.engine.compile.kernels import inlined, kernel
 from stickslip.engine.contact.contact_equation import TIE
 from stickslip.engine.contact.law_knots import pass_rate_knot, rate_knot_crossing
 from stickslip.engine.contact_step.stick_or_slip import come_to_rest

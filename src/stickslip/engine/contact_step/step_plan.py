@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from stickslip.engine.codegen.compiler import call_part, kernel
+from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import TIE, branch_exit
 from stickslip.engine.folds.fold import (
     SHORTEST_FOLD,
@@ -16,6 +16,7 @@ from stickslip.engine.folds.fold import (
     reach_end,
     starts_at_fold,
 )
+from stickslip.engine.memory.addresses import call_part
 from stickslip.engine.state.layout import NearFold, Task
 from stickslip.engine.state.workspace import Run
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.codegen.compiler import ahead, kernel
+from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import (
     SAME_LEVEL,
     TIE,
@@ -17,6 +17,7 @@ from stickslip.engine.contact.contact_equation import (
 )
 from stickslip.engine.contact.pieces import note_jump, record
 from stickslip.engine.contact.stiffness import turn_states
+from stickslip.engine.memory.addresses import ahead
 from stickslip.engine.series.polynomial import evaluate, fill, restrict, scale
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Cause, Floats

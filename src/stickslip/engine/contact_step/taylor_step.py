@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.codegen.compiler import call_jet, inlined, kernel
-from stickslip.engine.codegen.pointers import numbers_of
+from stickslip.engine.compile.kernels import inlined, kernel
 from stickslip.engine.contact.contact_equation import TIE, constants_of, load_ahead, rate_from_here, rate_on_branch
 from stickslip.engine.contact.law_knots import settle_piece
 from stickslip.engine.contact.pieces import note_jump
@@ -20,6 +19,8 @@ from stickslip.engine.contact_step.negative_friction import goes_below_zero
 from stickslip.engine.contact_step.step_events import cut_at_first_event, growth, resolve, stretch
 from stickslip.engine.contact_step.step_plan import StepPlan, plan_step, plan_to_moving_fold
 from stickslip.engine.folds.fold import last_to_fold, reach_end, straight_from_fold, straight_to_fold
+from stickslip.engine.memory.addresses import call_jet
+from stickslip.engine.memory.pointers import numbers_of
 from stickslip.engine.series.polynomial import multiply, total
 from stickslip.engine.series.step_size import usable_length
 from stickslip.engine.state import layout as at

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.codegen.compiler import kernel
-from stickslip.engine.codegen.pointers import numbers_of
+from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import end_branch, friction_at, is_knot, rate_on_branch, towards
 from stickslip.engine.contact.pieces import note_degree, phase_at
+from stickslip.engine.memory.pointers import numbers_of
 from stickslip.engine.series.polynomial import copy, evaluate, fill, restrict, total
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Cause, Floats, NearFold

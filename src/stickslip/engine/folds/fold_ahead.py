@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from stickslip.engine.codegen.compiler import kernel
+from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.series.polynomial import NONE
 from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.engine.state.workspace import Run

@@ -16,10 +16,11 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.codegen.compiler import ahead, call_radii, kernel
-from stickslip.engine.codegen.pointers import numbers_of
+from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import constants_of
 from stickslip.engine.contact.stiffness import contact_at
+from stickslip.engine.memory.addresses import ahead, call_radii
+from stickslip.engine.memory.pointers import numbers_of
 from stickslip.engine.radau.stages import WIDTH, yielding, yielding_of_state
 from stickslip.engine.series.polynomial import RECIPROCAL, integral, restrict
 from stickslip.engine.series.radau_nodes import POINT, STAGES

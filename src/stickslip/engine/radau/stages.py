@@ -12,9 +12,10 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from stickslip.engine.codegen.compiler import ahead, kernel
-from stickslip.engine.codegen.pointers import record_at
+from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.stiffness import contact_at, states_at_point
+from stickslip.engine.memory.addresses import ahead
+from stickslip.engine.memory.pointers import record_at
 from stickslip.engine.series.polynomial import evaluate, fill
 from stickslip.engine.series.radau_nodes import (
     DERIVATIVE,

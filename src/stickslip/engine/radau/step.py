@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.codegen.compiler import ahead, kernel
+from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import TIE, load_ahead
 from stickslip.engine.contact.stiffness import contact_at, hanging_rate, states_at_point, states_in_step, turn_states
+from stickslip.engine.memory.addresses import ahead
 from stickslip.engine.radau.proof import passes_zero, prove_step
 from stickslip.engine.radau.stages import (
     defects,

@@ -1,4 +1,4 @@
-"""Functions that the ball arithmetic of formulas calls (see `engine.codegen.balls`): radii of elementary functions on a disc.
+"""Functions that the ball arithmetic of formulas calls (see `engine.formula_code.balls`): radii of elementary functions on a disc.
 
 Each returns an upper bound, which may exceed the exact radius by some per cent: `engine.contact_step.certificate` takes the root of
 order 19 of what they add up to. All of them are huge, infinite or not a number where the disc reaches a singularity, free of
@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from stickslip.engine.codegen.simd import power_of_two
-from stickslip.engine.codegen.uncompiled import MATHS, UNCOMPILED
+from stickslip.engine.compile.uncompiled import MATHS, UNCOMPILED
+from stickslip.engine.memory.simd import power_of_two
 
 maths: Any = MATHS if UNCOMPILED else math
 

@@ -1,7 +1,7 @@
 """Polynomials on a piece of the history: TERMS coefficients, ascending, in the piece's own variable, usually on [0, 1].
 
 Coefficients come as pointers (in the engine) or as arrays (in tables made from a history): both are indexed alike. Functions
-without a decision also work on several polynomials side by side (pointers to lanes of `codegen.simd`). Sums are taken in four
+without a decision also work on several polynomials side by side (pointers to lanes of `memory.simd`). Sums are taken in four
 fixed parts, which shortens the chain of additions that depend on each other and gives lanes the same bits as single floats.
 """
 
@@ -12,7 +12,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.codegen.compiler import inlined, kernel
+from stickslip.engine.compile.kernels import inlined, kernel
 from stickslip.engine.state.layout import TERMS
 
 Floats = NDArray[np.float64]

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from stickslip.engine.codegen.compiler import kernel
+from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.state.layout import TERMS, Floats
 
 STAGES = 9

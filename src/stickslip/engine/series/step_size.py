@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from stickslip.engine.codegen.compiler import inlined, kernel
-from stickslip.engine.codegen.simd import bits_as_number, power_of_two
+from stickslip.engine.compile.kernels import inlined, kernel
+from stickslip.engine.memory.simd import bits_as_number, power_of_two
 from stickslip.engine.state.layout import TERMS, Floats
 
 UNITS = 2.0**52

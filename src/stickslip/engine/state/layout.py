@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.codegen.records import Record, floats_inside
-from stickslip.engine.codegen.taylor_series import ORDER
+from stickslip.engine.formula_code.taylor_series import ORDER
+from stickslip.engine.memory.records import Record, floats_inside
 from stickslip.friction.formula import expression
 
 Floats = NDArray[np.float64]
@@ -157,7 +157,7 @@ class Counts(Record):
 
 
 class SeriesInput(Record):
-    """Hold the input of a law's compiled series (`codegen.taylor_series`); generated code reads it by number, k[0], k[1], ..."""
+    """Hold the input of a law's compiled series (`taylor_series`); generated code reads it by number, k[0], k[1], ..."""
 
     damping: float  # k[0], Pa s/m or N s/m: as in `Params`
     normal: float  # k[1], Pa or N: as in `Params`
@@ -174,7 +174,7 @@ class SeriesInput(Record):
 
 
 class Ball(Record):
-    """Hold the input and output of a law's compiled radii (`codegen.balls`); generated code reads it by number, k[0], k[1], ..."""
+    """Hold the input and output of a law's compiled radii (`balls`); generated code reads it by number, k[0], k[1], ..."""
 
     slip: float  # k[0], m: radius of the disc in which the law slip varies
     rate: float  # k[1], m/s: radius of that of the slip rate

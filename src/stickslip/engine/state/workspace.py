@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.engine.codegen.pointers import record_at
-from stickslip.engine.codegen.records import Record, floats_at, floats_inside, inside, records_at
-from stickslip.engine.codegen.uncompiled import UNCOMPILED, lend_memory
+from stickslip.engine.compile.uncompiled import UNCOMPILED, lend_memory
+from stickslip.engine.memory.pointers import record_at
+from stickslip.engine.memory.records import Record, floats_at, floats_inside, inside, records_at
 from stickslip.engine.state.layout import (
     STATES,
     TERMS,

@@ -14,8 +14,9 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.codegen.compiler import bits_of, kernel
+from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import rest_limit
+from stickslip.engine.memory.addresses import bits_of
 from stickslip.engine.series.polynomial import copy, fill, maximum, mean_of, restrict
 from stickslip.engine.state.layout import NEVER, TERMS, EchoNode, HistoryPiece, Integers
 from stickslip.engine.state.workspace import Run, borrow

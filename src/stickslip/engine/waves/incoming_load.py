@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.codegen.compiler import call_part, kernel
+from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.pieces import note_degree
+from stickslip.engine.memory.addresses import call_part
 from stickslip.engine.series.polynomial import fill, mean_of
 from stickslip.engine.state.layout import TERMS, Cause, Incoming, Task
 from stickslip.engine.state.workspace import Run

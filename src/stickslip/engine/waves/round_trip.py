@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.codegen.compiler import call_part, kernel
+from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import rest_limit
+from stickslip.engine.memory.addresses import call_part
 from stickslip.engine.series.polynomial import maximum, total
 from stickslip.engine.state.layout import NEVER, EnginePart, Stop, Task
 from stickslip.engine.state.workspace import Run

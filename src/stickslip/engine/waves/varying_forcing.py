@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from stickslip.engine.codegen.compiler import kernel
+from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.pieces import xi_at
 from stickslip.engine.series.polynomial import RECIPROCAL, copy, maximum, restrict, total
 from stickslip.engine.state.layout import NEVER, TERMS, Cause

@@ -205,7 +205,7 @@ class Warming:
 
     def _warm(self) -> None:
         try:
-            from stickslip.engine.codegen.cache import announce_by, tell
+            from stickslip.engine.compile.cache import announce_by, tell
             from stickslip.explorer.model.strip import strip_of
             from stickslip.run.simulate import simulate
             from stickslip.scenarios.scenario import load_scenario

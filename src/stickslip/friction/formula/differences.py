@@ -1,7 +1,7 @@
 """Compute friction on arrays: its value and slopes, and its difference from rest without cancellation.
 
 The difference is mu(u + du, v) - mu(u, 0), which keeps its digits where the two are nearly equal. The rules for each node (sin(r+e)
-- sin(r), expm1, log1p ...) are those that `stickslip.engine.codegen.taylor_series` compiles. Here numpy evaluates them, for
+- sin(r), expm1, log1p ...) are those that `stickslip.engine.formula_code.taylor_series` compiles. Here numpy evaluates them, for
 quantities that are computed once per problem rather than once per step. Near the critical value of a rate law all folds of the
 contact equation lie within 3e-4 Pa at a load of 8e7 Pa: they are visible only in differences.
 """

@@ -2,7 +2,7 @@
 
 A law states its formula once, with ordinary operators and the functions of `functions`. Called with numbers or arrays, the
 formula returns a number or an array. Called with the symbols `SLIP`, `RATE`, `STATE` and `Parameter`, it returns an `Expression`
-tree, from which `stickslip.engine.codegen.taylor_series` generates compiled code. No text is ever evaluated as Python here.
+tree, from which `stickslip.engine.formula_code.taylor_series` generates compiled code. No text is ever evaluated as Python here.
 """
 
 from __future__ import annotations

@@ -29,8 +29,8 @@ from pathlib import Path
 import numba
 import platformdirs
 
-from stickslip.engine.codegen.private_folder import private_folder
-from stickslip.engine.codegen.uncompiled import UNCOMPILED
+from stickslip.engine.compile.private_folder import private_folder
+from stickslip.engine.compile.uncompiled import UNCOMPILED
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
 

@@ -11,16 +11,17 @@ import hashlib
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numba
 from numba import types
 from numba.extending import typeof_impl
 
-from stickslip.engine.codegen.cache import CACHE, cache_folder, read_sealed, remove, tell, write_sealed
-from stickslip.engine.codegen.numba_privates import WHY_PLAIN
-from stickslip.engine.codegen.uncompiled import UNCOMPILED
+from stickslip.engine.compile.cache import CACHE, cache_folder, read_sealed, remove, tell, write_sealed
+from stickslip.engine.compile.numba_privates import WHY_PLAIN
+from stickslip.engine.compile.uncompiled import UNCOMPILED, as_python
 
+F = TypeVar("F", bound=Callable[..., Any])
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "nogil": True, "fastmath": {"contract"}, "no_cfunc_wrapper": True}
 """Options of all kernels: divisions by zero give infinity or NaN as in numpy, the interpreter's lock is released, and a product and
 a sum may be fused into one operation."""
@@ -72,7 +73,7 @@ def _checksum_of(path: Path) -> bytes:
 if WHY_PLAIN and not UNCOMPILED:
     dispatchers = Plain().dispatchers
 elif not UNCOMPILED:
-    from stickslip.engine.codegen.one_module import dispatchers
+    from stickslip.engine.compile.one_module import dispatchers
 
 
 class Kernel:
@@ -92,3 +93,26 @@ class Kernel:
 def _type_of_kernel(kernel: Kernel, context: Any) -> Any:
     """Return the type that compiled code sees when it calls a kernel: that of its part."""
     return types.Dispatcher(kernel.part)
+
+
+def kernel(function: F) -> F:
+    """Return a function of the engine in compiled form, with its machine code kept in the cache."""
+    return _compiled(function)
+
+
+def inlined(function: F) -> F:
+    """Return a compiled function, like `kernel`, that is always inlined: for small functions in the innermost loops."""
+    return _compiled(function, forceinline=True)
+
+
+def _compiled(function: F, **options: bool) -> F:
+    """Return a function as a `Kernel`, or as plain Python if the compiler is switched off."""
+    compiled: Any = as_python(function) if UNCOMPILED else Kernel(function, **options)
+    return compiled
+
+
+def address_of(function: Any, arguments: tuple[Any, ...]) -> int:
+    """Return the address of a kernel's machine code, which lives as long as the kernel. Compiles it if it is new."""
+    function.entry.compile(arguments)
+    compiled = function.entry.overloads[arguments]
+    return int(compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name))

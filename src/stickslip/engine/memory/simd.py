@@ -16,8 +16,8 @@ import numpy as np
 from numba import types
 from numba.extending import intrinsic, lower_builtin, lower_cast, models, register_model
 
-from stickslip.engine.codegen.numba_privates import AbstractTemplate, infer_global, signature
-from stickslip.engine.codegen.uncompiled import UNCOMPILED
+from stickslip.engine.compile.numba_privates import AbstractTemplate, infer_global, signature
+from stickslip.engine.compile.uncompiled import UNCOMPILED
 
 WIDTH = 8
 """Number of lanes, which fills the widest registers of today's processors; narrower processors use several registers."""

@@ -13,7 +13,7 @@ from typing import Any
 
 import numba
 
-from stickslip.engine.codegen.uncompiled import UNCOMPILED
+from stickslip.engine.compile.uncompiled import UNCOMPILED
 from stickslip.foundation.errors import InputError
 
 WHY_PLAIN = ""

@@ -15,10 +15,10 @@ import llvmlite.ir as ir
 from numba import types
 from numba.extending import intrinsic, lower_builtin, lower_getattr_generic, lower_setattr_generic, models, register_model
 
-from stickslip.engine.codegen.numba_privates import AbstractTemplate, AttributeTemplate, infer_getattr, infer_global, signature
-from stickslip.engine.codegen.records import FLOATS, INTEGERS, Record, Slot
-from stickslip.engine.codegen.simd import LANES, POINTER, WHOLE, WIDTH
-from stickslip.engine.codegen.uncompiled import UNCOMPILED, Pointer
+from stickslip.engine.compile.numba_privates import AbstractTemplate, AttributeTemplate, infer_getattr, infer_global, signature
+from stickslip.engine.compile.uncompiled import UNCOMPILED, Pointer
+from stickslip.engine.memory.records import FLOATS, INTEGERS, Record, Slot
+from stickslip.engine.memory.simd import LANES, POINTER, WHOLE, WIDTH
 
 
 class LaneRow(types.Type):  # type: ignore[misc] # numba is untyped

@@ -18,7 +18,7 @@ import numpy as np
 from numba import types
 from numpy.typing import NDArray
 
-from stickslip.engine.codegen.uncompiled import Pointer, pointer_at
+from stickslip.engine.compile.uncompiled import Pointer, pointer_at
 
 Floats = NDArray[np.float64]
 FLOATS, INTEGERS = types.CPointer(types.float64), types.CPointer(types.int64)

@@ -22,9 +22,9 @@ from typing import Any, ClassVar
 import llvmlite.binding as llvm
 from numba import njit
 
-from stickslip.engine.codegen import cache
-from stickslip.engine.codegen.cache import CACHE, NOTICED, OTHERS, SLOW, Kept, tell
-from stickslip.engine.codegen.numba_privates import (
+from stickslip.engine.compile import cache
+from stickslip.engine.compile.cache import CACHE, NOTICED, OTHERS, SLOW, Kept, tell
+from stickslip.engine.compile.numba_privates import (
     OPERATORS_TO_BUILTINS,
     Compiler,
     CompileResult,
@@ -39,7 +39,7 @@ from stickslip.engine.codegen.numba_privates import (
     dumps,
     rtsys,
 )
-from stickslip.engine.codegen.numba_privates import Function as NumbaFunction
+from stickslip.engine.compile.numba_privates import Function as NumbaFunction
 
 NOT_NEEDED = (InlineClosureLikes, InlineInlinables, InlineOverloads, LiteralUnroll, NopythonRewrites, WithLifting)
 """Passes of numba's compiler that find nothing in our code, which has no closures, array expressions or `with` statements."""

@@ -25,8 +25,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from stickslip.engine.codegen.balls import Balls
-from stickslip.engine.codegen.recurrences import Recurrences
+from stickslip.engine.formula_code.balls import Balls
+from stickslip.engine.formula_code.recurrences import Recurrences
 from stickslip.friction.formula.expression import RATE, SLIP, STATES, Expression
 
 ORDER = 18

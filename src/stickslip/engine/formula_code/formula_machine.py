@@ -19,8 +19,8 @@ import llvmlite.binding as llvm
 import llvmlite.ir as ir
 from numba import config
 
-from stickslip.engine.codegen.cache import Kept
-from stickslip.engine.codegen.simd import VECTOR, WIDTH
+from stickslip.engine.compile.cache import Kept
+from stickslip.engine.memory.simd import VECTOR, WIDTH
 
 llvm.initialize_native_target()
 llvm.initialize_native_asmprinter()

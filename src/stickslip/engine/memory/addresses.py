@@ -1,43 +1,21 @@
-"""Compile the engine once, and keep it on disk (see `cache`).
+"""Addresses and bits, which compiled code reads, writes and calls; plain Python versions serve where the compiler is switched off.
 
-The engine calls formulas through their addresses (see `compiled_formula`), so that a new law compiles nothing of the engine. The
-intrinsics of this module are the operations on addresses and bits that compiled code needs; plain Python versions replace them if
-the compiler is switched off (see `uncompiled`).
+The engine calls formulas and parts of itself through their addresses, so that a new law compiles nothing of the engine.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from inspect import Parameter, Signature
-from typing import Any, TypeVar
+from typing import Any
 
 import llvmlite.ir as ir
 import numpy as np
 from numba import types
 from numba.extending import intrinsic
 
-from stickslip.engine.codegen.kernels import Kernel
-from stickslip.engine.codegen.pointers import numbers_of, whole_numbers_of
-from stickslip.engine.codegen.records import FLOATS
-from stickslip.engine.codegen.uncompiled import UNCOMPILED, Pointer, as_python, call, pointer_at
-
-F = TypeVar("F", bound=Callable[..., Any])
-
-
-def kernel(function: F) -> F:
-    """Return a function of the engine in compiled form, with its machine code kept in the cache."""
-    return _compiled(function)
-
-
-def inlined(function: F) -> F:
-    """Return a compiled function, like `kernel`, that is always inlined: for small functions in the innermost loops."""
-    return _compiled(function, forceinline=True)
-
-
-def _compiled(function: F, **options: bool) -> F:
-    """Return a function as a `Kernel`, or as plain Python if the compiler is switched off."""
-    compiled: Any = as_python(function) if UNCOMPILED else Kernel(function, **options)
-    return compiled
+from stickslip.engine.compile.uncompiled import UNCOMPILED, Pointer, call, pointer_at
+from stickslip.engine.memory.pointers import numbers_of, whole_numbers_of
+from stickslip.engine.memory.records import FLOATS
 
 
 def calls(kinds: str) -> Any:
@@ -74,13 +52,6 @@ call_jet = calls("pppp")
 
 PART = (types.int64, types.int64, types.float64)
 """Arguments of a part of the engine that is compiled apart: the address of the run's memory, a code of `Task`, and a number."""
-
-
-def address_of(function: Any, arguments: tuple[Any, ...]) -> int:
-    """Return the address of a kernel's machine code, which lives as long as the kernel. Compiles it if it is new."""
-    function.entry.compile(arguments)
-    compiled = function.entry.overloads[arguments]
-    return int(compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name))
 
 
 @intrinsic

@@ -1,1 +1,0 @@
-"""Provide the compiler and its cache, and generate the code of each friction formula."""

@@ -1,0 +1,1 @@
+"""Compile kernels, and keep their machine code on disk."""

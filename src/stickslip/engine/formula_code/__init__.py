@@ -1,0 +1,1 @@
+"""Write the functions of friction formulas, and make machine code of them."""
