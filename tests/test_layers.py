@@ -9,6 +9,7 @@ from functools import cache
 from pathlib import Path
 
 import stickslip
+from stickslip.trajectory.status import DECIDE, engine
 
 PACKAGE = Path(stickslip.__file__).parent
 
@@ -243,3 +244,7 @@ def test_importing_the_package_is_light() -> None:
     code = f"import sys, stickslip; print(sorted({heavy} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def test_the_code_of_every_package_that_decides_a_run_is_in_the_hash_of_a_checkpoint() -> None:
+    assert all(engine(tuple(other for other in DECIDE if other != name)) != engine() for name in DECIDE)

@@ -12,8 +12,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.foundation.quantities import fields_of, quantity
-from stickslip.loading import HISTORIES, HoldAndSlide, LoadingHistory, PiecewiseLinear, Segment, Sinusoidal, Steps, Tone
-from stickslip.loading.contract import VARYING
+from stickslip.loading import HISTORIES, VARYING, HoldAndSlide, LoadingHistory, PiecewiseLinear, Segment, Sinusoidal, Steps, Tone
 
 SLAB = ss.ElasticSlab(2800, 3500, 1e4, 1e8)
 LOSSY = replace(SLAB, driver_impedance=2e6)

@@ -17,8 +17,7 @@ from numpy.typing import NDArray
 
 from stickslip.engine.waves.varying_forcing import dirichlet
 from stickslip.foundation.arrays import Floats
-from stickslip.loading import LoadingHistory, Segment, Tone
-from stickslip.loading.contract import SILENT
+from stickslip.loading import SILENT, LoadingHistory, Segment, Tone
 from stickslip.problem.problem import Problem
 
 

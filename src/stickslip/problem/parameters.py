@@ -26,7 +26,7 @@ from stickslip.foundation.quantities import (
     quantities_of,
 )
 from stickslip.friction.contract import STATE_NAMES
-from stickslip.loading.contract import VARYING, LoadingHistory
+from stickslip.loading import VARYING, LoadingHistory
 
 if TYPE_CHECKING:
     from stickslip.problem.problem import Problem

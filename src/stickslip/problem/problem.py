@@ -20,8 +20,7 @@ from stickslip.foundation.formatting import brief, html_table
 from stickslip.foundation.quantities import Quantity, check_fields, quantities_of, quantity
 from stickslip.friction import FrictionLaw
 from stickslip.friction.custom.from_function import as_law
-from stickslip.loading import LoadingHistory
-from stickslip.loading.contract import SILENT, VARYING
+from stickslip.loading import SILENT, VARYING, LoadingHistory
 from stickslip.problem.parameters import Parameters
 from stickslip.problem.selection_rule import PERFECT_DELAY, SELECTION_RULES, SelectionRule, checked, name_of
 from stickslip.problem.start import INITIAL_STATES, STEADY, Start, check_rate, start_of, starts_steadily

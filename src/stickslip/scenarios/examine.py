@@ -22,8 +22,7 @@ from stickslip.friction.composite import LawOfParts
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.friction.noise import noise_in
 from stickslip.friction.piecewise import PiecewiseLaw
-from stickslip.loading import LoadingHistory
-from stickslip.loading.contract import VARYING
+from stickslip.loading import VARYING, LoadingHistory
 from stickslip.problem.problem import Problem
 from stickslip.problem.start import STEADY
 from stickslip.reference.slab.pulse_period import PulseTrain

@@ -18,8 +18,7 @@ from stickslip.foundation.quantities import Field as Declared
 from stickslip.foundation.quantities import Part, Quantity, fields_of, in_units
 from stickslip.friction import LAWS
 from stickslip.friction.contract import STATE_NAMES, StateVariable
-from stickslip.loading import HISTORIES
-from stickslip.loading.contract import VARYING
+from stickslip.loading import HISTORIES, VARYING
 from stickslip.problem.problem import LOAD, MAY_VARY, Problem
 from stickslip.problem.run_quantities import CREEP_RTOL, DURATION, RTOL, SHORTEST_EVENT
 from stickslip.problem.selection_rule import SELECTION_RULES, names, unknown

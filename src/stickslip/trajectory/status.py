@@ -17,7 +17,7 @@ DECIDE = (
     *("batch", "bodies", "contact", "creep", "engine", "engine_input"),
     *("friction", "loading", "observables", "run", "solution", "trajectory"),
 )
-"""Folders of the package whose code decides the result of a run."""
+"""Folders and files of the package whose code decides the result of a run."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +45,8 @@ ARRAYS = tuple(field.name for field in fields(Checkpoint) if field.name != "engi
 def engine(folders: tuple[str, ...] = DECIDE) -> str:
     """Return a hash of the code that decides the result of a run; a run that continues with other code may differ in its digits."""
     package, digest = Path(__file__).parents[1], hashlib.sha256(SOURCES.encode())
-    for path in sorted(path for folder in folders for path in (package / folder).rglob("*.py")):
+    files = [path for name in folders for path in (*package.glob(f"{name}.py"), *(package / name).rglob("*.py"))]
+    for path in sorted(files):
         digest.update(path.read_bytes())
     return digest.hexdigest()[:16]
 

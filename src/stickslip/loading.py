@@ -1,22 +1,26 @@
-"""Define the base class of loading histories: a piecewise linear function of time, plus at most one sinusoid."""
+"""Loading histories: a pull rate or a far stress that varies in time, linearly piece by piece, with at most one sinusoid.
+
+To add one, add its class to this file and to HISTORIES.
+"""
 
 from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from dataclasses import is_dataclass
+from dataclasses import dataclass, is_dataclass
 from functools import cached_property
 from itertools import pairwise
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from typing_extensions import override
 
 from stickslip.foundation.brief_repr import Declared, brief_repr
-from stickslip.foundation.conversion import unit_among
+from stickslip.foundation.conversion import Number, Numbers, unit_among
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import Quantity, Series, check_fields, fields_of
+from stickslip.foundation.quantities import Quantity, Series, check_fields, declare, fields_of, quantity
 
 VARYING = "m/s or Pa"
 """Unit of the varying quantity: m/s for a pull rate, Pa for a far stress."""
@@ -120,3 +124,103 @@ class LoadingHistory(Declared, ABC):
         n = np.maximum(np.searchsorted(start, time, side="right") - 1, 0)
         amplitude, frequency, phase = self.tone
         return np.asarray(value[n] + slope[n] * (time - start[n]) + amplitude * np.sin(frequency * time + phase))
+
+
+@dataclass(frozen=True)
+class PiecewiseLinear(LoadingHistory):
+    """A straight line from point to point, constant before the first point and after the last."""
+
+    kind = "piecewise-linear"
+    example: ClassVar = {"times": [0.0, "10 s", "20 s"], "values": [1e-6, 1e-5, 1e-6]}
+    columns: ClassVar = {"time": "times", "value": "values"}
+
+    times: Numbers = declare(Series(Quantity("s", "times of the points", at_least=0), ascending=True))
+    values: Numbers = declare(Series(Quantity(VARYING, "values at these times")))
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if len(self.times) != len(self.values):
+            raise InputError(f"{type(self).__name__}: {len(self.times)} times but {len(self.values)} values")
+
+    @property
+    @override
+    def segments(self) -> tuple[Segment, ...]:
+        points = list(zip(self.times, self.values, strict=True))
+        straight = [Segment(t, v, (later - v) / (end - t)) for (t, v), (end, later) in pairwise(points)]
+        before = [Segment(0.0, self.values[0], 0.0)] if self.times[0] > 0.0 else []
+        return (*before, *straight, Segment(self.times[-1], self.values[-1], 0.0))
+
+
+@dataclass(frozen=True)
+class Steps(PiecewiseLinear):
+    """Jumps to the next value at each given time, and constant values between them: one velocity step, or several."""
+
+    kind = "steps"
+
+    times: Numbers = declare(Series(Quantity("s", "times from which each value holds, the first 0", at_least=0), ascending=True))
+    values: Numbers = declare(Series(Quantity(VARYING, "the values")))
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.times[0] != 0.0:
+            raise InputError(f"Steps: times must begin with 0, from which the first value holds, got {self.times[0]:g}")
+
+    @property
+    @override
+    def segments(self) -> tuple[Segment, ...]:
+        return tuple(Segment(time, value, 0.0) for time, value in zip(self.times, self.values, strict=True))
+
+
+@dataclass(frozen=True)
+class Sinusoidal(LoadingHistory):
+    """mean + amplitude sin(2 pi t / period + phase)."""
+
+    kind = "sinusoidal"
+    example: ClassVar = {"mean": 1e-9, "amplitude": 1e-9, "period": "12.42 h"}
+
+    mean: Number = quantity(VARYING, "mean value")
+    amplitude: Number = quantity(VARYING, "amplitude of the oscillation")
+    period: Number = quantity("s", "period of the oscillation", above=0)
+    phase: Number = quantity("rad", "phase of the oscillation at the start", default=0.0)
+
+    @property
+    @override
+    def segments(self) -> tuple[Segment, ...]:
+        return (Segment(0.0, self.mean, 0.0),)
+
+    @property
+    @override
+    def tone(self) -> Tone:
+        return Tone(self.amplitude, 2.0 * math.pi / self.period, self.phase)
+
+
+@dataclass(frozen=True)
+class HoldAndSlide(LoadingHistory):
+    """Slides of one duration at one value, with holds of given durations between them; the last slide lasts for ever."""
+
+    kind = "hold-and-slide"
+    source = "Dieterich 1972, J. Geophys. Res. 77, 3690-3697 (time-dependent friction in slide-hold-slide tests)"
+    example: ClassVar = {"slide": 1e-6, "slide_time": "100 s", "hold_times": ["10 s", "100 s", "1000 s"]}
+
+    slide: Number = quantity(VARYING, "value during a slide")
+    slide_time: Number = quantity("s", "duration of the slide before each hold", above=0)
+    hold_times: Numbers = declare(Series(Quantity("s", "duration of each hold", above=0), least=1))
+    hold: Number = quantity(VARYING, "value during a hold", default=0.0)
+
+    @property
+    @override
+    def segments(self) -> tuple[Segment, ...]:
+        time, found = 0.0, [Segment(0.0, self.slide, 0.0)]
+        for lasting in self.hold_times:
+            begin = time + self.slide_time
+            time = begin + lasting
+            found += [Segment(begin, self.hold, 0.0), Segment(time, self.slide, 0.0)]
+        return tuple(found)
+
+
+HISTORIES: dict[str, type[LoadingHistory]] = {
+    history.kind: history for history in (PiecewiseLinear, Sinusoidal, Steps, HoldAndSlide)
+}
+"""Every built-in loading history by its name in scenario files."""
+
+__all__ = ["HISTORIES", "HoldAndSlide", "LoadingHistory", "PiecewiseLinear", "Segment", "Sinusoidal", "Steps", "Tone"]
