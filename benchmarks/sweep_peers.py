@@ -18,9 +18,9 @@ from benchmarks.problems import ROUND, Case, Floats
 from benchmarks.runner import UnavailableError
 from stickslip.batch import QUANTITIES, run_members
 from stickslip.batch.kernels.runs import Group, engine_address, run_group
+from stickslip.batch.kernels.workspace import new_workspace, table_of
 from stickslip.batch.setups import set_up
 from stickslip.batch.vectorised_problem import member
-from stickslip.batch.workspace import new_workspace, table_of
 from stickslip.bodies import ElasticSlab
 from stickslip.engine.memory.simd import WIDTH
 from stickslip.friction import SinusoidalSlip

@@ -72,7 +72,7 @@ ROOMS = {
         ("slow_landing",),
         ("stepper",),
     ),
-    "batch": (("kernels",), ("vectorised_problem",), ("long_member", "setups"), ("workspace",), ("run",)),
+    "batch": (("kernels",), ("vectorised_problem",), ("long_member", "setups"), ("run",)),
     "sweeps": (("design",), ("execution",), ("results",), ("sweep",), ("estimate", "refine")),
     "figures": (("names", "style"), ("sheet",), ("panels",), ("contact", "runs", "sweeps"), ("studies",)),
     "explorer": (("model",), ("page",), ("server", "static"), ("notebook",)),
@@ -167,7 +167,6 @@ FILES = [path for path in sorted(PACKAGE.rglob("*.py")) if parts(path)[0] not in
 # ---- lists that may only become shorter ------------------------------------------------------------------------------------
 
 UPWARD_FOR_TYPES: dict[str, set[str]] = {
-    "batch/kernels/runs.py": {"batch.setups", "batch.workspace"},
     "contact/sliding.py": {"solution"},
     "contact/uniqueness.py": {"solution"},
     "friction/statements.py": {"friction.law"},

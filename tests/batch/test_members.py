@@ -10,7 +10,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.batch import QUANTITIES, long_member, run, run_members
-from stickslip.batch.workspace import Workspace, new_workspace
+from stickslip.batch.kernels.workspace import Workspace, new_workspace
 from stickslip.engine.state.layout import Floats, Stop
 from stickslip.foundation.errors import InputError
 from stickslip.run.session import Session

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
 from numpy.polynomial import polynomial as poly
 
-from stickslip.batch.workspace import apart
+from stickslip.batch.kernels.workspace import apart
 from stickslip.engine.compiled_formula import compile_formula
 from stickslip.engine.memory.simd import WIDTH
 from stickslip.engine.series import ball_radii

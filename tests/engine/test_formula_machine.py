@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from stickslip.batch.workspace import apart
+from stickslip.batch.kernels.workspace import apart
 from stickslip.engine.compiled_formula import CALLED, NAMES
 from stickslip.engine.formula_code.formula_machine import MachineCode
 from stickslip.engine.formula_code.taylor_series import SIDE_BY_SIDE, SIGNATURES, FormulaWriter

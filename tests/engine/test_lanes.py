@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from numba import njit
 
-from stickslip.batch.workspace import apart
+from stickslip.batch.kernels.workspace import apart
 from stickslip.engine.memory.addresses import ahead, floats, integers
 from stickslip.engine.memory.pointers import rows_of
 from stickslip.engine.memory.simd import WIDTH, chosen, store_across

@@ -11,11 +11,12 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 
 from stickslip.batch.kernels.reduction import COLUMNS, OF_EVENTS, Reduced
-from stickslip.batch.kernels.runs import Group, Stage, engine_address, run_group
+from stickslip.batch.kernels.runs import Group, engine_address, run_group
+from stickslip.batch.kernels.tables import Stage
+from stickslip.batch.kernels.workspace import LARGEST_CAPACITY, new_workspace, table_of
 from stickslip.batch.long_member import run_alone
 from stickslip.batch.setups import Alike, alike, set_up
 from stickslip.batch.vectorised_problem import Values, are_fine, groups, member, why_not
-from stickslip.batch.workspace import LARGEST_CAPACITY, new_workspace, table_of
 from stickslip.engine.memory.simd import WIDTH
 from stickslip.engine.on_demand import lend_part
 from stickslip.engine.state.layout import Floats, Integers, Stop

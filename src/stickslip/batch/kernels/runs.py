@@ -9,15 +9,16 @@ arrays are counted only when a run has ended.
 from __future__ import annotations
 
 import math
-from enum import IntEnum
 from functools import cache
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from numba import carray, types
 from numba.extending import intrinsic
 
 from stickslip.batch.kernels.lanes import Side, Waits, step_side_by_side
 from stickslip.batch.kernels.reduction import COLUMNS, Found, Reduced, fold_events, fold_first, fold_whole, reached, reduced_at
+from stickslip.batch.kernels.tables import Setups, Stage
+from stickslip.batch.kernels.workspace import Workspace
 from stickslip.engine.compile.kernels import address_of, inlined, kernel
 from stickslip.engine.loop import run_until
 from stickslip.engine.memory.addresses import ahead, call_prepare, floats, integers
@@ -29,10 +30,6 @@ from stickslip.trajectory.slip_events import EventTurns, events_in, group_turns
 from stickslip.trajectory.status import BAD_PARAMETERS
 from stickslip.trajectory.turning_points import FULL, Known, Search, Spare, Turn, find_turns, known_in, spare_in, turns_in
 
-if TYPE_CHECKING:
-    from stickslip.batch.setups import Setups
-    from stickslip.batch.workspace import Workspace
-
 BUDGET = 200_000
 """Number of steps of the engine after which it returns, so that the flag which stops the batch is checked."""
 
@@ -40,17 +37,6 @@ SIZES = Params.total, State.total, Counts.total
 """Lengths of these records."""
 ARGUMENTS = (types.Array(types.int64, 1, "C"), types.int64, types.float64, types.int64)
 """Types of the arguments of `loop.run_until`: table, last row, last theta (s), budget."""
-
-
-class Stage(IntEnum):
-    """Say what a lane is doing."""
-
-    FREE = 0
-    """It has no member."""
-    UNDER_WAY = 1
-    """Its member is running."""
-    AT_END = 2
-    """The run of its member has ended and is not reduced yet."""
 
 
 class Lane(NamedTuple):
@@ -151,7 +137,7 @@ class Members(NamedTuple):
 def run_group(group: Group, base: Integers, stride: Integers, work: Workspace) -> int:
     """Run members, each in a lane of the workspace, and write their stop codes and numbers into the group.
 
-    base and stride are those of `batch.workspace.table_of`. Returns WIDTH when all members are done or `stop` is set. Otherwise it
+    base and stride are those of `workspace.table_of`. Returns WIDTH when all members are done or `stop` is set. Otherwise it
     returns the lane that has no room, or needs a part of the engine (code NEED_PART), or whose member has crept for so long (code
     PAUSED) that it should be run alone. Called again, it continues from there.
     """

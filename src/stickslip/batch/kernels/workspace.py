@@ -9,8 +9,7 @@ import numpy as np
 
 from stickslip.batch.kernels.lane_block import Block
 from stickslip.batch.kernels.lanes import Waits
-from stickslip.batch.kernels.runs import Stage
-from stickslip.batch.setups import Setups
+from stickslip.batch.kernels.tables import Setups, Stage
 from stickslip.engine.memory.simd import WIDTH
 from stickslip.engine.on_demand import lend_parts_of_batch
 from stickslip.engine.state import layout as at
@@ -39,7 +38,7 @@ class Workspace(NamedTuple):
     spare: Floats  # a `trajectory.turning_points.Spare`
     numbers: Floats  # room for the block of `kernels.lanes`
     block: Integers  # the address of this block
-    stage: Integers  # (WIDTH,): codes of `kernels.runs.Stage`
+    stage: Integers  # (WIDTH,): codes of `tables.Stage`
     waits: Integers  # (WIDTH,): what the lane waits for, see `kernels.lanes`
     member: Integers  # (WIDTH,): index of the member in the lane
     code: Integers  # (WIDTH,): what the engine returned last for this member
