@@ -12,8 +12,8 @@ from stickslip.engine.on_demand import lend_parts_of_batch
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Stop
 from stickslip.engine.state.workspace import counts_in, lend_history
+from stickslip.engine_input.limits import split_time
 from stickslip.engine_input.prepare import prepare
-from stickslip.run.session import split_time
 from stickslip.solution.solution import Solution
 from stickslip.trajectory.history import History
 from stickslip.trajectory.status import STATUSES

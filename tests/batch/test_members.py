@@ -13,7 +13,6 @@ from stickslip.batch import QUANTITIES, long_member, run, run_members
 from stickslip.batch.kernels.workspace import Workspace, new_workspace
 from stickslip.engine.state.layout import Floats, Stop
 from stickslip.foundation.errors import InputError
-from stickslip.run.session import Session
 from stickslip.run.simulate import simulate
 from stickslip.scenarios.scenario import Scenario, load_scenario
 from stickslip.trajectory.slip_events import default_event_rate
@@ -255,9 +254,9 @@ def test_a_storm_ends_before_nearly_every_piece_costs_a_clearing(monkeypatch: py
     cleared: list[int] = []
     clear = long_member.Folding.make_room
 
-    def make_room(watch: long_member.Folding, session: Session) -> bool:
-        cleared.append(session.length)
-        return clear(watch, session)
+    def make_room(watch: long_member.Folding) -> bool:
+        cleared.append(watch.run.length)
+        return clear(watch)
 
     monkeypatch.setattr(run, "LARGEST_CAPACITY", 512)
     monkeypatch.setattr(long_member, "LARGEST_HISTORY", 3000)

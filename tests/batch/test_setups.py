@@ -18,11 +18,10 @@ from stickslip.contact.rules.selection import OF_LEVELS
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Params
 from stickslip.engine.state.workspace import counts_in, state_in
-from stickslip.engine_input.limits import wait_for_creep
+from stickslip.engine_input.limits import split_time, wait_for_creep
 from stickslip.engine_input.prepare import prepare
 from stickslip.friction import LAWS
 from stickslip.friction.formula.bounds import bends_one_way
-from stickslip.run.session import split_time
 from stickslip.scenarios.scenario import Scenario
 from stickslip.trajectory.slip_events import default_event_rate
 

@@ -138,7 +138,7 @@ def test_an_interrupted_run_is_shown_and_resumed(command: Command, monkeypatch: 
             self.noted = True  # as by a Ctrl-C during the first steps
 
     with monkeypatch.context() as patched:
-        patched.setattr("stickslip.run.planar_run.Interrupts", Interrupted)
+        patched.setattr("stickslip.run.run_loop.Interrupts", Interrupted)
         shown = command("run", *SMALL, "--out", "fault.zarr")
     assert (shown.code, shown.err) == (130, "stickslip: interrupted\n")
     assert "\ninterrupted: " in shown.out

@@ -15,16 +15,16 @@ import pytest
 import xarray as xr
 
 import stickslip as ss
+from stickslip.engine_input.limits import split_time
 from stickslip.io.catalogue_rows import RowsInMemory
 from stickslip.observables.event_table import ENERGY_COLUMNS
 from stickslip.run import catalogue as module
 from stickslip.run.catalogue import EventRows
-from stickslip.run.monitor import Monitor
+from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import RunOptions
 from stickslip.run.progress import Report
 from stickslip.run.resume import PausedCatalogue
-from stickslip.run.run_loop import Interrupts, run_loop
-from stickslip.run.session import Session, split_time
+from stickslip.run.run_loop import Interrupts, Monitor, run_loop
 from tests.long_runs.problems import RUNS, bundled, differences, killed
 
 NEEDS_PYARROW = pytest.mark.skipif(importlib.util.find_spec("pyarrow") is None, reason="needs pyarrow")
@@ -121,17 +121,16 @@ def test_a_number_of_events_stops_a_catalogue_as_it_stops_a_run(events: int, tmp
 def test_memory_does_not_grow_with_the_number_of_events(monkeypatch: pytest.MonkeyPatch) -> None:
     """Ten thousand cycles, of which the history would be two hundred thousand pieces."""
     problem, duration = bundled("cycles-block", 1500.0)
-    run = Session.begin(problem, RunOptions(duration))
-    monkeypatch.setattr(EventRows, "record", lambda self, run, stream, look: (look.tell(), self._remember(run, stream)))
-    stream = run.events()
-    monitor = Monitor.of(run, EventRows(RowsInMemory()), stream)
+    run = ExactRun.begin(problem, RunOptions(duration))
+    monkeypatch.setattr(EventRows, "record", lambda self, new: (new.tell(), self._remember()))
+    monitor = Monitor(run, EventRows(run, RowsInMemory()))
     capacities = {len(run.store.pieces)}
     for share in (0.01, 0.1, 1.0):
         run.last = split_time(share * duration, problem.round_trip_time)
         run_loop(run, monitor, Interrupts())
         run.count.to_the_end, run.before_end = 0, None
         capacities.add(len(run.store.pieces))
-    assert stream.told > 9_000
+    assert run.stream.told > 9_000
     assert run.forgotten > 150_000
     assert capacities == {256}
 

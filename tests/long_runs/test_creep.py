@@ -16,12 +16,11 @@ import stickslip as ss
 from stickslip.engine.state.layout import Counts, Stop
 from stickslip.io.netcdf import save_checkpoint
 from stickslip.run import catalogue as module
-from stickslip.run.monitor import run_to_end
+from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import RunOptions
 from stickslip.run.progress import Report
 from stickslip.run.resume import taken_up
-from stickslip.run.session import Session
-from stickslip.run.simulate import WholeHistory
+from stickslip.run.run_loop import WholeHistory, run_to_end
 from stickslip.solution.window import Window
 from stickslip.trajectory.status import UNDER_WAY
 from tests.engine.creep_truth import ROUND, printed
@@ -51,22 +50,23 @@ def differences(one: ss.Solution, other: ss.Solution) -> list[str]:
     return found + ([] if one.creep_rtol == other.creep_rtol else ["creep_rtol"]) + differences_of_runs(one, other)
 
 
-def begun(name: str) -> Session:
+def begun(name: str) -> ExactRun:
     problem, duration, rtol = RUNS[name]
-    return Session.begin(problem, RunOptions(duration, creep_rtol=rtol))
+    return ExactRun.begin(problem, RunOptions(duration, creep_rtol=rtol))
 
 
 def gone_on(path: Path, duration: float) -> ss.Solution:
     """As `resume`, which would also write the file again."""
     stopped = ss.open_solution(path)
-    return run_to_end(taken_up(stopped, path, RunOptions.to_continue(stopped, duration, None)), WholeHistory())
+    run = taken_up(stopped, path, RunOptions.to_continue(stopped, duration, None))
+    return run_to_end(run, WholeHistory(run))
 
 
-def step(run: Session) -> bool:
+def step(run: ExactRun) -> bool:
     """One step of the engine, or one leap; False at the end."""
     code = run.advance(1)
     if code == Stop.FULL:
-        run.grow(10**6)
+        run.grow()
     return code in (Stop.NONE, Stop.FULL)
 
 

@@ -13,6 +13,7 @@ import pytest
 import stickslip as ss
 from stickslip.engine.state.layout import Stop
 from stickslip.run import run_loop
+from stickslip.run.options import RunOptions
 from stickslip.run.run_loop import Interrupts
 from stickslip.run.session import Session
 from tests.long_runs.problems import bundled
@@ -133,11 +134,22 @@ def test_a_signal_at_any_phase_of_a_planar_run_is_heard() -> None:
     slab = patch(nodes=32, length=2e4)
     monkeypatch = pytest.MonkeyPatch()
     with monkeypatch.context() as changed:
-        changed.setattr("stickslip.run.planar_run.NODES_AT_ONCE", 32 * 4)
-        changed.setattr("stickslip.run.planar_run.next_budget", lambda *_: 4)
+        changed.setattr("stickslip.run.run_loop.FIRST_BUDGET", 4)
+        changed.setattr("stickslip.run.run_loop.next_budget", lambda *_: 4)
+        changed.setattr("stickslip.run.planar_run.NODES", 32)
         assert not lost(lambda: ss.simulate(slab, 6.0, frames=1), heard)
 
 
 def test_the_budget_of_slow_steps_falls_to_a_single_one() -> None:
-    assert run_loop.next_budget(8, 8.0, 1) == 1
+    """Under a contact of so many nodes that a step of all of them takes a call."""
+    pytest.importorskip("jax")
+    from stickslip.planar.solver import PlanarSolver
+    from stickslip.run.planar_run import PlanarRun
+    from stickslip.solution.planar import Frames
+    from tests.planar.patches import patch
+
     assert run_loop.next_budget(8, 8.0) == run_loop.SMALLEST_BUDGET
+    slab = patch(nodes=30_000, length=2e7)
+    run = PlanarRun(RunOptions(1.0), PlanarSolver(slab, 1e-3), (slice(None),), 0.0, Frames(slab, slab.steps_per_round_trip))
+    run.advance(run_loop.SMALLEST_BUDGET)
+    assert run.length == 1

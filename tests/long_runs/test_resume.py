@@ -15,21 +15,21 @@ import pytest
 import stickslip as ss
 from stickslip.engine.state.layout import State, Stop
 from stickslip.io.netcdf import save_checkpoint
+from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import RunOptions
 from stickslip.run.progress import Report
 from stickslip.run.resume import resume_run
-from stickslip.run.session import Session
 from stickslip.trajectory.status import UNDER_WAY, Checkpoint
 from tests.long_runs.problems import RUNS, differences, differences_of_files, killed
 
 
 def steps_of(problem: ss.Problem, duration: float) -> int:
     """Steps (calls of the engine with a budget of one) that a run takes, to 1000 at least."""
-    run = Session.begin(problem, RunOptions(duration))
+    run = ExactRun.begin(problem, RunOptions(duration))
     for steps in range(100_000):
         code = run.advance(1)
         if code == Stop.FULL:
-            run.grow(10**6)
+            run.grow()
         elif code != Stop.NONE:
             return steps
     raise AssertionError("too long for a test")
@@ -37,12 +37,12 @@ def steps_of(problem: ss.Problem, duration: float) -> int:
 
 def stopped(problem: ss.Problem, duration: float, steps: int, path: Path) -> Checkpoint:
     """Write the checkpoint of a run that was stopped after so many steps, counted from the first piece of its history."""
-    run = Session.begin(problem, RunOptions(duration))
+    run = ExactRun.begin(problem, RunOptions(duration))
     for step in range(100_000):
         if step >= steps and run.length > 0:
             break
         if run.advance(1) == Stop.FULL:
-            run.grow(10**6)
+            run.grow()
     save_checkpoint(run.solution(UNDER_WAY), path)
     return run.snapshot()
 
@@ -76,7 +76,7 @@ def test_those_stops_meet_the_engine_in_every_state(tmp_path: Path) -> None:
     """At rest, in slip both explicit and implicit, on the way to a fold, within a piece."""
     met = set()
     for problem, duration in RUNS.values():
-        run = Session.begin(problem, RunOptions(duration))
+        run = ExactRun.begin(problem, RunOptions(duration))
         for _ in range(3000):
             if run.advance(1) not in (Stop.NONE, Stop.FULL) or run.length > 400:
                 break

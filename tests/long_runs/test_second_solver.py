@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple, Self
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
 
 import numpy as np
-import pytest
 
 import stickslip as ss
 from stickslip.engine.state.layout import Stop
-from stickslip.run.monitor import run_to_end
 from stickslip.run.options import RunOptions
-from stickslip.run.progress import Report
-from stickslip.run.simulate import WholeHistory
-from stickslip.run.solver import Solver
+from stickslip.run.progress import Pace
+from stickslip.run.run_loop import WholeHistory, run_to_end
+from stickslip.run.solver import NewEvents, Solver
 from stickslip.trajectory.status import ENOUGH_EVENTS, FULL_HISTORY, INTERRUPTED
 
 PROBLEM = ss.Problem(ss.SpringBlock(2.0, 8.0, 10.0), ss.friction.Coulomb(0.6, 0.4), 0.05, initial_excess=0.0)
@@ -29,29 +27,22 @@ class Computed(NamedTuple):
     rate: list[float]
 
 
-class Ends(NamedTuple):
+@dataclass
+class Ends:
     """Ends of slip that are new: the number of the step of each."""
 
-    starts_and_stops: StartsAndStops
-    known_by: list[int]
-
-    def first_ones(self, count: int) -> Ends:
-        return self._replace(known_by=self.known_by[:count])
+    run: SmallSteps
+    steps: list[int]
 
     def tell(self) -> None:
-        self.starts_and_stops.told += len(self.known_by)
+        self.run.told += len(self.steps)
 
 
-@dataclass
-class StartsAndStops:
-    """Events of a block that sticks or slips: one is over when the slip rate becomes zero."""
+class News(NamedTuple):
+    """What is told of the progress."""
 
-    threshold: float
-    told: int = 0
-
-    def look(self, history: list[float]) -> Ends:
-        moves = np.asarray(history) > 0.0
-        return Ends(self, (np.flatnonzero(moves[:-1] & ~moves[1:]) + 1).tolist()[self.told :])
+    time: float
+    steps: int
 
 
 @dataclass
@@ -62,7 +53,7 @@ class SmallSteps:
     slip: list[float] = field(default_factory=lambda: [0.0])
     rate: list[float] = field(default_factory=lambda: [0.0])
     room: int = 100
-    forgotten: int = 0
+    told: int = 0
 
     @property
     def time(self) -> float:
@@ -73,8 +64,12 @@ class SmallSteps:
         return len(self.slip)
 
     @property
-    def fastest(self) -> float:
-        return self.rate[-1]
+    def can_be_saved(self) -> bool:
+        return True
+
+    @property
+    def has_enough(self) -> bool:
+        return self.told == self.options.max_events
 
     def advance(self, budget: int) -> int:
         body, law = PROBLEM.body, PROBLEM.friction
@@ -93,43 +88,36 @@ class SmallSteps:
             self.slip.append(self.slip[-1] + STEP * rate)
         return Stop.NONE
 
-    def grow(self, most: int) -> bool:
-        grows = self.room < most
-        self.room = min(4 * self.room, most)
+    def grow(self) -> bool:
+        grows = self.room < self.options.most_pieces
+        self.room = min(4 * self.room, self.options.most_pieces)
         return grows
 
-    def snapshot(self) -> int:
-        return self.length
+    def new_events(self) -> Ends:
+        """Events of a block that sticks or slips: one is over when the slip rate becomes zero."""
+        moves = np.asarray(self.rate) > 0.0
+        ends = (np.flatnonzero(moves[:-1] & ~moves[1:]) + 1).tolist()[self.told : self.options.max_events]
+        if ends and self.told + len(ends) == self.options.max_events:
+            del self.slip[ends[-1] + 1 :], self.rate[ends[-1] + 1 :]
+        return Ends(self, ends)
 
-    def restore(self, snapshot: int) -> None:
-        del self.slip[snapshot:], self.rate[snapshot:]
+    def report(self, pace: Pace) -> News:
+        return News(self.time, self.length)
 
-    def history(self) -> list[float]:
-        return self.rate
+    def save(self) -> None: ...
 
-    def events(self, event_rate: float | None = None) -> StartsAndStops:
-        return StartsAndStops(event_rate or 1e-6)
-
-    def solution(self, code: int) -> Computed:
+    def finish(self, code: int) -> Computed:
         return Computed(code, self.slip, self.rate)
 
 
-class Keep(WholeHistory):
-    """A sink that returns what the solver computed."""
-
-    def finish(self, run: Solver[Any], stream: Any, code: int) -> Any:
-        return run.solution(code)
-
-    @classmethod
-    def of(cls, duration: float, **options: Any) -> tuple[Self, Computed]:
-        solver: Solver[Computed] = SmallSteps(RunOptions(duration, **options))
-        sink = cls()
-        return sink, run_to_end(solver, sink)
+def computed(duration: float, **options: Any) -> Computed:
+    solver: Solver[NewEvents, Computed] = SmallSteps(RunOptions(duration, **options))
+    return run_to_end(solver, WholeHistory(solver))
 
 
 def test_it_agrees_with_the_exact_solver() -> None:
     """Symplectic Euler has an error of order 1 in the step: abs 3e-4 m of 0.8 m."""
-    _, found = Keep.of(30.0)
+    found = computed(30.0)
     times = STEP * np.arange(len(found.slip))
     exact = ss.simulate(PROBLEM, 30.0)
     assert found.code == Stop.FINISHED
@@ -138,7 +126,7 @@ def test_it_agrees_with_the_exact_solver() -> None:
 
 
 def test_it_stops_after_a_number_of_events_at_the_step_that_ends_the_last() -> None:
-    _, found = Keep.of(100.0, max_events=2)
+    found = computed(100.0, max_events=2)
     assert found.code == ENOUGH_EVENTS
     moves = np.asarray(found.rate) > 0.0
     assert np.count_nonzero(moves[:-1] & ~moves[1:]) == 2
@@ -146,31 +134,20 @@ def test_it_stops_after_a_number_of_events_at_the_step_that_ends_the_last() -> N
 
 
 def test_progress_is_reported_and_ctrl_c_leaves_a_result() -> None:
-    told: list[Report] = []
+    told: list[News] = []
 
-    def tell(report: Report) -> None:
-        told.append(report)
-        if report.time > 1.0:
+    def tell(news: News) -> None:
+        told.append(news)
+        if news.time > 1.0:
             raise KeyboardInterrupt
 
-    _, found = Keep.of(1e6, progress=tell)
+    found = computed(1e6, progress=tell)
     assert found.code == INTERRUPTED
     assert 1.0 < told[-1].time < 1e6
-    assert told[-1].pieces == len(found.slip)
-    assert {report.doing for report in told} <= {"stuck", "slipping", "creeping"}
+    assert told[-1].steps == len(found.slip)
 
 
 def test_a_full_history_ends_the_run() -> None:
-    _, found = Keep.of(1e6, max_pieces=500)
+    found = computed(1e6, max_pieces=500)
     assert found.code == FULL_HISTORY
     assert len(found.slip) == 500
-
-
-@pytest.mark.parametrize("share", [0.3, 0.7])
-def test_a_snapshot_is_the_same_run(share: float) -> None:
-    solver = SmallSteps(RunOptions(3.0), room=10**6)
-    solver.advance(int(share * 3.0 / STEP))
-    before, rates = solver.snapshot(), replace(solver).rate.copy()
-    solver.advance(1000)
-    solver.restore(before)
-    assert solver.rate == rates

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import stickslip as ss
+from stickslip.run.simulate import PLANAR
 from stickslip.scenarios import Scenario, library, load_scenario, read_scenario
 from stickslip.scenarios.contact import Contact
 from stickslip.scenarios.parameter_paths import parameter_paths
@@ -163,9 +165,8 @@ def test_other_values_are_put_into_patches_and_sizes() -> None:
 def test_a_name_or_a_file_is_run_with_its_duration_and_frames(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = tmp_path / "mine.toml"
     file.write_text((LINE + PATCH).replace("nodes = 32", "nodes = 32\nframes = 20"))
-    monkeypatch.setattr(
-        "stickslip.run.simulate.simulate_planar", lambda slab, duration, frames, **_: (slab.shape, duration, frames)
-    )
+    shown = replace(PLANAR, run=lambda found, options: (found.planar_slab.shape, options.duration, options.frames))
+    monkeypatch.setattr("stickslip.run.simulate.SOLVERS", (shown,))
     assert ss.simulate(file) == ((32,), 2.0, 20)
     assert ss.simulate(str(file), "1 s", frames=5) == ((32,), "1 s", 5)
     assert ss.simulate("planar-plane") == ((48, 40), 4.5, None)

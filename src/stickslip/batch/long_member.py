@@ -7,16 +7,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from stickslip.batch.kernels.reduction import Reduced, fold_end
 from stickslip.engine.state.layout import Floats, Integers, Stop
-from stickslip.observables.event_stream import EventStream
+from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import RunOptions
 from stickslip.run.run_loop import Interrupts, run_loop
-from stickslip.run.session import Session
 from stickslip.scenarios.scenario import Scenario
 from stickslip.trajectory.slip_events import LAST_THIRD, rest_of, time_creeping, time_slipping_in
 from stickslip.trajectory.status import INTERRUPTED
@@ -43,7 +42,7 @@ class Folding:
     Events are reduced one by one to the numbers of `reduction.fold_events` and `reduction.fold_first` in `out`.
     """
 
-    stream: EventStream
+    run: ExactRun
     stop: Integers
     """The flag that ends the whole batch."""
     out: Reduced
@@ -56,38 +55,38 @@ class Folding:
     slips: float = 0.0
     """Time (s) in which the contact slips in the last third of the run, so far."""
 
-    def look(self, run: Any, *, now: bool) -> int | None:
+    def look(self, *, now: bool) -> int | None:
         """End the run if the batch is to stop: see `run_loop.Watch`."""
         return INTERRUPTED if self.stop[0] != 0 else None
 
-    def make_room(self, run: Any) -> bool:
+    def make_room(self) -> bool:
         """Reduce the events that are complete, and discard pieces whose waves have left the body: see `run_loop.Watch`.
 
         Returns False if that does not make enough room, and the history cannot grow any more either.
         """
-        self.count(run)
-        look = self.stream.look(run.history())
-        self.add(look.table())
-        look.tell()
+        run = self.run
+        self.count()
+        new = run.stream.look(run.history())
+        self.add(new.table())
+        new.tell()
         if run.before_end is not None:
-            return run.grow(LARGEST_HISTORY)
-        dropped = run.forget_before(self.stream.needed(run.history()))
-        if dropped > 0:
-            self.stream.forget(dropped)
-            self.counted -= dropped
+            return run.grow()
+        self.counted -= run.forget_told()
         if run.length > LARGEST_SHARE * LARGEST_HISTORY:
             return False
-        return run.length < len(run.store.pieces) // 2 or run.grow(LARGEST_HISTORY)
+        return run.length < len(run.store.pieces) // 2 or run.grow()
 
-    def count(self, run: Any) -> None:
+    def count(self) -> None:
         """Count the shocks, and the time in slip, of the pieces that were added since the last count."""
+        run = self.run
         self.out.shocks += np.count_nonzero(run.store.cause[self.counted : run.length])
         added, end = run.store.pieces[self.counted : run.length], run.options.duration
         self.slips += time_slipping_in(added, run.problem.round_trip_time, LAST_THIRD * end, end)
         self.counted = run.length
 
-    def set_sticking(self, run: Any, code: int) -> None:
+    def set_sticking(self, code: int) -> None:
         """Write the share of the last third in which the contact sticks; NaN if the run has not reached its end."""
+        run = self.run
         if code in (Stop.FINISHED, Stop.LOCKED):
             end, creep = run.options.duration, run.history().creep
             begin = LAST_THIRD * end
@@ -126,16 +125,15 @@ def run_alone(scenario: Scenario, capacity: int, stop: Integers, out: Floats) ->
     `capacity` is the number of pieces for which the history has room at first. Returns the code of what ended the run.
     """
     problem = scenario.problem
-    run = Session.begin(problem, RunOptions.of(scenario))
+    run = ExactRun.begin(problem, RunOptions.of(scenario, max_pieces=LARGEST_HISTORY))
     run.reserve(capacity)
-    stream = run.events()
     reduced = Reduced(out)
     reduced.events = reduced.pulses = reduced.shocks = 0.0
-    watch = Folding(stream, stop, reduced)
+    watch = Folding(run, stop, reduced)
     with Interrupts() as interrupts:
         code = run_loop(run, watch, interrupts)
-        watch.count(run)
-        watch.set_sticking(run, code)
-        watch.add(stream.look(run.history()).table(unknown=True))
+        watch.count()
+        watch.set_sticking(code)
+        watch.add(run.stream.look(run.history()).table(unknown=True))
         fold_end(run.store.pieces[: run.length], problem.round_trip_time, scenario.duration, code, out)
         return code

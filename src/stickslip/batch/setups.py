@@ -132,7 +132,7 @@ def spread(numbers: Any, count: int) -> Floats:
 
 
 def split_times(time: Floats, row: Floats) -> tuple[Integers, Floats]:
-    """Split times (s) into whole rows and an offset in the row, in (0, row], as `run.session.split_time` does for one time."""
+    """Split times (s) into whole rows and an offset in the row, in (0, row], as `limits.split_time` does for one time."""
     whole = np.floor(time / row)
     offset = time - whole * row
     back = (offset <= 0.0) & (whole > 0)

@@ -20,7 +20,7 @@ from stickslip.contact.rules.selection import OF_LEVELS
 from stickslip.engine.compile.uncompiled import UNCOMPILED
 from stickslip.engine.state.layout import Floats
 from stickslip.engine_input.branch_table import is_algebraic
-from stickslip.engine_input.limits import LARGEST_SHARE, check_shortest_event
+from stickslip.engine_input.limits import LARGEST_SHARE, MOST_ROUND_TRIPS, check_round_trips, check_shortest_event
 from stickslip.foundation.arrays import shared
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import nearest
@@ -29,7 +29,6 @@ from stickslip.foundation.quantities import Quantity, quantities_of
 from stickslip.problem.parameters import put_many
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import DURATION, LARGEST_RTOL, RTOL, check_rtol
-from stickslip.run.session import MOST_ROUND_TRIPS, check_round_trips
 from stickslip.scenarios.scenario import Scenario
 
 Values = Mapping[str, Floats]

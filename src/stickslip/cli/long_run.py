@@ -178,11 +178,10 @@ def solve_contact(request: Request) -> PlanarSolution:
     chosen = request.chosen
     announce_run(chosen, streamed=request.out is not None)
     with progress_line(f"{chosen.name}:") as report:
+        from stickslip.run.options import options_of
         from stickslip.run.planar_run import simulate_planar
 
-        assert chosen.contact is not None
-        keep: dict[str, Any] = {"checkpoint": request.out, "scenario": chosen}
-        return simulate_planar(chosen.planar_slab, chosen.duration, frames=chosen.contact.frames, progress=report, **keep)
+        return simulate_planar(chosen, options_of(chosen, progress=report, checkpoint=request.out))
 
 
 def _resume_contact(request: Request, folder: Path) -> PlanarSolution:

@@ -24,6 +24,8 @@ from stickslip.engine.state.layout import Counts, Params
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 
+MOST_ROUND_TRIPS = 2**53
+"""Largest number of round trips of a slab, or periods of a block: a float64 counts up to here without gaps."""
 LARGEST_RTOL = 1e-2
 """Largest creep_rtol that is accepted."""
 PATIENCE = 200
@@ -167,3 +169,25 @@ def lumping_note(count: Counts, params: Params, shortest: float | None) -> str:
         f"events shorter than {params.shortest:.3g} s are lumped from {since:.6g} s on, where a round trip had more than"
         f" {MOST_PIECES} pieces: what follows is right only on average (shortest_event = 0 resolves every event)"
     )
+
+
+def check_round_trips(duration: float, round_trip: float, where: str) -> None:
+    """Refuse a run of more than 2^53 round trips of `round_trip` seconds, which cannot be counted exactly. Raises InputError."""
+    if not duration <= MOST_ROUND_TRIPS * round_trip:
+        raise InputError(
+            f"{where}: duration must be at most {MOST_ROUND_TRIPS * round_trip:.3g} s, 2^53 round trips of {round_trip:.3g} s, "
+            f"got {duration:g} s"
+        )
+
+
+def split_time(time: float, round_trip: float) -> tuple[int, float]:
+    """Return a positive time (s) as (whole round trips, offset in (0, round trip]). Raises InputError for too many round trips.
+
+    A block's round trip is a period; `round_trip` is its length, s.
+    """
+    check_round_trips(time, round_trip, "run")
+    trips = math.floor(time / round_trip)
+    offset = time - trips * round_trip
+    if offset <= 0.0 and trips > 0:
+        return trips - 1, round_trip
+    return trips, min(offset, round_trip)

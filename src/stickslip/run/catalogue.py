@@ -20,10 +20,10 @@ from stickslip.observables.predictability import attributes_of, is_followed, pre
 from stickslip.observables.proof import Proven, proven
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_event_rate
-from stickslip.run.monitor import run_to_end
+from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import CHECKPOINT_EVERY, RunOptions, problem_and_options
 from stickslip.run.progress import Progress, told
-from stickslip.run.session import Session
+from stickslip.run.run_loop import run_to_end
 from stickslip.trajectory.status import ENOUGH_EVENTS, UNDER_WAY, Status
 from stickslip.trajectory.tables import creep_note
 
@@ -121,15 +121,15 @@ def catalogue_of(
     """
     for file in () if path is None else (path, Rows(path).growing, checkpoint_of(Rows(path))):
         check_replaceable(file, f"catalogue: {file}")
-    run = Session.begin(problem, replace(options, creep_rtol=leaps_with(energy, options.creep_rtol)))
-    stream = run.events(event_rate, energy)
+    run = ExactRun.begin(problem, replace(options, creep_rtol=leaps_with(energy, options.creep_rtol)))
+    run.stream = EventStream(run.stream.threshold if event_rate is None else event_rate, energies=energy)
     if path is None:
-        return follow(run, stream, RowsInMemory())
+        return follow(run, RowsInMemory())
     rows = Rows(path)
     with alone_with(rows):
         checkpoint_of(rows).unlink(missing_ok=True)
         rows.clear()
-        return follow(run, stream, rows)
+        return follow(run, rows)
 
 
 def leaps_with(energy: bool, creep_rtol: float | None) -> float | None:
@@ -182,10 +182,10 @@ class Catalogue:
         return table
 
 
-def follow(run: Session, stream: EventStream, rows: Rows | RowsInMemory) -> Catalogue:
+def follow(run: ExactRun, rows: Rows | RowsInMemory) -> Catalogue:
     """Run to the end and write the table in its final format. Raises InputError if the run ends where it starts."""
     run.reserve(CAPACITY)
-    return run_to_end(run, EventRows(rows), stream)
+    return run_to_end(run, EventRows(run, rows))
 
 
 @dataclass(frozen=True)
@@ -198,48 +198,48 @@ class Told:
 
 @dataclass
 class EventRows:
-    """The sink (`monitor.Sink`) that writes rows as events become known, and discards the history that they no longer need.
+    """The sink (`run_loop.Sink`) that writes rows as events become known, and discards the history that they no longer need.
 
     `told` is the output at the point from which this run, or a longer one, would continue, and `residual` (Pa or N) the largest
     bound of the steps that were proven anew: some of the first ones, and of those still in memory at the end.
     """
 
+    run: ExactRun
     rows: Rows | RowsInMemory
     told: Told | None = None
     residual: float | None = None
     who = "catalogue"
     wants_events = True
 
-    def record(self, run: Session, stream: EventStream, look: Look) -> None:
+    def record(self, new: Look) -> None:
         """Write the rows of new events and report the events."""
-        if len(look.known_by):
-            self.rows.append(look.table())
-        look.tell()
-        self._remember(run, stream)
+        if len(new.known_by):
+            self.rows.append(new.table())
+        new.tell()
+        self._remember()
 
-    def make_room(self, run: Session, stream: EventStream) -> bool:
+    def make_room(self) -> bool:
         """Discard history that neither events nor the engine need, and enlarge the store if at least half of it remains full.
 
-        Returns False if the store may not grow. Nothing is discarded after the checkpoint for a longer run has been stored, which
-        refers to pieces by their number.
+        Returns False if the store may not grow.
         """
+        run = self.run
         if self.residual is None:
             self.residual = proven(run.history()).residual
-        dropped = run.forget_before(stream.needed(run.history())) if run.before_end is None else 0
-        if dropped > 0:
-            stream.forget(dropped)
-            self._remember(run, stream)
-        return run.length < len(run.store.pieces) // 2 or run.grow(run.options.most_pieces)
+        if run.forget_told() > 0:
+            self._remember()
+        return run.length < len(run.store.pieces) // 2 or run.grow()
 
-    def save(self, run: Session, code: int = UNDER_WAY) -> None:
+    def save(self, code: int = UNDER_WAY) -> None:
         """Renew the checkpoint once the rows that it relies on are on the disk."""
         if isinstance(self.rows, RowsInMemory) or self.told is None:
             return
         self.rows.sync()
-        save_checkpoint(run.solution(code), checkpoint_of(self.rows), self._about(run, self.told, self.rows))
+        save_checkpoint(self.run.solution(code), checkpoint_of(self.rows), self._about(self.told, self.rows))
 
-    def finish(self, run: Session, stream: EventStream, code: int) -> Catalogue:
+    def finish(self, code: int) -> Catalogue:
         """Write the remaining rows, with one for an event that the end leaves open, and give the table its final format."""
+        run, stream = self.run, self.run.stream
         if code != ENOUGH_EVENTS:
             self.rows.append(stream.look(run.history()).table(unknown=True))
         solution = run.solution(code)
@@ -248,7 +248,7 @@ class EventRows:
         residual = max(float(run.state.largest_residual), self.residual or 0.0, proven(run.history()).residual)
         proof = Proven(residual, unproven=int(run.count.unproven)).proof(run.problem).text
         self.rows.publish(origin(solution) | {"proven": proof} | attributes_of(prediction), run.problem.load_unit)
-        self.save(run, code)
+        self.save(code)
         self.rows.tidy()
         notes = {
             "predictability": prediction.text if prediction else "",
@@ -262,11 +262,11 @@ class EventRows:
             self.rows, stream.told, solution.status, solution.duration, {name: note for name, note in notes.items() if note}
         )
 
-    def _remember(self, run: Session, stream: EventStream) -> None:
-        if run.before_end is None:
-            self.told = Told(self.rows.size, replace(stream))
+    def _remember(self) -> None:
+        if self.run.before_end is None:
+            self.told = Told(self.rows.size, replace(self.run.stream))
 
-    def _about(self, run: Session, told: Told, rows: Rows) -> dict[str, Any]:
+    def _about(self, told: Told, rows: Rows) -> dict[str, Any]:
         stream = told.stream
         return {
             CATALOGUE: FORMAT,
@@ -279,7 +279,7 @@ class EventRows:
             "last_xi": stream.last_start.xi,
             "event_rate": stream.threshold,
             "energies": int(stream.energies),
-            "forgotten": run.forgotten,
+            "forgotten": self.run.forgotten,
         }
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -12,13 +13,13 @@ from stickslip.foundation.arguments import check_whole, shown
 from stickslip.foundation.conversion import Number, OptionalNumber, WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import declare
+from stickslip.planar.slab import PlanarSlab
 from stickslip.problem.problem import Problem, check_problem
 from stickslip.problem.run_quantities import CHECKPOINT_INTERVAL, CREEP_RTOL, DURATION, SHORTEST_EVENT, check_rtol
 from stickslip.scenarios.source import read_source
 from stickslip.trajectory.status import ENOUGH_EVENTS, FULL_HISTORY, STATUSES
 
 if TYPE_CHECKING:
-    from stickslip.run.progress import Progress
     from stickslip.scenarios.scenario import Scenario
     from stickslip.solution.solution import Solution
 
@@ -46,10 +47,11 @@ class RunOptions:
     creep_rtol: float | None = None
     shortest_event: OptionalNumber = declare(SHORTEST_EVENT, None)
     max_events: int | None = None
-    progress: Progress | None = None
+    progress: Callable[[Any], object] | None = None
     checkpoint: Path | None = None
     checkpoint_every: Number = declare(CHECKPOINT_INTERVAL, CHECKPOINT_EVERY)
     max_pieces: int | None = None
+    frames: int | None = None
     title: str = ""
     description: str = ""
 
@@ -58,6 +60,8 @@ class RunOptions:
         """Return the options of a scenario; options in `given` that are not None replace or complete them."""
         names = ("duration", "rtol", "creep_rtol", "shortest_event", "max_events")
         own = {name: getattr(scenario, name) for name in names} | {"title": scenario.heading, "description": scenario.description}
+        if scenario.contact is not None:
+            own["frames"] = scenario.contact.frames
         return cls(**(own | _not_none(given)))
 
     @classmethod
@@ -83,21 +87,28 @@ class RunOptions:
         check_problem(who, problem)
         if problem.why_not_run:
             raise InputError(f"{who}: {problem.why_not_run}")
-        creep_rtol = None if self.creep_rtol is None else CREEP_RTOL.check(who, "creep_rtol", self.creep_rtol)
-        shortest = None if self.shortest_event is None else SHORTEST_EVENT.check(who, "shortest_event", self.shortest_event)
+        checked = self.checked(who)
+        check_creep_rtol(problem, checked.creep_rtol, who)
+        check_shortest_event(problem, checked.shortest_event, who)
+        return checked
+
+    def checked(self, who: str) -> Self:
+        """Return the options with numbers in SI, each in its range whatever is run. Raises InputError, which begins with `who`."""
         if not isinstance(self.title, str):
             raise InputError(f"{who}: title must be text, got {shown(self.title)}")
-        pieces = None if self.max_pieces is None else check_whole(f"{who}: max_pieces", self.max_pieces, 1, LARGEST_HISTORY)
-        checked: dict[str, Any] = {
-            "duration": DURATION.check(who, "duration", self.duration),
-            "rtol": check_rtol(self.rtol, who),
-            "creep_rtol": check_creep_rtol(problem, creep_rtol, who),
-            "shortest_event": check_shortest_event(problem, shortest, who),
-            "checkpoint_every": CHECKPOINT_INTERVAL.check(who, "checkpoint_every", self.checkpoint_every),
-            "max_events": None if self.max_events is None else check_whole(f"{who}: max_events", self.max_events),
-            "max_pieces": pieces,
+        checks: dict[str, Callable[[Any], Any]] = {
+            "duration": partial(DURATION.check, who, "duration"),
+            "rtol": partial(check_rtol, where=who),
+            "creep_rtol": partial(CREEP_RTOL.check, who, "creep_rtol"),
+            "shortest_event": partial(SHORTEST_EVENT.check, who, "shortest_event"),
+            "checkpoint_every": partial(CHECKPOINT_INTERVAL.check, who, "checkpoint_every"),
+            "max_events": partial(check_whole, f"{who}: max_events"),
+            "max_pieces": partial(check_whole, f"{who}: max_pieces", most=LARGEST_HISTORY),
+            "frames": partial(check_whole, f"{who}: frames"),
         }
-        converted = {name: value for name, value in checked.items() if value is not getattr(self, name)}
+        given = {name: getattr(self, name) for name in checks}
+        checked = {name: checks[name](value) for name, value in given.items() if value is not None or name == "duration"}
+        converted = {name: value for name, value in checked.items() if value is not given[name]}
         return replace(self, **converted) if converted else self
 
     @property
@@ -110,16 +121,22 @@ class RunOptions:
         return code != FULL_HISTORY or self.max_pieces is not None
 
 
-def problem_and_options(who: str, source: Problem | Scenario | str | Path, **given: Any) -> tuple[Problem, RunOptions]:
-    """Return the problem to run and the checked options of its run.
+def options_of(source: Problem | PlanarSlab | Scenario, **given: Any) -> RunOptions:
+    """Return the options of a run, not yet checked; those in `given` that are None come from the scenario, or are the defaults."""
+    if isinstance(source, Problem | PlanarSlab):
+        return RunOptions(**({"duration": None} | _not_none(given)))
+    return RunOptions.of(source, **given)
 
-    The source is a problem, a scenario, the name of a bundled scenario or a scenario file. Options in `given` that are None come
-    from the scenario, or are the defaults. Raises InputError, for a wrong option with a message that begins with `who`.
+
+def problem_and_options(who: str, source: Problem | Scenario | str | Path, **given: Any) -> tuple[Problem, RunOptions]:
+    """Return the problem to run and the checked options of its run, see `options_of`.
+
+    The source is a problem, a scenario, the name of a bundled scenario or a scenario file. Raises InputError, for a wrong option
+    with a message that begins with `who`.
     """
-    found = read_source(who, source)
-    if isinstance(found, Problem):
-        return found, RunOptions(**({"duration": None} | _not_none(given))).check(who, found)
-    return found.problem, RunOptions.of(found, **given).check(who, found.problem)
+    source = read_source(who, source)
+    problem = source if isinstance(source, Problem) else source.problem
+    return problem, options_of(source, **given).check(who, problem)
 
 
 def _not_none(given: Mapping[str, Any]) -> dict[str, Any]:

@@ -6,27 +6,25 @@ import math
 import os
 import sys
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
-from time import perf_counter
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from stickslip.engine.state.layout import Stop
-from stickslip.foundation.arguments import as_path, shown
+from stickslip.foundation.arguments import shown
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import number
 from stickslip.planar.slab import PlanarSlab
-from stickslip.problem.run_quantities import CHECKPOINT_INTERVAL, DURATION
-from stickslip.run.options import CHECKPOINT_EVERY
+from stickslip.run.options import RunOptions
 from stickslip.run.progress import Pace, how_far, how_fast
-from stickslip.run.run_loop import Interrupts, NowAndThen, next_budget
+from stickslip.run.run_loop import WholeHistory, run_to_end
 from stickslip.scenarios.scenario import Scenario
 from stickslip.solution.planar import Frames, PlanarSolution
-from stickslip.trajectory.status import UNSTABLE
+from stickslip.trajectory.status import INTERRUPTED, UNSTABLE
 
 if TYPE_CHECKING:
     from stickslip.io.planar_store import PlanarStore
@@ -41,8 +39,8 @@ ROUNDING = 1e-12
 """Share of the normal stress by which rounding may carry friction below zero."""
 UNHEARD_OF = 1e3
 """Slip rate of an unstable run over the one that the largest load would drive against radiation alone; fronts come to some ten."""
-NODES_AT_ONCE = 1_000_000
-"""Nodes times steps in the first call of the solver, which are computed in less than a second."""
+NODES = 200
+"""Nodes whose step counts as one in the budget of a call: the first call then takes less than a second."""
 COMPILER = 6e7
 """Memory that compiling a run takes, bytes."""
 UNKNOWN_MEMORY = 16e9
@@ -118,65 +116,49 @@ def check_memory(slab: PlanarSlab, duration: float, frames: int) -> float:
     return needed
 
 
-def simulate_planar(
-    slab: PlanarSlab,
-    duration: float | str | WithUnit | None,
-    *,
-    frames: int | None = None,
-    progress: PlanarProgress | None = None,
-    checkpoint: str | Path | None = None,
-    checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
-    scenario: Scenario | None = None,
-) -> PlanarSolution:
-    """Run a planar slab from t = 0: see `stickslip.simulate`. The run ends with the step that reaches the duration.
+def simulate_planar(source: PlanarSlab | Scenario, options: RunOptions) -> PlanarSolution:
+    """Run a planar slab from t = 0, with the step that reaches the duration as the last one: see `stickslip.simulate`.
 
-    It keeps so many `frames` of each two-way travel time, as far as there are as many steps; 100 by default. `progress` is called
-    with a `PlanarReport` before the start, after each frame, and ten times a second between two frames. Frames are written to the
-    folder `checkpoint` (NAME.zarr) while the run continues, with the scenario of the slab, if it has one, and `resume_planar`
-    continues it. Ctrl-C ends the run with the frames that are done, and one for where it ended. Raises InputError if an argument is
-    out of range, or the library JAX is missing (`pip install 'stickslip[planar]'`).
+    Frames are written to the folder `options.checkpoint` (NAME.zarr) while the run continues, and `resume_planar` continues it.
+    Raises InputError if an option is out of range, or the library JAX is missing.
     """
-    if duration is None:
+    slab = source if isinstance(source, PlanarSlab) else source.planar_slab
+    if options.duration is None:
         raise InputError("simulate: a PlanarSlab needs a duration, in s or with a unit")
-    length, wanted = DURATION.check("simulate", "duration", duration), FRAMES if frames is None else frames
-    if not isinstance(wanted, int) or isinstance(wanted, bool) or wanted < 1:
-        raise InputError(f"simulate: frames must be a whole number above 0, got {shown(frames)}")
-    follow = Follow(length, wanted, progress, CHECKPOINT_INTERVAL.check("simulate", "checkpoint_every", checkpoint_every))
-    path = None if checkpoint is None else as_path("simulate: checkpoint", checkpoint)
+    options = options.checked("simulate")
+    path, duration = options.checkpoint, options.duration
     if path is not None and path.suffix != ".zarr":
         raise InputError(f"simulate: the checkpoint of a PlanarSlab is a folder NAME.zarr, got {shown(str(path))}")
-    run, here = follow.solver(slab, streams=path is not None)
-    if path is None:
-        return follow.to_end(Frames(slab, run.steps), run, here)
-    from stickslip.io.planar_store import PlanarStore  # with zarr, which takes half a second to load
+    solver, here, memory = begun(slab, options, 0.0)
+    with ExitStack() as stack:
+        frames: Frames = Frames(slab, solver.steps)
+        if path is not None:
+            from stickslip.io.planar_store import PlanarStore  # with zarr, which takes half a second to load
 
-    about = replace(scenario or Scenario(slab.problem, length), duration=length)
-    with PlanarStore.new(path, slab, about, wanted, run) as store:
-        return follow.to_end(store, run, here)
+            about = Scenario(slab.problem, duration) if isinstance(source, PlanarSlab) else replace(source, duration=duration)
+            frames = stack.enter_context(PlanarStore.new(path, slab, about, options.frames or FRAMES, solver))
+        run = PlanarRun(options, solver, here, memory, frames)
+        run.keep(solver.now())
+        frames.save(solver)
+        return run_to_end(run, WholeHistory(run))
 
 
-def resume_planar(
-    path: Path,
-    duration: float | str | WithUnit | None = None,
-    *,
-    progress: PlanarProgress | None = None,
-    checkpoint_every: float | str | WithUnit = CHECKPOINT_EVERY,
-) -> PlanarSolution:
-    """Continue the run of a planar slab in its folder: see `stickslip.run.resume.resume`."""
+def resume_planar(path: Path, duration: float | str | WithUnit | None = None, **given: Any) -> PlanarSolution:
+    """Continue the run of a planar slab in its folder, up to its own duration if none is given: see `stickslip.resume`."""
     from stickslip.io.planar_store import PlanarStore
 
     with PlanarStore.at(path) as store:
         before = store.duration
-        if duration is not None:
-            store.duration = DURATION.check("resume", "duration", duration)
+        asked: Any = before if duration is None else duration
+        options = RunOptions(asked, frames=store.frames, checkpoint=path, **given).checked("resume")
+        store.duration = options.duration
         check_duration(store, before)
-        every = CHECKPOINT_INTERVAL.check("resume", "checkpoint_every", checkpoint_every)
-        follow = Follow(store.duration, store.frames, progress, every)
-        run, here = follow.solver(store.slab, streams=True, time=store.times[-1])
-        store.restore(run)
-        if run.step % follow.steps_of(run) and run.step < run.steps and run.steps_left:
+        solver, here, memory = begun(store.slab, options, store.times[-1])
+        store.restore(solver)
+        run = PlanarRun(options, solver, here, memory, store)
+        if solver.step % run.steps_to_frame and solver.step < solver.steps and solver.steps_left:
             store.drop_last()  # it was made because the run ended there
-        return follow.to_end(store, run, here)
+        return run_to_end(run, WholeHistory(run))
 
 
 def check_duration(store: PlanarStore, before: float) -> None:
@@ -198,104 +180,116 @@ def check_duration(store: PlanarStore, before: float) -> None:
     raise InputError(f"{store.path}: the duration of {before:.9g} s cannot become {wanted:.9g} s: {why}")
 
 
-@dataclass
-class Follow:
-    """How a run is followed to its end.
+def begun(slab: PlanarSlab, options: RunOptions, time: float) -> tuple[PlanarSolver, tuple[slice, ...], float]:
+    """Return a solver at t = 0, where the nodes of the contact are in it, and the memory (bytes) that the run needs.
 
-    `frames` is the number of frames in a two-way travel time, `every` the wall-clock time (s) between two checkpoints, and `memory`
-    what the run needs (bytes).
+    Before that, the run is reported at a time (s). Raises InputError if it needs too much memory, or if JAX is missing.
     """
+    solved, here = slab.alone_for(options.duration)
+    try:
+        from stickslip.planar.solver import PlanarSolver
+    except ImportError:
+        raise InputError("simulate: a PlanarSlab needs the library JAX: pip install 'stickslip[planar]'") from None
+    memory = check_memory(solved, options.duration, 0 if options.checkpoint is not None else options.frames or FRAMES)
+    if options.progress is not None:
+        options.progress(PlanarReport(time, options.duration, math.nan, math.nan, math.nan, memory))
+    return PlanarSolver(solved, options.duration), here, memory
 
-    duration: float
-    frames: int
-    progress: PlanarProgress | None
-    every: float
-    memory: float = 0.0
 
-    def solver(self, slab: PlanarSlab, *, streams: bool, time: float = 0.0) -> tuple[PlanarSolver, tuple[slice, ...]]:
-        """Return the solver at t = 0, and where the nodes of the contact are in it, after a first report at a time (s).
+@dataclass(eq=False)
+class PlanarRun:
+    """A planar slab in progress and the frames of its motion, an implementation of `run.solver.Solver`."""
 
-        Raises InputError if the run needs too much memory, or if JAX is missing.
+    options: RunOptions
+    solver: PlanarSolver
+    here: tuple[slice, ...]
+    """Where the nodes of the contact are among those of the solver."""
+    memory: float
+    """What the run needs, bytes."""
+    frames: Frames
+    can_be_saved: bool = False
+    """True at a frame: a run continues from one."""
+    has_enough = False
+    """It counts no events."""
+
+    def __post_init__(self) -> None:
+        self.fastest = self.frames.fastest
+        self.steps_to_frame = max(1, self.solver.steps // (self.options.frames or FRAMES))
+        self.nodes = math.prod(self.solver.slab.shape)
+
+    @property
+    def length(self) -> int:
+        """The number of steps since t = 0."""
+        return self.solver.trip * self.solver.steps + self.solver.step
+
+    def advance(self, budget: int) -> int:
+        """Advance to the next frame, or as far as a budget of steps of NODES nodes each allows: see `Solver.advance`.
+
+        The end of a round trip is a frame, too; there the history is full of what the round trip has sent.
         """
-        solved, here = slab.alone_for(self.duration)
-        try:
-            from stickslip.planar.solver import PlanarSolver
-        except ImportError:
-            raise InputError("simulate: a PlanarSlab needs the library JAX: pip install 'stickslip[planar]'") from None
-        self.memory = check_memory(solved, self.duration, 0 if streams else self.frames)
-        if self.progress is not None:
-            self.progress(PlanarReport(time, self.duration, math.nan, math.nan, math.nan, self.memory))
-        return PlanarSolver(solved, self.duration), here
+        solver, every = self.solver, self.steps_to_frame
+        if not solver.steps_left:
+            return Stop.FINISHED
+        missing = every - solver.step % every if solver.step < solver.steps else every
+        taken = solver.advance(missing if solver.is_shared else min(missing, max(1, budget * NODES // self.nodes)))
+        is_over, is_full = not solver.steps_left, solver.step == solver.steps
+        self.can_be_saved = taken == missing or is_full or is_over
+        if self.can_be_saved:
+            motion = solver.now()
+            if (code := self._fault(motion)) is not None:
+                self.can_be_saved = False
+                return code
+            self.keep(motion)
+        return Stop.FINISHED if is_over else Stop.FULL if is_full else Stop.NONE
 
-    def fault(self, run: PlanarSolver, motion: Motion) -> int | None:
+    def keep(self, motion: Motion) -> None:
+        """Keep the present motion as a frame."""
+        self.fastest = self.frames.add(self.solver.time, motion.at(self.here))
+
+    def _fault(self, motion: Motion) -> int | None:
         """Return the code that ends the run at a motion that is no solution, or None."""
         if not all(np.isfinite(one).all() for one in motion):
             return Stop.FAILED
         if motion.residual.max() > RESIDUAL:
+            self.frames.residual = float(motion.residual.max())
             return Stop.OFF_THE_LAW
-        largest = np.abs(run.slab.values.load).max() + np.abs(run.loading).max()
-        if np.abs(motion.rate).max() > UNHEARD_OF * largest / run.body.impedance:
+        slab = self.solver.slab
+        largest = np.abs(slab.values.load).max() + np.abs(self.solver.loading).max()
+        if np.abs(motion.rate).max() > UNHEARD_OF * largest / slab.body.impedance:
             return UNSTABLE
-        driven = motion.traction * np.sign(motion.rate) < -ROUNDING * run.slab.values.normal
+        driven = motion.traction * np.sign(motion.rate) < -ROUNDING * slab.values.normal
         return Stop.NEGATIVE_FRICTION if driven.any() else None
 
-    def to_end(self, kept: Frames, run: PlanarSolver, here: tuple[slice, ...]) -> PlanarSolution:
-        """Run to the end, or to a Ctrl-C, and return the frames."""
-        if not kept.times:
-            kept.add(run.time, run.now().at(here))
-            kept.save(run)
-        with Interrupts() as interrupts:
-            code = self.follow(kept, run, here, interrupts)
-            slab, slip = kept.slab, kept.largest_slip
-            if not slab.values.is_unique(slab.body.impedance, slip, kept.fastest):
-                raise InputError(
-                    f"simulate: within the {slip:.3g} m that this PlanarSlab slips, friction falls with the slip rate by more than"
-                    " radiation adds: several slip rates solve the contact equation, and no selection rule is known to help in 2D"
-                    " or 3D"
-                )
-            kept.end(run, code)
-            return kept.solution(code)
-
-    def steps_of(self, run: PlanarSolver) -> int:
-        """Return the number of steps from frame to frame; the end of a round trip is a frame, too."""
-        return max(1, run.steps // self.frames)
-
-    def follow(self, kept: Frames, run: PlanarSolver, here: tuple[slice, ...], interrupts: Interrupts) -> int:
-        """Run frame by frame, and return the code of what ended the run.
-
-        The steps from frame to frame are taken in calls of about a tenth of a second, between which Ctrl-C is heard.
-        """
-        every, saving, pace = self.steps_of(run), NowAndThen.from_now(self.every), None
-        budget, fastest = max(1, NODES_AT_ONCE // math.prod(run.slab.shape)), kept.fastest
-        while run.steps_left:
-            if run.step == run.steps:
-                kept.end_round_trip(run)
-            missing = every - run.step % every if run.step < run.steps else every
-            start = perf_counter()
-            taken = run.advance(missing if run.is_shared else min(missing, budget))
-            budget, pace = next_budget(budget, perf_counter() - start, 1), pace or Pace()  # from when all has been compiled
-            is_frame = taken == missing or run.step == run.steps or not run.steps_left
-            if is_frame:
-                if (code := self.fault(run, motion := run.now())) is not None:
-                    kept.residual = float(motion.residual.max()) if code == Stop.OFF_THE_LAW else kept.residual
-                    return code
-                fastest = kept.add(run.time, motion.at(here))
-                if saving.is_due:
-                    with saving.done():
-                        kept.save(run)
-            goes_on = self.tell(run, fastest, pace)
-            if not goes_on or (interrupts.noted and run.steps_left):
-                if not is_frame:
-                    kept.add(run.time, run.now().at(here))
-                return interrupts.answer()
-        return Stop.FINISHED
-
-    def tell(self, run: PlanarSolver, fastest: float, pace: Pace) -> bool:
-        """Report the progress of a run whose largest slip rate (m/s) is known. Returns False if that raised KeyboardInterrupt."""
-        if self.progress is not None:
-            done = min(run.time / self.duration, 1.0)
-            try:
-                self.progress(PlanarReport(run.time, self.duration, fastest, *pace.at(run.time, done), self.memory))
-            except KeyboardInterrupt:
-                return False
+    def grow(self) -> bool:
+        """Let the frames take what the solver is about to forget."""
+        self.frames.end_round_trip(self.solver)
         return True
+
+    def new_events(self) -> None:
+        """Return None: a contact of many nodes has pulses at each of them, and no slip events."""
+
+    def report(self, pace: Pace) -> PlanarReport:
+        """Return the progress of the run: see `Solver.report`."""
+        now, duration = self.solver.time, self.options.duration
+        return PlanarReport(now, duration, self.fastest, *pace.at(now, min(now / duration, 1.0)), self.memory)
+
+    def save(self) -> None:
+        """Renew the checkpoint, if a folder for it was given."""
+        self.frames.save(self.solver)
+
+    def finish(self, code: int) -> PlanarSolution:
+        """Return the frames with the status that belongs to a code, and one more if the run was interrupted between two.
+
+        Raises InputError if several slip rates solved the contact equation on the way.
+        """
+        frames, slab = self.frames, self.frames.slab
+        if code == INTERRUPTED and not self.can_be_saved:
+            self.keep(self.solver.now())
+        if not slab.values.is_unique(slab.body.impedance, frames.largest_slip, frames.fastest):
+            raise InputError(
+                f"simulate: within the {frames.largest_slip:.3g} m that this PlanarSlab slips, friction falls with the slip rate by"
+                " more than radiation adds: several slip rates solve the contact equation, and no selection rule is known to help"
+                " in 2D or 3D"
+            )
+        frames.end(self.solver, code)
+        return frames.solution(code)

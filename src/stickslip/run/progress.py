@@ -7,16 +7,12 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Self, TypeVar
+from dataclasses import dataclass
+from typing import Any, Literal, NamedTuple, TypeVar
 
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import about_time, clean, in_unit, number
-
-if TYPE_CHECKING:
-    from stickslip.run.options import RunOptions
-    from stickslip.run.solver import Solver
 
 News = TypeVar("News")
 Show = Callable[[str], object]
@@ -106,8 +102,8 @@ class Report(NamedTuple):
     It holds the simulated time so far and at the end of the run (s); the number of slip events that are over, and that after which
     the run stops, if there is one; the number of pieces of history computed so far, including those that have been discarded; and
     the present motion of the contact, which creeps while |v| does not exceed the slip rate that defines events. `pace` is the
-    simulated time per wall-clock time since the run was started or resumed, and `left` the wall-clock time left at this pace (s);
-    both are NaN while they are not known.
+    simulated time per wall-clock time since the first report, and `left` the wall-clock time left at this pace (s); both are NaN
+    while they are not known.
     """
 
     time: float
@@ -149,45 +145,14 @@ Progress = Callable[[Report], object]
 
 @dataclass
 class Pace:
-    """Measure how fast a run goes.
+    """Measure how fast a run goes since its first report: wall-clock time (s), simulated time (s), and share of the run done."""
 
-    `started` is the wall-clock time (s) at which the run was started or resumed; `first` is the simulated time (s), and the share
-    of the run that was done, at the first report.
-    """
-
-    started: float = field(default_factory=time.monotonic)
-    first: tuple[float, float] | None = None
+    first: tuple[float, float, float] | None = None
 
     def at(self, now: float, share: float) -> tuple[float, float]:
         """Return the pace and the wall-clock time left (s; see `Report`) at a simulated time (s), with a share of the run done."""
-        if self.first is None:
-            self.first = now, share
-        from_time, from_share = self.first
-        took, done = time.monotonic() - self.started, share - from_share
+        clock = time.monotonic()
+        self.first = from_clock, from_time, from_share = self.first or (clock, now, share)
+        took, done = clock - from_clock, share - from_share
         pace = (now - from_time) / took if took > 0 else float("nan")
         return pace, took * (1.0 - share) / done if done > 0 else float("nan")
-
-
-@dataclass
-class Reporter:
-    """Make reports on a run and pass them to a callback."""
-
-    tell: Progress
-    duration: float
-    max_events: int | None
-    event_rate: float
-    pace: Pace = field(default_factory=Pace)
-
-    @classmethod
-    def of(cls, options: RunOptions, event_rate: float) -> Self | None:
-        """Return a reporter, or None if there is no callback."""
-        tell = options.progress
-        return None if tell is None else cls(tell, options.duration, options.max_events, event_rate)
-
-    def report(self, run: Solver[Any], events: int) -> None:
-        """Call the callback with the progress of the run."""
-        now = min(run.time, self.duration)
-        share = max(now / self.duration, events / self.max_events if self.max_events else 0.0)
-        doing: Doing = "stuck" if run.fastest == 0.0 else "slipping" if run.fastest > self.event_rate else "creeping"
-        pieces = run.forgotten + run.length
-        self.tell(Report(now, self.duration, events, self.max_events, pieces, doing, *self.pace.at(now, share)))

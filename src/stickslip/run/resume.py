@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -13,14 +13,13 @@ from stickslip.foundation.errors import InputError
 from stickslip.io.catalogue_rows import Rows, check_catalogue
 from stickslip.io.netcdf import CATALOGUE, is_catalogue, read, read_solution, to_solution
 from stickslip.io.soundness import check_checkpoint, check_place
-from stickslip.observables.event_stream import HistoryPlace
+from stickslip.observables.event_stream import EventStream, HistoryPlace
 from stickslip.run.catalogue import Catalogue, alone_with, checkpoint_of, follow
-from stickslip.run.monitor import run_to_end
+from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import CHECKPOINT_EVERY, RunOptions
 from stickslip.run.planar_run import PlanarProgress, resume_planar
 from stickslip.run.progress import Progress, told
-from stickslip.run.session import Session
-from stickslip.run.simulate import WholeHistory
+from stickslip.run.run_loop import WholeHistory, run_to_end
 from stickslip.solution.planar import PlanarSolution
 from stickslip.solution.solution import Solution
 from stickslip.trajectory.status import engine
@@ -79,19 +78,18 @@ def resume(
     """
     file = as_path("resume: path", path)
     if file.is_dir():
-        others: dict[str, Any] = {"max_events": max_events, "checkpoint": checkpoint, "max_pieces": max_pieces}
-        if needless := [name for name, value in others.items() if value is not None]:
+        given = {"max_events": max_events, "checkpoint": checkpoint, "max_pieces": max_pieces}
+        if needless := [name for name, value in given.items() if value is not None]:
             raise InputError(f"resume: {file}: the run of a PlanarSlab continues in its own folder, without {needless[0]}")
-        tell: Any
-        with told(progress, "resume") as tell:
-            return resume_planar(file, duration, progress=tell, checkpoint_every=checkpoint_every)
+        with told(progress, "resume") as report:
+            return resume_planar(file, duration, progress=report, checkpoint_every=checkpoint_every)
     paused = PausedCatalogue.read(file) if is_catalogue(file) else None
     if paused is not None and checkpoint is not None:
         raise InputError(f"resume: {file}: a catalogue is resumed in its own file: leave out checkpoint")
     stopped = read_solution(file) if paused is None else paused.stopped
     kept = file if checkpoint is None else as_path("resume: checkpoint", checkpoint)
     with told(progress, "resume") as report:
-        others = {"progress": report, "checkpoint_every": checkpoint_every, "max_pieces": max_pieces}
+        others: dict[str, Any] = {"progress": report, "checkpoint_every": checkpoint_every, "max_pieces": max_pieces}
         options = RunOptions.to_continue(stopped, duration, max_events, checkpoint=kept, **others)
         return resume_run(stopped, file, options) if paused is None else paused.resume(options).read()
 
@@ -101,7 +99,7 @@ def resume_run(stopped: Solution, path: Path, options: RunOptions) -> Solution:
     run = taken_up(stopped, path, options)
     if run.options.max_events is not None:
         check_events(path, run.options.max_events, events_in(run))
-    return run_to_end(run, WholeHistory())
+    return run_to_end(run, WholeHistory(run))
 
 
 @dataclass(frozen=True)
@@ -144,15 +142,14 @@ class PausedCatalogue:
             check_events(self.path, run.options.max_events, int(about["told"]))
         check_catalogue(rows.path)
         run.forgotten = about["forgotten"]
-        fresh = run.events(about["event_rate"], bool(about["energies"]))
         start = HistoryPlace(about["last_piece"], about["last_xi"])
-        stream = replace(fresh, first=about["first"], last_start=start, told=about["told"])
+        run.stream = EventStream(about["event_rate"], about["first"], start, about["told"], bool(about["energies"]))
         with alone_with(rows):
             rows.take_up(about["told"], about["bytes"], about["digest"])
-            return follow(run, stream, rows)
+            return follow(run, rows)
 
 
-def taken_up(stopped: Solution, path: Path, options: RunOptions) -> Session:
+def taken_up(stopped: Solution, path: Path, options: RunOptions) -> ExactRun:
     """Return the run in a file, ready to continue. Raises InputError if it could not continue bit for bit with these options."""
     options = options.check("resume", stopped.problem)
     checkpoint = stopped.checkpoint
@@ -164,7 +161,7 @@ def taken_up(stopped: Solution, path: Path, options: RunOptions) -> Session:
             " which would go on in other digits; run it again from the start"
         )
     check_checkpoint(stopped, path)
-    run = Session.at_checkpoint(stopped.history, checkpoint, options)
+    run = ExactRun.at_checkpoint(stopped.history, checkpoint, options)
     reached = float(stopped.history.end[run.length - 1])
     if options.duration != stopped.asked_duration and options.duration < reached:
         wanted = f"a duration of {options.duration:.9g} s lies before that"
@@ -172,9 +169,9 @@ def taken_up(stopped: Solution, path: Path, options: RunOptions) -> Session:
     return run
 
 
-def events_in(run: Session) -> int:
+def events_in(run: ExactRun) -> int:
     """Return the number of events that are over in the history of a run."""
-    return len(run.events().look(run.history()).known_by)
+    return len(run.stream.look(run.history()).known_by)
 
 
 def check_events(path: Path, wanted: int, had: int) -> None:

@@ -1,4 +1,8 @@
-"""Run a solver: call it for a fraction of a second at a time, and do everything else between these calls."""
+"""Run a solver to its end: call it for a fraction of a second at a time, and do everything else between these calls.
+
+`simulate` and `catalogue` run in the same way, `run_to_end`, and differ in the sink that takes the result: `WholeHistory` keeps
+everything, `EventRows` (`run/catalogue.py`) keeps one row for each slip event.
+"""
 
 from __future__ import annotations
 
@@ -10,11 +14,13 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from signal import SIGINT, default_int_handler
 from types import FrameType
-from typing import Any, Protocol, Self
+from typing import Any, Generic, Protocol, Self, TypeVar
 
 from stickslip.engine.state.layout import Stop
-from stickslip.run.solver import Solver
-from stickslip.trajectory.status import FULL_HISTORY, INTERRUPTED
+from stickslip.foundation.errors import InputError
+from stickslip.run.progress import Pace
+from stickslip.run.solver import NewEvents, Solver
+from stickslip.trajectory.status import ENOUGH_EVENTS, FULL_HISTORY, INTERRUPTED, STATUSES
 
 MOMENT = 0.1
 """Wall-clock time that one call of the solver should take, s: short enough for Ctrl-C and for reports of progress."""
@@ -22,6 +28,11 @@ FIRST_BUDGET, SMALLEST_BUDGET, LARGEST_BUDGET = 5_000, 100, 20_000
 """Number of steps in the first call, and its bounds in later ones: no call should take seconds when steps suddenly cost more."""
 SHARE = 0.1
 """Largest share of the wall-clock time that any periodic task may take."""
+
+New = TypeVar("New", bound=NewEvents)
+New_contra = TypeVar("New_contra", bound=NewEvents, contravariant=True)
+Result = TypeVar("Result")
+Result_co = TypeVar("Result_co", covariant=True)
 
 
 @dataclass
@@ -50,20 +61,120 @@ class NowAndThen:
         self.due_at = end + max(self.every, (end - start) / SHARE)
 
 
-class Watch(Protocol):
-    """The interface of a monitor, which is called between two calls of the solver, when the state of the run is consistent."""
+class Sink(Protocol[New_contra, Result_co]):
+    """What takes the results of a run."""
 
-    def look(self, run: Solver[Any], *, now: bool) -> int | None:
+    who: str
+    """Name of the public function, for messages."""
+    wants_events: bool
+    """True if `record` must be called for each event also when nothing else counts them."""
+
+    def record(self, new: New_contra) -> None:
+        """Take new events, before they count as reported, and report them."""
+
+    def make_room(self) -> bool:
+        """Make room in a full history. Returns False if that is not allowed."""
+
+    def save(self) -> None:
+        """Write a checkpoint."""
+
+    def finish(self, code: int) -> Result_co:
+        """Store the end of a run that ended with this code, and return the result."""
+
+
+@dataclass
+class WholeHistory(Generic[Result]):
+    """The sink of a run that keeps its whole history and becomes a solution."""
+
+    run: Solver[NewEvents, Result]
+    who = "simulate"
+    wants_events = False
+
+    def record(self, new: NewEvents) -> None:
+        """Report the events: the history holds them."""
+        new.tell()
+
+    def make_room(self) -> bool:
+        """Have the run make room, up to the largest number of pieces allowed."""
+        return self.run.grow()
+
+    def save(self) -> None:
+        """Have the run renew its checkpoint."""
+        self.run.save()
+
+    def finish(self, code: int) -> Result:
+        """Return the solution, which the run writes if a file for it was given."""
+        return self.run.finish(code)
+
+
+class Watch(Protocol):
+    """What is done between two calls of the solver, when the state of the run is consistent."""
+
+    def look(self, *, now: bool) -> int | None:
         """Monitor the run after a call of the solver. Returns a code to end the run, or None to continue.
 
         `now` is True if the call did more than use up its steps (an end, a full history): counting events must not wait then.
         """
 
-    def make_room(self, run: Solver[Any]) -> bool:
+    def make_room(self) -> bool:
         """Make room in a full history. Returns False if that is not allowed."""
 
 
-def run_loop(run: Solver[Any], watch: Watch, interrupts: Interrupts) -> int:
+@dataclass
+class Monitor(Generic[New]):
+    """The watch of a run whose results go to a sink: count its events, report its progress, have it stored."""
+
+    run: Solver[New, Any]
+    sink: Sink[New, object]
+    counting: NowAndThen = field(default_factory=lambda: NowAndThen(0.0))
+    pace: Pace = field(default_factory=Pace)
+
+    def __post_init__(self) -> None:
+        self.options = self.run.options
+        self.saving = NowAndThen.from_now(self.options.checkpoint_every)
+        self.counts = self.sink.wants_events or self.options.progress is not None or self.options.max_events is not None
+
+    def look(self, *, now: bool) -> int | None:
+        """Count events, report progress and write a checkpoint where each is due: see `Watch`."""
+        run, tell = self.run, self.options.progress
+        if self.counts and run.length > 0 and (now or self.counting.is_due):
+            with self.counting.done():
+                self.count()
+        if run.can_be_saved and not run.has_enough and self.saving.is_due:
+            with self.saving.done():
+                self.sink.save()
+        if tell is not None:
+            tell(run.report(self.pace))
+        return ENOUGH_EVENTS if run.has_enough else None
+
+    def count(self) -> None:
+        """Hand new events to the sink."""
+        if (new := self.run.new_events()) is not None:
+            self.sink.record(new)
+
+    def make_room(self) -> bool:
+        """Have the sink make room in the full history: see `Watch`."""
+        return self.sink.make_room()
+
+
+def run_to_end(run: Solver[New, Any], sink: Sink[New, Result]) -> Result:
+    """Run a solver to the end and return the result of the sink.
+
+    Raises InputError if the run ends where it starts, and KeyboardInterrupt if Ctrl-C stopped it there or came too late to stop it.
+    """
+    monitor = Monitor(run, sink)
+    with Interrupts() as interrupts:
+        code = run_loop(run, monitor, interrupts)
+        if run.length == 0:
+            if code == INTERRUPTED:
+                raise KeyboardInterrupt
+            raise InputError(f"{sink.who}: the run ends where it starts: {STATUSES[code].message}")
+        if sink.wants_events and code != ENOUGH_EVENTS:
+            monitor.count()
+        return sink.finish(code)
+
+
+def run_loop(run: Solver[Any, Any], watch: Watch, interrupts: Interrupts) -> int:
     """Run to the end, or until Ctrl-C has been noted. Returns the code of what ended the run (see `trajectory.status`)."""
     budget = FIRST_BUDGET
     try:
@@ -72,9 +183,13 @@ def run_loop(run: Solver[Any], watch: Watch, interrupts: Interrupts) -> int:
             code = run.advance(budget)
             if code == Stop.NONE:
                 budget = next_budget(budget, time.perf_counter() - start)
-            end = after_call(run, code, watch)
-            if end is not None:
-                return end
+            stop = watch.look(now=code != Stop.NONE)
+            if stop is not None:
+                return stop
+            if code == Stop.FULL and not watch.make_room():
+                return FULL_HISTORY
+            if code not in (Stop.NONE, Stop.END_AHEAD, Stop.FULL):
+                return code
             if interrupts.noted:
                 return interrupts.answer()
     except KeyboardInterrupt:  # from a callback in `look`, from a handler that is not ours, or from a second Ctrl-C
@@ -83,27 +198,10 @@ def run_loop(run: Solver[Any], watch: Watch, interrupts: Interrupts) -> int:
         return INTERRUPTED
 
 
-def after_call(run: Solver[Any], code: int, watch: Watch) -> int | None:
-    """Do what is due after a call of the solver that returned `code`. Returns a code to end the run, or None to continue."""
-    stop = watch.look(run, now=code != Stop.NONE)
-    if stop is not None:
-        return stop
-    if code == Stop.FULL:
-        return None if watch.make_room(run) else FULL_HISTORY
-    return None if code in (Stop.NONE, Stop.END_AHEAD) else code
-
-
-def repeat(run: Solver[Any], since: Any, length: int) -> None:
-    """Go back to an earlier state of a run, and step from there until the history has `length` pieces."""
-    run.restore(since)
-    while run.length < length:
-        run.advance(1)
-
-
-def next_budget(budget: int, took: float, smallest: int = SMALLEST_BUDGET) -> int:
+def next_budget(budget: int, took: float) -> int:
     """Return the number of steps for the next call from the number in the last one and the time (s) that they took."""
     wanted = budget * min(MOMENT / max(took, 1e-9), 4.0)
-    return int(min(max(wanted, smallest), LARGEST_BUDGET))
+    return int(min(max(wanted, SMALLEST_BUDGET), LARGEST_BUDGET))
 
 
 class Interrupts:

@@ -5,9 +5,8 @@ A piece of history is an interval on which load and slip rate are polynomials. A
 
 from __future__ import annotations
 
-import math
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
@@ -20,17 +19,13 @@ from stickslip.engine.state.layout import EchoNode, Floats, Integers, Setup, Sto
 from stickslip.engine.state.workspace import counts_in, lend, lend_history, scratch_in, state_in
 from stickslip.engine.waves.echo_queue import rebuild_queue
 from stickslip.engine_input.branch_table import renewed
-from stickslip.engine_input.limits import MOST_PIECES, PATIENCE, creep_tolerance, leaps_over, lumping_note, lumps_by_itself
+from stickslip.engine_input.limits import creep_tolerance, lumping_note, split_time
 from stickslip.engine_input.prepare import prepare
-from stickslip.foundation.errors import InputError
-from stickslip.observables.event_stream import EventStream
 from stickslip.problem.problem import Problem
 from stickslip.run.options import RunOptions
-from stickslip.solution.solution import Solution
 from stickslip.trajectory.history import NO_LEAPS, History
 from stickslip.trajectory.phase_index import standing_behind
-from stickslip.trajectory.slip_events import default_event_rate
-from stickslip.trajectory.status import ENOUGH_EVENTS, FULL_HISTORY, STATUSES, Checkpoint, Crowd, Status, engine, rounding_note
+from stickslip.trajectory.status import Checkpoint, engine, rounding_note
 
 FIRST_CAPACITY = 256
 """Pieces of history for which a run has room at first, 0.1 MB; the room grows fourfold when it is full."""
@@ -38,16 +33,9 @@ SPARE = 16
 """Room beyond the largest number of pieces allowed: the engine calls a history full when it has room for fewer than 8 more."""
 
 
-MOST_ROUND_TRIPS = 2**53
-"""Largest number of round trips of a slab, or periods of a block: a float64 counts up to here without gaps."""
-
-
 @dataclass(eq=False)
 class Session:
-    """The exact solver of one contact, an implementation of `run.solver.Solver`.
-
-    It holds the options, the setup, the state and the history of a run between two calls of the engine.
-    """
+    """The options, the setup, the state and the history of a run between two calls of the engine; `ExactRun` is the run."""
 
     problem: Problem
     options: RunOptions
@@ -109,16 +97,6 @@ class Session:
         return float(self.count.trip * self.problem.round_trip_time + self.state.phase_from + xi * (speed + xi * bend))
 
     @property
-    def fastest(self) -> float:
-        """The |slip rate|, m/s; exactly 0 while the contact sticks."""
-        return abs(float(self.state.rate_now)) if self.count.mode != 0 else 0.0
-
-    def events(self, event_rate: float | None = None, energies: bool = False) -> EventStream:
-        """Return a stream of all slip events of the run, from its start; with `energies`, their rows hold those, too."""
-        rate = default_event_rate(self.problem) if event_rate is None else event_rate
-        return EventStream(rate, energies=energies)
-
-    @property
     def lumping_note(self) -> str:
         """One line on automatic lumping, or an empty string if it has not begun."""
         return lumping_note(self.count, self.params, self.options.shortest_event)
@@ -138,43 +116,6 @@ class Session:
         kept, round_trip = at.trimmed(self.store, self.length), self.problem.round_trip_time
         reached = float(kept.trip[-1] * round_trip + kept.phase_to[-1]) if len(kept.pieces) else 0.0
         return History(kept, self.problem, round_trip, float(self.setup.params.ramp), reached)
-
-    def solution(self, code: int) -> Solution:
-        """Return the solution computed so far, with the status that belongs to this code."""
-        options, history = self.options, self.history()
-        reached = options.duration if code in (Stop.FINISHED, Stop.LOCKED) else history.duration
-        counted = options.max_events if code == ENOUGH_EVENTS else None
-        history = replace(history, duration=reached, creep=self.creep, max_events=counted)
-        return Solution(
-            self.problem,
-            options.duration,
-            options.rtol,
-            self._full() if code == FULL_HISTORY else STATUSES[code],
-            history,
-            self.checkpoint(),
-            max_events=options.max_events,
-            creep_rtol=options.creep_rtol,
-            shortest_event=options.shortest_event,
-            title=options.title,
-            description=options.description,
-            lumping_note=self.lumping_note,
-            rounding_note=self.rounding_note,
-        )
-
-    def _full(self) -> Status:
-        """Return the status of a run whose history is full, with what would help: what begins later than the run got, would not."""
-        options, history = self.options, self.history()
-        trips, cures, stream = history.store.trip, [], self.events()
-        stream.look(history).tell()
-        if self.forgotten == 0 and 2 * stream.needed(history) > self.length:
-            cures.append("a catalogue, which keeps events only")
-        if options.creep_rtol == 0.0 and leaps_over(self.problem) and np.unique(trips[history.store.mode != 0]).size > PATIENCE:
-            cures.append("leaps (leave out creep_rtol = 0)")
-        crowded = np.unique(trips, return_counts=True)[1].max() > MOST_PIECES
-        if options.shortest_event == 0.0 and crowded and lumps_by_itself(self.problem):
-            cures.append("lumping of the shortest events (leave out shortest_event = 0)")
-        half, last = history.start[[self.length // 2, max(self.length // 2, self.length - 4 * SPARE)]].tolist()
-        return Crowd(self.length, history.duration, half, last, options.duration).status(cures)
 
     def advance(self, budget: int) -> int:
         """Call the engine once or, if it has paused for that, leap over creep: see `Solver.advance`."""
@@ -202,8 +143,9 @@ class Session:
         self._lend()
         return Stop.NONE
 
-    def grow(self, max_pieces: int) -> bool:
-        """Make room for more pieces. Returns False if the history already has `max_pieces` of them, or if memory is short."""
+    def grow(self) -> bool:
+        """Make room for more pieces. Returns False if there are as many as the options allow, or if memory is short."""
+        max_pieces = self.options.most_pieces
         if self.length >= max_pieces:
             return False
         with suppress(MemoryError):
@@ -272,25 +214,3 @@ class Session:
         if self.count.to_the_end == 0:
             self.before_end = None
         self._rebuild_queue()
-
-
-def check_round_trips(duration: float, round_trip: float, where: str) -> None:
-    """Refuse a run of more than 2^53 round trips of `round_trip` seconds, which cannot be counted exactly. Raises InputError."""
-    if not duration <= MOST_ROUND_TRIPS * round_trip:
-        raise InputError(
-            f"{where}: duration must be at most {MOST_ROUND_TRIPS * round_trip:.3g} s, 2^53 round trips of {round_trip:.3g} s, "
-            f"got {duration:g} s"
-        )
-
-
-def split_time(time: float, round_trip: float) -> tuple[int, float]:
-    """Return a positive time (s) as (whole round trips, offset in (0, round trip]). Raises InputError for too many round trips.
-
-    A block's round trip is a period; `round_trip` is its length, s.
-    """
-    check_round_trips(time, round_trip, "run")
-    trips = math.floor(time / round_trip)
-    offset = time - trips * round_trip
-    if offset <= 0.0 and trips > 0:
-        return trips - 1, round_trip
-    return trips, min(offset, round_trip)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, overload
+from typing import Any, overload
 
 from stickslip.foundation.arguments import as_path, for_users
 from stickslip.foundation.atomic_write import check_replaceable
@@ -11,19 +13,15 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.planar.slab import PlanarSlab
 from stickslip.problem.problem import Problem
-from stickslip.run.monitor import run_to_end
-from stickslip.run.options import CHECKPOINT_EVERY, problem_and_options
+from stickslip.run.exact_run import ExactRun
+from stickslip.run.options import CHECKPOINT_EVERY, RunOptions, options_of
 from stickslip.run.planar_run import PlanarProgress, simulate_planar
 from stickslip.run.progress import Progress, told
-from stickslip.run.session import Session
-from stickslip.run.solver import Events, NewEvents, Solver
+from stickslip.run.run_loop import WholeHistory, run_to_end
+from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.source import read_source
 from stickslip.solution.planar import PlanarSolution
 from stickslip.solution.solution import Solution
-from stickslip.trajectory.status import UNDER_WAY
-
-if TYPE_CHECKING:
-    from stickslip.scenarios.scenario import Scenario
 
 
 @overload
@@ -57,7 +55,7 @@ def simulate(
 
 @for_users
 def simulate(
-    problem: Problem | Scenario | PlanarSlab | str | Path,
+    problem: Any,
     duration: float | str | WithUnit | None = None,
     rtol: float | None = None,
     *,
@@ -135,69 +133,67 @@ def simulate(
     it was. With max_pieces the file is written whatever ended the run.
     """
     with told(progress, "simulate") as report:
-        found = problem if isinstance(problem, PlanarSlab) else read_source("simulate", problem, contact=True)
-        keep: dict[str, Any] = {"checkpoint": checkpoint, "checkpoint_every": checkpoint_every}
-        if not isinstance(found, Problem | PlanarSlab) and found.contact is not None:
-            duration = found.duration if duration is None else duration
-            frames = found.contact.frames if frames is None else frames
-            keep["scenario"], found = found, found.planar_slab
-        if isinstance(found, PlanarSlab):
-            others: dict[str, Any] = {
-                "rtol": rtol,
-                "creep_rtol": creep_rtol,
-                "shortest_event": shortest_event,
-                "max_events": max_events,
-                "max_pieces": max_pieces,
-            }
-            if needless := [name for name, value in others.items() if value is not None]:
-                raise InputError(f"simulate: a PlanarSlab has no {needless[0]}: its nodes and its courant set the accuracy")
-            return simulate_planar(found, duration, frames=frames, progress=report, **keep)
-        if frames is not None:
-            raise InputError("simulate: frames is for a PlanarSlab: a slab in 1D is known at all times")
+        if not PLANAR.solves(problem):
+            problem = read_source("simulate", problem, contact=True)
+        given = {
+            "duration": duration,
+            "rtol": rtol,
+            "frames": frames,
+            "creep_rtol": creep_rtol,
+            "shortest_event": shortest_event,
+            "max_events": max_events,
+            "max_pieces": max_pieces,
+            "title": title or None,
+        }
+        solver = next(one for one in SOLVERS if one.solves(problem))
+        solver.check("simulate", given)
         file = None if checkpoint is None else as_path("simulate: checkpoint", checkpoint)
-        if file is not None:
-            check_replaceable(file, f"simulate: {file}")
-        given, options = problem_and_options(
-            "simulate",
-            found,
-            duration=duration,
-            rtol=rtol,
-            creep_rtol=creep_rtol,
-            shortest_event=shortest_event,
-            max_events=max_events,
-            progress=report,
-            checkpoint=file,
-            checkpoint_every=checkpoint_every,
-            max_pieces=max_pieces,
-            title=title or None,
-        )
-        return run_to_end(Session.begin(given, options), WholeHistory())
-
-
-class WholeHistory:
-    """The sink (`monitor.Sink`) of a run that keeps its whole history and becomes a solution."""
-
-    who = "simulate"
-    wants_events = False
-
-    def record(self, run: Solver[Solution], stream: Events, look: NewEvents) -> None:
-        """Report the events: the history holds them."""
-        look.tell()
-
-    def make_room(self, run: Solver[Solution], stream: Events) -> bool:
-        """Enlarge the store of the history, up to the largest number of pieces allowed."""
-        return run.grow(run.options.most_pieces)
-
-    def save(self, run: Solver[Solution]) -> None:
-        """Renew the checkpoint if a file for it was given."""
-        if run.options.checkpoint is not None:
-            from stickslip.io.netcdf import save_checkpoint
-
-            save_checkpoint(run.solution(UNDER_WAY), run.options.checkpoint)
-
-    def finish(self, run: Solver[Solution], stream: Events, code: int) -> Solution:
-        """Return the solution, and write it if a file for it was given."""
-        solution = run.solution(code)
-        if run.options.checkpoint is not None and run.options.keeps(code):
-            solution.to_netcdf(run.options.checkpoint)
+        others = {"progress": report, "checkpoint": file, "checkpoint_every": checkpoint_every}
+        solution: Solution | PlanarSolution = solver.run(problem, options_of(problem, **given, **others))
         return solution
+
+
+def simulate_exactly(source: Problem | Scenario, options: RunOptions) -> Solution:
+    """Run a contact all of which slips alike from t = 0: see `simulate`."""
+    if options.checkpoint is not None:
+        check_replaceable(options.checkpoint, f"simulate: {options.checkpoint}")
+    problem = source if isinstance(source, Problem) else source.problem
+    run = ExactRun.begin(problem, options.check("simulate", problem))
+    return run_to_end(run, WholeHistory(run))
+
+
+@dataclass(frozen=True)
+class SolverKind:
+    """A solver that `simulate` has, and which of the options of a run it takes."""
+
+    solves: Callable[[Any], bool]
+    """True for a problem, a slab or a scenario that it is for."""
+    run: Callable[[Any, RunOptions], Any]
+    """Run it from t = 0 with options that are not yet checked."""
+    takes: frozenset[str]
+    """Names of fields of `RunOptions`."""
+    refusal: str
+    """What is said of any other option, with its name in braces."""
+
+    def check(self, who: str, given: Mapping[str, object]) -> None:
+        """Refuse options that are given, not None, and not taken. Raises InputError, which begins with `who`."""
+        if needless := [name for name, value in given.items() if value is not None and name not in self.takes]:
+            raise InputError(f"{who}: {self.refusal.format(needless[0])}")
+
+
+ALL_TAKE = frozenset({"duration", "progress", "checkpoint", "checkpoint_every"})
+"""Options that each solver takes."""
+PLANAR = SolverKind(
+    lambda source: isinstance(source, PlanarSlab) or (isinstance(source, Scenario) and source.contact is not None),
+    simulate_planar,
+    ALL_TAKE | {"frames"},
+    "a PlanarSlab has no {}: its nodes and its courant set the accuracy, its scenario has the title",
+)
+EXACT = SolverKind(
+    lambda _: True,
+    simulate_exactly,
+    ALL_TAKE | {"rtol", "creep_rtol", "shortest_event", "max_events", "max_pieces", "title", "description"},
+    "{} is for a PlanarSlab: a slab in 1D is known at all times",
+)
+SOLVERS = (PLANAR, EXACT)
+"""Each problem is run by the first that solves it."""

@@ -10,6 +10,7 @@ import numpy as np
 from stickslip.explorer.model.answer import EnergyPicture, KeyNumber, Mark, Motion
 from stickslip.explorer.model.words import short
 from stickslip.foundation.errors import InputError
+from stickslip.run.options import options_of
 from stickslip.run.planar_run import FRAMES, memory_of, simulate_planar
 from stickslip.scenarios.scenario import Scenario
 from stickslip.solution.planar import PlanarSolution
@@ -54,7 +55,7 @@ def solve_fault(scenario: Scenario, told: Told) -> FaultAnswer:
             f"{scenario.name}: this run needs {needed / 1e9:.3g} GB, and a page has {MOST_MEMORY / 1e9:g} GB: take fewer nodes, a"
             " shorter duration, or `stickslip run`"
         )
-    run = simulate_planar(slab, scenario.duration, frames=frames, progress=lambda report: told(str(report)))
+    run = simulate_planar(scenario, options_of(scenario, progress=lambda report: told(str(report))))
     sentences = run.sentences
     return FaultAnswer(
         scenario=scenario,
