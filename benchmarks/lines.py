@@ -9,17 +9,23 @@ ROOT = Path(__file__).parents[1]
 CORE = "engine friction batch foundation run contact planar schemes reference engine_input creep trajectory problem bodies loading"
 
 
-def lines(folder: Path) -> tuple[int, int]:
-    """Return the number of files, and of lines, of Python below a folder."""
-    found = [path.read_text(encoding="utf-8").count("\n") for path in folder.rglob("*.py")]
+def lines(room: Path) -> tuple[int, int]:
+    """Return the number of files, and of lines, of Python in a file or below a folder."""
+    files = [room] if room.is_file() else room.rglob("*.py")
+    found = [path.read_text(encoding="utf-8").count("\n") for path in files]
     return len(found), sum(found)
 
 
 def main() -> None:
     """Print the table: the core, which decides results, then what is around it."""
     package = ROOT / "src" / "stickslip"
-    rooms = {path.name: lines(path) for path in sorted(package.iterdir()) if path.is_dir() and path.name != "__pycache__"}
     core = CORE.split()
+    paths = [
+        path
+        for path in sorted(package.iterdir())
+        if (path / "__init__.py").is_file() or (path.suffix == ".py" and path.stem in core)
+    ]
+    rooms = {path.stem: lines(path) for path in paths}
     rows = [(name, *rooms[name]) for name in core]
     rows.append(("**core**", *map(sum, zip(*(rooms[name] for name in core), strict=True))))
     rows += [(name, *found) for name, found in rooms.items() if name not in core]
