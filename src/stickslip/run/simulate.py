@@ -187,7 +187,7 @@ PLANAR = SolverKind(
     lambda source: isinstance(source, PlanarSlab) or (isinstance(source, Scenario) and source.contact is not None),
     simulate_planar,
     ALL_TAKE | {"frames"},
-    "a PlanarSlab has no {}: its nodes and its courant set the accuracy, its scenario has the title",
+    "a PlanarSlab has no {}: its nodes and its courant set the accuracy, and its scenario has the title",
 )
 EXACT = SolverKind(
     lambda _: True,

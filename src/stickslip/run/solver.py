@@ -1,7 +1,7 @@
 """What a run asks of its solver: the protocol that progress, Ctrl-C, checkpoints and counts of events are written for.
 
-`Session` (`run/session.py`) is the exact solver of one contact, `PlanarRun` (`run/planar_run.py`) that of a contact of many nodes.
-`run_to_end` (`run/run_loop.py`) runs either, and whatever else implements the protocol.
+`ExactRun` (`run/exact_run.py`) is the exact solver of one contact, `PlanarRun` (`run/planar_run.py`) that of a contact of many
+nodes. `run_to_end` (`run/run_loop.py`) runs either, and whatever else implements the protocol.
 """
 
 from __future__ import annotations
