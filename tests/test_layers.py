@@ -16,7 +16,7 @@ PACKAGE = Path(stickslip.__file__).parent
 LAYERS = (
     ("foundation",),
     ("friction",),
-    ("bodies", "engine", "loading"),
+    ("bodies", "engine", "loading", "resistance"),
     ("problem",),
     ("contact", "reference"),
     ("engine_input", "planar", "schemes"),
@@ -37,6 +37,7 @@ ROOMS = {
     "friction": (
         ("formula", "noise"),
         ("contract",),
+        ("values",),
         ("statements",),
         ("law",),
         ("families", "composite", "piecewise"),
@@ -57,12 +58,13 @@ ROOMS = {
     ),
     "trajectory": (("phase_index", "status", "turning_points"), ("history",), ("slip_events", "tables")),
     "contact": (
-        ("equation", "roots", "sliding", "wave_modes", "wave_proof"),
+        ("roots", "sliding", "wave_modes", "wave_proof"),
         ("disturbance", "slopes", "steady_proof"),
         ("lowest_slope", "panels", "turns"),
         ("folds",),
-        ("branches", "critical", "steady"),
-        ("regime_map", "rules"),
+        ("branches", "steady"),
+        ("critical", "rules"),
+        ("regime_map",),
         ("uniqueness",),
     ),
     "creep": (
@@ -169,8 +171,6 @@ FILES = [path for path in sorted(PACKAGE.rglob("*.py")) if parts(path)[0] not in
 UPWARD_FOR_TYPES: dict[str, set[str]] = {
     "contact/sliding.py": {"solution"},
     "contact/uniqueness.py": {"solution"},
-    "friction/statements.py": {"friction.law"},
-    "problem/selection_rule.py": {"contact"},
     "scenarios/scenario.py": {"solution"},
     "sweeps/execution/cluster.py": {"sweeps.sweep"},
 }

@@ -11,9 +11,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import stickslip as ss
-from stickslip.contact.branches import branches, branches_of, rate_on, rates_at
+from stickslip.contact.branches import branches, branches_of, rate_on, rates_at, resistance
 from stickslip.contact.critical import critical_normal_stress
-from stickslip.contact.equation import resistance
 from stickslip.contact.rules.selection import selection_table
 from stickslip.friction import LAWS
 from stickslip.problem.selection_rule import SELECTION_RULES

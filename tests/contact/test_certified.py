@@ -11,9 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import stickslip as ss
-from stickslip.contact.branches import branches_of
+from stickslip.contact.branches import branches_of, resistance
 from stickslip.contact.critical import critical_normal_stress, critical_value, margin
-from stickslip.contact.equation import resistance
 from stickslip.contact.folds import certificate, lowest_slope
 from stickslip.contact.uniqueness import uniqueness_of
 from stickslip.engine.state.layout import Branch

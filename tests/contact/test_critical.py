@@ -11,9 +11,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import stickslip as ss
-from stickslip.contact.branches import branches_of
+from stickslip.contact.branches import branches_of, resistance
 from stickslip.contact.critical import critical_normal_stress, margin, steepest_fall
-from stickslip.contact.equation import resistance
 from stickslip.contact.roots import sign_change
 from stickslip.foundation.quantities import quantity
 from stickslip.friction.formula.functions import exp

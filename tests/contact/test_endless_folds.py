@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.contact.equation import resistance
+from stickslip.contact.branches import resistance
 from stickslip.contact.folds import MOST_FOLDS, certificate
 from stickslip.contact.rules.selection import load_bound
 

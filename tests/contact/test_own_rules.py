@@ -9,10 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import stickslip as ss
-from stickslip.contact.branches import Branch
-from stickslip.contact.equation import resistance
+from stickslip.contact.branches import resistance
 from stickslip.contact.rules.selection import flaw, selection_table
 from stickslip.problem.selection_rule import SELECTION_RULES, SelectionTable, registered
+from stickslip.resistance import Branch
 
 from .laws import Wavy, hyperbolic, slab_problem
 

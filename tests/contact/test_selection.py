@@ -10,10 +10,10 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import stickslip as ss
-from stickslip.contact.branches import Branch, branches_of, rate_on
-from stickslip.contact.equation import resistance
+from stickslip.contact.branches import branches_of, rate_on, resistance
 from stickslip.contact.rules.selection import OF_LEVELS, RULES, area, levels, selection_table
 from stickslip.problem.selection_rule import SELECTION_RULES
+from stickslip.resistance import Branch
 
 from .laws import ALPHA_C, SLAB, S, Wavy, Z, hyperbolic, q_of, slab_problem, wavy_laws
 

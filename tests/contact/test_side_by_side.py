@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.contact.equation import Resistance
 from stickslip.contact.folds import certificate, lowest_slope, lowest_slopes
 from stickslip.contact.slopes import pieces_of
 from stickslip.contact.turns import PROVEN, find_turns
+from stickslip.resistance import Resistance
 
 from .laws import S, Z
 

@@ -7,35 +7,27 @@ Source: Campillo et al. 1996, section 3 and Fig. 3.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import lru_cache
-from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.contact.equation import Resistance, resistance
+from stickslip.bodies import as_slab
 from stickslip.contact.folds import Certificate, certificate
 from stickslip.contact.roots import bracketed_newton
-from stickslip.foundation.brief_repr import brief_repr
 from stickslip.problem.problem import Problem
+from stickslip.resistance import Branch, Resistance
 
 
-@dataclass(frozen=True)
-class Branch:
-    """A maximal interval of slip rates (m/s) on which g rises, with the excess over the static strength (Pa) at its two ends.
+def resistance(problem: Problem, law_slip: float | None = None) -> Resistance:
+    """Return the resistance of a slab's contact at a law slip (m; default: the initial one).
 
-    The last branch extends to infinity. The first may start at rate 0, with excess_from = g(0+) - S mu_static. Every other finite
-    end is a fold.
+    A contact mass does not enter: g is then the resistance at which the contact settles. Raises InputError for a block, whose slip
+    rate is a state and solves no contact equation.
     """
-
-    rate_from: float
-    rate_to: float
-    excess_from: float
-    excess_to: float
-
-    units: ClassVar = {"rate_from": "m/s", "rate_to": "m/s", "excess_from": "Pa", "excess_to": "Pa"}
-    __repr__ = brief_repr
+    slab = as_slab(problem.body, "contact equation: a block has none, its slip rate follows from its inertia")
+    slip = problem.law_slip if law_slip is None else float(law_slip)
+    return Resistance(problem.friction, slab.damping, problem.normal, slip)
 
 
 def branches(problem: Problem, law_slip: float | None = None) -> tuple[Branch, ...]:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Literal
 
-from stickslip.contact.equation import Resistance, resistance
+from stickslip.contact.branches import resistance
 from stickslip.contact.folds import Verdict, certificate, lowest_slope, lowest_slopes
 from stickslip.contact.roots import sign_change, sign_changes
 from stickslip.foundation.arguments import NamesAttributes, for_users
@@ -20,6 +20,7 @@ from stickslip.foundation.brief_repr import brief_repr
 from stickslip.foundation.errors import InputError
 from stickslip.problem.parameters import Parameter
 from stickslip.problem.problem import Problem, check_problem
+from stickslip.resistance import Resistance
 
 Regime = Literal["regular", "irregular"]
 

@@ -13,7 +13,6 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from stickslip.contact.equation import Resistance
 from stickslip.contact.lowest_slope import find_lowest, polished
 from stickslip.contact.panels import panels_between
 from stickslip.contact.slopes import FASTEST, MOST_EVALUATIONS, pieces_of
@@ -21,6 +20,7 @@ from stickslip.contact.turns import PROVEN, find_turns, folds_of
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.brief_repr import brief_repr
 from stickslip.foundation.errors import InputError
+from stickslip.resistance import Resistance
 
 Verdict = Literal["proven", "not decided"]
 """proven: by interval arithmetic. not decided: proven except on some intervals of slip rates."""

@@ -10,8 +10,8 @@ from itertools import pairwise, product
 
 import numpy as np
 
+from stickslip.contact.branches import resistance
 from stickslip.contact.critical import Regime, check_no_contact_mass, margin, margins
-from stickslip.contact.equation import resistance
 from stickslip.contact.roots import sign_changes
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError

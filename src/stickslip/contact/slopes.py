@@ -13,11 +13,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.contact.equation import Resistance
 from stickslip.foundation.arrays import Floats
 from stickslip.friction.formula.bounds import Enclosure
 from stickslip.friction.formula.expression import Expression
 from stickslip.friction.formula.operations.enclosures import add, multiply
+from stickslip.resistance import Resistance
 
 Integers = NDArray[np.int64]
 

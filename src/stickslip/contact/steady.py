@@ -25,7 +25,6 @@ from typing import Any
 import numpy as np
 
 from stickslip.contact.disturbance import Disturbed, Response
-from stickslip.contact.equation import Resistance
 from stickslip.contact.folds import Certificate, certificate
 from stickslip.contact.roots import sign_change
 from stickslip.contact.sliding import RATES, Sliding, StabilityChange, SteadySlidings
@@ -36,6 +35,7 @@ from stickslip.friction.contract import one_argument
 from stickslip.friction.formula.differences import value_and_slopes
 from stickslip.loading import LoadingHistory
 from stickslip.problem.problem import Problem
+from stickslip.resistance import Resistance
 
 FAR = (0.0, 0.37, 1e3)
 """Distances (m) over which friction must not change with slip if the contact is to slide steadily."""

@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING, Literal, Unpack
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.contact.branches import Branch, branches_of, rates_at
+from stickslip.contact.branches import branches_of, rates_at, resistance
 from stickslip.contact.critical import critical_normal_stress, nearest_critical
-from stickslip.contact.equation import Plateau, Resistance, resistance
 from stickslip.contact.folds import Certificate, Fold, Verdict, certificate, critical_stress_between, sentence
 from stickslip.contact.rules.loop import Jump, Loop, jumps_of, loop_of
 from stickslip.contact.rules.selection import table_of
@@ -28,6 +27,7 @@ from stickslip.foundation.quantities import quantities_of
 from stickslip.friction.statements import rises_with_rate
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SELECTION_RULES
+from stickslip.resistance import Branch, Plateau, Resistance
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -31,7 +31,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stickslip.contact.equation import Resistance
 from stickslip.contact.sliding import Sliding
 from stickslip.contact.steady import steady_slidings
 from stickslip.creep.leaping_run import LeapingRun
@@ -40,6 +39,7 @@ from stickslip.engine.state.layout import TERMS, Branch, Floats
 from stickslip.foundation.errors import InputError
 from stickslip.friction.formula.bounds import Enclosure
 from stickslip.problem.problem import Problem
+from stickslip.resistance import Resistance
 
 SHORTEST_LEAP = 16
 """Fewest round trips of a leap that is worth its cost."""

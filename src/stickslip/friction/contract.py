@@ -1,6 +1,6 @@
 """Define what a friction law states about itself: everything that the author of a law may write is on this page.
 
-`HyperbolicRate` in `laws/of_rate.py` is a typical law. What the code works out from these statements is in `law.py`.
+`HyperbolicRate` in `laws/of_rate.py` is a typical law. What the code works out from these statements is in `values.py`.
 """
 
 from __future__ import annotations

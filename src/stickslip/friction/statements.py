@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -16,10 +16,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, Series, fields_of
 from stickslip.friction.contract import STATE_NAMES, one_argument
-
-if TYPE_CHECKING:
-    from stickslip.friction.law import FrictionLaw
-
+from stickslip.friction.values import LawValues
 
 RATES = np.append(0.0, np.geomspace(1e-9, 1e3, 73))
 """Slip rates (m/s) at which every law is sampled, beside multiples of its own scales."""
@@ -33,12 +30,12 @@ SLACK = 1e-7
 """Relative difference between a statement and the formula that counts as rounding."""
 
 
-def is_known(law: FrictionLaw) -> bool:
+def is_known(law: LawValues) -> bool:
     """Return True for a law of the package, which is tested there."""
     return type(law).__module__.partition(".")[0] == "stickslip"
 
 
-def check_statements(law: FrictionLaw) -> None:
+def check_statements(law: LawValues) -> None:
     """Raise InputError, in one line, if a law contradicts its own formula at one of many slips, slip rates and states."""
     name = type(law).__name__
     _check_knots(law)
@@ -65,7 +62,7 @@ def _number(value: Any) -> float:
         return math.nan
 
 
-def stated_range(law: FrictionLaw) -> tuple[float, float]:
+def stated_range(law: LawValues) -> tuple[float, float]:
     """Return the bounds of a law's friction coefficient, as it states them. Raises InputError if they are not two numbers."""
     given: Any = law.range()
     if not (isinstance(given, tuple | list) and len(given) == 2 and _number(given[0]) <= _number(given[1])):
@@ -75,7 +72,7 @@ def stated_range(law: FrictionLaw) -> tuple[float, float]:
     return _number(given[0]), _number(given[1])
 
 
-def _check_knots(law: FrictionLaw) -> None:
+def _check_knots(law: LawValues) -> None:
     name, knots, pieces = type(law).__name__, np.asarray(law.knots, float), len(law.pieces)
     if knots.ndim != 1 or len(knots) != pieces - 1:
         raise InputError(f"{name}: knots must be one fewer than pieces, got {knots.size} knots and {pieces} pieces")
@@ -93,10 +90,10 @@ class _Samples:
     states: list[Floats]  # (rows,) each
     rate: Floats  # (columns,), ascending, m/s
     coefficient: Floats
-    law: FrictionLaw
+    law: LawValues
 
     @classmethod
-    def of(cls, law: FrictionLaw, slips: Floats, rate: Floats) -> _Samples:
+    def of(cls, law: LawValues, slips: Floats, rate: Floats) -> _Samples:
         sampled = _states(law)
         slip = np.repeat(slips, len(sampled[0]) if sampled else 1)
         states = [np.tile(one, len(slips)) for one in sampled]
@@ -127,7 +124,7 @@ class _Samples:
                 )
 
 
-def rises_with_rate(law: FrictionLaw) -> bool:
+def rises_with_rate(law: LawValues) -> bool:
     """Return False if friction of a law with a state falls with the slip rate at one of many slip rates and steady states."""
     rates = _rates(law)[1:]
     steady = law.steady_state(rates)
@@ -141,20 +138,20 @@ def rises_with_rate(law: FrictionLaw) -> bool:
     return not bool(np.any(slopes < 0.0))
 
 
-def _beside(law: FrictionLaw, variable: str) -> Floats:
+def _beside(law: LawValues, variable: str) -> Floats:
     """Return places at the knots of a law, and just below them, if the knots are in the given variable."""
     knots = np.asarray(law.knots if law.knot_variable == variable else (), float)
     return np.concatenate((knots, np.nextafter(knots, -np.inf)[knots > 0.0]))
 
 
-def _rates(law: FrictionLaw) -> Floats:
+def _rates(law: LawValues) -> Floats:
     """Return the slip rates (m/s) at which a law is sampled, ascending from 0."""
     if not law.depends_on_rate and not law.states:
         return np.zeros(1)
     return np.unique(np.concatenate((RATES, np.outer(law.rate_scales, MULTIPLES).ravel(), _beside(law, "rate"))))
 
 
-def _slips(law: FrictionLaw) -> Floats:
+def _slips(law: LawValues) -> Floats:
     """Return the slips (m) at which a law is sampled; negative ones, too, if it counts net slip."""
     if not law.depends_on_slip:
         return np.zeros(1)
@@ -163,7 +160,7 @@ def _slips(law: FrictionLaw) -> Floats:
     return np.concatenate((slips, -slips[slips > 0.0])) if law.counts == "net" else slips[slips >= 0.0]
 
 
-def _sizes(law: FrictionLaw) -> list[tuple[str, float]]:
+def _sizes(law: LawValues) -> list[tuple[str, float]]:
     """Return the unit and the magnitude of each number of a law that is not 0."""
     found = []
     for name, (declared, _) in fields_of(type(law)).items():
@@ -175,7 +172,7 @@ def _sizes(law: FrictionLaw) -> list[tuple[str, float]]:
     return found
 
 
-def _states(law: FrictionLaw) -> list[Floats]:
+def _states(law: LawValues) -> list[Floats]:
     """Return the samples of each state, as the formulas use it: 0, and that of the law's example, if that is a number."""
     given = [law.start.get(name) for name in STATE_NAMES[: len(law.states)]]
     numbers = [float(one) for one in given if isinstance(one, int | float)]

@@ -14,14 +14,11 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, Protocol
 
 from stickslip.foundation.arguments import CheckedArguments, for_users
 from stickslip.foundation.errors import InputError, nearest
-
-if TYPE_CHECKING:
-    from stickslip.contact.branches import Branch
-    from stickslip.contact.equation import Resistance
+from stickslip.resistance import Branch, Resistance
 
 PERFECT_DELAY = "perfect-delay"
 """Name of the rule that keeps a branch as long as it exists: the only one where folds move with slip."""

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from stickslip.bodies import ElasticSlab, as_slab
-from stickslip.contact.equation import resistance
+from stickslip.contact.branches import resistance
 from stickslip.contact.roots import sign_change
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest

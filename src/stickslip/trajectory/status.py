@@ -15,7 +15,7 @@ from stickslip.foundation.formatting import brief
 
 DECIDE = (
     *("batch", "bodies", "contact", "creep", "engine", "engine_input"),
-    *("friction", "loading", "observables", "run", "solution", "trajectory"),
+    *("friction", "loading", "observables", "resistance", "run", "solution", "trajectory"),
 )
 """Folders and files of the package whose code decides the result of a run."""
 

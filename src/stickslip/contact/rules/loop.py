@@ -11,12 +11,12 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import ClassVar, Literal
 
-from stickslip.contact.branches import Branch, rate_on
-from stickslip.contact.equation import Resistance, resistance
+from stickslip.contact.branches import rate_on, resistance
 from stickslip.contact.rules.selection import area, selection_table
 from stickslip.foundation.brief_repr import brief_repr
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SelectionTable
+from stickslip.resistance import Branch, Resistance
 
 
 @dataclass(frozen=True)

@@ -17,8 +17,7 @@ from itertools import combinations, pairwise
 
 import numpy as np
 
-from stickslip.contact.branches import Branch, branches_of, rate_on
-from stickslip.contact.equation import Resistance, resistance
+from stickslip.contact.branches import branches_of, rate_on, resistance
 from stickslip.contact.folds import MOST_FOLDS, certificate, panels
 from stickslip.contact.panels import NODES, WEIGHTS
 from stickslip.contact.roots import bracketed_newton
@@ -27,6 +26,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SelectionRule, SelectionTable, registered
+from stickslip.resistance import Branch, Resistance
 
 MOST_COMPARED = 150
 """Largest number of branches that Maxwell's rule compares: a minute's work."""

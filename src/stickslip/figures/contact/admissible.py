@@ -12,7 +12,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 from matplotlib.ticker import FuncFormatter
 
-from stickslip.contact.equation import Resistance, resistance
+from stickslip.contact.branches import resistance
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
 from stickslip.figures.contact.resistance import BRANCHES, draw_branches
 from stickslip.figures.panels import finish
@@ -33,6 +33,7 @@ from stickslip.figures.style import (
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
+from stickslip.resistance import Resistance
 from stickslip.solution.place import Place
 
 if TYPE_CHECKING:

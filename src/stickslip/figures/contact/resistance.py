@@ -12,8 +12,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from stickslip.contact.branches import branches_of, rate_on
-from stickslip.contact.equation import resistance
+from stickslip.contact.branches import branches_of, rate_on, resistance
 from stickslip.figures.panels import letter_panels, panels, zero_line
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import BLUE, GREY, INK, PURPLE, VERMILLION, curve_quantity, label, quantity, shown, styled, unit_shown

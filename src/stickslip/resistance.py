@@ -1,4 +1,8 @@
-"""The resistance g(s) = Z s + S mu(u, s) of a contact that slips at rate s, stored as an excess over the static strength."""
+"""The resistance g(s) = Z s + S mu(u, s) of a contact that slips at rate s, and its branches.
+
+A branch is an interval of slip rates on which g rises. Loads are stored as excesses over the static strength. Selection rules,
+which a problem may bring, are functions of what this page defines; proofs and searches for branches are in `contact`.
+"""
 
 from __future__ import annotations
 
@@ -12,13 +16,11 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.bodies import as_slab
 from stickslip.foundation.brief_repr import brief_repr
 from stickslip.friction import FrictionLaw
 from stickslip.friction.formula.differences import difference
 from stickslip.friction.formula.expression import Expression
 from stickslip.friction.formula.functions import evaluate
-from stickslip.problem.problem import Problem
 
 _LOADS = 2.0
 """Largest load at which many solutions are told apart (1), as a multiple of the largest friction."""
@@ -195,12 +197,18 @@ class Resistance:
         return 2.0 * bound + float(np.finfo(float).tiny)
 
 
-def resistance(problem: Problem, law_slip: float | None = None) -> Resistance:
-    """Return the resistance of a slab's contact at a law slip (m; default: the initial one).
+@dataclass(frozen=True)
+class Branch:
+    """A maximal interval of slip rates (m/s) on which g rises, with the excess over the static strength (Pa) at its two ends.
 
-    A contact mass does not enter: g is then the resistance at which the contact settles. Raises InputError for a block, whose slip
-    rate is a state and solves no contact equation.
+    The last branch extends to infinity. The first may start at rate 0, with excess_from = g(0+) - S mu_static. Every other finite
+    end is a fold.
     """
-    slab = as_slab(problem.body, "contact equation: a block has none, its slip rate follows from its inertia")
-    slip = problem.law_slip if law_slip is None else float(law_slip)
-    return Resistance(problem.friction, slab.damping, problem.normal, slip)
+
+    rate_from: float
+    rate_to: float
+    excess_from: float
+    excess_to: float
+
+    units: ClassVar = {"rate_from": "m/s", "rate_to": "m/s", "excess_from": "Pa", "excess_to": "Pa"}
+    __repr__ = brief_repr
