@@ -34,6 +34,13 @@ LAYERS = (
 )
 """Folders of the package from the bottom up; those of one layer do not know each other. `engine` never imports a `Problem`."""
 ROOMS = {
+    "foundation": (
+        ("arrays", "constants", "errors"),
+        ("arguments", "atomic_write", "determined", "formatting", "units"),
+        ("conversion", "headings", "netcdf_file", "zarr_folder"),
+        ("columns", "quantities"),
+        ("brief_repr", "other_values", "text_columns"),
+    ),
     "friction": (
         ("formula", "noise"),
         ("contract",),
@@ -55,6 +62,52 @@ ROOMS = {
         ("waves",),
         ("on_demand",),
         ("loop",),
+    ),
+    "problem": (("parameters", "run_quantities", "selection_rule", "start"), ("problem",)),
+    "engine_input": (("branch_table", "forcing", "limits"), ("prepare",)),
+    "planar": (
+        ("driving", "echo", "layout", "memory", "nodes"),
+        ("friction", "slab"),
+        ("step",),
+        ("compiled",),
+        ("solver",),
+    ),
+    "scenarios": (
+        ("contact", "entries", "library", "stability"),
+        ("schema", "text_of_files"),
+        ("contact_table",),
+        ("scenario",),
+        ("examine", "parameter_paths", "source"),
+        ("examine_contact", "templates"),
+    ),
+    "observables": (
+        ("planar", "predictability", "proof", "quadrature", "rule_influence"),
+        ("waves",),
+        ("energy", "field"),
+        ("event_table",),
+        ("energetics", "event_stream"),
+    ),
+    "solution": (("evaluation", "place"), ("accessors",), ("planar", "window"), ("solution",), ("interval",)),
+    "io": (
+        ("catalogue_rows", "sampling", "series", "soundness"),
+        ("planar_layout", "scec", "seismogram"),
+        ("netcdf", "planar_store"),
+    ),
+    "run": (
+        ("options", "progress"),
+        ("session", "solver"),
+        ("exact_run", "run_loop"),
+        ("catalogue", "planar_run"),
+        ("resume", "simulate"),
+    ),
+    "studies": (
+        ("regularisations", "separation", "study"),
+        ("analogy", "compare", "ensemble", "find", "inference", "verdict"),
+        ("one_run", "regularise", "scheme_shocks"),
+        ("scheme_measures",),
+        ("judgement",),
+        ("schemes",),
+        ("benchmarks",),
     ),
     "trajectory": (("phase_index", "status", "turning_points"), ("history",), ("slip_events", "tables")),
     "contact": (
@@ -94,8 +147,17 @@ ROOMS = {
     ),
 }
 """The same inside some folders."""
-LAZY_DOORS = {"solution/accessors.py", "contact/sliding.py", "contact/uniqueness.py"}
-"""Files that may import upwards inside functions: where a solution reaches figures and files, and where findings are drawn."""
+LAZY_DOORS = {
+    "solution/accessors.py",
+    "contact/sliding.py",
+    "contact/uniqueness.py",
+    "scenarios/library.py",
+    "scenarios/scenario.py",
+}
+"""Files that may import upwards inside functions.
+
+A solution reaches figures and files there, findings are drawn, a name becomes a scenario, and a scenario gets other values.
+"""
 
 ALLOWED = {
     "matplotlib": {"figures", "paper"},
@@ -171,8 +233,12 @@ FILES = [path for path in sorted(PACKAGE.rglob("*.py")) if parts(path)[0] not in
 UPWARD_FOR_TYPES: dict[str, set[str]] = {
     "contact/sliding.py": {"solution"},
     "contact/uniqueness.py": {"solution"},
+    "problem/parameters.py": {"problem.problem"},
+    "problem/start.py": {"problem.problem"},
+    "scenarios/library.py": {"scenarios.scenario"},
     "scenarios/scenario.py": {"solution"},
-    "sweeps/execution/cluster.py": {"sweeps.sweep"},
+    "solution/accessors.py": {"solution.planar", "solution.solution"},
+    "solution/window.py": {"solution.solution"},
 }
 """Files that name something from above in an annotation only."""
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.observables.energy.energetics import ENERGETICS_COLUMNS
+from stickslip.observables.energetics import ENERGETICS_COLUMNS
 from stickslip.observables.energy.pulses import PULSE_COLUMNS
 from stickslip.trajectory.history import History
 from tests.observables.runs import LOSSY, RUNS

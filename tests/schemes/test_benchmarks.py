@@ -18,8 +18,8 @@ from stickslip.io.series import read_series
 from stickslip.schemes.contract import Series
 from stickslip.schemes.registry import SCHEMES
 from stickslip.schemes.run import run_scheme
-from stickslip.studies.benchmarks import BENCHMARKS, benchmark_of, exact_series, judge_benchmark, write_benchmark
-from stickslip.studies.schemes import judge_series, schemes
+from stickslip.studies.benchmarks import BENCHMARKS, benchmark_of, exact_series, judge_benchmark, judge_series, write_benchmark
+from stickslip.studies.schemes import schemes
 
 
 def test_a_column_that_is_missing_is_named_beside_those_that_are_there(tmp_path: Path) -> None:

@@ -15,9 +15,8 @@ import stickslip as ss
 from stickslip.cli.main import main
 from stickslip.io.series import read_series
 from stickslip.schemes.contract import Series
-from stickslip.studies.benchmarks import benchmark_of
+from stickslip.studies.benchmarks import benchmark_of, judge_series
 from stickslip.studies.judgement import Judgement
-from stickslip.studies.schemes import judge_series
 
 NAME = "linear-weakening"
 """A problem with shocks, slip and rest, whose solution has a closed form."""

@@ -16,8 +16,9 @@ from stickslip.schemes.finite_elements import Elements
 from stickslip.schemes.registry import SCHEMES, scheme_of
 from stickslip.schemes.run import SEARCHES, GridContact, grid_of, run_scheme
 from stickslip.schemes.sbp import NORMS, difference
+from stickslip.studies.benchmarks import judge_series
 from stickslip.studies.scheme_measures import arrest_in, period_of, pulses_in
-from stickslip.studies.schemes import judge_series, schemes
+from stickslip.studies.schemes import schemes
 
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)
 SMOOTH = ss.Problem(SLAB, ss.friction.SinusoidalSlip(1.0, 0.5, 2.0), pull_rate=0.3, initial_slip=np.pi / 4, initial_excess=0.0)

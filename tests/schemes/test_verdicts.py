@@ -12,7 +12,8 @@ import pytest
 
 import stickslip as ss
 from stickslip.schemes.contract import Series
-from stickslip.studies.schemes import Schemes, judge_series, schemes
+from stickslip.studies.benchmarks import judge_series
+from stickslip.studies.schemes import Schemes, schemes
 from stickslip.studies.verdict import NONE, STRICT, UNTOLD
 
 LOOP = ss.load_scenario("fig4-loop")

@@ -15,6 +15,7 @@ from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import HistoryPiece, Store
 from stickslip.foundation import netcdf_file
 from stickslip.foundation.arguments import as_path, for_users
+from stickslip.foundation.constants import PAPER
 from stickslip.foundation.errors import InputError, printable
 from stickslip.foundation.netcdf_file import FullDiskError, Variable, write_variables
 from stickslip.friction.contract import STATE_NAMES
@@ -64,9 +65,6 @@ LONG_NAMES = {
     "second_state": "second state of the friction law",
 }
 """Meaning of each curve, for the attribute long_name."""
-
-PAPER = "Campillo, Ionescu, Paumier, Renard 1996, Phys. Earth Planet. Inter. 96, 15-23"
-"""Source of the model, for the attribute references."""
 
 
 def units(solution: Readings) -> dict[str, str]:

@@ -24,8 +24,8 @@ import stickslip
 from stickslip.foundation import zarr_folder
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.atomic_write import read_bounded
+from stickslip.foundation.constants import PAPER
 from stickslip.foundation.errors import InputError, printable
-from stickslip.io.netcdf import PAPER
 from stickslip.io.soundness import number, whole_number
 from stickslip.planar.slab import COUNTS, MOST_NODES, PlanarSlab
 from stickslip.scenarios.contact import GRID, Contact

@@ -91,9 +91,9 @@ class Solution(Exports):
         """Return the energy budget of the slip events of `catalogue(event_rate)` as seismologists define it, one row per event.
 
         The columns are the parts of the energy (J/m^2; block: J), static and dynamic stress drop, overshoot, apparent stress and
-        efficiencies; their units are in `stickslip.observables.energy.energetics.ENERGETICS_COLUMNS`.
+        efficiencies; their units are in `stickslip.observables.energetics.ENERGETICS_COLUMNS`.
         """
-        from stickslip.observables.energy.energetics import energetics_table
+        from stickslip.observables.energetics import energetics_table
 
         return energetics_table(self.history, self._rate(event_rate))
 

@@ -1,4 +1,5 @@
 from .analogy import Analogy, analogy
+from .benchmarks import judge_series
 from .compare import Comparison, compare
 from .ensemble import Ensemble, ensemble
 from .find import Edge, find
@@ -7,7 +8,7 @@ from .inference.inference import Inference
 from .inference.record import Record
 from .one_run import catalogue_statistics, critical_value, predictability, steady
 from .regularise import Regularisation, regularise
-from .schemes import Schemes, judge_series, schemes
+from .schemes import Schemes, schemes
 
 __all__ = [
     "Analogy",

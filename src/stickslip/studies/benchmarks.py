@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,6 +17,7 @@ import numpy as np
 
 import stickslip
 from stickslip.bodies import ElasticSlab
+from stickslip.foundation.arguments import for_users, shown
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.netcdf_file import write
@@ -25,9 +26,14 @@ from stickslip.friction.laws.of_rate import Coulomb
 from stickslip.problem.problem import Problem
 from stickslip.run.simulate import simulate
 from stickslip.scenarios import Scenario, library, load_scenario
+from stickslip.scenarios.source import read_duration_and_problem, read_source
+from stickslip.schemes.contract import Series
+from stickslip.schemes.run import check_suitable
 from stickslip.studies.judgement import TOLERANCE
-from stickslip.studies.schemes import Schemes, judge_series
-from stickslip.studies.study import TextProgress
+from stickslip.studies.scheme_shocks import check_length, check_units
+from stickslip.studies.schemes import Schemes
+from stickslip.studies.study import TextProgress, telling
+from stickslip.studies.verdict import exact_runs
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -126,6 +132,60 @@ def scenario_named(name: str) -> Scenario:
     hint = nearest(name, [*BENCHMARKS, *library.names()])
     hint = hint if hint.startswith("did") else 'name it, as in judge_series(FILE, "fig4-loop")'
     raise InputError(f"judge_series: of which problem is {ascii(name)[:60]}? {hint}")
+
+
+@for_users
+def judge_series(
+    series: Series | str | Path | Sequence[Series | str | Path],
+    problem: Problem | Scenario | str | Path | None = None,
+    *,
+    tolerance: float = TOLERANCE,
+    rtol: float = 1e-10,
+    progress: TextProgress | bool | None = None,
+) -> Schemes:
+    """Compare series of any other program with the exact solution of every selection rule, at the relative tolerance `rtol`.
+
+    Parameters
+    ----------
+    series : Series, str, Path or sequence of them
+        Slip since t = 0, slip rate and traction over time, or files of them, which `stickslip.io.series.read_series` reads.
+    problem : Problem, Scenario, str or Path, optional
+        As for `schemes`; by default the benchmark or the bundled scenario that has the name of the first series.
+    tolerance : float
+        Largest share by which a series that passes may be off; see `stickslip.studies.judgement.Judgement`.
+
+    Returns
+    -------
+    Schemes
+        With `passed`, and in `judgements` what is off and which convention would explain it.
+
+    Raises
+    ------
+    InputError
+        If the problem is not a slab's or has no name, if no series is given, or if one cannot be read, does not begin at t = 0, is
+        shorter than the scenario's duration, or has slip, slip rate or traction in wrong units.
+    KeyboardInterrupt
+        If the user presses Ctrl-C.
+    """
+    from stickslip.io.series import read_series
+
+    given_series = [series] if isinstance(series, Series | str | Path) else list(series)
+    several = tuple(one if isinstance(one, Series) else read_series(one) for one in given_series)
+    if not several:
+        raise InputError("judge_series: needs a series or more")
+    if not 0.0 < tolerance < 1.0:
+        raise InputError(f"judge_series: tolerance must lie between 0 and 1, got {shown(tolerance)}")
+    source = read_source("judge_series", scenario_named(several[0].name) if problem is None else problem)
+    ends = max(float(one.time[-1]) for one in several) if isinstance(source, Problem) else None
+    lasts, given = read_duration_and_problem("judge_series", source, ends)
+    check_suitable(given)
+    for one in several:
+        check_length(one, lasts if ends is None else float(one.time[-1]))
+    with telling(progress, "judge_series") as tell:
+        exact = exact_runs(given, lasts, rtol, tell)
+    for one in several:
+        check_units(one, exact[given.rule], given)
+    return Schemes(given, exact, several, tolerance=tolerance)
 
 
 def exact_series(name: str) -> xr.Dataset:

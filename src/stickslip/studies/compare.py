@@ -12,10 +12,11 @@ import pandas as pd
 
 import stickslip
 from stickslip.foundation.arguments import for_users
+from stickslip.foundation.constants import PAPER
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
-from stickslip.io.netcdf import PAPER, read_solution
-from stickslip.observables.energy.energetics import extreme_tractions
+from stickslip.io.netcdf import read_solution
+from stickslip.observables.energetics import extreme_tractions
 from stickslip.observables.energy.pulses import Pulses
 from stickslip.problem.run_quantities import DURATION, check_rtol
 from stickslip.run.progress import Progress

@@ -17,20 +17,20 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 import stickslip
-from stickslip.foundation.arguments import check_whole, for_users, shown
+from stickslip.foundation.arguments import check_whole, for_users
 from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.netcdf_file import write
 from stickslip.problem.problem import Problem
-from stickslip.scenarios.source import read_duration_and_problem, read_source
+from stickslip.scenarios.source import read_duration_and_problem
 from stickslip.schemes.contract import Scheme, Series
 from stickslip.schemes.registry import scheme_of
-from stickslip.schemes.run import FEWEST_CELLS, LARGEST_CELLS, check_runs, check_suitable, run_scheme
+from stickslip.schemes.run import FEWEST_CELLS, LARGEST_CELLS, check_runs, run_scheme
 from stickslip.solution.solution import Solution
 from stickslip.studies.judgement import TOLERANCE, Judgement
 from stickslip.studies.scheme_measures import COLUMNS, Measured
-from stickslip.studies.scheme_shocks import SHOCK_COLUMNS, check_length, check_units
+from stickslip.studies.scheme_shocks import SHOCK_COLUMNS
 from stickslip.studies.study import Study, TextProgress, telling
 from stickslip.studies.verdict import NONE, UNTOLD, RulePaths, exact_runs
 
@@ -251,58 +251,3 @@ def schemes(
                 raise
             interrupted = True
     return Schemes(given, exact, tuple(done), interrupted)
-
-
-@for_users
-def judge_series(
-    series: Series | str | Path | Sequence[Series | str | Path],
-    problem: Problem | Scenario | str | Path | None = None,
-    *,
-    tolerance: float = TOLERANCE,
-    rtol: float = 1e-10,
-    progress: TextProgress | bool | None = None,
-) -> Schemes:
-    """Compare series of any other program with the exact solution of every selection rule, at the relative tolerance `rtol`.
-
-    Parameters
-    ----------
-    series : Series, str, Path or sequence of them
-        Slip since t = 0, slip rate and traction over time, or files of them, which `stickslip.io.series.read_series` reads.
-    problem : Problem, Scenario, str or Path, optional
-        As for `schemes`; by default the benchmark or the bundled scenario that has the name of the first series.
-    tolerance : float
-        Largest share by which a series that passes may be off; see `stickslip.studies.judgement.Judgement`.
-
-    Returns
-    -------
-    Schemes
-        With `passed`, and in `judgements` what is off and which convention would explain it.
-
-    Raises
-    ------
-    InputError
-        If the problem is not a slab's or has no name, if no series is given, or if one cannot be read, does not begin at t = 0, is
-        shorter than the scenario's duration, or has slip, slip rate or traction in wrong units.
-    KeyboardInterrupt
-        If the user presses Ctrl-C.
-    """
-    from stickslip.io.series import read_series
-    from stickslip.studies.benchmarks import scenario_named
-
-    given_series = [series] if isinstance(series, Series | str | Path) else list(series)
-    several = tuple(one if isinstance(one, Series) else read_series(one) for one in given_series)
-    if not several:
-        raise InputError("judge_series: needs a series or more")
-    if not 0.0 < tolerance < 1.0:
-        raise InputError(f"judge_series: tolerance must lie between 0 and 1, got {shown(tolerance)}")
-    source = read_source("judge_series", scenario_named(several[0].name) if problem is None else problem)
-    ends = max(float(one.time[-1]) for one in several) if isinstance(source, Problem) else None
-    lasts, given = read_duration_and_problem("judge_series", source, ends)
-    check_suitable(given)
-    for one in several:
-        check_length(one, lasts if ends is None else float(one.time[-1]))
-    with telling(progress, "judge_series") as tell:
-        exact = exact_runs(given, lasts, rtol, tell)
-    for one in several:
-        check_units(one, exact[given.rule], given)
-    return Schemes(given, exact, several, tolerance=tolerance)

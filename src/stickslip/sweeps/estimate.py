@@ -9,10 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.sweeps.execution.chunk import FIRST_FAILURE, ChunkResult
+from stickslip.sweeps.execution.chunk import FIRST_FAILURE, ChunkResult, Runner
 from stickslip.sweeps.execution.plan import Plan
 from stickslip.sweeps.results.store import ResultStore
-from stickslip.sweeps.sweep import Runner
 
 LONG_ENOUGH = 2.0
 """Shortest wall-clock time (s) of a sample that is reliable: a shorter one is doubled."""

@@ -28,12 +28,12 @@ from stickslip.scenarios.scenario import Scenario
 from stickslip.sweeps.design.adaptive_grid import MOST_MEMBERS, Integers, refine_cells
 from stickslip.sweeps.design.design import LIST, MEMBER, REFINED, Design, axes_of
 from stickslip.sweeps.design.quantities import DEFAULT, Wanted, quantities_named
-from stickslip.sweeps.execution.chunk import FIRST_FAILURE, NOT_RUN
+from stickslip.sweeps.execution.chunk import FIRST_FAILURE, NOT_RUN, Runner
 from stickslip.sweeps.execution.plan import Plan, make_plan, scenario_to_vary
 from stickslip.sweeps.results.layout import REASON, STATUS, attributes
 from stickslip.sweeps.results.refinement_spec import ATTRIBUTE, RefinementSpec
 from stickslip.sweeps.results.store import open_store, publish, writing
-from stickslip.sweeps.sweep import ProgressCallback, Runner, carry_out, check_out, runner_of
+from stickslip.sweeps.sweep import ProgressCallback, carry_out, check_out, runner_of
 
 DEPTH = 6
 """Default number of halvings: the finest cells are 1/64 of the coarse step along each axis."""

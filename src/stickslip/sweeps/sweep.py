@@ -21,9 +21,8 @@ from stickslip.foundation.formatting import about_time, number
 from stickslip.problem.problem import Problem
 from stickslip.run.progress import told
 from stickslip.scenarios.scenario import Scenario
-from stickslip.sweeps.design.axis import Values
 from stickslip.sweeps.design.quantities import DEFAULT, Wanted
-from stickslip.sweeps.execution.chunk import FIRST_FAILURE, NOT_RUN, ChunkResult, Work, run_chunk
+from stickslip.sweeps.execution.chunk import FIRST_FAILURE, NOT_RUN, ChunkResult, Runner, run_chunk
 from stickslip.sweeps.execution.plan import SAMPLES, Plan, make_plan
 from stickslip.sweeps.results.store import ResultStore
 
@@ -62,8 +61,6 @@ class SweepProgress(NamedTuple):
 
 
 ProgressCallback = Callable[[SweepProgress], object]
-Runner = Callable[[Work, Iterable[tuple[int, dict[str, Values]]]], Iterator[tuple[int, ChunkResult]]]
-"""A function that runs chunks, each given by its number and its values, and yields their numbers and results in any order."""
 
 
 @for_users

@@ -89,7 +89,7 @@ def _study(scenario: Scenario, scheme: str, cells: list[int], search: str, coura
 
 def _judged(scenario: Scenario, files: list[Path]) -> Schemes:
     from stickslip.run.progress import progress_line
-    from stickslip.studies.schemes import judge_series
+    from stickslip.studies.benchmarks import judge_series
 
     with progress_line("schemes") as tell:
         return judge_series(files, scenario, rtol=scenario.rtol, progress=tell)

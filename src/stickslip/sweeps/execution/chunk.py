@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from time import thread_time
@@ -167,6 +167,10 @@ class ChunkResult:
         """Record that a member failed."""
         self.status[i] = code
         self.reasons[i] = " ".join(reason.split())
+
+
+Runner = Callable[[Work, Iterable[tuple[int, dict[str, Values]]]], Iterator[tuple[int, ChunkResult]]]
+"""A function that runs chunks, each given by its number and its values, and yields their numbers and results in any order."""
 
 
 def run_chunk(work: Work, values: Mapping[str, Values], threads: int | None = None) -> ChunkResult:

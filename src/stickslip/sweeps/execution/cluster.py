@@ -22,13 +22,11 @@ from typing import TYPE_CHECKING, TypeVar
 
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError
-from stickslip.sweeps.execution.chunk import run_chunk
+from stickslip.sweeps.execution.chunk import Runner, run_chunk
 from stickslip.trajectory.status import engine
 
 if TYPE_CHECKING:
     from distributed import Client, Future
-
-    from stickslip.sweeps.sweep import Runner
 
 Chunk = TypeVar("Chunk")
 Result = TypeVar("Result")

@@ -20,10 +20,11 @@ from zarr.storage import MemoryStore
 import stickslip
 from stickslip.foundation import zarr_folder
 from stickslip.foundation.arguments import check_whole, shown
+from stickslip.foundation.constants import PAPER
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import clean
 from stickslip.friction.contract import STATE_NAMES
-from stickslip.io.netcdf import LONG_NAMES, PAPER
+from stickslip.io.netcdf import LONG_NAMES
 from stickslip.sweeps.design.design import GRID, IN_WORDS
 from stickslip.sweeps.execution.chunk import MEANINGS, NOT_RUN, PREFIX, TIME
 from stickslip.sweeps.execution.plan import Plan
