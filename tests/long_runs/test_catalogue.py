@@ -15,9 +15,11 @@ import pytest
 import xarray as xr
 
 import stickslip as ss
+from stickslip.engine.state.layout import Floats
 from stickslip.engine_input.limits import split_time
 from stickslip.io.catalogue_rows import RowsInMemory
-from stickslip.observables.event_table import ENERGY_COLUMNS
+from stickslip.observables.energy.pulses import Pulses
+from stickslip.observables.event_table import ENERGY_COLUMNS, EVENT_COLUMNS, Column, FoundEvents
 from stickslip.run import catalogue as module
 from stickslip.run.catalogue import EventRows
 from stickslip.run.exact_run import ExactRun
@@ -34,6 +36,25 @@ SUFFIXES = ["csv", "nc", pytest.param("parquet", marks=NEEDS_PYARROW)]
 def same(one: pd.DataFrame, other: pd.DataFrame) -> None:
     """Every number of two tables is the same, to the last digit, and so are their types."""
     pd.testing.assert_frame_equal(one, other, check_exact=True)
+
+
+def last_fracture(found: FoundEvents) -> Floats:
+    """Return the fracture energy of the last pulse of each event: a column as somebody might add it."""
+    pulses = Pulses.of(found.history, found.events)
+    of_event = np.full(len(found.events.pulses), np.nan)
+    of_event[pulses.event] = pulses.fracture(found.history)
+    return of_event
+
+
+@pytest.mark.parametrize("name", ["rate law, fragments", "slab that heals"])
+def test_a_column_on_pulses_is_that_of_the_whole_run(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The pulses are those of the events that are asked for, not those with which the history that is left begins."""
+    monkeypatch.setattr(module, "CAPACITY", 64)
+    monkeypatch.setattr("stickslip.run.session.FIRST_CAPACITY", 64)
+    monkeypatch.setitem(EVENT_COLUMNS, "last_fracture", Column("energy", "fracture energy of the last pulse", last_fracture))
+    table = ss.catalogue(*RUNS[name])
+    assert len(table) > 5
+    same(table, ss.simulate(*RUNS[name]).catalogue())
 
 
 @pytest.mark.sampled(every=5)

@@ -86,6 +86,11 @@ class BodyOnCharacteristics(Body, Protocol):
         ...
 
 
+def has_dashpot(body: BodyOnCharacteristics) -> bool:
+    """Return True if the contact of a body with waves resists slip by another damping than its waves, whose damping is Z."""
+    return body.has_waves and body.damping != body.impedance
+
+
 def as_slab(body: BodyOnCharacteristics, refusal: str = "needs an elastic slab") -> ElasticSlab:
     """Return a body that must be a slab. Raises InputError with the text `refusal` for any other body."""
     if not isinstance(body, ElasticSlab):

@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 from typing import Literal
 
-from stickslip.bodies import BodyOnCharacteristics
+from stickslip.bodies import BodyOnCharacteristics, has_dashpot
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, Params
 from stickslip.foundation.errors import InputError
@@ -64,7 +64,8 @@ def _but_pull(problem: Problem) -> Over:
         return ""
     body = problem.body
     never_rests = law.creeps and bool(law.states) and len(law.pieces) == 1
-    return "slow sliding" if never_rests and body.has_waves and body.is_driven_rigidly else "steady sliding"
+    is_averaged = body.has_waves and body.is_driven_rigidly and not has_dashpot(body)
+    return "slow sliding" if never_rests and is_averaged else "steady sliding"
 
 
 def check_creep_rtol(problem: Problem, creep_rtol: float | None, where: str, name: str = "creep_rtol") -> float | None:
@@ -89,6 +90,8 @@ def missing_for_creep(problem: Problem) -> str:
         return "a rigid driver (no driver_impedance)"
     if body.has_inertia:
         return "a contact without mass (no contact_mass)"
+    if has_dashpot(body):
+        return f"a contact that waves alone damp (the damping of this {type(body).__name__} is not its impedance)"
     if law.states or law.depends_on_rate:
         return f"a friction law of slip alone ({type(law).__name__} is not one)"
     if law.memory != "all":

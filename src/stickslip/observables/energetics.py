@@ -66,7 +66,7 @@ def energetics_table(history: History, threshold: float) -> pd.DataFrame:
         "slip": np.abs(history.slipped_within(begin, end)),
         **_energies(history, begin, end),
     }
-    pulses = Pulses.of(history, events, threshold)
+    pulses = Pulses.of(history, events)
     columns["fracture"] = np.bincount(pulses.event, pulses.fracture(history), len(begin.piece))
     columns["static_drop"] = history.problem.body.stiffness * columns["slip"]
     before, smallest = extreme_tractions(history, events, pulses)

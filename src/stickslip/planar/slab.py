@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.bodies import ElasticSlab
+from stickslip.bodies import ElasticSlab, has_dashpot
 from stickslip.contact.uniqueness import regime_of
 from stickslip.foundation.arguments import CheckedArguments, shown
 from stickslip.foundation.conversion import Number, OptionalNumber, has_unit, without_unit
@@ -108,6 +108,9 @@ class PlanarSlab(CheckedArguments):
             raise InputError(f"PlanarSlab: body must be an ElasticSlab, got {shown(problem.body)}: a block has no waves")
         if problem.body.contact_mass != 0.0:
             raise InputError("PlanarSlab: contact_mass must be 0: the contact equation is solved without inertia")
+        if has_dashpot(problem.body):
+            name = type(problem.body).__name__
+            raise InputError(f"PlanarSlab: the damping of this {name} is not its impedance, which the solver takes it for")
         if law.reverses:
             raise InputError(
                 f"PlanarSlab: {type(law).__name__} has a state that reverses with slip, which planar slabs do not follow"

@@ -66,10 +66,11 @@ class Session:
     def begin(cls, problem: Problem, options: RunOptions) -> Self:
         """Return a run at t = 0."""
         setup, memory = prepare(problem, options.rtol, options.shortest_event)
-        store = at.new_store(FIRST_CAPACITY, len(problem.friction.states))
+        capacity = min(FIRST_CAPACITY, options.most_pieces + SPARE)
+        store = at.new_store(capacity, len(problem.friction.states))
         tolerance = creep_tolerance(problem, options.creep_rtol, options.rtol)
         leaps = CreepLeaps(problem, tolerance, patient=options.creep_rtol is None) if tolerance > 0.0 else None
-        return cls(problem, options, setup, memory, store, EchoNode.table(FIRST_CAPACITY), leaps)
+        return cls(problem, options, setup, memory, store, EchoNode.table(capacity), leaps)
 
     @classmethod
     def at_checkpoint(cls, history: History, checkpoint: Checkpoint, options: RunOptions) -> Self:

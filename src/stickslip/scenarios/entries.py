@@ -122,8 +122,13 @@ def describe(entry: Field) -> str:
 
 
 def to_table(owner: Any) -> dict[str, Any]:
-    """Return a body, a law or a loading history as a table of a scenario, in SI, with numbers that read back to the last digit."""
-    table: dict[str, Any] = {"kind": owner.kind}
+    """Return a body, a law or a loading history as a table of a scenario, in SI, with numbers that read back to the last digit.
+
+    An object of a user's class is written, too, but not read: its kind is unknown. A class that inherits the kind of another one is
+    written by its own name, so that the file is not read back as the other.
+    """
+    own = type(owner)
+    table: dict[str, Any] = {"kind": owner.kind if "kind" in vars(own) else own.__name__}
     for name, (entry, _) in fields_of(type(owner)).items():
         value = getattr(owner, name)
         if value not in (None, (), ""):

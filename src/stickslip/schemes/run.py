@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
-from stickslip.bodies import as_slab
+from stickslip.bodies import as_slab, has_dashpot
 from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
@@ -146,6 +146,8 @@ def check_suitable(problem: Problem) -> None:
     slab = as_slab(problem.body, "schemes: a block has no grid")
     if slab.has_inertia:
         raise InputError(f"schemes: a contact_mass of {slab.contact_mass:g} kg/m^2 is not in the schemes: set it to 0")
+    if has_dashpot(slab):
+        raise InputError(f"schemes: the damping of this {type(slab).__name__} is not its impedance, which the schemes take it for")
     if problem.varies:
         raise InputError("schemes: a pull rate or a far stress that varies in time is not in the schemes: give constant ones")
     GridContact(problem)

@@ -205,7 +205,7 @@ def _row(name: str, solution: Solution) -> dict[str, Any]:
     n = int(events.slip.to_numpy().argmax())
     largest, history, event_rate = events.iloc[n], solution.history, default_event_rate(problem)
     found = SlipEvents.of(history, event_rate)
-    pulses = Pulses.of(history, found, event_rate)
+    pulses = Pulses.of(history, found)
     before, smallest = extreme_tractions(history, found, pulses)
     return row | {
         "pulses": int(largest.pulses),

@@ -162,6 +162,8 @@ class SlipEvents(NamedTuple):
     pulses: Integers
     is_over: NDArray[np.bool_]
     """True if the slip rate falls to the threshold within the history."""
+    threshold: float
+    """The slip rate (m/s) above which slip is an event."""
 
     @classmethod
     def of(cls, history: History, threshold: float, first: int = 0) -> Self:
@@ -186,11 +188,12 @@ class SlipEvents(NamedTuple):
         found = EventTurns.of(grouped[: group_turns(table, len(table), grouped)])
         turns, last = Turn.of(table), found.past - 1
         places = np.stack([found.begin, found.top, last])
-        return cls(turns.piece[places], turns.xi[places], turns.rate[found.top], found.pulses, turns.kind[last] == -1)
+        return cls(turns.piece[places], turns.xi[places], turns.rate[found.top], found.pulses, turns.kind[last] == -1, threshold)
 
     def some(self, which: slice) -> Self:
         """Return a part of the events."""
-        return self._replace(**{name: column[..., which] for name, column in self._asdict().items()})
+        parts = {name: column[..., which] for name, column in self._asdict().items() if name != "threshold"}
+        return self._replace(**parts)
 
     @property
     def begin(self) -> Positions:

@@ -51,16 +51,19 @@ class Pulses(NamedTuple):
     peak_rate: Floats
 
     @classmethod
-    def of(cls, history: History, events: SlipEvents, threshold: float) -> Pulses:
-        """Find the pulses of the slip events above a threshold (m/s)."""
-        turns = Turn.of(walk(history, threshold))
+    def of(cls, history: History, events: SlipEvents) -> Pulses:
+        """Find the pulses of these slip events: some or all of those in the history."""
+        turns = Turn.of(walk(history, events.threshold, int(events.piece[0].min(initial=len(history)))))
         piece, xi, rate, kind = turns.piece, turns.xi, turns.rate, turns.kind
-        starts = np.append(np.flatnonzero(kind == 1), len(kind))[: len(events.pulses) + 1]
-        places = [_starts(rate, begin, past) for begin, past in zip(starts[:-1].tolist(), starts[1:].tolist(), strict=True)]
+        starts = np.flatnonzero(kind == 1)
+        # Piece plus half of xi puts places in order; the end of a piece stays before the start of the next one.
+        which = np.searchsorted(piece[starts] + 0.5 * xi[starts], events.piece[0] + 0.5 * events.xi[0])
+        begins, pasts = starts[which], np.append(starts, len(kind))[which + 1]
+        places = [_starts(rate, begin, past) for begin, past in zip(begins.tolist(), pasts.tolist(), strict=True)]
         event = np.repeat(np.arange(len(places)), [len(found) for found in places])
         first = np.concatenate([*places, np.empty(0, np.intp)]).astype(np.intp)
         last_of_event = np.append(event[1:] != event[:-1], np.full(len(event[:1]), True))
-        past = np.where(last_of_event, starts[event + 1] - 1, np.append(first[1:], 0))
+        past = np.where(last_of_event, pasts[event] - 1, np.append(first[1:], 0))
         begin, end = (Positions.inside(piece[where], xi[where]) for where in (first, past))
         peak = np.array([rate[a : b + 1].max() for a, b in zip(first.tolist(), past.tolist(), strict=True)])
         return cls(event, begin, _weakest(history, begin, end), end, peak)
@@ -89,7 +92,7 @@ def pulses_table(history: History, threshold: float) -> pd.DataFrame:
     import pandas as pd
 
     events = SlipEvents.of(history, threshold)
-    pulses = Pulses.of(history, events, threshold)
+    pulses = Pulses.of(history, events)
     begun = events.begin
     event_begin = Positions.inside(begun.piece[pulses.event], begun.xi[pulses.event])
     columns = {

@@ -1,0 +1,93 @@
+"""A body whose damping is not its impedance is solved rightly, or refused by name, by whatever solves the motion of bodies."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from stickslip.batch.run import run_members
+from stickslip.bodies import BODIES, has_dashpot
+from stickslip.engine_input.limits import leaps_over
+from stickslip.scenarios.scenario import Scenario
+from stickslip.schemes.registry import SCHEMES
+
+DROP = 0.3e8
+"""Stress drop (Pa) of the Coulomb contact below."""
+
+
+class SlabWithDashpot(ss.ElasticSlab):
+    """A slab whose contact has a dashpot beside friction."""
+
+    @property
+    def damping(self) -> float:
+        """Z + Z/2, Pa s/m."""
+        return 1.5 * self.impedance
+
+
+SLAB = SlabWithDashpot(2800, 3500, 1e4, 1e8)
+LAW = ss.friction.Coulomb(0.8, 0.5)
+PROBLEM = ss.Problem(SLAB, LAW, initial_excess=1e6)
+WEAKENING = ss.friction.LinearSlipWeakening(0.8, 0.5, 2.0)
+
+
+def test_no_body_of_the_package_has_one_beside_its_waves() -> None:
+    plain = {"slab": ss.ElasticSlab(2800, 3500, 1e4, 1e8), "block": ss.SpringBlock(1.0, 1e3, 10.0, damping=2.0)}
+    assert {type(body) for body in plain.values()} == set(BODIES.values())
+    assert not any(has_dashpot(body) for body in plain.values())
+    assert has_dashpot(SLAB)
+
+
+def test_the_exact_solver_slips_at_the_stress_drop_over_the_damping() -> None:
+    """(Z + D) v = S (muS - muD) + excess for the first round trip."""
+    run = ss.simulate(PROBLEM, 5.0)
+    assert float(run.slip_rate(1.0)) == pytest.approx((DROP + 1e6) / SLAB.damping, rel=1e-13, abs=0.0)
+
+
+def test_members_of_a_batch_are_single_runs() -> None:
+    batch = run_members(Scenario(PROBLEM, 5.0), {"friction.dynamic": np.array([0.4, 0.5])}, ["slip"]).results
+    runs = [ss.simulate(ss.Problem(SLAB, ss.friction.Coulomb(0.8, mu), initial_excess=1e6), 5.0) for mu in (0.4, 0.5)]
+    assert batch["slip"] == pytest.approx([float(run.slip(5.0)) for run in runs], rel=1e-12, abs=0.0)
+
+
+def test_sweeps_and_files_do_not_take_it_for_the_body_whose_kind_it_has(tmp_path: Path) -> None:
+    with pytest.raises(ss.InputError, match=r"\[body\] kind 'SlabWithDashpot' is unknown"):
+        ss.sweep(PROBLEM, {"friction.dynamic": [0.4, 0.5]}, duration=5.0)
+    ss.simulate(PROBLEM, 1.0).to_netcdf(tmp_path / "run.nc")
+    with pytest.raises(ss.InputError, match=r"\[body\] kind 'SlabWithDashpot' is unknown"):
+        ss.open_solution(tmp_path / "run.nc")
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_schemes_refuse_it_by_name(scheme: str) -> None:
+    with pytest.raises(ss.InputError, match="schemes: the damping of this SlabWithDashpot is not its impedance"):
+        ss.studies.schemes(PROBLEM, 4.0, scheme=scheme, cells=20)
+
+
+def test_a_planar_slab_refuses_it_by_name() -> None:
+    problem = ss.Problem(SLAB, WEAKENING, initial_excess=1e6)
+    with pytest.raises(ss.InputError, match="PlanarSlab: the damping of this SlabWithDashpot is not its impedance"):
+        ss.PlanarSlab(problem, nodes=16, length=1e4)
+
+
+def test_runs_do_not_leap_by_sums_that_hold_for_waves_alone() -> None:
+    creeping = ss.Problem(SLAB, WEAKENING, pull_rate=1e-9, initial_excess=0.0)
+    assert leaps_over(creeping) == ""
+    with pytest.raises(ss.InputError, match="leaps over creep need a contact that waves alone damp"):
+        ss.simulate(creeping, 1.0, creep_rtol=1e-6)
+    law = ss.friction.RateAndState(**ss.friction.RateAndState.example)
+    assert leaps_over(ss.Problem(SLAB, law, pull_rate=1e-9, initial_load=0.6e8, initial_state=1e6)) == "steady sliding"
+    plain = ss.ElasticSlab(2800, 3500, 1e4, 1e8)
+    assert leaps_over(ss.Problem(plain, law, pull_rate=1e-9, initial_load=0.6e8, initial_state=1e6)) == "slow sliding"
+
+
+def test_leaps_over_steady_sliding_know_the_damping() -> None:
+    """A run with leaps and one without end at the same slip, to 1e-9 of it."""
+    law = ss.friction.VelocityStrengthening(0.6, 0.01, 1e-6)
+    problem = ss.Problem(SLAB, law, pull_rate=1e-2, initial_excess=1e5)
+    leaping, plain = (ss.simulate(problem, 8000.0, creep_rtol=tolerance) for tolerance in (None, 0.0))
+    assert len(leaping.history) < 0.5 * len(plain.history)
+    times = np.array([4000.0, 8000.0])
+    assert leaping.slip(times) == pytest.approx(plain.slip(times), rel=1e-9, abs=0.0)
