@@ -111,6 +111,19 @@ def test_a_process_ends_at_once_with_its_code_when_libraries_have_tidied_up(endi
     assert [line for line in done.stderr.splitlines() if line in ("tidied up", "taken apart")] == ["tidied up", *end]
 
 
+def test_a_fault_of_the_program_is_told_as_one(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    def fails(*_: object, **__: object) -> None:
+        assert 1 + 1 == 3, "an assertion of the package"
+
+    monkeypatch.setattr("stickslip.cli.app.app", fails)
+    with pytest.raises(SystemExit) as caught:
+        main(["run", "fig6-slab"])
+    assert caught.value.code == 70
+    *trace, line = capsys.readouterr().err.splitlines()
+    assert line.startswith("stickslip: this is a fault of the program; please report it")
+    assert "an assertion of the package" in "\n".join(trace)
+
+
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no /dev/full")
 def test_a_full_disk_under_the_summary_is_no_success(tmp_path: Path):
     with Path("/dev/full").open("w", encoding="utf-8") as full:

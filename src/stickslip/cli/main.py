@@ -10,11 +10,14 @@ import gc
 import os
 import signal
 import sys
+import traceback
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager, redirect_stderr, redirect_stdout
 from typing import Any
 
+FAULT = 70
+"""Exit code after an error that is no user's mistake, as in sysexits.h."""
 INTERRUPTED = 130
 """Exit code after Ctrl-C, as in shells: 128 and the number of the signal."""
 COLLECT_AFTER = 100_000
@@ -49,7 +52,10 @@ def _end_at_once(code: list[int]) -> None:
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run the command line and exit with 0 (done), 1 (the run failed), 2 (the input cannot be used) or 130 (interrupted)."""
+    """Run the command line and exit with a code.
+
+    It is 0 (done), 1 (the run failed), 2 (the input cannot be used), 70 (a fault of the program) or 130 (interrupted).
+    """
     with ExitStack() as streams:
         streams.enter_context(redirect_stdout(_Heard(sys.stdout)))
         streams.enter_context(redirect_stderr(_Heard(sys.stderr)))
@@ -136,6 +142,11 @@ def _code(arguments: Sequence[str] | None) -> int:
         return _fail(f"{error.filename}: {error.strerror}" if error.filename and error.strerror else str(error))
     except (KeyboardInterrupt, Abort):
         code = INTERRUPTED
+    except Exception:  # whatever else is raised is no user's mistake
+        sys.stderr.write(traceback.format_exc())
+        return _fail(
+            "this is a fault of the program; please report it with the lines above, the scenario and `stickslip doctor`", FAULT
+        )
     if code == INTERRUPTED:
         return _fail("interrupted", code)
     return code if isinstance(code, int) else 0

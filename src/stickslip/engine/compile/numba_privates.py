@@ -2,7 +2,7 @@
 
 Numba promises nothing about these names. Those that tell it the types of records and lanes have been the same for ten years, and
 nothing can replace them. Those behind the faster first start can be done without: where one is missing or has changed, numba's
-public compiler and its own cache take over (`plain_numba`), and `WHY_PLAIN` says why.
+public compiler and its own cache take over, and `WHY_PLAIN` says why.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Bound a formula over intervals of slip and slip rate, by interval arithmetic.
 
-They need not be sharp. Those of `taylor_bounds` include rounding; those of `bounds` are guaranteed but for it.
+They need not be sharp. Those of `Enclosure` include rounding; those of `bounds` are guaranteed but for it.
 """
 
 from __future__ import annotations
