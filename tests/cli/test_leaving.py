@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from stickslip.cli.main import main
 from stickslip.engine.compile.cache import SLOW
 
 INTERRUPT_AT = """

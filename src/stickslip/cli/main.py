@@ -18,6 +18,7 @@ from typing import Any
 
 FAULT = 70
 """Exit code after an error that is no user's mistake, as in sysexits.h."""
+REPORT = "please report it with the lines above, the scenario and what `stickslip doctor` says"
 INTERRUPTED = 130
 """Exit code after Ctrl-C, as in shells: 128 and the number of the signal."""
 COLLECT_AFTER = 100_000
@@ -144,9 +145,7 @@ def _code(arguments: Sequence[str] | None) -> int:
         code = INTERRUPTED
     except Exception:  # whatever else is raised is no user's mistake
         sys.stderr.write(traceback.format_exc())
-        return _fail(
-            "this is a fault of the program; please report it with the lines above, the scenario and `stickslip doctor`", FAULT
-        )
+        return _fail(f"this is a fault of the program; {REPORT}", FAULT)
     if code == INTERRUPTED:
         return _fail("interrupted", code)
     return code if isinstance(code, int) else 0
