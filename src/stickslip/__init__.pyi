@@ -19,7 +19,6 @@ from .scenarios.library import scenarios
 from .scenarios.scenario import load_scenario
 from .scenarios.source import uniqueness
 from .solution.solution import Solution
-from .sweeps.refine import refine
 from .sweeps.sweep import sweep
 
 __version__: str
@@ -39,7 +38,6 @@ __all__ = [
     "load_scenario",
     "loading",
     "open_solution",
-    "refine",
     "resume",
     "scenarios",
     "selection",

@@ -60,7 +60,7 @@ def test_help_says_what_it_does_with_an_example(command, name):
 
 
 OPTIONS = [("run", "selection"), ("new", "friction"), ("new", "pull"), ("regularise", "by")]
-OPTIONS += [("sweep", name) for name in ("quantity", "refine", "design", "series")]
+OPTIONS += [("sweep", name) for name in ("quantity", "design", "series")]
 
 
 def test_every_option_with_fixed_names_is_tested_below():

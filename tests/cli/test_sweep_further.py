@@ -1,27 +1,16 @@
-"""`stickslip sweep` on a cluster, refined, and drawn."""
+"""`stickslip sweep` on a cluster, drawn, and what its summary says of changes."""
 
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 import xarray as xr
 
+from stickslip.cli.output.sweep_summary import Change, cases, changes
 from stickslip.sweeps.execution import cluster
 
 MAP = ["sweep", "fig6-slab", "-v", "friction.alpha=0.1..0.4:3", "-v", "body.normal_stress=50MPa..200MPa:3"]
-
-
-def test_sweep_refines_and_draws(command, tmp_path: Path):
-    shown = command(*MAP, "-q", "events", "--refine", "irregular", "--depth", "2", "--out", "map.zarr", "--figure", "map.png")
-    assert (shown.code, shown.err) == (0, "")
-    with xr.open_zarr("map.zarr") as found:
-        assert set(found) == {"events", "irregular", "status", "reason"}
-        assert int(found.level.max()) == 2
-        assert f"{found.sizes['member']} members of a refined map over friction.alpha, body.normal_stress" in shown.out
-        assert 9 < found.sizes["member"] < 81
-    assert shown.out.endswith("written: map.zarr\nwritten: map.png\n")
-    assert {path.name for path in tmp_path.iterdir()} == {"map.zarr", "map.png"}
-    assert command(*MAP, "-q", "events", "--refine", "irregular", "--depth", "2", "--out", "map.zarr").code == 0
 
 
 def test_sweep_draws_a_grid(command, tmp_path: Path):
@@ -44,11 +33,7 @@ def test_sweep_draws_axes_of_words(command):
     ("options", "message"),
     [
         (["--figure", "map.bmp"], "--figure map.bmp: the name must end in .png or .pdf or .svg"),
-        (["--refine", "pulse"], "sweep: quantity 'pulse' is unknown; did you mean 'pulses'?"),
-        (["--refine", "slip"], "refine: slip is not a whole number: give the factor by which it must change"),
-        (["--refine", "pulses", "--dry-run"], "sweep: --refine needs a grid of --vary"),
-        (["--refine", "pulses", "--design", "lhs", "-m", "4"], "sweep: --refine needs a grid of --vary"),
-        (["--refine", "pulses", "--depth", "-1"], "refine: depth must be a whole number, 0 or more, got -1"),
+        (["-q", "pulse"], "sweep: quantity 'pulse' is unknown; did you mean 'pulses'?"),
         (["--scheduler", "nowhere"], "sweep: no dask scheduler answers at nowhere"),
         (["--workers", "0"], "sweep: workers must be 1 or more, got 0"),
         (["--workers", "2", "--threads", "2"], "sweep: give one of threads, workers"),
@@ -56,8 +41,6 @@ def test_sweep_draws_axes_of_words(command):
 )
 def test_impossible_sweeps_are_refused_in_one_line(command, options: list[str], message: str):
     shown = command(*MAP[:4], "-v", "body.normal_stress=50MPa,100MPa", *options)
-    if "lhs" in options:
-        shown = command("sweep", "fig6-slab", "-v", "alpha=0.1..1", *options)
     assert shown.code == 2
     assert shown.err.startswith(f"stickslip: {message}")
     assert len(shown.err.splitlines()) == 1
@@ -73,3 +56,22 @@ def test_chunks_that_a_cluster_lost_are_reported(command, monkeypatch: pytest.Mo
     assert (shown.code, shown.err) == (1, "stickslip: sweep: the dask scheduler is lost\n")
     with xr.open_zarr("map.zarr") as found:
         assert (found.status == -1).all()
+
+
+def small() -> xr.Dataset:
+    counts = [[1.0, 1.0, np.nan], [1.0, 2.0, 3.0]]
+    return xr.Dataset(
+        {"pulses": (("a", "b"), counts), "slip": (("a", "b"), np.arange(6.0).reshape(2, 3) + 0.5)},
+        {"a": [1.0, 2.0], "b": [5.0, 6.0, 9.0]},
+    )
+
+
+def test_changes_are_between_neighbours_that_differ() -> None:
+    assert cases(small(), "pulses") == {1.0: 3, 2.0: 1, 3.0: 1}
+    assert changes(small(), "pulses") == [Change("a", 1, 1.0, 2.0), Change("b", 2, 5.0, 9.0)]
+    assert changes(small().isel(b=[0]), "pulses") == []
+
+
+def test_a_quantity_that_is_no_count_has_no_cases() -> None:
+    assert cases(small(), "slip") == {}
+    assert cases(xr.Dataset({"many": ("a", np.arange(100.0))}), "many") == {}

@@ -13,14 +13,14 @@ import pytest
 import xarray as xr
 from matplotlib import pyplot
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection, PathCollection, PolyCollection, QuadMesh
+from matplotlib.collections import LineCollection, PathCollection, QuadMesh
 from matplotlib.colors import LogNorm, to_rgba
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 from numpy.typing import NDArray
 
 import stickslip as ss
-from stickslip.figures.style import INK, PALE
+from stickslip.figures.style import PALE
 from stickslip.figures.sweeps.curves import ALL, BESIDE
 from stickslip.figures.sweeps.varied import is_logarithmic
 from stickslip.scenarios.parameter_paths import parameter_paths
@@ -268,38 +268,16 @@ def test_samples_over_three_keys_are_drawn_over_each() -> None:
 
 
 @pytest.fixture(scope="module")
-def refined() -> xr.Dataset:
-    vary = {ALPHA: np.geomspace(0.05, 2.0, 3), STRESS: np.linspace(50e6, 200e6, 3)}
-    return ss.refine("fig6-slab", vary, "irregular", depth=3, quantities=["slip"], threads=1)
+def swept() -> xr.Dataset:
+    return ss.sweep("fig6-slab", {ALPHA: AXES[ALPHA], STRESS: np.linspace(50e6, 200e6, 5)}, quantities=["irregular"], threads=1)
 
 
-def test_a_refined_map_shows_its_cells(refined: xr.Dataset) -> None:
-    figure = ss.figures.plot_sweep(refined, "irregular")
-    axes = figure.axes[0]
-    assert legend(figure) == ["no", "yes", "boundary"]
-    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "linear")
-    assert axes.get_ylim() == (50.0, 200.0)
-    known, changes = (one for one in axes.collections if isinstance(one, PolyCollection))
-    corners = np.array([path.vertices[:4] for path in changes.get_paths()])
-    assert (corners[:, 0].prod(axis=1) <= 19.6).all()  # alpha S in s/m MPa on the critical curve
-    assert (corners[:, 2].prod(axis=1) >= 19.6).all()
-    assert tuple(changes.get_facecolor()[0]) == to_rgba(INK)
-    middle = np.array([path.vertices[[0, 2]].mean(axis=0).prod() for path in known.get_paths()])
-    yes = figure.legends[0].get_patches()[1].get_facecolor()
-    assert [tuple(colour) == yes for colour in known.get_facecolor()] == (middle > 19.6).tolist()
-
-
-def test_the_title_is_that_of_the_scenario_without_what_is_varied(refined: xr.Dataset) -> None:
+def test_the_title_is_that_of_the_scenario_without_what_is_varied(swept: xr.Dataset) -> None:
     """The scenario is called "Fig. 6, slab, rate law, alpha = 1", and alpha is on an axis here."""
-    assert ss.figures.plot_sweep(refined).axes[0].get_title(loc="left") == "Fig. 6, slab, rate law"
-    untitled = refined.assign_attrs(scenario="\n".join(refined.attrs["scenario"].splitlines()[2:]))
+    assert ss.figures.plot_sweep(swept).axes[0].get_title(loc="left") == "Fig. 6, slab, rate law"
+    untitled = swept.assign_attrs(scenario="\n".join(swept.attrs["scenario"].splitlines()[2:]))
     assert not untitled.attrs["scenario"].startswith("title")
     assert ss.figures.plot_sweep(untitled).axes[0].get_title(loc="left") == ""
-
-
-def test_another_quantity_of_a_refined_map_is_drawn_as_points(refined: xr.Dataset) -> None:
-    points = scattered(ss.figures.plot_sweep(refined, "slip").axes[0])[-1]
-    assert len(points.get_offsets()) == refined.sizes["member"]
 
 
 @pytest.mark.parametrize(("alphas", "thicknesses"), [(5, 1), (2, 5), (3, 4), (5, 2)])
@@ -326,16 +304,6 @@ def test_words_may_be_any_of_the_keys(names: tuple[str, ...]) -> None:
     assert set(RULES[:3].tolist()) <= texts
 
 
-def test_a_refined_map_of_three_keys_is_cut_along_one() -> None:
-    vary = {ALPHA: np.linspace(0.1, 0.4, 3), STRESS: np.linspace(50e6, 200e6, 3), "body.wave_speed": ["2 km/s", "5 km/s"]}
-    figure = ss.figures.plot_sweep(ss.refine("fig6-slab", vary, "irregular", depth=1, quantities=["slip"]), "irregular")
-    assert [axes.get_title(loc="left") for axes in figure.axes] == ["(a)  $c$ = 2000 m/s", "(b)  $c$ = 5000 m/s"]
-    for axes, speed in zip(figure.axes, (2e3, 5e3), strict=True):
-        for cell in next(one for one in axes.collections if isinstance(one, PolyCollection)).get_paths():
-            (low, high), critical = cell.vertices[[0, 2]].prod(axis=1), 2800.0 * speed / 0.5e6
-            assert low >= critical or high <= critical
-
-
 @pytest.mark.parametrize("status", [FAILED, NOT_RUN, 0])
 def test_a_sweep_without_numbers_can_be_drawn(status: int) -> None:
     nothing = np.full((9, 13), np.nan)
@@ -351,8 +319,8 @@ def test_a_sweep_without_numbers_can_be_drawn(status: int) -> None:
     )[1:]
 
 
-def test_the_figure_can_be_saved(refined: xr.Dataset, tmp_path: Path) -> None:
-    ss.figures.plot_sweep(refined, path=tmp_path / "map.png")
+def test_the_figure_can_be_saved(swept: xr.Dataset, tmp_path: Path) -> None:
+    ss.figures.plot_sweep(swept, path=tmp_path / "map.png")
     assert (tmp_path / "map.png").stat().st_size > 10_000
 
 

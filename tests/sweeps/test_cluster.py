@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING
 from urllib.error import HTTPError
 from urllib.request import urlopen
 
-import numpy as np
 import pytest
 
 import stickslip as ss
@@ -176,14 +175,6 @@ def test_the_scheduler_may_be_named_by_a_file(open_scheduler: str, tmp_path: Pat
     found = ss.sweep("fig6-slab", {"friction.alpha": [0.05, 1.0]}, quantities="slip", scheduler=str(file))
     here = ss.sweep("fig6-slab", {"friction.alpha": [0.05, 1.0]}, quantities="slip")
     assert found.slip.values.tobytes() == here.slip.values.tobytes()
-
-
-def test_a_map_is_refined_on_a_cluster(open_scheduler: str, tmp_path: Path) -> None:
-    vary = {"friction.alpha": np.linspace(0.05, 0.4, 3), "body.normal_stress": np.linspace(50e6, 200e6, 3)}
-    for name, where in (("here", {"threads": 1}), ("there", {"scheduler": open_scheduler})):
-        found = ss.refine("fig6-slab", vary, "events", depth=2, quantities="slip", chunk=4, out=tmp_path / f"{name}.zarr", **where)
-        assert found.sizes["member"] > 20
-    assert files(tmp_path / "there.zarr") == files(tmp_path / "here.zarr")
 
 
 def test_without_dask_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:

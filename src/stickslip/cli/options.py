@@ -40,7 +40,6 @@ CHOICES: dict[str, Names] = {
     "selection": _table("problem.selection_rule", "SELECTION_RULES"),
     "by": _table("studies.regularisations", "KINDS"),
     "quantity": _table("sweeps.design.quantities", "QUANTITIES"),
-    "refine": _table("sweeps.design.quantities", "QUANTITIES"),
     "design": _table("sweeps.design.design", "KINDS"),
     "series": _table("solution.evaluation", "CURVES"),
 }

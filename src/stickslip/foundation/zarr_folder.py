@@ -27,8 +27,6 @@ from stickslip.foundation.formatting import clean
 
 COMPRESSED = (ZstdCodec(), Crc32cCodec())
 """Codecs of every array: compression, then a CRC-32C checksum after each chunk, which every reader of zarr verifies."""
-PACKINGS = (["zstd", "crc32c"], ["zstd"])
-"""Codecs, after the one that makes bytes, of arrays that are read; refined maps of earlier versions have no checksums."""
 LARGEST_CHUNK = 2**28
 """Bytes of the largest chunk that is unpacked, and of the largest file that is read: 33 million numbers."""
 LARGEST_METADATA = 4_000_000
@@ -86,7 +84,7 @@ def opened(path: Path, mode: Literal["r", "r+"] = "r", use_consolidated: bool | 
         arrays = list(group.arrays())
     for name, array in arrays:
         codecs = [one["name"] for one in array.metadata.to_dict().get("codecs", ())]  # type: ignore[union-attr, index, call-overload]
-        if codecs[1:] not in PACKINGS or codecs[0] not in ("bytes", "vlen-utf8"):
+        if codecs[1:] != ["zstd", "crc32c"] or codecs[0] not in ("bytes", "vlen-utf8"):
             raise InputError(f"its array {ascii(name)[:60]} is packed in another way")
     return group
 

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from stickslip.solution.solution import Solution
 
 RESULT = "A file or folder of `run --out`, a catalogue or its checkpoint, or the folder of a sweep."
-QUANTITY = "Of a sweep, draw this quantity: by default the one that was refined, or the first."
+QUANTITY = "Of a sweep, draw this quantity: by default the first."
 SCENARIO_ONLY = "Print the scenario of the results instead, as TOML with every value in SI."
 
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -28,7 +27,6 @@ from stickslip.foundation.errors import InputError
 if TYPE_CHECKING:
     import xarray as xr
 
-    from stickslip.sweeps.design.axis import Axis
     from stickslip.sweeps.execution.plan import Plan
     from stickslip.sweeps.sweep import SweepProgress
 
@@ -51,12 +49,7 @@ Threads = Annotated[int | None, option("Threads (default: all cores).")]
 Chunk = Annotated[int | None, option("Number of members run and saved together (default: 1/64 of all).")]
 Workers = Annotated[int | None, option("Start a dask cluster of so many processes here, instead of threads.")]
 Scheduler = Annotated[str | None, option("Run on the dask cluster at HOST:PORT, or of a scheduler file.")]
-REFINE_HELP = "Refine the map where this quantity changes."
-Refine = Annotated[str | None, option(REFINE_HELP, autocompletion=complete_quantity, metavar="QUANTITY")]
-Depth = Annotated[int, typer.Option(help="With --refine: how often cells are halved.")]
-Factor = Annotated[float | None, option("With --refine: look for jumps by more than this factor.")]
-FIGURE_HELP = "Draw the first quantity, or the one that is refined (.png, .pdf or .svg)."
-Figure = Annotated[Path | None, option(FIGURE_HELP, "--figure", "-f")]
+Figure = Annotated[Path | None, option("Draw the first quantity (.png, .pdf or .svg).", "--figure", "-f")]
 DryRun = Annotated[bool, typer.Option("--dry-run", help="Say how many members, how much time and disk it takes, and stop.")]
 
 
@@ -77,9 +70,6 @@ def sweep(
     chunk: Chunk = None,
     workers: Workers = None,
     scheduler: Scheduler = None,
-    refine: Refine = None,
-    depth: Depth = 6,
-    factor: Factor = None,
     figure: Figure = None,
     dpi: Dpi = None,
     size: Size = None,
@@ -97,8 +87,6 @@ def sweep(
       stickslip sweep mine.toml -v alpha=0.1,1,10 -q recurrence -q heat
       stickslip sweep mine.toml -v alpha=0.1..10:log -v static=0.6..0.8 \
         --design lhs --members 1000 --out sample.zarr
-      stickslip sweep fig6-slab -v alpha=0.05..2:9 -v thickness=1km..50km:9 \
-        --refine events --depth 5 --figure map.png
 
     After a stop, the same command continues where the store ends.
 
@@ -110,23 +98,21 @@ def sweep(
     from stickslip.cli.output.sweep_summary import show_slowest, show_sweep
     from stickslip.cli.overrides import load
     from stickslip.sweeps.design.axis import typed_axes
+    from stickslip.sweeps.design.quantities import DEFAULT
     from stickslip.sweeps.execution.chunk import NOT_RUN
     from stickslip.sweeps.execution.plan import make_plan
 
     _check_files(vary, table, out, figure)
     look = Look(dpi, size)
     look.check(figure)
-    if refine is not None and (table or design != "grid" or series or dry_run):
-        raise InputError("sweep: --refine needs a grid of --vary; it takes no --list, --design, --series and --dry-run")
     chosen = load(scenario, "sweep", changes)
-    axes = typed_axes(chosen, vary or (), "--vary")
     plan = make_plan(
         chosen,
-        table or axes,
+        table or typed_axes(chosen, vary or (), "--vary"),
         design=design,
         members=members,
         seed=seed,
-        quantities=_kept(quantity, refine),
+        quantities=quantity or DEFAULT,
         series=[name.strip() for name in series.split(",") if name.strip()],
         samples=samples,
         chunk=chunk,
@@ -134,24 +120,19 @@ def sweep(
     )
     if figure is not None:
         _check_can_be_drawn(plan)
-    spent: SweepProgress | None = None
     resources: dict[str, Any] = {"threads": threads, "workers": workers, "scheduler": scheduler}
     with _losses():
-        if refine is not None:
-            search = {"quantity": refine, "depth": depth, "factor": factor, "out": out, "chunk": chunk}
-            plan, found = _refined(plan, axes, search | resources)
-        elif dry_run:
+        if dry_run:
             _show_estimate(plan, resources)
             return
-        else:
-            found, spent = _found(plan, out, resources)
+        found, spent = _found(plan, out, resources)
     if out is not None:
         from stickslip.sweeps.results.layout import reading
 
         with reading(out):  # its chunks may have been damaged since they were written
             found = found.load()
     if figure is not None:
-        _draw(found, refine or plan.work.names[0], figure, look)
+        _draw(found, plan.work.names[0], figure, look)
     code = show_sweep(chosen.title or chosen.name, found)
     if spent is not None:
         show_slowest(plan, spent)
@@ -181,14 +162,6 @@ def _check_can_be_drawn(plan: Plan) -> None:
         raise InputError(f"sweep: --figure draws one to three keys, but here {number}: leave out --figure, or vary fewer keys")
 
 
-def _kept(wanted: list[str] | None, refined: str | None) -> list[str]:
-    """Return the quantities to keep, with the one by which the map is refined."""
-    from stickslip.sweeps.design.quantities import DEFAULT
-
-    kept = wanted or DEFAULT
-    return [*kept, *([refined] if refined and refined not in kept else [])]
-
-
 @contextmanager
 def _losses() -> Iterator[None]:
     """Report in one line what a cluster has lost, and exit with code 1."""
@@ -213,21 +186,13 @@ def _show_estimate(plan: Plan, resources: dict[str, Any]) -> None:
         show_estimate(plan, found)
 
 
-@contextmanager
-def _progress_of(plan: Plan) -> Iterator[Callable[[SweepProgress], object]]:
-    """Provide a function that shows the progress of a sweep in one line."""
-    from stickslip.run.progress import progress_line
-
-    with progress_line(f"{plan.scenario.name}:") as tell:
-        yield tell
-
-
 def _found(plan: Plan, out: Path | None, resources: dict[str, Any]) -> tuple[xr.Dataset, SweepProgress | None]:
     """Return the results of a sweep and its last progress."""
+    from stickslip.run.progress import progress_line
     from stickslip.sweeps.sweep import carry_out, runner_of
 
     last: list[SweepProgress] = []
-    with runner_of(**resources) as (run, _), _progress_of(plan) as tell:
+    with runner_of(**resources) as (run, _), progress_line(f"{plan.scenario.name}:") as tell:
 
         def note(progress: SweepProgress) -> None:
             last[:] = [progress]
@@ -235,19 +200,6 @@ def _found(plan: Plan, out: Path | None, resources: dict[str, Any]) -> tuple[xr.
 
         found = carry_out(plan, out, run, note)
     return found, last[0] if last else None
-
-
-def _refined(plan: Plan, axes: list[Axis], options: dict[str, Any]) -> tuple[Plan, xr.Dataset]:
-    """Return the plan of all members of a refined map, and their results."""
-    from stickslip.sweeps.design.design import REFINED, Design
-    from stickslip.sweeps.refine import COMPLETE, refine
-
-    with _progress_of(plan) as tell:
-        found = refine(plan.scenario, axes, quantities=plan.work.quantities, progress=tell, **options)
-    if not found.attrs[COMPLETE]:
-        typer.echo(f"stickslip: the refinement ended after {found.sizes['member']} members: the map is not complete", err=True)
-    columns = tuple(found[name].values for name in plan.design.names)
-    return replace(plan, design=Design(REFINED, plan.design.parameters, columns)), found
 
 
 def _draw(dataset: xr.Dataset, quantity: str, figure: Path, look: Look) -> None:

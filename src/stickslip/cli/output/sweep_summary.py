@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,12 +19,13 @@ if TYPE_CHECKING:
 
     from stickslip.sweeps.estimate import Estimate
     from stickslip.sweeps.execution.plan import Plan
-    from stickslip.sweeps.results.refinement_spec import Change
     from stickslip.sweeps.sweep import SweepProgress
 
 _NUMBER = re.compile(r"\d[\d.e+-]*")
 FIRST = 5
 """Number of reasons for failures, and of slow members, that are shown."""
+LARGEST_COUNT = 12
+"""Largest number of distinct values of a quantity that is reported case by case; one with more is a number, not a case."""
 SLOW, NOTICED = 20.0, 0.5
 """A member is slow if it takes more than this multiple of the mean processor time of a member, and more than this time (s)."""
 
@@ -124,6 +126,44 @@ def _show_reasons(reasons: list[str]) -> None:
         say(screen, f"  and {len(told) - FIRST} other reasons")
 
 
+@dataclass(frozen=True)
+class Change:
+    """The changes of a quantity along one key: the number of pairs of neighbours that differ, and the values that enclose them.
+
+    All `pairs` pairs lie between the values `low` and `high` of the key (SI, or words).
+    """
+
+    key: str
+    pairs: int
+    low: float | str
+    high: float | str
+
+
+def cases(dataset: xr.Dataset, name: str) -> dict[float, int]:
+    """Return the number of members with each value, if the values are a few whole numbers; otherwise an empty dictionary."""
+    values = dataset[name].to_numpy()
+    found, count = np.unique(values[np.isfinite(values)], return_counts=True)
+    if found.size > LARGEST_COUNT or not np.array_equal(found, np.round(found)):
+        return {}
+    return dict(zip(found.tolist(), count.tolist(), strict=True))
+
+
+def changes(dataset: xr.Dataset, name: str) -> list[Change]:
+    """Return the changes of a quantity along each key of a grid. A missing value (NaN) counts as no change."""
+    values, found = dataset[name], []
+    for axis, key in enumerate(values.dims):
+        if key not in dataset.coords:
+            continue
+        along = np.moveaxis(values.to_numpy(), axis, 0)
+        differ = (along[1:] != along[:-1]) & np.isfinite(along[1:]) & np.isfinite(along[:-1])
+        at = np.flatnonzero(differ.any(axis=tuple(range(1, differ.ndim))))
+        if at.size:
+            places = dataset[key].to_numpy()
+            low, high = places[at[0] : at[0] + 1].tolist()[0], places[at[-1] + 1 :].tolist()[0]
+            found.append(Change(str(key), int(differ.sum()), low, high))
+    return found
+
+
 def _show_quantities(dataset: xr.Dataset) -> None:
     rows = []
     for name in quantities_of(dataset):
@@ -138,8 +178,6 @@ def _show_quantities(dataset: xr.Dataset) -> None:
 
 
 def _show_changes(dataset: xr.Dataset, *, is_grid: bool) -> None:
-    from stickslip.sweeps.results.refinement_spec import cases, changes
-
     screen = console()
     for name in quantities_of(dataset):
         found = cases(dataset, name)

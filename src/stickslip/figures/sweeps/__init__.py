@@ -1,1 +1,1 @@
-"""Figures of sweeps: curves, maps, maps side by side, points, and cells of refined maps."""
+"""Figures of sweeps: curves, maps, maps side by side, and points."""

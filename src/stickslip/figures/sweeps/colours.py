@@ -66,9 +66,9 @@ def shades(count: int) -> list[str]:
     return [to_hex((WARM, COOL)[k % 2](k / (count - 1))) for k in range(count)]
 
 
-def colours_of(quantity: Shown, drawn: Floats | None = None) -> Colours:
-    """Return colours, the same in all panels, for the numbers of a quantity, or for the numbers `drawn` if they are given."""
-    known = quantity.known if drawn is None else drawn[np.isfinite(drawn)]
+def colours_of(quantity: Shown) -> Colours:
+    """Return colours, the same in all panels, for the numbers of a quantity."""
+    known = quantity.known
     if quantity.is_flag:
         return _key(np.array([0.0, 1.0]), ("no", "yes"))
     if quantity.ends:

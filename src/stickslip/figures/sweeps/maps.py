@@ -1,7 +1,6 @@
 """Figures of a sweep as maps over two keys, side by side for some values of a third, and as points.
 
-Maps are of a grid, or of the cells of a refined map. Points show members that are no grid: samples, lists, or those of a refined
-map.
+Maps are of a grid. Points show members that are no grid: samples or lists.
 """
 
 from __future__ import annotations
@@ -12,12 +11,9 @@ from typing import Any, Unpack
 
 import numpy as np
 import xarray as xr
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.collections import PolyCollection
 from matplotlib.colors import ListedColormap
 from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 
 from stickslip.figures.panels import add_legend, finish, letter_panels, panels, set_title
 from stickslip.figures.sheet import one_panel
@@ -27,7 +23,6 @@ from stickslip.figures.sweeps.curves import mark_missing, missing_marks, show_or
 from stickslip.figures.sweeps.varied import LITTLE, ROOM, Names, Scaled, Shown, names_of, scaled, shown
 from stickslip.solution.place import Place
 from stickslip.sweeps.results.layout import read_design
-from stickslip.sweeps.results.refinement_spec import ATTRIBUTE, RefinedMap, RefinementSpec, cells_of
 
 PANELS = 9
 """Largest number of maps side by side; more would be too small to read."""
@@ -50,40 +45,11 @@ def draw_maps(dataset: xr.Dataset, **place: Unpack[Place]) -> Any:
     return _draw_all(dataset, quantity, colours, third, draw_one, place=place)
 
 
-def draw_cells(dataset: xr.Dataset, **place: Unpack[Place]) -> Any:
-    """Draw the cells over two varied keys, or cuts through them at some coarse values of a third.
-
-    For any other number of keys, or a quantity other than the refined one, draw the members as points instead.
-    """
-    spec = RefinementSpec.read(dataset)
-    names = list(spec.columns)
-    if dataset.attrs["quantity"] != spec.quantity or len(names) not in (2, 3):
-        return draw_members(dataset, **place)
-    quantity, cells, places = shown(dataset), cells_of(dataset), axes_of(dataset)
-    colours, third = colours_of(quantity, cells.answer), None
-    if len(names) == 3:
-        places = {name: replace(one, room=LITTLE) for name, one in places.items()}
-        third = xr.DataArray(spec.columns[names[2]], name=names[2], attrs=dataset[names[2]].attrs)
-
-    def draw_one(axes: Axes, k: int) -> None:
-        cut = cells if third is None else cells.at(names[2], float(third[k]))
-        _draw_cells(axes, quantity, colours, cut, places)
-
-    boundary = [Patch(facecolor=INK, label="boundary")] if cells.changes.any() else []
-    return _draw_all(dataset, quantity, colours, third, draw_one, *boundary, place=place)
-
-
 def _draw_all(
-    dataset: xr.Dataset,
-    quantity: Shown,
-    colours: Colours,
-    third: xr.DataArray | None,
-    draw_one: Draw,
-    *more: Artist,
-    place: Place,
+    dataset: xr.Dataset, quantity: Shown, colours: Colours, third: xr.DataArray | None, draw_one: Draw, *, place: Place
 ) -> Any:
-    """Draw one map, or one for each of some values of a third key, and explain the colours; `more` entries end the key."""
-    title, marks = str(dataset.attrs.get("title", "")), [*failed_area(quantity), *more]
+    """Draw one map, or one for each of some values of a third key, and explain the colours."""
+    title, marks = str(dataset.attrs.get("title", "")), failed_area(quantity)
     if third is not None:
         names = names_of(third)
         grid = _side_by_side(names, draw_one, place)
@@ -132,26 +98,9 @@ def _draw_map(axes: Axes, dataset: xr.Dataset, quantity: Shown, colours: Colours
     y.show(axes, "y")
 
 
-def _draw_cells(axes: Axes, quantity: Shown, colours: Colours, cells: RefinedMap, places: dict[str, Scaled]) -> None:
-    """Draw cells as rectangles; those in which the answer changes come last and have a line, so that the smallest can be seen."""
-    prepare(axes, quantity)
-    if not quantity.has(2):
-        axes.set_facecolor(PALE)
-    x, y = ((cells.low[name] / one.size, cells.high[name] / one.size) for name, one in list(places.items())[:2])
-    corners: Any = np.stack([np.stack([x[i], y[j]], axis=1) for i, j in ((0, 0), (1, 0), (1, 1), (0, 1))], axis=1)
-    there = np.isfinite(cells.answer)
-    answers = colours.cmap(colours.norm(cells.answer[there]))
-    for chosen, colour, width in ((there, answers, 0.2), (cells.changes, INK, 0.8)):
-        look: Any = {"facecolors": colour, "edgecolors": "face", "linewidths": width, "rasterized": True}
-        axes.add_collection(PolyCollection(corners[chosen], **look))
-    for which, one in zip("xy", places.values(), strict=False):
-        getattr(axes, f"set_{which}lim")(one.values.min(), one.values.max())
-        one.show(axes, which)
-
-
 def draw_members(dataset: xr.Dataset, **place: Unpack[Place]) -> Any:
     """Draw coloured points over two varied keys; for any other number of keys, draw the quantity against each key in turn."""
-    quantity, places = shown(dataset), list(axes_of(dataset).values())
+    quantity, places = shown(dataset), [scaled(dataset[name]) for name in read_design(dataset.attrs)[1]]
     title = str(dataset.attrs.get("title", ""))
     if len(places) == 2:
         axes = one_panel((5.4, 4.4), **place)
@@ -174,17 +123,6 @@ def draw_members(dataset: xr.Dataset, **place: Unpack[Place]) -> Any:
     add_legend(drawn[0], [*([dots] if len(drawn) > 1 else []), *missing_marks(*drawn)])
     set_title(figure, title)
     return figure
-
-
-def axes_of(dataset: xr.Dataset) -> dict[str, Scaled]:
-    """Return the varied keys, scaled for drawing; of a refined map, an axis is logarithmic if the search was."""
-    _, names, _ = read_design(dataset.attrs)
-    found = {name: scaled(dataset[name]) for name in names}
-    if ATTRIBUTE not in dataset.attrs:
-        return found
-    # The values themselves do not tell: members crowd where the answer changes.
-    logarithmic = dict(zip(names, RefinementSpec.read(dataset).logarithmic, strict=True))
-    return {name: replace(one, log=logarithmic[name]) for name, one in found.items()}
 
 
 def _draw_points(axes: Axes, quantity: Shown, x: Scaled, y: Scaled, *, own: bool) -> None:

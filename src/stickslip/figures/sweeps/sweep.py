@@ -1,6 +1,6 @@
 """Figure of a sweep: one quantity over the varied keys, as curves, a map, several maps, or points.
 
-The dataset of a grid has one dimension for each varied key; those of samples, lists and refined maps have the dimension `member`.
+The dataset of a grid has one dimension for each varied key; those of samples and lists have the dimension `member`.
 """
 
 from __future__ import annotations
@@ -16,13 +16,12 @@ import xarray as xr
 from stickslip.figures.sheet import shown_or_saved
 from stickslip.figures.style import styled
 from stickslip.figures.sweeps.curves import MOST_CURVES, draw_curves
-from stickslip.figures.sweeps.maps import draw_cells, draw_maps, draw_members
+from stickslip.figures.sweeps.maps import draw_maps, draw_members
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.solution.place import Place
 from stickslip.sweeps.design.design import MEMBER
 from stickslip.sweeps.execution.chunk import FIRST_FAILURE, NOT_RUN
-from stickslip.sweeps.results.refinement_spec import ATTRIBUTE, RefinementSpec
 
 
 @for_users
@@ -32,7 +31,7 @@ def plot_sweep(dataset: xr.Dataset, quantity: str | None = None, path: str | Pat
     Parameters
     ----------
     dataset : xarray.Dataset
-        The result of `sweep` or `refine`.
+        The result of `sweep`.
     quantity : str, optional
         Name of the quantity; by default the first one of the sweep.
     path : str or Path, optional
@@ -46,8 +45,7 @@ def plot_sweep(dataset: xr.Dataset, quantity: str | None = None, path: str | Pat
     matplotlib.figure.Figure or matplotlib.axes.Axes
         The figure, or the axes if `ax` was given. One varied key gives a curve, which is interrupted where the quantity jumps; two
         give a map, or a family of curves if one of them has at most four values; three give maps side by side. Members that are not
-        a grid are drawn as points; a refined map whose members have all been run is drawn as cells, if the quantity is the refined
-        one and two or three keys are varied.
+        a grid are drawn as points.
 
     Raises
     ------
@@ -65,8 +63,7 @@ def data(dataset: xr.Dataset, quantity: str | None = None) -> xr.Dataset:
     single value are dropped as dimensions. Raises InputError as `plot_sweep` does.
     """
     names = [str(name) for name in dataset.data_vars if _can_be_drawn(dataset, str(name))]
-    refined = RefinementSpec.read(dataset).quantity if ATTRIBUTE in dataset.attrs else ""
-    name = quantity or (refined if refined in names else next(iter(names), ""))
+    name = quantity or next(iter(names), "")
     if name not in names:
         raise InputError(f"plot_sweep: this sweep has no quantity {ascii(name)[:60]}; {nearest(name, names)}")
     values = dataset[name].load()
@@ -99,7 +96,6 @@ def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Any:
     """Draw the kind of figure that suits the members."""
     shape = dataset["state"].shape
     if MEMBER in dataset["state"].dims:
-        whole = ATTRIBUTE in dataset.attrs and not (dataset["state"] == 3).any()
-        return draw_cells(dataset, **place) if whole else draw_members(dataset, **place)
+        return draw_members(dataset, **place)
     curves = len(shape) == 1 or (len(shape) == 2 and min(shape) <= MOST_CURVES)
     return draw_curves(dataset, **place) if curves else draw_maps(dataset, **place)

@@ -24,13 +24,12 @@ if TYPE_CHECKING:
 
 GRID, RANDOM, LATIN_HYPERCUBE = KINDS = ("grid", "random", "lhs")
 """Designs made from axes: every combination, independent random samples, or a Latin hypercube."""
-LIST, REFINED = "list", "refined"
-"""Designs that consist of members given one by one, and of the members of a refined map."""
+LIST = "list"
+"""The design that consists of members given one by one."""
 IN_WORDS = {
     RANDOM: "drawn at random",
     LATIN_HYPERCUBE: "drawn as a Latin hypercube",
     LIST: "from a list",
-    REFINED: "of a refined map",
 }
 LARGEST_TABLE = 1_000_000_000
 """Largest size (bytes) of a CSV file of members; a larger one is refused before it fills the memory."""

@@ -139,7 +139,7 @@ def reading(place: Any) -> AbstractContextManager[None]:
 
 
 def read_design(about: Mapping[str, Any]) -> tuple[str, list[str], tuple[int, ...]]:
-    """Return the kind of design, the keys and the shape of a chunk (empty for a refined map) from the attributes of a store.
+    """Return the kind of design, the keys and the shape of a chunk from the attributes of a store.
 
     Raises InputError if they are missing or no sweep can have them.
     """

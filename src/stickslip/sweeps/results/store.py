@@ -221,7 +221,7 @@ def check_store(path: Path) -> set[str]:
 
 
 def open_store(path: str | Path) -> xr.Dataset:
-    """Open the store of a sweep or of a refined map, after checking every file against its checksum.
+    """Open the store of a sweep, after checking every file against its checksum.
 
     The variables of the dataset are read when they are used. Raises InputError if there is no such store, if a file is damaged or
     unreadable, or if chunks of a stopped sweep have no checksums.
