@@ -128,7 +128,7 @@ ROOMS = {
         ("stepper",),
     ),
     "batch": (("kernels",), ("vectorised_problem",), ("long_member", "setups"), ("run",)),
-    "sweeps": (("design",), ("execution",), ("results",), ("sweep",), ("estimate",)),
+    "sweeps": (("design",), ("execution",), ("results",), ("sweep",)),
     "figures": (("names", "style"), ("sheet",), ("panels",), ("contact", "runs", "sweeps"), ("studies",)),
     "explorer": (("model",), ("page",), ("server", "static"), ("notebook",)),
     "schemes": (

@@ -120,7 +120,7 @@ def kill_all(report):
         os.kill(os.getpid(), signal.SIGKILL)
 
 if __name__ == "__main__":
-    with runner_of(None, 1, None) as (run, _):
+    with runner_of(None, 1, None) as run:
         carry_out(plan_of(1), sys.argv[1], run, kill_all)
 """
 

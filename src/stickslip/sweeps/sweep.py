@@ -147,18 +147,18 @@ def sweep(
         samples=samples,
         chunk=chunk,
     )
-    with runner_of(threads, workers, scheduler) as (run, _), told(progress, "sweep") as tell:
+    with runner_of(threads, workers, scheduler) as run, told(progress, "sweep") as tell:
         return carry_out(plan, out, run, tell)
 
 
 @contextmanager
-def runner_of(threads: int | None, workers: int | None, scheduler: str | None) -> Iterator[tuple[Runner, int]]:
-    """Provide a function that runs chunks, and the number of chunks that it runs at the same time.
+def runner_of(threads: int | None, workers: int | None, scheduler: str | None) -> Iterator[Runner]:
+    """Provide a function that runs chunks, on threads of this process, or on a cluster if `workers` or a `scheduler` is given.
 
-    Chunks run on threads of this process, or on a cluster if `workers` or a `scheduler` is given. Raises InputError.
+    Raises InputError.
     """
     if workers is None and scheduler is None:
-        yield on_threads(threads), 1
+        yield on_threads(threads)
         return
     from stickslip.sweeps.execution.cluster import cluster, on_cluster
 
@@ -167,7 +167,7 @@ def runner_of(threads: int | None, workers: int | None, scheduler: str | None) -
             "sweep: give one of threads, workers (processes of a cluster of its own) and scheduler (of another cluster)"
         )
     with cluster(scheduler, workers) as client:
-        yield on_cluster(client), max(sum(client.nthreads().values()), 1)
+        yield on_cluster(client)
 
 
 def carry_out(plan: Plan, out: str | Path | None, run: Runner, progress: ProgressCallback | None = None) -> xr.Dataset:

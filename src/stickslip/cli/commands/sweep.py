@@ -50,7 +50,7 @@ Chunk = Annotated[int | None, option("Number of members run and saved together (
 Workers = Annotated[int | None, option("Start a dask cluster of so many processes here, instead of threads.")]
 Scheduler = Annotated[str | None, option("Run on the dask cluster at HOST:PORT, or of a scheduler file.")]
 Figure = Annotated[Path | None, option("Draw the first quantity (.png, .pdf or .svg).", "--figure", "-f")]
-DryRun = Annotated[bool, typer.Option("--dry-run", help="Say how many members, how much time and disk it takes, and stop.")]
+DryRun = Annotated[bool, typer.Option("--dry-run", help="Say how many members there are, and stop.")]
 
 
 def sweep(
@@ -95,7 +95,7 @@ def sweep(
 
     Exit code: 0 done, 1 every run failed or a cluster lost some, 2 unusable input, 130 interrupted.
     """
-    from stickslip.cli.output.sweep_summary import show_slowest, show_sweep
+    from stickslip.cli.output.sweep_summary import show_plan, show_slowest, show_sweep
     from stickslip.cli.overrides import load
     from stickslip.sweeps.design.axis import typed_axes
     from stickslip.sweeps.design.quantities import DEFAULT
@@ -121,10 +121,10 @@ def sweep(
     if figure is not None:
         _check_can_be_drawn(plan)
     resources: dict[str, Any] = {"threads": threads, "workers": workers, "scheduler": scheduler}
+    if dry_run:
+        show_plan(plan)
+        return
     with _losses():
-        if dry_run:
-            _show_estimate(plan, resources)
-            return
         found, spent = _found(plan, out, resources)
     if out is not None:
         from stickslip.sweeps.results.layout import reading
@@ -174,25 +174,13 @@ def _losses() -> Iterator[None]:
         raise typer.Exit(1) from None
 
 
-def _show_estimate(plan: Plan, resources: dict[str, Any]) -> None:
-    from stickslip.cli.output.sweep_summary import show_estimate
-    from stickslip.run.progress import progress_line
-    from stickslip.sweeps.estimate import estimate
-    from stickslip.sweeps.sweep import runner_of
-
-    with runner_of(**resources) as (run, at_once):
-        with progress_line(f"{plan.scenario.name}: timing a sample"):
-            found = estimate(plan, run, at_once)
-        show_estimate(plan, found)
-
-
 def _found(plan: Plan, out: Path | None, resources: dict[str, Any]) -> tuple[xr.Dataset, SweepProgress | None]:
     """Return the results of a sweep and its last progress."""
     from stickslip.run.progress import progress_line
     from stickslip.sweeps.sweep import carry_out, runner_of
 
     last: list[SweepProgress] = []
-    with runner_of(**resources) as (run, _), progress_line(f"{plan.scenario.name}:") as tell:
+    with runner_of(**resources) as run, progress_line(f"{plan.scenario.name}:") as tell:
 
         def note(progress: SweepProgress) -> None:
             last[:] = [progress]

@@ -10,14 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stickslip.cli.output.files import file_size
 from stickslip.cli.output.show import console, print_numbers, say, titled
 from stickslip.foundation.formatting import about_time, clean, number, readable_unit, with_unit
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from stickslip.sweeps.estimate import Estimate
     from stickslip.sweeps.execution.plan import Plan
     from stickslip.sweeps.sweep import SweepProgress
 
@@ -30,14 +28,11 @@ SLOW, NOTICED = 20.0, 0.5
 """A member is slow if it takes more than this multiple of the mean processor time of a member, and more than this time (s)."""
 
 
-def show_estimate(plan: Plan, found: Estimate) -> None:
-    """Print the estimated time and disk space of a sweep."""
-    screen = titled(plan.scenario)
-    say(screen, f"{plan.design} over {', '.join(plan.design.names)}")
-    say(screen, f"time: about {about_time(found.seconds)} ({number(found.members / found.seconds, 3)} members a second)")
-    say(screen, f"disk: at most {file_size(found.bytes)} in {found.chunks} chunk{'' if found.chunks == 1 else 's'}")
-    failed = f", {found.failed} failed" if found.failed else ""
-    say(screen, f"from a sample of {found.sampled}, which took {about_time(found.took)}{failed}")
+def show_plan(plan: Plan) -> None:
+    """Print how many members a sweep has, and whether they run in the compiled batch or one by one."""
+    why = plan.work.why_one_by_one
+    how = f"one by one ({why})" if why else "in the compiled batch"
+    say(titled(plan.scenario), f"{plan.design} over {', '.join(plan.design.names)}, {how}")
 
 
 def show_sweep(title: str, dataset: xr.Dataset) -> int:
