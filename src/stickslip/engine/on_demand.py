@@ -16,7 +16,7 @@ from stickslip.engine.radau.step import collocate
 from stickslip.engine.state.layout import Counts, EnginePart, Integers, Params, Task
 from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.echo_queue import build_queue, end_trip, next_echo
-from stickslip.engine.waves.varying_forcing import take_loading, trips_withstood
+from stickslip.engine.waves.varying_forcing import enter_segment, take_loading, trips_withstood
 from stickslip.foundation.constants import RIGID
 
 
@@ -28,7 +28,9 @@ def implicit_steps(memory: int, task: int, left: float) -> float:
 
 @kernel
 def loading_history(memory: int, task: int, limit: float) -> float:
-    """Add a loading that varies to the piece of load, or return the number of round trips at rest below a limit (Pa or N)."""
+    """Serve a loading that varies: see `Task`. `limit` is the load (Pa or N) below which round trips at rest are counted."""
+    if task == Task.ENTER_SEGMENT:
+        return 1.0 if enter_segment(borrow(memory)) else 0.0
     if task == Task.TAKE_LOADING:
         take_loading(borrow(memory))
         return 0.0

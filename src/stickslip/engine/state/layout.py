@@ -254,17 +254,19 @@ class Task(IntEnum):
 
     COLLOCATE = 0
     """Make the polynomials of an implicit step."""
-    TAKE_LOADING = 1
+    ENTER_SEGMENT = 1
+    """Enter the segment of the loading that has arrived where the piece of load begins."""
+    TAKE_LOADING = 2
     """Cut the piece of load where the loading breaks, and add the loading to it."""
-    COUNT_TRIPS_AT_REST = 2
+    COUNT_TRIPS_AT_REST = 3
     """Find for how many round trips a contact at rest withstands the loading."""
-    NEXT_ECHO = 3
+    NEXT_ECHO = 4
     """Find the next echo that must be met."""
-    END_TRIP = 4
+    END_TRIP = 5
     """Close a round trip in which only such echoes are met."""
-    BUILD_QUEUE = 5
+    BUILD_QUEUE = 6
     """Build the queue of echoes."""
-    LOOK_FOR_FOLD = 6
+    LOOK_FOR_FOLD = 7
     """Find the way to the moving fold into which the series runs."""
 
 

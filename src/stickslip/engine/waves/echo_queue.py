@@ -16,11 +16,11 @@ import math
 
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import rest_limit
+from stickslip.engine.contact.far_end import is_rigid
 from stickslip.engine.memory.addresses import bits_of
 from stickslip.engine.series.polynomial import copy, fill, maximum, mean_of, restrict
 from stickslip.engine.state.layout import NEVER, TERMS, EchoNode, HistoryPiece, Integers
 from stickslip.engine.state.workspace import Run, borrow
-from stickslip.foundation.constants import RIGID
 
 NOTHING = -1
 """Index of no piece and of an empty tree."""
@@ -315,7 +315,7 @@ def worth_building(run: Run) -> bool:
     The round trip must have been at rest, or almost so if it had many pieces. The body must be a slab with a rigid driver, the
     loading steady, the law one that knows rest and has no state variable, and no pause for leaps over creep may be due.
     """
-    if run.params.reflection != RIGID or run.counts.is_block == 1 or run.counts.states > 0:
+    if not is_rigid(run) or run.counts.states > 0:
         return False
     if run.counts.sticks == 0 or run.counts.varies == 1 or run.counts.pause_at != NEVER:
         return False

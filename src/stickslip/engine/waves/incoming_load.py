@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from stickslip.engine.compile.kernels import kernel
+from stickslip.engine.contact.far_end import sent_back
 from stickslip.engine.contact.pieces import note_degree
 from stickslip.engine.memory.addresses import call_part
 from stickslip.engine.series.polynomial import fill, mean_of
@@ -20,39 +21,20 @@ def trips_leaped(run: Run, n: int) -> int:
 
 
 @kernel
-def first_piece(run: Run) -> bool:
-    """Bring the next piece of load of the first round trip, or of any period of a block; return False if none is left."""
+def find_first(run: Run) -> bool:
+    """Find the next piece of load of the first round trip, or of any period of a block; return False if none is left."""
     source = run.counts.source
     if source >= run.loads - 1:
         return False
-    first = run.first_load[source]
-    run.state.phase_from, run.state.phase_to = first.phase, run.first_load[source + 1].phase
+    run.counts.echo_of = NOTHING
+    run.state.phase_from, run.state.phase_to = run.first_load[source].phase, run.first_load[source + 1].phase
     run.state.speed, run.state.bend = run.state.phase_to - run.state.phase_from, 0.0
-    fill(run.load, 0.0)
-    run.load[0] = first.load
-    run.load[1] = first.slope * run.state.speed
-    if run.counts.is_block == 1 and run.counts.trip > 0:
-        run.load[0] = run.state.load_now + trips_leaped(run, run.counts.length - 1) * run.params.ramp
-    run.counts.echo_of = -1
-    # from theta = h/c on, the load of a slab's first round trip holds the initial state, reflected by the driver
-    run.state.amplified = (
-        math.nan
-        if run.counts.is_block == 1
-        else 1.0
-        if run.state.phase_from < 0.5 * run.params.round_trip_time
-        else abs(run.params.reflection)
-    )
-    run.counts.arriving = Cause.NO_CAUSE
-    if run.counts.trip == 0 and source == 0:
-        run.counts.arriving = Cause.START
-    elif run.counts.trip == 0 and first.jump == 1.0:
-        run.counts.arriving = Cause.LOADING
     return True
 
 
 @kernel
-def echo_piece(run: Run) -> bool:
-    """Bring the next piece of load that returns from the driver of a slab; return False if the round trip is complete."""
+def find_echo(run: Run) -> bool:
+    """Find the piece of the history whose echo comes next to the contact of a slab; return False if the round trip is complete."""
     if run.counts.sparse == 1:
         source = int(call_part(run.echo_queue, run, Task.NEXT_ECHO, 0.0))
         if source == NOTHING:
@@ -61,16 +43,47 @@ def echo_piece(run: Run) -> bool:
         source = run.counts.previous_from + run.counts.source
         if source >= run.counts.previous_to:
             return False
-    run.counts.echo_of = source
-    params, left = run.params, run.history[source]
-    rate, load = left.rate, left.load
+    run.counts.echo_of, left = source, run.history[source]
     run.state.phase_from, run.state.phase_to = left.phase_from, left.phase_to
     run.state.speed, run.state.bend = left.speed, left.bend
+    return True
+
+
+@kernel
+def bring_first(run: Run) -> None:
+    """Bring the piece of load that has been found by `find_first`."""
+    first = run.first_load[run.counts.source]
+    fill(run.load, 0.0)
+    run.load[0] = first.load
+    run.load[1] = first.slope * run.state.speed
+    if run.counts.is_block == 1 and run.counts.trip > 0:
+        run.load[0] = run.state.load_now + trips_leaped(run, run.counts.length - 1) * run.params.ramp
+    # from theta = h/c on, the load of a slab's first round trip holds the initial state, reflected by the driver
+    run.state.amplified = (
+        math.nan
+        if run.counts.is_block == 1
+        else 1.0
+        if run.state.phase_from < 0.5 * run.params.round_trip_time
+        else abs(sent_back(run))
+    )
+    run.counts.arriving = Cause.NO_CAUSE
+    if run.counts.trip == 0 and run.counts.source == 0:
+        run.counts.arriving = Cause.START
+    elif run.counts.trip == 0 and first.jump == 1.0:
+        run.counts.arriving = Cause.LOADING
+
+
+@kernel
+def bring_echo(run: Run) -> None:
+    """Bring the echo that has been found by `find_echo`: what left the contact, as the driver sends it back."""
+    source, params, share = run.counts.echo_of, run.params, sent_back(run)
+    left = run.history[source]
+    rate, load = left.rate, left.load
     run.state.amplified = left.amplified * left.gain
     for k in range(TERMS):
-        run.load[k] = params.reflection * (2.0 * params.impedance * rate[k] - load[k])
+        run.load[k] = share * (2.0 * params.impedance * rate[k] - load[k])
     time = run.counts.trip * params.round_trip_time + run.state.phase_from
-    run.load[0] += params.inflow + params.inflow_rate * time - params.reflection * trips_leaped(run, source) * params.ramp
+    run.load[0] += params.inflow + params.inflow_rate * time - share * trips_leaped(run, source) * params.ramp
     run.load[1] += params.inflow_rate * run.state.speed
     run.load[2] += params.inflow_rate * run.state.bend
     # `lumped` still belongs to the piece of load before this one: there is a jump where its mean load ends
@@ -78,8 +91,7 @@ def echo_piece(run: Run) -> bool:
     run.counts.lumped = 1 if run.counts.lumps == 1 and width_of(run) < params.shortest else 0
     if run.counts.lumped == 1:
         lump(run)
-    run.counts.arriving = Cause.ECHO if (jumps or run.counts.lumped == 1) and params.reflection != 0.0 else Cause.NO_CAUSE
-    return True
+    run.counts.arriving = Cause.ECHO if (jumps or run.counts.lumped == 1) and share != 0.0 else Cause.NO_CAUSE
 
 
 @kernel
@@ -99,10 +111,17 @@ def lump(run: Run) -> None:
 @kernel
 def next_piece(run: Run) -> bool:
     """Bring the next piece of load and set `ready` to BROUGHT; return False at the end of the round trip."""
-    first = run.counts.is_block == 1 or run.counts.trip == 0
-    if not (first_piece(run) if first else echo_piece(run)):
+    is_first, begin = run.counts.is_block == 1 or run.counts.trip == 0, run.state.taken
+    if not (find_first(run) if is_first else find_echo(run)):
         return False
+    # A segment of the loading is entered before an echo is multiplied: the far end is that of the segment.
+    jumps = run.counts.varies == 1 and call_part(run.loading_history, run, Task.ENTER_SEGMENT, 0.0) == 1.0
+    if is_first:
+        bring_first(run)
+    else:
+        bring_echo(run)
     if run.counts.varies == 1:
+        run.counts.arriving = Cause.LOADING if jumps else Cause.NO_CAUSE if begin > 0.0 else run.counts.arriving
         call_part(run.loading_history, run, Task.TAKE_LOADING, 0.0)
     else:
         run.counts.source += 1

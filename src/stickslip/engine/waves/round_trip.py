@@ -6,13 +6,12 @@ import math
 
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import rest_limit
+from stickslip.engine.contact.far_end import has_faded, is_dead_load, is_rigid
 from stickslip.engine.memory.addresses import call_part
 from stickslip.engine.series.polynomial import maximum, total
 from stickslip.engine.state.layout import NEVER, EnginePart, Stop, Task
 from stickslip.engine.state.workspace import Run
 from stickslip.engine.waves.echo_queue import NOTHING, start_of_slide, worth_building
-from stickslip.engine.waves.varying_forcing import has_faded
-from stickslip.foundation.constants import DEAD_LOAD, RIGID
 
 
 @kernel
@@ -42,19 +41,13 @@ def trips_certain_at_rest(run: Run, limit: float) -> int:
 @kernel
 def is_ramp(run: Run) -> bool:
     """Return True if each of the next round trips at rest has the load of the one before it plus the ramp."""
-    if run.counts.is_block == 1:
-        return True
-    if run.params.reflection == RIGID:
-        return True
-    return has_faded(run)
+    return run.counts.is_block == 1 or is_rigid(run) or has_faded(run)
 
 
 @kernel
 def swings_for_ever(run: Run) -> bool:
     """Return True if a contact at rest has seen every load to come: under a dead load every second round trip is the same."""
-    return (
-        run.counts.varies == 0 and run.params.reflection == DEAD_LOAD and run.params.ramp == 0.0 and run.counts.trips_at_rest >= 2
-    )
+    return run.counts.varies == 0 and is_dead_load(run) and run.params.ramp == 0.0 and run.counts.trips_at_rest >= 2
 
 
 @kernel

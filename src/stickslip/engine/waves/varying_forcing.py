@@ -11,11 +11,11 @@ from __future__ import annotations
 import math
 
 from stickslip.engine.compile.kernels import kernel
+from stickslip.engine.contact.far_end import has_faded, is_rigid
 from stickslip.engine.contact.pieces import xi_at
 from stickslip.engine.series.polynomial import RECIPROCAL, copy, maximum, restrict, total
-from stickslip.engine.state.layout import NEVER, TERMS, Cause
+from stickslip.engine.state.layout import NEVER, TERMS
 from stickslip.engine.state.workspace import Run
-from stickslip.foundation.constants import RIGID
 
 AT_EDGE = 1e-13
 """Distance, as a share of a round trip (1), within which a break of the loading lies on the edge of a piece: it is rounding."""
@@ -27,11 +27,7 @@ BISECTIONS = 64
 def take_loading(run: Run) -> None:
     """Cut the piece of load at the next break of the loading, and add the loading to it."""
     begin = run.state.taken
-    if begin > 0.0:
-        run.counts.arriving = Cause.NO_CAUSE
     phase = run.state.taken_to_phase if begin > 0.0 else run.state.phase_from
-    if enter_segment(run, phase):
-        run.counts.arriving = Cause.LOADING
     end, phase_to = 1.0, run.state.phase_to
     change = next_change(run)
     if change < phase_to - AT_EDGE * run.params.round_trip_time:
@@ -44,8 +40,9 @@ def take_loading(run: Run) -> None:
 
 
 @kernel
-def enter_segment(run: Run, phase: float) -> bool:
-    """Enter the segment of the loading that has arrived at a phase (s) of this round trip; return True if the loading jumps."""
+def enter_segment(run: Run) -> bool:
+    """Enter the segment of the loading that has arrived where the piece of load begins; return True if the loading jumps there."""
+    phase = run.state.taken_to_phase if run.state.taken > 0.0 else run.state.phase_from
     jumps, tie = False, AT_EDGE * run.params.round_trip_time
     for _ in range(run.segments):
         if not next_change(run) <= phase + tie:
@@ -84,7 +81,7 @@ def add_loading(run: Run) -> None:
         pull_block(run)
     elif trip > 0.0 or run.state.phase_from >= 0.5 * run.params.round_trip_time:
         leaped = 0.0
-        if trip > 0.0 and run.params.reflection == RIGID:
+        if trip > 0.0 and is_rigid(run):
             leaped = trip - 1.0 - run.history[run.counts.echo_of].trip
         if leaped > 0.0:
             add_inflow(run, leaped, trip - 0.5 * (leaped + 1.0), run.counts.trip_segment)
@@ -184,7 +181,7 @@ def trips_withstood(run: Run, limit: float) -> int:
     following = segment + 1
     room = run.loading[following].trip - run.counts.trip - 1.0 if following < run.segments else float(NEVER)
     is_dead = run.loading[segment].slope == 0.0 and run.params.tone == 0.0
-    if run.counts.is_block == 0 and run.params.reflection != RIGID:
+    if run.counts.is_block == 0 and not is_rigid(run):
         return int(max(room, 0.0)) if is_dead and has_faded(run) else 0
     if is_dead and run.loading[segment].value == 0.0:
         return int(max(room, 0.0))
@@ -201,16 +198,6 @@ def trips_withstood(run: Run, limit: float) -> int:
         else:
             high = middle
     return int(low)
-
-
-FADED = 1e-17
-"""Factor (1) at which the differences between round trips at rest have faded: below rounding."""
-
-
-@kernel
-def has_faded(run: Run) -> bool:
-    """Return True if the round trips of a slab at rest, but for the ramp, no longer differ: differences fade by |r| in each."""
-    return run.counts.trips_at_rest > 0 and abs(run.params.reflection) ** (run.counts.trips_at_rest - 1) < FADED
 
 
 @kernel

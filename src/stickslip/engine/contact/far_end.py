@@ -1,0 +1,39 @@
+"""The far end of a slab, as the contact sees it: what the driver sends back of a wave. The engine asks nowhere else.
+
+The segment of the loading that holds when a wave comes back has been entered (`counts.segment`) before it is asked for. A block has
+no far end: nothing comes back.
+"""
+
+from __future__ import annotations
+
+from stickslip.engine.compile.kernels import kernel
+from stickslip.engine.state.workspace import Run
+from stickslip.foundation.constants import DEAD_LOAD, RIGID
+
+
+@kernel
+def sent_back(run: Run) -> float:
+    """Return the factor (1) that a wave has gained on its way back: -1 rigid driver, 0 if nothing comes back, +1 dead load."""
+    return run.params.reflection
+
+
+@kernel
+def is_rigid(run: Run) -> bool:
+    """Return True for a slab under a rigid driver: a load at rest comes back whole, plus the same ramp in each round trip."""
+    return run.counts.is_block == 0 and run.params.reflection == RIGID
+
+
+@kernel
+def is_dead_load(run: Run) -> bool:
+    """Return True for a slab under a dead load: each second round trip at rest is the same."""
+    return run.params.reflection == DEAD_LOAD
+
+
+FADED = 1e-17
+"""Factor (1) at which the differences between round trips at rest have faded: below rounding."""
+
+
+@kernel
+def has_faded(run: Run) -> bool:
+    """Return True if the round trips of a slab at rest, but for the ramp, no longer differ: differences fade by |r| in each."""
+    return run.counts.trips_at_rest > 0 and abs(run.params.reflection) ** (run.counts.trips_at_rest - 1) < FADED
