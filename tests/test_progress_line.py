@@ -13,7 +13,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.contact.regime_map import Axis
-from stickslip.run.progress import progress_line
+from stickslip.run.progress import LONG_RUN, Report, progress_line
 
 PROBLEM = ss.load_scenario("fig6-slab").problem
 CYCLES = ss.load_scenario("cycles-block")
@@ -159,3 +159,9 @@ def test_ctrl_c_ends_a_run_that_shows_its_progress(notebook: Notebook, monkeypat
 def test_no_library_of_notebooks_is_imported_for_a_progress_line() -> None:
     with progress_line("what:"):
         assert "IPython" not in sys.modules
+
+
+def test_progress_counts_pieces_when_they_are_many() -> None:
+    few, many = (str(Report(1.0, 1000.0, 0, None, pieces, "creeping", 1.0, 1.0)) for pieces in (LONG_RUN - 1, 1_500_000))
+    assert "million" not in few
+    assert "1.5 million pieces" in many

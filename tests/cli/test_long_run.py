@@ -13,6 +13,7 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
+from stickslip.cli.output.files import file_size
 from stickslip.io.catalogue_rows import read_table
 from stickslip.run.progress import Progress, Report
 from tests.long_runs.problems import differences
@@ -185,3 +186,13 @@ def test_a_full_history_is_written_only_if_asked_for(command, tmp_path: Path, mo
     assert "\nwritten: run.nc" in command(*arguments, "--max-pieces", "600").out
     assert command("run", "--resume", "run.nc", "--max-pieces", "20000").code == 0
     assert ss.open_solution(tmp_path / "run.nc").status.name == "finished"
+
+
+def test_a_large_file_is_named_with_its_size(command, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("stickslip.cli.output.files.LARGE", 1000)
+    shown = command("run", "fig6-slab", "--out", "run.nc")
+    assert shown.out.endswith(f"written: run.nc ({file_size(Path('run.nc').stat().st_size)})\n")
+
+
+def test_sizes_are_short():
+    assert [file_size(size) for size in (12, 1.5e3, 2.34e7, 1.668e9)] == ["12 bytes", "1.5 kB", "23.4 MB", "1.67 GB"]

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import typer
-
 from stickslip.cli.output.contact import announce_run
-from stickslip.cli.output.files import CATALOGUES, Target, check_targets, file_size
+from stickslip.cli.output.files import CATALOGUES, Target, check_targets
 from stickslip.cli.overrides import load_with, read
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.formatting import number
-from stickslip.run.progress import LONG_RUN, progress_line
+from stickslip.run.progress import progress_line
 from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.schema import check_events, read_duration
 
@@ -24,56 +20,8 @@ if TYPE_CHECKING:
     from stickslip.cli.output.pictures import Pictures
     from stickslip.problem.problem import Problem
     from stickslip.run.catalogue import Catalogue
-    from stickslip.run.progress import Progress, Report
     from stickslip.solution.planar import PlanarSolution
     from stickslip.solution.solution import Solution
-
-CURE = "--catalogue FILE instead keeps slip events only, in bounded memory"
-
-
-@dataclass
-class Growth:
-    """The growth of a history, told on standard error in one line when the history has become long, and whenever it has doubled.
-
-    `most` is the largest number of pieces that the run may have, and `is_given` is True if it was given as --max-pieces.
-    """
-
-    problem: Problem
-    file: Path | None
-    most: int
-    is_given: bool
-    next_at: int = LONG_RUN
-
-    def tell_limit(self) -> None:
-        """Say how large the file can become, if the given limit allows a long history."""
-        if self.file is not None and self.is_given and self.most > LONG_RUN:
-            typer.echo(f"{self.file}: up to {self._size(self.most)}, {_many(self.most)}; {CURE}", err=True)
-
-    def look(self, report: Report) -> None:
-        """Say, if it is time to, how long the history is and how long it will be at this rate."""
-        if report.pieces < self.next_at:
-            return
-        self.next_at = 2 * report.pieces
-        share = max(report.time / report.duration, report.events / report.max_events if report.max_events else 0.0)
-        wanted = report.pieces / share if share > 0.0 else float("inf")
-        where = "the history" if self.file is None else str(self.file)
-        so_far = f"{where} grows large: {self._size(report.pieces)} so far, {_many(report.pieces)}"
-        typer.echo(f"{so_far}; {self._expected(wanted)}; {CURE}", err=True)
-
-    def _expected(self, wanted: float) -> str:
-        if wanted <= self.most:
-            return f"at this rate {self._size(wanted)} at the end of the run"
-        lost = "" if self.is_given or self.file is None else " and is not written"
-        return f"at this rate the run ends too early, at {_many(self.most)}{lost}, unless --max-pieces allows more"
-
-    def _size(self, pieces: float) -> str:
-        from stickslip.io.netcdf import piece_size
-
-        return file_size(pieces * piece_size(self.problem))
-
-
-def _many(pieces: float) -> str:
-    return f"{number(pieces / 1e6, 2)} million pieces"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -206,7 +154,7 @@ def solve(request: Request) -> tuple[Scenario, Solution]:
     if request.resume is None:
         chosen = request.chosen
         request.pictures.check_problem(chosen.problem)
-        with _watched(request, chosen.problem, chosen.name) as report:
+        with progress_line(f"{chosen.name}:") as report:
             from stickslip.run.simulate import simulate  # imports the compiler, which takes a second
 
             return chosen, simulate(chosen, progress=report, **keep)
@@ -216,27 +164,11 @@ def solve(request: Request) -> tuple[Scenario, Solution]:
 
     stopped = read_solution(request.resume)
     check_same(request, stopped.problem)
-    with _watched(request, stopped.problem, request.resume.stem) as report:
+    with progress_line(f"{request.resume.stem}:") as report:
         others = {"progress": report, "checkpoint": request.out or request.resume, "max_pieces": request.max_pieces}
         options = RunOptions.to_continue(stopped, request.duration, request.events, **others)
         solution = resume_run(stopped, request.resume, options)
     return Scenario.of(solution, request.resume.stem), solution
-
-
-@contextmanager
-def _watched(request: Request, problem: Problem, name: str) -> Iterator[Progress]:
-    """Show the progress of a run that keeps its history, and say when that becomes long. Yields the callback."""
-    from stickslip.run.options import MAX_PIECES
-
-    growth = Growth(problem, request.out or request.resume, request.max_pieces or MAX_PIECES, request.max_pieces is not None)
-    growth.tell_limit()
-    with progress_line(f"{name}:") as report:
-
-        def told(about: Report) -> None:
-            growth.look(about)
-            report(about)
-
-        yield told
 
 
 def list_events(request: Request) -> tuple[Scenario, Catalogue]:

@@ -23,7 +23,7 @@ from stickslip.io.soundness import check_history, history_table, number
 from stickslip.loading import HISTORIES, LoadingHistory
 from stickslip.observables.event_table import EVENT_COLUMNS, event_columns, unit_for
 from stickslip.observables.predictability import attributes_of, is_followed, predictability
-from stickslip.problem.problem import MAY_VARY, Problem
+from stickslip.problem.problem import MAY_VARY
 from stickslip.problem.selection_rule import names as rule_names
 from stickslip.scenarios import Scenario, read_scenario
 from stickslip.solution.evaluation import Curve, Readings
@@ -194,12 +194,6 @@ HISTORY_AXES = {name: ("piece", "term") if place.inside else ("piece",) for name
 """Dimensions of the variable of each field of the history's pieces."""
 HISTORY_UNITS = dict.fromkeys(("phase_from", "phase_to", "speed", "bend"), "s") | {"slip": "m", "law_slip": "m", "rate": "m s-1"}
 """Units of these variables, unless they are pure numbers or loads."""
-
-
-def piece_size(problem: Problem) -> int:
-    """Return the number of bytes that a piece of history takes in a file."""
-    numbers = sum(place.size if place.inside else 1 for place in HistoryPiece.places.values())
-    return 8 * (numbers + at.TERMS * len(problem.friction.states))
 
 
 def history_variables(solution: Solution) -> dict[str, Variable]:
