@@ -42,12 +42,11 @@ ROOMS = {
         ("brief_repr", "other_values", "text_columns"),
     ),
     "friction": (
-        ("formula", "noise"),
+        ("formula",),
         ("contract",),
         ("values",),
-        ("statements",),
         ("law",),
-        ("families", "composite", "piecewise"),
+        ("piecewise",),
         ("laws", "custom"),
     ),
     "engine": (

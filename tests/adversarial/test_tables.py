@@ -18,9 +18,9 @@ from typing_extensions import override
 import stickslip as ss
 from stickslip.batch import run_members
 from stickslip.foundation.quantities import quantity
-from stickslip.friction.families import RemembersSlip
 from stickslip.friction.formula.functions import evaluate
-from stickslip.friction.formula.parse import parse
+from stickslip.friction.formula.text import parse
+from stickslip.friction.law import RemembersSlip
 from stickslip.scenarios.scenario import Scenario
 from tests.adversarial.walk import Place, walk
 

@@ -15,7 +15,7 @@ from stickslip.contact import steady_proof
 from stickslip.contact.disturbance import Disturbed, Response
 from stickslip.contact.steady import proven_slidings, steady_slidings
 from stickslip.contact.wave_proof import of_slab, slope_symbols
-from stickslip.friction.formula.discs import Disc
+from stickslip.friction.formula.operations.sets import Disc
 
 NORMAL, DISTANCE, RATE = 1e6, 1e-5, 1e-6
 WEAKER = {"reference": 0.6, "a": 0.01, "b": 0.015, "distance": DISTANCE, "rate": RATE}

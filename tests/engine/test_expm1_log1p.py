@@ -16,7 +16,7 @@ from stickslip.engine.formula_code.taylor_series import ORDER
 from stickslip.engine.series.sine import sine, versine
 from stickslip.friction.formula.expression import RATE, SLIP
 from stickslip.friction.formula.functions import COMPOSED, expm1, log1p
-from stickslip.friction.formula.parse import parse
+from stickslip.friction.formula.text import parse
 from tests.engine.formulas import enclose, series
 
 ROUNDINGS = 5

@@ -13,13 +13,11 @@ import pytest
 from stickslip.engine.formula_code.taylor_series import ORDER
 from stickslip.foundation.errors import InputError
 from stickslip.friction.formula.bounds import bounds
-from stickslip.friction.formula.denominators import limited
-from stickslip.friction.formula.differences import difference, value_and_slopes
+from stickslip.friction.formula.differences import difference, limited, value_and_slopes
 from stickslip.friction.formula.expression import RATE, SLIP, Expression, as_expression
 from stickslip.friction.formula.functions import evaluate
 from stickslip.friction.formula.operations import FUNCTIONS, OPERATIONS, Operation
-from stickslip.friction.formula.parse import parse
-from stickslip.friction.formula.text import to_text
+from stickslip.friction.formula.text import parse, to_text
 from tests.engine.balls import EXACT, Disc, radius_of
 from tests.engine.formulas import series, written_slopes
 

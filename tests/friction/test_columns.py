@@ -166,6 +166,6 @@ def test_a_file_that_is_no_text_or_too_large_is_refused(tmp_path: Path, monkeypa
     path.write_bytes("u [µm],mu\n1,2\n".encode("latin-1"))
     with pytest.raises(InputError, match="not a text file in UTF-8; save it as CSV in UTF-8"):
         FromTable(path)
-    monkeypatch.setattr("stickslip.friction.custom.measured.LARGEST_FILE", 5)
+    monkeypatch.setattr("stickslip.friction.custom.points.LARGEST_FILE", 5)
     with pytest.raises(InputError, match="larger than 5 bytes"):
         FromTable(path)

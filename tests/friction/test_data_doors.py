@@ -12,7 +12,7 @@ import pytest
 import stickslip as ss
 from stickslip.foundation.errors import InputError, InputWarning
 from stickslip.friction import LAWS, FromTable, PiecewiseLinearRate, PiecewiseLinearSlip, Points
-from stickslip.friction.noise import noise_in, reversals
+from stickslip.friction.piecewise import noise_in, reversals
 from stickslip.scenarios.examine import examine
 from stickslip.scenarios.scenario import Scenario, read_scenario
 from stickslip.scenarios.templates import template

@@ -9,9 +9,9 @@ import mpmath
 import numpy as np
 import pytest
 
-from stickslip.friction.formula import discs
-from stickslip.friction.formula.discs import on_discs
+from stickslip.friction.formula.bounds import on_discs
 from stickslip.friction.formula.operations import OPERATIONS
+from stickslip.friction.formula.operations.sets import Disc
 from stickslip.friction.formula.text import to_text
 from tests.engine.balls import DIGITS, EXACT, LEAVES, Drawn, distances, drawn_disc, drawn_formula, exact_distance, values_of
 
@@ -28,8 +28,8 @@ def drawn(seed: int) -> Drawn:
     return Drawn(formula, disc, disc.points(rng, 40))
 
 
-def evaluated(one: Drawn, radius: tuple[float, ...]) -> discs.Disc:
-    given = (discs.Disc.of(centre, r) for centre, r in zip(one.disc.centre, radius, strict=True))
+def evaluated(one: Drawn, radius: tuple[float, ...]) -> Disc:
+    given = (Disc.of(centre, r) for centre, r in zip(one.disc.centre, radius, strict=True))
     return on_discs(one.formula, {}, dict(zip(LEAVES, given, strict=True)))
 
 
@@ -90,7 +90,7 @@ def test_a_rule_whose_radius_is_too_small_by_a_tenth_is_noticed(rule: str, monke
     """Of each operation, in some random formula."""
     true = OPERATIONS[rule]
 
-    def wrong(*arguments: discs.Disc) -> discs.Disc:
+    def wrong(*arguments: Disc) -> Disc:
         found = true.disc(*arguments)
         return found._replace(radius=0.9 * np.asarray(found.radius))
 

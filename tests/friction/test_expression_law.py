@@ -15,8 +15,7 @@ from stickslip import InputError
 from stickslip.friction import FromExpression, HyperbolicRate
 from stickslip.friction.formula.expression import RATE, SLIP, Expression, Parameter, as_expression
 from stickslip.friction.formula.operations import FUNCTIONS, OPERATIONS
-from stickslip.friction.formula.parse import parse
-from stickslip.friction.formula.text import to_text
+from stickslip.friction.formula.text import parse, to_text
 
 HYPERBOLIC = "mu_d + (mu_s - mu_d)/(1 + alpha*v)"
 

@@ -14,7 +14,7 @@ import stickslip as ss
 from stickslip.foundation.determined import misses_trend
 from stickslip.foundation.formatting import with_uncertainty
 from stickslip.friction import LAWS, FromExpression, Points, fit, fit_each
-from stickslip.friction.custom.fit_parameters import leaves, rebuilt, slopes, template
+from stickslip.friction.custom.fit_search import leaves, rebuilt, slopes, template
 from tests.problems import RATE_LAW, measured
 
 F = ss.friction

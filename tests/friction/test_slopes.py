@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from stickslip.friction.formula.differences import value_and_slopes
+from stickslip.friction.formula.differences import slope_formula, value_and_slopes
 from stickslip.friction.formula.expression import RATE, SLIP, Expression, as_expression
 from stickslip.friction.formula.functions import evaluate
 from stickslip.friction.formula.operations import OPERATIONS
-from stickslip.friction.formula.slopes import slope_formula
 from tests.engine.balls import drawn_formula
 
 U, V = 0.3, 0.7

@@ -63,7 +63,7 @@ def complete_fitted(incomplete: str) -> list[str]:
     """Return the names of laws that can be fitted to points, as far as they begin with what is typed."""
     from stickslip.foundation.errors import InputError
     from stickslip.friction import LAWS
-    from stickslip.friction.custom.fit_parameters import template
+    from stickslip.friction.custom.fit_search import template
 
     found = []
     for name in complete_law(incomplete):

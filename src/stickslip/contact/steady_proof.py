@@ -28,10 +28,10 @@ import numpy as np
 from stickslip.bodies import BodyOnCharacteristics
 from stickslip.contact.wave_proof import of_slab, slope_symbols
 from stickslip.foundation.arrays import Floats
-from stickslip.friction.formula.differences import value_and_slopes
-from stickslip.friction.formula.discs import Disc, largest, on_discs
+from stickslip.friction.formula.bounds import largest, on_discs
+from stickslip.friction.formula.differences import slope_formula, value_and_slopes
 from stickslip.friction.formula.expression import RATE, SLIP, STATES, Expression, Parameter
-from stickslip.friction.formula.slopes import slope_formula
+from stickslip.friction.formula.operations.sets import Disc
 from stickslip.friction.law import FrictionLaw
 
 CELLS = 64

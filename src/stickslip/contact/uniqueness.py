@@ -24,7 +24,7 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief, html_table
 from stickslip.foundation.quantities import quantities_of
-from stickslip.friction.statements import rises_with_rate
+from stickslip.friction.law import rises_with_rate
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SELECTION_RULES
 from stickslip.resistance import Branch, Plateau, Resistance

@@ -32,8 +32,9 @@ import numpy as np
 
 from stickslip.bodies import BodyOnCharacteristics
 from stickslip.foundation.arrays import Floats
-from stickslip.friction.formula.discs import Disc, on_discs
+from stickslip.friction.formula.bounds import on_discs
 from stickslip.friction.formula.expression import Expression, Parameter
+from stickslip.friction.formula.operations.sets import Disc
 
 OUT = 4e-15
 """Relative rounding of a few operations and of an arc tangent, by which bounds are moved outward."""

@@ -29,9 +29,9 @@ from typing import Self
 import numpy as np
 
 from stickslip.engine.state.layout import Floats
+from stickslip.friction.formula.differences import slope_formula
 from stickslip.friction.formula.expression import RATE, STATES
 from stickslip.friction.formula.functions import evaluate
-from stickslip.friction.formula.slopes import slope_formula
 from stickslip.problem.problem import Problem
 
 NODES = 12

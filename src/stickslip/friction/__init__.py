@@ -8,14 +8,11 @@ To add a law, add a class to `laws` (docs/adding-a-law.md), and here its import,
 from stickslip.friction.custom.fit import Fit, fit, fit_each
 from stickslip.friction.custom.from_expression import FromExpression
 from stickslip.friction.custom.from_function import FromFunction
-from stickslip.friction.custom.measured import Points
+from stickslip.friction.custom.points import FromTable, Points
 from stickslip.friction.custom.smooth import Smooth, smooth
-from stickslip.friction.custom.table import FromTable
 from stickslip.friction.law import FrictionLaw
 from stickslip.friction.laws.bristles import Dahl, LuGre
-from stickslip.friction.laws.combined import SlipPlusRate, SlipTimesRate
-from stickslip.friction.laws.flash_heating import FlashHeating
-from stickslip.friction.laws.lagged import LaggedFriction
+from stickslip.friction.laws.combined import LaggedFriction, SlipPlusRate, SlipTimesRate
 from stickslip.friction.laws.of_rate import (
     Coulomb,
     ExponentialStribeck,
@@ -32,8 +29,7 @@ from stickslip.friction.laws.of_slip import (
     PiecewiseLinearSlip,
     SinusoidalSlip,
 )
-from stickslip.friction.laws.rate_and_state import RateAndState
-from stickslip.friction.laws.two_state_rate_and_state import TwoStateRateAndState
+from stickslip.friction.laws.rate_and_state import FlashHeating, RateAndState, TwoStateRateAndState
 
 LAWS: dict[str, type[FrictionLaw]] = {
     law.kind: law

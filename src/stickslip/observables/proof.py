@@ -29,8 +29,9 @@ from stickslip.engine.state.layout import TERMS
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.brief_repr import brief_repr
 from stickslip.foundation.formatting import brief
-from stickslip.friction.formula.discs import Disc, largest, on_discs
+from stickslip.friction.formula.bounds import largest, on_discs
 from stickslip.friction.formula.expression import VARIABLES, Expression
+from stickslip.friction.formula.operations.sets import Disc
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.history import History
 

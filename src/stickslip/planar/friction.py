@@ -12,7 +12,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from stickslip.friction.formula.denominators import limited
+from stickslip.friction.formula.differences import limited
 from stickslip.friction.formula.expression import STATES, VARIABLES, Expression, nodes_of
 from stickslip.friction.formula.operations import LARGEST_EXPONENT, operation_of
 from stickslip.friction.law import FrictionLaw

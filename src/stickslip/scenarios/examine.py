@@ -18,10 +18,9 @@ from stickslip.engine_input.limits import MOST_PIECES, PATIENCE, automatic_lengt
 from stickslip.foundation.formatting import brief
 from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, Text, fields_of, in_units
 from stickslip.friction import FrictionLaw, RateAndState, SinusoidalSlip
-from stickslip.friction.composite import LawOfParts
 from stickslip.friction.contract import STATE_NAMES
-from stickslip.friction.noise import noise_in
-from stickslip.friction.piecewise import PiecewiseLaw
+from stickslip.friction.laws.combined import LawOfParts
+from stickslip.friction.piecewise import PiecewiseLaw, noise_in
 from stickslip.loading import VARYING, LoadingHistory
 from stickslip.problem.problem import Problem
 from stickslip.problem.start import STEADY

@@ -8,7 +8,7 @@ so large that it counts as constant, o{i} is 0, elsewhere 1.
 
 from __future__ import annotations
 
-from stickslip.friction.formula.denominators import harmless_overflows
+from stickslip.friction.formula.differences import harmless_overflows
 from stickslip.friction.formula.expression import RATE, SLIP, STATES, VARIABLES, Expression, depends_on, nodes_of
 from stickslip.friction.formula.operations import LARGEST_EXPONENT, OPERATIONS, operation_of
 

@@ -16,7 +16,7 @@ from stickslip.figures.names import GREEK, symbol
 from stickslip.figures.style import SPELLED
 from stickslip.foundation.errors import InputError
 from stickslip.friction import FromExpression
-from stickslip.friction.formula.parse import RESERVED
+from stickslip.friction.formula.text import RESERVED
 from stickslip.scenarios import library
 
 _SECTIONS = {

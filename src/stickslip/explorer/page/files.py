@@ -20,7 +20,7 @@ from stickslip.explorer.model.fault import FaultAnswer
 from stickslip.explorer.model.setting import Setting
 from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.errors import InputError, gathered
-from stickslip.friction.custom.measured import table_in_text
+from stickslip.friction.custom.points import table_in_text
 from stickslip.scenarios import library
 from stickslip.scenarios.scenario import read_scenario
 from stickslip.scenarios.text_of_files import LARGEST_SCENARIO_FILE, text_of

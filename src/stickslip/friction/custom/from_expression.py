@@ -17,13 +17,11 @@ from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import Choice, Named, NamedNumbers, Text, declare, quantity
 from stickslip.foundation.units import si_base
 from stickslip.friction.contract import MOST_STATES, Formula, StateVariable
-from stickslip.friction.custom.sampled import check_samples
-from stickslip.friction.custom.typed_state import STATES, read_evolution, split, steady
-from stickslip.friction.families import RemembersSlip
-from stickslip.friction.formula.dimensions import check_dimensions
+from stickslip.friction.custom.typed import STATES, check_samples, read_evolution, split, steady
 from stickslip.friction.formula.expression import SLIP, Expression, depends_on, nodes_of
 from stickslip.friction.formula.functions import evaluate
-from stickslip.friction.formula.parse import LARGEST_EXPONENT, LONGEST, RESERVED, parse
+from stickslip.friction.formula.text import LARGEST_EXPONENT, LONGEST, RESERVED, check_dimensions, parse
+from stickslip.friction.law import RemembersSlip
 
 MOST_PARAMETERS = 50
 """Largest number of parameters of an expression, which comes from an untrusted scenario file."""

@@ -14,8 +14,7 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.friction.custom.from_expression import AtReversal, FromExpression
 from stickslip.friction.formula.expression import RATE, SLIP, Expression, Magnitude, Parameter, as_expression, nodes_of
-from stickslip.friction.formula.parse import UNDECLARED
-from stickslip.friction.formula.text import to_text
+from stickslip.friction.formula.text import UNDECLARED, to_text
 from stickslip.friction.law import FrictionLaw
 
 VARIABLES = {"u": SLIP, "v": RATE}
@@ -116,7 +115,8 @@ def FromFunction(function: Callable[..., Any] | None = None, /, **given: Any) ->
         return FromExpression(to_text(trees[0]), {name: value for name, value in values.items() if name in used}, **options)
     except InputError as error:
         fault = str(error).removeprefix("formula: ").removeprefix("FromExpression: ").removeprefix("expression: ")
-        raise InputError(f"FromFunction: {_name(function)}: {fault}") from None
+        name = getattr(function, "__name__", None) or shown(function)
+        raise InputError(f"FromFunction: {ascii(name)[1:-1]}: {fault}") from None
 
 
 def _signature(function: Callable[..., Any]) -> inspect.Signature:
@@ -202,11 +202,6 @@ def _formula(value: Any) -> Expression:
         raise InputError(f"it returns several numbers: {cure}")
     what = "an array" if isinstance(value, np.ndarray) else shown(value) if isinstance(value, str | bool) else type(value).__name__
     raise InputError(f"it must return one number, the friction coefficient, and returns {what}: it is called with one u and one v")
-
-
-def _name(function: Any) -> str:
-    name = getattr(function, "__name__", None)
-    return ascii(name or shown(function))[1:-1]
 
 
 WANTED = 'a friction law, a function of u and v, or a text such as "0.3 + 0.5/(1 + v)"'

@@ -13,10 +13,9 @@ from stickslip.foundation.arguments import NamesAttributes, for_users, is_number
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, InputWarning, nearest
 from stickslip.foundation.formatting import html_table, text_table
-from stickslip.friction.custom.measured import Points
 from stickslip.friction.custom.penalised_spline import PenalisedSpline
-from stickslip.friction.custom.table import FromTable
-from stickslip.friction.noise import SMALLEST, reversals
+from stickslip.friction.custom.points import FromTable, Points
+from stickslip.friction.piecewise import SMALLEST, reversals
 
 SCALES = ("auto", "linear", "log")
 """Scales of slip or slip rate in which points can be smoothed."""
@@ -157,12 +156,17 @@ def smooth(
     """
     read = Points.read(points).along(along)
     given = _checked(strength)
-    tried = [_fitted(read, axis, given) for axis in _axes(read, scale)]
+    tried = []
+    for axis in _axes(read, scale):
+        spline = PenalisedSpline.of(axis.forward(read.places), read.friction)
+        tried.append((axis, spline, spline.cross_validated() if given is None else given))
     axis, spline, chosen = min(tried, key=lambda one: one[1].score(one[2]))
     x, fine = axis.forward(read.places), np.linspace(0.0, 1.0, FINE)
     curve = np.maximum(spline.curve(chosen)(fine), 0.0).round(DIGITS)
     if monotone:
-        curve = _monotone(curve, rises=bool(np.polyfit(x, read.friction, 1)[0] > 0.0))
+        from scipy.optimize import isotonic_regression
+
+        curve = isotonic_regression(curve, increasing=bool(np.polyfit(x, read.friction, 1)[0] > 0.0)).x
     freedom = spline.freedom(chosen)
     rest = read.friction - np.interp(x, fine, curve)
     residual = float(np.sqrt(np.sum(rest**2) / max(len(read) - freedom, 1.0)))
@@ -170,12 +174,6 @@ def smooth(
     order = np.argsort(read.places, kind="stable")
     turns = reversals(read.friction[order]), reversals(law.friction)
     return Smooth(read, law, residual, chosen, freedom, axis.scale, monotone, turns, spline, axis)
-
-
-def _fitted(points: Points, axis: _Axis, given: float | None) -> tuple[_Axis, PenalisedSpline, float]:
-    """Return an axis, the splines along it, and the strength: the given one, or that of cross-validation."""
-    spline = PenalisedSpline.of(axis.forward(points.places), points.friction)
-    return axis, spline, spline.cross_validated() if given is None else given
 
 
 def _checked(strength: Any) -> float | None:
@@ -201,13 +199,6 @@ def _axes(points: Points, scale: str) -> list[_Axis]:
     if low >= 0.0:
         log = [_Axis(low, high, float(places[places > 0.0].min()))]
     return {"linear": linear, "log": log, "auto": linear + log}[scale]
-
-
-def _monotone(curve: Floats, rises: bool) -> Floats:
-    """Return the curve that only rises, or only falls, and is closest to a curve by the mean squared difference."""
-    from scipy.optimize import isotonic_regression
-
-    return np.asarray(isotonic_regression(curve, increasing=rises).x)
 
 
 def _law(points: Points, places: Floats, curve: Floats, residual: float) -> FromTable:

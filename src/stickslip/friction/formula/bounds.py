@@ -1,6 +1,6 @@
-"""Bound a formula over intervals of slip and slip rate, by interval arithmetic.
+"""Bound a formula over intervals of slip and slip rate, and over discs of complex numbers, by numpy alone.
 
-They need not be sharp. Those of `Enclosure` include rounding; those of `bounds` are guaranteed but for it.
+Bounds need not be sharp. Those of `Enclosure` and `on_discs` include rounding; those of `bounds` are guaranteed but for it.
 """
 
 from __future__ import annotations
@@ -10,15 +10,16 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.friction.formula.differences import slope_formula
 from stickslip.friction.formula.expression import RATE, SLIP, STATES, Expression, nodes_of
 from stickslip.friction.formula.operations import operation_of
 from stickslip.friction.formula.operations.enclosures import Rule
 from stickslip.friction.formula.operations.hyperbolic import logistic
-from stickslip.friction.formula.operations.sets import EVERYTHING, Interval
-from stickslip.friction.formula.slopes import slope_formula
+from stickslip.friction.formula.operations.sets import EVERYTHING, Disc, Interval
 
 
 def bounds(tree: Expression, numbers: Mapping[str, Any], slip: Interval, rate: Interval) -> Interval:
@@ -113,3 +114,26 @@ def bends_one_way(tree: Expression, numbers: Mapping[str, Any], slip: Interval) 
     """Return True if a formula is proven to be convex, or concave, over all slip rates; slips (m) and numbers as in `bounds`."""
     low, high = bounds(slope_formula(slope_formula(tree, RATE), RATE), numbers, slip, (0.0, np.inf))
     return bool(np.all(low >= 0.0) or np.all(high <= 0.0))
+
+
+def on_discs(tree: Expression, numbers: Mapping[str, ArrayLike], variables: Mapping[Expression, Disc]) -> Disc:
+    """Return a formula on the discs of its variables, which broadcast; `numbers` holds the law's parameters by name.
+
+    A disc of complex numbers lies around a real centre. That of a node contains every value that it takes for arguments in their
+    own discs, the rounding of this evaluation included. With radii of next to nothing it is the formula at a point, and how far
+    rounding may have moved it; with the radii of a step it bounds the formula around all of it. A disc on which an operation has no
+    analytic continuation gets an infinite radius, or one that is not a number. Source: Rump 2010, Acta Numerica 19.
+    """
+    found = dict(variables)
+    with np.errstate(all="ignore"):
+        for node in nodes_of(tree):
+            if node.arguments:
+                found[node] = operation_of(node).disc(*(found[argument] for argument in node.arguments))
+            elif node not in found:
+                found[node] = Disc.of(np.asarray(numbers[node.name] if node.operation == "parameter" else node.value, float))
+    return found[tree]
+
+
+def largest(values: Disc) -> Floats:
+    """Return an upper bound of the magnitude on each disc; infinite where nothing is known."""
+    return np.asarray(np.nan_to_num(values.most, nan=np.inf, posinf=np.inf))

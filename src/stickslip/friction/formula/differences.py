@@ -1,4 +1,4 @@
-"""Compute friction on arrays: its value and slopes, and its difference from rest without cancellation.
+"""Compute friction on arrays, its value, its slopes and its difference from rest without cancellation; derive a formula.
 
 The difference is mu(u + du, v) - mu(u, 0), which keeps its digits where the two are nearly equal. The rules for each node (sin(r+e)
 - sin(r), expm1, log1p ...) are those that `stickslip.engine.formula_code.taylor_series` compiles. Here numpy evaluates them, for
@@ -15,10 +15,64 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from stickslip.foundation.arrays import Floats
-from stickslip.friction.formula.denominators import limited
-from stickslip.friction.formula.expression import RATE, SLIP, STATES, VARIABLES, Expression, nodes_of
+from stickslip.friction.formula.expression import RATE, SLIP, STATES, VARIABLES, Expression, as_expression, depends_on, nodes_of
 from stickslip.friction.formula.operations import LARGEST_EXPONENT, operation_of
 from stickslip.friction.formula.operations.operation import Change
+
+ZERO, ONE = as_expression(0.0), as_expression(1.0)
+
+
+@lru_cache(maxsize=256)
+def slope_formula(tree: Expression, variable: Expression) -> Expression:
+    """Return the derivative of a formula by a variable, one of VARIABLES."""
+    found = {variable: ONE}
+    for node in nodes_of(tree):
+        if node not in found:
+            varies = bool(node.arguments) and depends_on(node, variable)
+            slopes = [found[argument] for argument in node.arguments]
+            found[node] = operation_of(node).slope_formula(node, *slopes) if varies else ZERO
+    return found[tree]
+
+
+@lru_cache(maxsize=256)
+def limited(tree: Expression) -> frozenset[Expression]:
+    """Return the exponentials of a formula whose exponents are limited to LARGEST_EXPONENT."""
+    return frozenset(node for node in harmless_overflows(nodes_of(tree)) if node.arguments and operation_of(node).overflows)
+
+
+def harmless_overflows(nodes: Sequence[Expression]) -> set[Expression]:
+    """Return the nodes whose every way into the formula leads to a denominator, or to an argument such as that of exp.
+
+    The way may lead through sums, differences, roots and products, but not through a product with a factor that may be as small as
+    the node is large, nor over a divisor that may be as large.
+    """
+    parents: dict[Expression, list[Expression]] = {node: [] for node in nodes}
+    for node in nodes:
+        for argument in node.arguments:
+            parents[argument].append(node)
+    found: set[Expression] = set()
+    for node in reversed(nodes):
+        ways = parents[node]
+        if ways and all(_settles(node, parent) or (parent in found and _keeps_large(node, parent)) for parent in ways):
+            found.add(node)
+    return found
+
+
+def _places(node: Expression, parent: Expression) -> set[int]:
+    return {place for place, argument in enumerate(parent.arguments) if argument == node}
+
+
+def _settles(node: Expression, parent: Expression) -> bool:
+    """Return True if the parent of a node no longer changes where the node is large."""
+    return _places(node, parent) <= set(operation_of(parent).settles)
+
+
+def _keeps_large(node: Expression, parent: Expression) -> bool:
+    """Return True if the parent of a node is large wherever the node is."""
+    operation = operation_of(parent)
+    others = [part for argument in parent.arguments if argument != node for part in nodes_of(argument) if part.arguments]
+    small = operation.scales and any(operation_of(part).shrinks for part in others)
+    return bool(_places(node, parent) & set(operation.carries)) and not small
 
 
 def difference(
@@ -69,7 +123,10 @@ def _evaluated(tree: Expression, parameters: Mapping[str, ArrayLike], variables:
                 given = [found[place] for place in places]
                 if is_limited:
                     given = [_at_most(given[0], LARGEST_EXPONENT)]
-                found.append(_changed(node, given))
+                operation = operation_of(node)
+                start = operation.on_arrays(*[one.reference for one in given])
+                end = operation.on_arrays(*[one.value for one in given])
+                found.append(Change(start, operation.step(start, end, *given), end, operation.slope(end, *given)))
             elif node in variables:
                 found.append(variables[node])
             else:
@@ -87,14 +144,6 @@ def _order(tree: Expression) -> tuple[tuple[Expression, tuple[int, ...], bool], 
     nodes, cut = nodes_of(tree), limited(tree)
     place = {node: n for n, node in enumerate(nodes)}
     return tuple((node, tuple(place[argument] for argument in node.arguments), node in cut) for node in nodes)
-
-
-def _changed(node: Expression, given: Sequence[Change]) -> Change:
-    """Return the change of a node from those of its arguments."""
-    operation = operation_of(node)
-    function = operation.on_arrays
-    start, end = function(*[one.reference for one in given]), function(*[one.value for one in given])
-    return Change(start, operation.step(start, end, *given), end, operation.slope(end, *given))
 
 
 def _at_most(a: Change, largest: float) -> Change:

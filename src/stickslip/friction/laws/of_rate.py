@@ -11,9 +11,8 @@ from typing_extensions import override
 from stickslip.foundation.conversion import Number, Numbers
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, Series, declare, quantity
-from stickslip.friction.families import Stribeck
 from stickslip.friction.formula.functions import exp, log
-from stickslip.friction.law import FrictionLaw
+from stickslip.friction.law import FrictionLaw, Stribeck
 from stickslip.friction.piecewise import PiecewiseLinearLaw
 
 

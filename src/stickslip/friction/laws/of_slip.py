@@ -11,8 +11,8 @@ from typing_extensions import override
 from stickslip.foundation.conversion import Number, Numbers
 from stickslip.foundation.quantities import Quantity, Series, declare, quantity
 from stickslip.friction.contract import Formula
-from stickslip.friction.families import RemembersSlip, SlipWeakening, hull
 from stickslip.friction.formula.functions import exp, sin
+from stickslip.friction.law import RemembersSlip, SlipWeakening, hull
 from stickslip.friction.piecewise import PiecewiseLinearLaw
 
 

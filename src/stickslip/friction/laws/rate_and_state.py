@@ -1,4 +1,4 @@
-"""Define rate-and-state friction, regularised at small slip rates."""
+"""Define rate-and-state friction, regularised at small slip rates: with one state, with two, and with flash heating."""
 
 import math
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from stickslip.foundation.conversion import Number
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Choice, declare, quantity
 from stickslip.friction.contract import Formula, StateVariable
-from stickslip.friction.formula.functions import arcsinh, exp, log
+from stickslip.friction.formula.functions import arcsinh, exp, expm1, log, sqrt
 from stickslip.friction.law import FrictionLaw
 
 LARGEST_EXPONENT = 600.0
@@ -113,13 +113,12 @@ def _friction(law: Any, u: Any, v: Any, w: Any) -> Any:
     return law.a * arcsinh(v / (2.0 * law.rate) * exp((law.reference + law.b * w) / law.a))
 
 
-def _ageing(law: Any, u: Any, v: Any, w: Any) -> Any:
+def _ageing(law: Any, u: Any, v: Any, w: Any, *_: Any) -> Any:
     return (law.rate * exp(-w) - v) / law.distance
 
 
-def _slip(law: Any, u: Any, v: Any, w: Any) -> Any:
-    y = v / law.rate
-    return -(v / law.distance) * (w + 0.5 * log(y * y + SLOWEST))
+def _slip(law: Any, u: Any, v: Any, w: Any, *_: Any) -> Any:
+    return -(v / law.distance) * (w + _logarithm(law, v))
 
 
 def _prz(law: Any, u: Any, v: Any, w: Any) -> Any:
@@ -127,4 +126,167 @@ def _prz(law: Any, u: Any, v: Any, w: Any) -> Any:
     return law.rate / law.distance * (exp(-w) - 0.25 * y * y * exp(w))
 
 
+def _logarithm(law: Any, v: Any) -> Any:
+    """Return ln(v / rate), finite at rest."""
+    y = v / law.rate
+    return 0.5 * log(y * y + SLOWEST)
+
+
 _EVOLUTIONS: dict[str, Formula] = {"ageing": _ageing, "slip": _slip, "prz": _prz}
+
+
+@dataclass(frozen=True)
+class TwoStateRateAndState(DirectEffect):
+    """mu(v, theta_1, theta_2) = a arcsinh(v / (2 rate) exp((reference + b w_1 + second_b w_2) / a)), w_i = ln(rate theta_i / L_i).
+
+    L_1 is `distance` and L_2 is `second_distance`. With y = v theta_i / L_i, d theta_i/dt is 1 - y for the ageing law and -y ln y
+    for the slip law. After a step of the slip rate friction settles over both distances, as in many experiments, which also find a
+    negative `second_b`. The contact never sticks.
+
+    The formulas use the states w_i; users give and see theta_i (s).
+    """
+
+    kind = "two-state-rate-and-state"
+    effects = ("b", "second_b")
+    source = (
+        "Ruina 1983, J. Geophys. Res. 88, 10359 (two states); Gu, Rice, Ruina & Tse 1984, J. Mech. Phys. Solids 32, 167; "
+        "Rice & Ben-Zion 1996, Proc. Natl. Acad. Sci. 93, 3811 (arcsinh)"
+    )
+    state = (
+        StateVariable("theta_1", "s", "state theta_1 (distance / v in steady sliding)", scale=1.0),
+        StateVariable("theta_2", "s", "state theta_2 (second_distance / v in steady sliding)", scale=1.0),
+    )
+    start: ClassVar = {"coefficient": 0.65, "state": "1 year", "second_state": "1 year"}
+    example: ClassVar = {
+        **{"reference": 0.6, "a": 0.01, "b": 0.01, "distance": "1 mm"},
+        **{"second_b": 0.006, "second_distance": "2 cm", "rate": "1e-6 m/s"},
+    }
+
+    b: float = quantity("1", "decrease of friction as the first state falls by a factor e", at_least=0)
+    distance: Number = quantity("m", "slip over which the first state renews itself (L_1)", above=0)
+    second_b: float = quantity("1", "decrease of friction as the second state falls by a factor e; may be negative")
+    second_distance: Number = quantity("m", "slip over which the second state renews itself (L_2)", above=0)
+    rate: Number = quantity("m/s", "reference slip rate", above=0, default=1e-6)
+    evolution: str = declare(Choice("how the states change", ("ageing", "slip")), "ageing")
+
+    @property
+    @override
+    def pieces(self) -> tuple[Formula, ...]:
+        return (_two_state_friction,)
+
+    @property
+    @override
+    def state_rate(self) -> tuple[Formula, ...]:
+        return _TWO_EVOLUTIONS[self.evolution]
+
+    @override
+    def inner_state(self, value: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.log(value / self._renewal(np.ndim(value)))
+
+    @override
+    def outer_state(self, w: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.asarray(np.exp(w) * self._renewal(np.ndim(w)))
+
+    def _renewal(self, axes: int) -> NDArray[np.float64]:
+        """Return the times L_i / rate (s) as an array of so many axes, the first of which counts the states."""
+        return np.reshape([self.distance / self.rate, self.second_distance / self.rate], (2,) + (1,) * (axes - 1))
+
+    @override
+    def steady_state(self, v: ArrayLike) -> NDArray[np.float64]:
+        """Return the states theta_1 and theta_2 (s) of steady sliding at slip rates v > 0 (m/s): distance / v for each."""
+        rate = np.asarray(v, float)
+        return np.array([self.distance / rate, self.second_distance / rate])
+
+    def steady_coefficient(self, v: ArrayLike) -> NDArray[np.float64]:
+        """Return the friction coefficient (no unit) of steady sliding at slip rates v > 0 (m/s).
+
+        It is reference + (a - b - second_b) ln(v / rate), except for the regularisation at small slip rates.
+        """
+        rate = np.asarray(v, float)
+        return self.coefficient(0.0, rate, self.inner_state(self.steady_state(rate)))
+
+
+def _two_state_friction(law: Any, u: Any, v: Any, w: Any, w2: Any) -> Any:
+    return law.a * arcsinh(v / (2.0 * law.rate) * exp((law.reference + law.b * w + law.second_b * w2) / law.a))
+
+
+def _second_ageing(law: Any, u: Any, v: Any, w: Any, w2: Any) -> Any:
+    return (law.rate * exp(-w2) - v) / law.second_distance
+
+
+def _second_slip(law: Any, u: Any, v: Any, w: Any, w2: Any) -> Any:
+    return -(v / law.second_distance) * (w2 + _logarithm(law, v))
+
+
+_TWO_EVOLUTIONS: dict[str, tuple[Formula, ...]] = {"ageing": (_ageing, _second_ageing), "slip": (_slip, _second_slip)}
+
+
+@dataclass(frozen=True)
+class FlashHeating(DirectEffect):
+    """mu(v, psi) = a arcsinh(v / (2 rate) exp(psi / a)), with dpsi/dt = -(v / distance) (psi - psi_ss(v)).
+
+    psi_ss = a ln(2 rate / v sinh(mu_ss / a)) is the state of steady sliding, whose friction is
+    mu_ss = weakened + (mu_low - weakened) / (1 + (v / weakening_rate)^8)^(1/8), with mu_low = reference - (b - a) ln(v / rate).
+    Where a > b this mu_low is negative at the slowest slip rates; a arcsinh(exp(mu_low / a) / 2), which differs from it by less
+    than rounding where mu_low > 19 a, goes to zero there, as the friction of rate-and-state laws does.
+
+    Below `weakening_rate` this is rate-and-state friction with the slip law; far above it friction falls to `weakened`. The contact
+    never sticks.
+    """
+
+    kind = "flash-heating"
+    source = (
+        "Rice 2006, J. Geophys. Res. 111, B05311 (flash heating); Dunham, Belanger, Cong & Kozdon 2011, Bull. Seismol. Soc. Am. "
+        "101, 2296; SCEC/USGS rupture code verification, TPV103 and TPV104 (this form)"
+    )
+    state = StateVariable("psi", "1", "state psi, a friction coefficient")
+    start: ClassVar = {"coefficient": 0.6, "state": 0.6}
+    example: ClassVar = {
+        **{"reference": 0.6, "a": 0.01, "b": 0.014, "distance": "0.4 m", "rate": "1e-6 m/s"},
+        **{"weakened": 0.2, "weakening_rate": "0.1 m/s"},
+    }
+
+    reference: float = quantity("1", "friction coefficient of steady sliding at `rate`, far below the weakening rate", above=0)
+    b: float = quantity("1", "evolution effect b: decrease of friction as slip renews the contact, per factor e", at_least=0)
+    distance: Number = quantity("m", "slip over which the state renews itself (L)", above=0)
+    weakened: float = quantity("1", "friction coefficient of steady sliding far above the weakening rate", above=0)
+    weakening_rate: Number = quantity("m/s", "slip rate above which asperities melt", above=0)
+    rate: Number = quantity("m/s", "reference slip rate", above=0, default=1e-6)
+
+    @property
+    @override
+    def pieces(self) -> tuple[Formula, ...]:
+        return (_flash_friction,)
+
+    @property
+    @override
+    def state_rate(self) -> Formula:
+        return _flash_renewal
+
+    def steady_coefficient(self, v: ArrayLike) -> NDArray[np.float64]:
+        """Return the friction coefficient mu_ss (no unit) of steady sliding at slip rates v > 0 (m/s)."""
+        return np.asarray(self.a * _flash_steady(self, np.asarray(v, float))[0])
+
+    @override
+    def steady_state(self, v: ArrayLike) -> NDArray[np.float64]:
+        """Return the state psi (no unit) of steady sliding at slip rates v > 0 (m/s)."""
+        x, logarithm = _flash_steady(self, np.asarray(v, float))
+        return np.asarray(self.a * (x + np.log(-np.expm1(-2.0 * x)) - logarithm))
+
+
+def _flash_friction(law: Any, u: Any, v: Any, psi: Any) -> Any:
+    return law.a * arcsinh(v / (2.0 * law.rate) * exp(psi / law.a))
+
+
+def _flash_renewal(law: Any, u: Any, v: Any, psi: Any) -> Any:
+    """Return dpsi/dt (1/s); the logarithm of the slip rate is finite at rest, where it is multiplied by zero."""
+    x, logarithm = _flash_steady(law, v)
+    return -(v / law.distance) * (psi - law.a * (x + log(-expm1(-2.0 * x)) - logarithm))
+
+
+def _flash_steady(law: Any, v: Any) -> tuple[Any, Any]:
+    """Return mu_ss / a (no unit), which is above zero, and ln(v / rate)."""
+    logarithm = _logarithm(law, v)
+    low = arcsinh(0.5 * exp((law.reference - (law.b - law.a) * logarithm) / law.a))
+    share = 1.0 / sqrt(sqrt(sqrt(1.0 + (v / law.weakening_rate) ** 8)))
+    return share * low + (1.0 - share) * law.weakened / law.a, logarithm
