@@ -6,12 +6,10 @@ import base64
 import io
 import re
 from pathlib import Path
-from typing import Any
 from urllib.parse import parse_qsl
 
 import pandas as pd
 import pytest
-from matplotlib import pyplot
 
 import stickslip as ss
 from stickslip.explorer.model.answer import Answer
@@ -50,16 +48,6 @@ def test_the_saved_scenario_runs_with_the_same_numbers(answer: Answer, tmp_path:
     (tmp_path / name).write_bytes(content)
     assert content.decode().startswith(f"# Made in the explorer of stickslip {ss.__version__}; run it with: stickslip run {name}\n")
     pd.testing.assert_frame_equal(ss.simulate(tmp_path / name).events, answer.solution.events, check_exact=True)
-
-
-def test_the_saved_code_runs_with_the_same_numbers(answer: Answer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    script = export("python", SETTING, answer)[2].decode()
-    monkeypatch.chdir(tmp_path)
-    made: dict[str, Any] = {}
-    exec(script, made)
-    pd.testing.assert_frame_equal(made["solution"].events, answer.solution.events, check_exact=True)
-    assert (tmp_path / "run.png").is_file()
-    pyplot.close("all")
 
 
 def test_the_saved_run_is_the_one_that_is_shown(answer: Answer, tmp_path: Path) -> None:

@@ -1,12 +1,10 @@
-"""A setting as a scenario file and as Python code, what was changed in it, and the named difference of two runs."""
+"""A setting as a scenario file, what was changed in it, and the named difference of two runs."""
 
 from __future__ import annotations
 
-import json
 import math
 import tomllib
-from collections.abc import Iterator, Mapping
-from dataclasses import MISSING, dataclass, fields
+from dataclasses import dataclass
 from typing import Any
 
 import tomli_w
@@ -16,12 +14,7 @@ from stickslip.explorer.model.fault import FaultAnswer
 from stickslip.explorer.model.setting import Setting, inner_leaves_of
 from stickslip.explorer.model.words import short
 from stickslip.foundation.arguments import shown
-from stickslip.foundation.formatting import brief, clean
-from stickslip.foundation.quantities import Named, Quantity, fields_of, quantities_of
-from stickslip.friction import FrictionLaw
-from stickslip.loading import LoadingHistory
-from stickslip.problem.problem import LOAD, Problem
-from stickslip.scenarios.scenario import Scenario
+from stickslip.foundation.formatting import clean
 
 
 def toml_of(setting: Setting) -> str:
@@ -44,100 +37,6 @@ def changes_of(setting: Setting) -> list[str]:
 
 def _short(value: Any) -> str:
     return f"{len(value)} values" if isinstance(value, list) else clean(str(value))
-
-
-def python_of(setting: Setting) -> str:
-    """Return a setting as a Python script that runs it and draws it, with every number to the last digit."""
-    scenario = setting.scenario()
-    head = clean(scenario.heading or setting.name).replace("\\", "/").replace('"', "'")
-    return "\n".join(
-        [
-            f'"""{head}."""',
-            "",
-            *(f"# {setting.name} with {line}" for line in changes_of(setting)),
-            "import stickslip as ss",
-            "",
-            f"problem = {_call('ss.Problem', _of_problem(scenario.problem), 0)}",
-            f"solution = {_call('ss.simulate', _of_run(scenario), 0)}",
-            "print(solution)",
-            'solution.plot().savefig("run.png")',
-            "",
-        ]
-    )
-
-
-Arguments = Iterator[tuple[str, str, str]]
-"""Names, values and comments of the arguments of a call."""
-
-
-def _of_problem(problem: Problem) -> Arguments:
-    declared = quantities_of(Problem)
-    yield "body", _made(problem.body, "ss.", 1), ""
-    yield "friction", _made(problem.friction, "ss.friction.", 1), ""
-    for field in fields(problem):
-        value, default = getattr(problem, field.name), None if field.default is MISSING else field.default
-        if field.name in ("body", "friction") or value is None or value == default:
-            continue
-        unit = declared[field.name].unit if field.name in declared else ""
-        comment = _comment(value, problem.load_unit if unit == LOAD else unit)
-        if field.name == "selection":
-            value = problem.rule
-        yield field.name, _value(value, 1), comment
-
-
-def _of_run(scenario: Scenario) -> Arguments:
-    yield "problem", "problem", ""
-    for name in ("duration", "rtol", "creep_rtol", "shortest_event", "max_events", "title"):
-        value = scenario.heading if name == "title" else getattr(scenario, name)
-        if value not in (None, ""):
-            yield name, _value(value, 1), _comment(value, "s") if name in ("duration", "shortest_event") else ""
-
-
-def _made(owner: Any, module: str, depth: int) -> str:
-    arguments = []
-    for name, (entry, default) in fields_of(type(owner)).items():
-        value = getattr(owner, name)
-        if value is None or (default is not MISSING and value == default):
-            continue
-        unit = entry.unit if isinstance(entry, Quantity) and " or " not in entry.unit else ""
-        arguments.append((name, _value(value, depth + 1), _comment(value, unit)))
-    return _call(f"{module}{type(owner).__name__}", iter(arguments), depth)
-
-
-def _value(value: Any, depth: int) -> str:
-    if isinstance(value, FrictionLaw):
-        return _made(value, "ss.friction.", depth)
-    if isinstance(value, LoadingHistory):
-        return _made(value, "ss.loading.", depth)
-    if isinstance(value, tuple) and value and isinstance(value[0], Named):
-        return _written({one.name: f"{one.value!r} {one.unit}" if one.unit else one.value for one in value})
-    if isinstance(value, tuple):
-        return f"[{', '.join(_written(one) for one in value)}]"
-    return _written(value)
-
-
-def _written(value: Any) -> str:
-    if isinstance(value, float) and not math.isfinite(value):
-        return f'float("{value}")'
-    if isinstance(value, Mapping):
-        return f"{{{', '.join(f'{_written(key)}: {_written(one)}' for key, one in value.items())}}}"
-    if isinstance(value, str):
-        return json.dumps(value, ensure_ascii=False)
-    return repr(float(value) if isinstance(value, float) else value)
-
-
-def _comment(value: Any, unit: str) -> str:
-    """Return a number with its unit if it is more readable than in SI, and the unit alone otherwise."""
-    if not isinstance(value, float) or unit in ("", "1") or not math.isfinite(value):
-        return ""
-    text = brief(value, unit)
-    return text if text.partition(" ")[2] != unit else unit
-
-
-def _call(function: str, arguments: Arguments, depth: int) -> str:
-    inner, outer = "    " * (depth + 1), "    " * depth
-    lines = [f"{inner}{name}={value},{f'  # {comment}' * bool(comment)}" for name, value, comment in arguments]
-    return "\n".join([f"{function}(", *lines, f"{outer})"])
 
 
 SAME = 1e-9

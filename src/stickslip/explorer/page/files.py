@@ -14,7 +14,7 @@ from typing import Any
 
 import stickslip
 from stickslip.explorer.model.answer import Answer
-from stickslip.explorer.model.difference import python_of, toml_of
+from stickslip.explorer.model.difference import toml_of
 from stickslip.explorer.model.exchange import with_kind
 from stickslip.explorer.model.fault import FaultAnswer
 from stickslip.explorer.model.setting import Setting
@@ -95,16 +95,8 @@ class Format:
 
 def scenario_file(setting: Setting, answer: Answer) -> bytes:
     """Return the setting as a scenario file, whose run has the numbers that are shown."""
-    return f"{_made_with('stickslip run', setting, '.toml')}\n\n{toml_of(setting)}".encode()
-
-
-def python_file(setting: Setting, answer: Answer) -> bytes:
-    """Return the setting as a Python script, whose run has the numbers that are shown."""
-    return f"{_made_with('python', setting, '.py')}\n{python_of(setting)}".encode()
-
-
-def _made_with(command: str, setting: Setting, suffix: str) -> str:
-    return f"# Made in the explorer of stickslip {stickslip.__version__}; run it with: {command} {file_name(setting, suffix)}"
+    made = f"# Made in the explorer of stickslip {stickslip.__version__}; run it with: stickslip run {file_name(setting, '.toml')}"
+    return f"{made}\n\n{toml_of(setting)}".encode()
 
 
 def netcdf_file(setting: Setting, answer: Answer) -> bytes:
@@ -159,7 +151,6 @@ def svg_file(setting: Setting, answer: Answer) -> bytes:
 
 FORMATS = {
     "toml": Format("Scenario (TOML)", ".toml", "application/toml", scenario_file),
-    "python": Format("Python code", ".py", "text/x-python", python_file),
     "netcdf": Format("Whole run (netCDF)", ".nc", "application/x-netcdf", netcdf_file),
     "events": Format("Slip events (CSV)", "-events.csv", "text/csv", events_file),
     "curves": Format("Curves (CSV)", "-curves.csv", "text/csv", curves_file),
