@@ -22,7 +22,7 @@ from stickslip.friction.piecewise import PiecewiseLaw
 COMPILERS = ("kernel", "inlined", "njit")
 """Decorators of compiled functions."""
 OTHER_LOOPS = {
-    ("taylor_step.py", "expand_series"): "guess is at most 1, and falls by 1e-3 each time until it is below 1e-300",
+    ("taylor_step.py", "expand_series"): "unit is at most 1, and falls by 1e-3 each time until it is below 1e-300",
     ("runs.py", "run_group"): "looks at the flag that stops the batch after each step; every member's run ends",
     ("runs.py", "advance_member"): "looks at the flag that stops the batch after each call of the engine, which is bounded",
     ("lanes.py", "step_under"): "each pass clears a bit of a whole number",

@@ -74,7 +74,7 @@ class Walk:
         load[0] += self.averaged.gain * self.creep.trips
         begin, cuts = float(parts.phase_from[k]), [0.0, 1.0]
         for _ in range(ROUNDS):  # the strength at a border depends on the slip up to it
-            strength = self._strength_at(begin + self._theta(k, cuts[-2] if load[0] > load.sum() else 0.0))
+            strength = self._strength_at(begin + self._phase(k, cuts[-2] if load[0] > load.sum() else 0.0))
             levels = (strength, strength + self.averaged.impedance * self.creep.mean_rate)
             low, high = sorted((load[0], load.sum()))
             inside = [level - (load[0] - parts.load[k, 0]) for level in levels if low < level < high]
@@ -83,17 +83,17 @@ class Walk:
             if right > left:
                 self._stretch(k, load, left, right, levels)
 
-    def _theta(self, k: int, xi: float) -> float:
+    def _phase(self, k: int, xi: float) -> float:
         parts = self.averaged.pattern.parts
         return float(xi * (parts.speed[k] + xi * parts.bend[k]))
 
-    def _strength_at(self, theta: float) -> float:
-        """Return the strength at an offset theta (s), if the contact creeps up to there at its mean rate.
+    def _strength_at(self, phase: float) -> float:
+        """Return the strength at an offset phase (s), if the contact creeps up to there at its mean rate.
 
         The creep is counted from the start of the full creep under way; without one, the slip is that at the present place of the
         walk.
         """
-        creeping = theta - self.core_from if self.core_from is not None else 0.0
+        creeping = phase - self.core_from if self.core_from is not None else 0.0
         return self._strength(self.slip + self.creep.mean_rate * max(creeping, 0.0))
 
     def _strength(self, slip: float) -> float:
@@ -107,7 +107,7 @@ class Walk:
         part = np.empty(TERMS)
         restrict(load, left, width, part)
         middle = float(part @ 0.5 ** np.arange(TERMS))
-        begin = float(parts.phase_from[k]) + self._theta(k, left)
+        begin = float(parts.phase_from[k]) + self._phase(k, left)
         if middle >= levels[1]:
             self.core_from = begin if self.core_from is None else self.core_from
             return

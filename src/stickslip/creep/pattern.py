@@ -19,23 +19,23 @@ SMALLEST = 1e-300
 
 @dataclass(frozen=True)
 class Parts:
-    """Monotone parts of a load: polynomials in xi on [0, 1], theta = phase_from + speed xi + bend xi^2."""
+    """Monotone parts of a load: polynomials in xi on [0, 1]; the phase is phase_from + speed xi + bend xi^2."""
 
     load: Floats  # (n, TERMS), Pa
     phase_from: Floats  # s
     speed: Floats
     bend: Floats
 
-    def theta(self, part: NDArray[np.intp], xi: Floats) -> Floats:
+    def phase(self, part: NDArray[np.intp], xi: Floats) -> Floats:
         """Return the offset of places in parts, s."""
         return np.asarray(self.phase_from[part] + xi * (self.speed[part] + xi * self.bend[part]))
 
     def pace(self, part: NDArray[np.intp], xi: Floats) -> Floats:
-        """Return d theta / d xi, s."""
+        """Return d phase / d xi, s."""
         return np.asarray(self.speed[part] + 2.0 * xi * self.bend[part])
 
     def integral(self, part: NDArray[np.intp], xi: Floats) -> Floats:
-        """Return the integral of the load over theta from the start of each part up to xi, Pa s."""
+        """Return the integral of the load over the phase from the start of each part up to xi, Pa s."""
         powers = np.arange(1, TERMS + 1)
         straight, bent = (
             self.speed[part, None] * self.load[part] / powers,
@@ -44,7 +44,7 @@ class Parts:
         return np.asarray(xi * (horner(straight, xi) + xi * horner(bent, xi)))
 
     def slope(self, part: NDArray[np.intp], xi: Floats) -> Floats:
-        """Return d load / d theta, Pa/s."""
+        """Return d load / d phase, Pa/s."""
         return np.asarray(horner(self.load[part, 1:] * np.arange(1, TERMS), xi) / self.pace(part, xi))
 
     def crossing(self, part: int, level: float) -> float:
@@ -74,9 +74,9 @@ def monotone_parts(load: Floats, phase_from: Floats, speed: Floats, bend: Floats
 class Above:
     """The part of a load, lifted by a given amount, that lies above zero."""
 
-    area: float  # integral over theta of the part above zero, Pa s
+    area: float  # integral over the phase of the part above zero, Pa s
     length: float  # measure of the offsets above zero, s: d area / d lift
-    border: float  # sum over the borders of that part of 1 / |d load / d theta|, s/Pa: d length / d lift
+    border: float  # sum over the borders of that part of 1 / |d load / d phase|, s/Pa: d length / d lift
     spread: float  # the same sum, weighted with the squared distance from the middle of the part above zero (1/4 at its ends)
 
 
@@ -94,7 +94,7 @@ class Pattern:
 
     @cached_property
     def whole(self) -> Floats:
-        """The integral over theta of each part, Pa s."""
+        """The integral over the phase of each part, Pa s."""
         return self.parts.integral(np.arange(len(self.parts.speed)), np.ones(len(self.parts.speed)))
 
     @cached_property
@@ -119,7 +119,7 @@ class Pattern:
         """Return the same as `shares`, from crossings that are known."""
         inside = self.ends[0] >= -lift
         areas, lengths = self.whole * inside, self.width * inside
-        covered, time = self.parts.integral(part, xi), self.parts.theta(part, xi) - self.parts.phase_from[part]
+        covered, time = self.parts.integral(part, xi), self.parts.phase(part, xi) - self.parts.phase_from[part]
         areas[part] = np.where(rises, self.whole[part] - covered, covered)
         lengths[part] = np.where(rises, self.width[part] - time, time)
         return areas + lift * lengths, lengths

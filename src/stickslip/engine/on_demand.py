@@ -50,9 +50,9 @@ def echo_queue(memory: int, task: int, number: float) -> float:
 
 
 @kernel
-def moving_folds(memory: int, task: int, guess: float) -> float:
-    """Return the way (in xi) to the moving fold that the present series, in units of `guess` (in xi), runs into."""
-    return way_to_fold(borrow(memory), guess)
+def moving_folds(memory: int, task: int, unit: float) -> float:
+    """Return the way (in xi) to the moving fold that the present series, in units of `unit` (in xi), runs into."""
+    return way_to_fold(borrow(memory), unit)
 
 
 @cache

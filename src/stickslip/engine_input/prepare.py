@@ -154,20 +154,20 @@ def first_load_varying(problem: Problem) -> at.Floats:
 def _parts(problem: Problem, pieces: at.Floats) -> at.Floats:
     """Return the same load in shorter pieces, in which the phase of a tone changes by at most LARGEST_TURN."""
     known, tone = FirstLoad.of(pieces), inflow_of(problem).tone
-    theta = known.phase
+    phase = known.phase
     if tone.amplitude == 0.0:
         return pieces
-    counts = np.ceil(np.diff(theta) * tone.frequency / LARGEST_TURN).astype(int).clip(1)
+    counts = np.ceil(np.diff(phase) * tone.frequency / LARGEST_TURN).astype(int).clip(1)
     if counts.sum() > MOST_PARTS:
         period = 2.0 * math.pi / tone.frequency
-        least = 2.0 * math.pi * theta[-1] / (MOST_PARTS * LARGEST_TURN)
+        least = 2.0 * math.pi * phase[-1] / (MOST_PARTS * LARGEST_TURN)
         raise InputError(f"the loading's period of {period:g} s is too short: at least about {least:.3g} s is needed")
-    edges = [np.linspace(low, high, n, endpoint=False) for low, high, n in zip(theta[:-1], theta[1:], counts, strict=True)]
+    edges = [np.linspace(low, high, n, endpoint=False) for low, high, n in zip(phase[:-1], phase[1:], counts, strict=True)]
     of = np.repeat(np.arange(len(counts)), counts)
     begin = np.concatenate(edges)
-    load = known.load[of] + known.slope[of] * (begin - theta[of])
-    jump = np.where(begin == theta[of], known.jump[of], 0.0)
-    return _pieces([*begin, theta[-1]], [*load], [*known.slope[of]], [*jump])
+    load = known.load[of] + known.slope[of] * (begin - phase[of])
+    jump = np.where(begin == phase[of], known.jump[of], 0.0)
+    return _pieces([*begin, phase[-1]], [*load], [*known.slope[of]], [*jump])
 
 
 NOT_VARYING = LoadingSegment.table(1)
@@ -193,10 +193,10 @@ def loading_of(problem: Problem) -> at.Floats:
     return table
 
 
-def _pieces(theta: list[Any], load: list[Any], slope: list[Any], jump: list[Any] | None = None) -> at.Floats:
+def _pieces(phase: list[Any], load: list[Any], slope: list[Any], jump: list[Any] | None = None) -> at.Floats:
     """Return a table of `FirstLoad`, or one for each member of a batch, from the edges of the pieces and from their numbers."""
-    numbers = together([*theta, *load, 0.0, *slope, 0.0, *(jump or [0.0] * len(load)), 0.0])
-    fields = numbers.reshape(FirstLoad.total, len(theta), *numbers.shape[1:])
+    numbers = together([*phase, *load, 0.0, *slope, 0.0, *(jump or [0.0] * len(load)), 0.0])
+    fields = numbers.reshape(FirstLoad.total, len(phase), *numbers.shape[1:])
     return np.ascontiguousarray(np.moveaxis(fields, (1, 0), (-2, -1)))
 
 

@@ -102,7 +102,7 @@ class Phases:
         """
         stands = store.phase_to <= round_trip_time
         edges = np.unique(np.concatenate([store.phase_from[stands], store.phase_to[stands]]))
-        first, past = (np.where(stands, np.searchsorted(edges, theta), 0) for theta in (store.phase_from, store.phase_to))
+        first, past = (np.where(stands, np.searchsorted(edges, phase), 0) for phase in (store.phase_from, store.phase_to))
         leaves = 1 << max(len(edges) - 2, 0).bit_length()
         counts = np.zeros(2 * leaves, np.int64)
         _collect(first, past, leaves, counts, np.empty(0, np.int64))

@@ -37,17 +37,17 @@ class Block(Record):
     stiffness: float  # N/m: stiffness of a block's spring; 0 for a slab
     tolerance: float  # 1: local error allowed to the step
     slip_shift: float  # m: as in `LawPiece`
-    disc_powers: Floats = floats_inside(TERMS)  # powers of the radius of the disc on which a step is proven, in guesses
+    disc_powers: Floats = floats_inside(TERMS)  # powers of the radius of the disc on which a step is proven, in units
     ratio: float  # 1: radius of that disc, in lengths of the step
     shrunk: float  # 1: factor by which what the step misses is smaller on the step than on that disc
     disc: float  # 1: number of the disc that served the step before
     share: float  # 1: bound of what the step misses, as a share (`contact_step.certificate`)
     rate: Floats = floats_inside(TERMS)  # m/s: magnitude of the slip rate over the step, as a polynomial on [0, 1]
     slope: Floats = floats_inside(TERMS)  # m/s: slope of that polynomial, with the sign that makes it start above zero
-    guess: float  # 1: unit of the series, in xi
-    usable: float  # length that the error allows the step, in guesses
-    length: float  # length of the step, in guesses
-    limit: float  # length of the way to the target, in guesses
+    unit: float  # length, in xi, in whose units the series is
+    usable: float  # length that the error allows the step, in units
+    length: float  # length of the step, in units
+    limit: float  # length of the way to the target, in units
     last_step: float  # s: length that the error allows the step to have
     grown: float  # m: slip in the step
     in_piece: float  # m: the same with its sign, from what the step leaves in the history

@@ -51,7 +51,7 @@ from stickslip.engine.contact_step.certificate import (
 from stickslip.engine.contact_step.keep_step import unload_bent, unload_straight
 from stickslip.engine.contact_step.negative_friction import goes_below_zero
 from stickslip.engine.contact_step.step_events import knot_crossing
-from stickslip.engine.contact_step.taylor_step import duration_of, guess_from, note_shock
+from stickslip.engine.contact_step.taylor_step import duration_of, note_shock, unit_from
 from stickslip.engine.loop import ROOM
 from stickslip.engine.memory.addresses import ahead, call_jet, call_radii, call_values, integers
 from stickslip.engine.memory.pointers import numbers_of, rows_of
@@ -185,7 +185,7 @@ def choose_length(formula: Integers, step: Step) -> None:
         lane, odd = first_of(odd), odd & (odd - 1)
         lend_step(run_in(table, lane), lane_0[lane])
         lane_0[lane].usable = usable_length(run_in(table, lane).jet, lane_0[lane].tolerance)
-    rows.limit = (rows.state.target - rows.state.xi) / rows.guess
+    rows.limit = (rows.state.target - rows.state.xi) / rows.unit
     rows.length = min(rows.usable, rows.limit)
     prove(rows, formula[1], moves, degree)
     largest = ALLOWED_SLOPE if moves else ALLOWED
@@ -210,18 +210,18 @@ def begin(rows: Block, degree: int) -> None:
     """
     state, k, local, seen = rows.state, rows.k, rows.local, rows.load_along_slip
     pace = state.speed + 2.0 * state.bend * state.xi
-    rows.guess = guess_from(state.target - state.xi, pace, state.last_step)
+    rows.unit = unit_from(state.target - state.xi, pace, state.last_step)
     for n in range(degree + 1):
         local[n] = rows.load[n]
     if (state.xi == 0.0) != ALL_LANES:
         shift_low(local, degree, state.xi)
-    scale_low(local, degree, rows.guess)
+    scale_low(local, degree, rows.unit)
     for n in range(1, degree + 1):
         seen[n] = rows.direction * local[n]
     for n in range(degree + 1, TERMS):
         local[n] = seen[n] = 0.0
     seen[0] = chosen(rows.direction > 0.0, local[0], -local[0] - 2.0 * rows.reference)
-    k.speed, k.bend = pace * rows.guess, 2.0 * state.bend * rows.guess * rows.guess
+    k.speed, k.bend = pace * rows.unit, 2.0 * state.bend * rows.unit * rows.unit
     k.slip, k.rate = state.law_slip + rows.slip_shift, abs(state.rate_now)
 
 
@@ -308,7 +308,7 @@ def check_end(rows: Block, values: int, moves: bool, degree: int) -> int:
 def move(rows: Block, reached: int, is_block: bool) -> None:
     """Calculate what the step leaves in the history, as `keep_step.move` and `pieces.record` do."""
     state, k, row, length = rows.state, rows.k, rows.row, rows.length
-    rows.to = chosen(reached, state.target, state.xi + length * rows.guess)
+    rows.to = chosen(reached, state.target, state.xi + length * rows.unit)
     width = rows.to - state.xi
     row.phase_from = phase_in(state, state.xi)
     row.phase_to = phase_in(state, rows.to)

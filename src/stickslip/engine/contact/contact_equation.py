@@ -50,6 +50,19 @@ def is_knot(run: Run, rate: float) -> bool:
 
 
 @kernel
+def law_at(run: Run, piece: int, law_slip: float, rate: float, states: Floats) -> None:
+    """Write the formula of a piece of the law but for its offset, its derivatives, and the change of the states into run.value.
+
+    `law_slip` is the slip as the law counts it (m), and `rate` the magnitude of the slip rate (m/s).
+    """
+    law, constants, value = run.law[piece], constants_of(run, piece), numbers_of(run.value)
+    if run.counts.states > 0:
+        call_state_value(law.state_at, constants, law_slip + law.slip_shift, rate, states, value)
+    else:
+        call_value(law.value_at, constants, law_slip + law.slip_shift, rate, value)
+
+
+@kernel
 def friction_at(run: Run, law_slip: float, rate: float) -> None:
     """Write friction at a slip (m, as the law counts it) and a slip rate (m/s, magnitude) into run.friction."""
     friction_of(run, piece_at(run, rate), law_slip, rate)
@@ -58,13 +71,9 @@ def friction_at(run: Run, law_slip: float, rate: float) -> None:
 @kernel
 def friction_of(run: Run, piece: int, law_slip: float, rate: float) -> None:
     """Write friction into run.friction as `friction_at` does, by the formula of the given piece of the law."""
-    law, value, friction = run.law[piece], run.value, run.friction
-    slip = law_slip + law.slip_shift
-    if run.counts.states > 0:
-        call_state_value(law.state_at, constants_of(run, piece), slip, rate, run.state.state_now, numbers_of(value))
-    else:
-        call_value(law.value_at, constants_of(run, piece), slip, rate, numbers_of(value))
-    friction.coefficient = value.mu + law.offset
+    value, friction = run.value, run.friction
+    law_at(run, piece, law_slip, rate, run.state.state_now)
+    friction.coefficient = value.mu + run.law[piece].offset
     friction.stress = run.params.normal * friction.coefficient
     friction.by_rate = value.by_rate * run.params.normal
     friction.by_slip = value.by_slip * run.params.normal
@@ -92,18 +101,18 @@ def towards(run: Run, load: float, direction: int) -> float:
 
 
 @kernel
-def load_ahead(run: Run, guess: float) -> None:
-    """Write the series of the load from the present place, in units of `guess` (in xi), into run.local.
+def load_ahead(run: Run, unit: float) -> None:
+    """Write the series of the load from the present place, in units of `unit` (in xi), into run.local.
 
     run.load_along_slip receives the same series as seen in the direction of slip.
     """
     load, local, seen, direction, n = run.load, run.local, run.load_along_slip, run.counts.mode, run.counts.degree
     if n <= 1:
         local[0] = load[0] + run.state.xi * load[1]
-        local[1] = guess * load[1]
+        local[1] = unit * load[1]
         seen[1] = direction * local[1]
     else:
-        restrict_low(load, n, run.state.xi, guess, local)
+        restrict_low(load, n, run.state.xi, unit, local)
         for k in range(1, n + 1):
             seen[k] = direction * local[k]
     seen[0] = towards(run, local[0], direction)

@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 
 from stickslip.engine.compile.kernels import kernel
-from stickslip.engine.contact.contact_equation import constants_of
-from stickslip.engine.memory.addresses import ahead, call_state_value, call_value
-from stickslip.engine.memory.pointers import numbers_of
+from stickslip.engine.contact.contact_equation import law_at
+from stickslip.engine.memory.addresses import ahead
 from stickslip.engine.series.polynomial import copy, evaluate, fill
 from stickslip.engine.state.layout import STATES, TERMS, Floats
 from stickslip.engine.state.workspace import Run
@@ -32,7 +31,7 @@ FORGOTTEN = 1e-18
 
 @kernel
 def states_in_step(run: Run, place: float) -> Floats:
-    """Return the states at a place of the step in run.state_jet, in guesses, as a row that holds until the next such call."""
+    """Return the states at a place of the step in run.state_jet, in units of the series; the row holds until the next call."""
     for n in range(run.counts.states):
         run.some_state[n] = evaluate(ahead(run.state_jet, TERMS * n), place)
     return run.some_state
@@ -40,7 +39,7 @@ def states_in_step(run: Run, place: float) -> Floats:
 
 @kernel
 def states_at_point(run: Run, i: int) -> Floats:
-    """Return the states at Radau's point i of an implicit step, as a row that holds until the next such call."""
+    """Return the states at Radau's point i of an implicit step, as a row that holds until the next call."""
     for n in range(run.counts.states):
         run.some_state[n] = run.stage_state[TERMS * n + i]
     return run.some_state
@@ -60,15 +59,12 @@ def contact_at(run: Run, law_slip: float, rate: float, states: Floats) -> None:
 
     `mu` is then the difference from the static friction coefficient at the start of the run.
     """
-    piece = run.counts.piece
-    constants, slip = constants_of(run, piece), law_slip + run.law[piece].slip_shift
-    if run.counts.states > 0:
-        call_state_value(run.law[piece].state_at, constants, slip, rate, states, numbers_of(run.value))
-    else:
-        below = min(rate, 0.0)  # An iteration may try rates below 0, where a law need not hold: continue it linearly.
-        call_value(run.law[piece].value_at, constants, slip, rate - below, numbers_of(run.value))
+    # An iteration may try rates below 0, where a law without states need not hold: continue it linearly.
+    below = min(rate, 0.0) if run.counts.states == 0 else 0.0
+    law_at(run, run.counts.piece, law_slip, rate - below, states)
+    if below < 0.0:
         run.value.mu += run.value.by_rate * below
-    run.value.mu += run.law[piece].offset
+    run.value.mu += run.law[run.counts.piece].offset
 
 
 @kernel

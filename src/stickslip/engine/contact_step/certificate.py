@@ -83,7 +83,7 @@ def moved_on_disc(c: Floats, powers: Floats, first: int) -> float:
 
 @inlined
 def put_discs(k: SeriesInput, jet: Floats, powers: Floats, ball: Ball) -> None:
-    """Put radii and centres of slip (m) and slip rate (m/s) on a disc into `ball`, from the powers of its radius (in guesses).
+    """Put radii and centres of slip (m) and slip rate (m/s) on a disc into `ball`, from the powers of its radius (in units).
 
     With a bend, the integral of a term of order n >= 1 is at most a third of the term times the square of the radius.
     """
@@ -115,7 +115,7 @@ def force_on_disc(k: SeriesInput, ball: Ball, load: float) -> float:
 
 @inlined
 def slope_on_disc(jet: Floats, powers: Floats) -> float:
-    """Return how far the slope of the slip rate (m/s per guess) can be from its value at the centre of a disc."""
+    """Return how far the slope of the slip rate (m/s per unit) can be from its value at the centre of a disc."""
     a, b = 2.0 * abs(jet[2]) * powers[1], 3.0 * abs(jet[3]) * powers[2]
     for n in range(4, TERMS - 1, 2):
         a, b = a + n * abs(jet[n]) * powers[n - 1], b + (n + 1) * abs(jet[n + 1]) * powers[n]
@@ -124,14 +124,14 @@ def slope_on_disc(jet: Floats, powers: Floats) -> float:
 
 @inlined
 def size_of_rate(jet: Floats, length: float) -> float:
-    """Return a size of the slip rate (m/s) over a step of the given length (in guesses)."""
+    """Return a size of the slip rate (m/s) over a step of the given length (in units)."""
     square = length * length
     return max(max(abs(jet[0]), length * abs(jet[1])), max(square * abs(jet[2]), square * length * abs(jet[3])))
 
 
 @inlined
 def shortened(length: float, share: float, largest: float) -> float:
-    """Return the length (in guesses) at which a step with a share that is too large may have the largest one."""
+    """Return the length (in units) at which a step with a share that is too large may have the largest one."""
     root = quick_exp2((quick_log2(largest) - quick_log2(share)) * (1.0 / (TERMS - 1)))
     return length * min(max(SAFETY * root, SHORTEST), LONGEST)
 
@@ -193,7 +193,7 @@ def load_at_end(load: Floats, powers: Floats, degree: int) -> float:
 
 @kernel
 def share_on_disc(run: Run, length: float, disc: int) -> float:
-    """Return the share that a step of the given length (in guesses) may miss, by the disc with number `disc` of RATIOS."""
+    """Return the share that a step of the given length (in units) may miss, by the disc with number `disc` of RATIOS."""
     powers = run.spare
     powers_of(RATIOS[disc] * length, powers)
     piece = run.counts.piece
@@ -229,7 +229,7 @@ def rough(run: Run) -> float:
 
 @kernel
 def proven_length(run: Run, length: float) -> float:
-    """Return a length (in guesses), at most the given one, for which the step is proven; note the bound in run.state.residual.
+    """Return a length (in units), at most the given one, for which the step is proven; note the bound in run.state.residual.
 
     The disc that served the step before is tried first. A step that is nearly proven is shortened at once, and if that does not
     help, a better disc is looked for. If no length is proven the run ends: `breach` is OFF_THE_LAW.
@@ -274,7 +274,7 @@ def least_share(run: Run, length: float, share: float, enough: float) -> float:
 
 @inlined
 def note_residual(run: Run, length: float, share: float) -> None:
-    """Note the load (Pa or N) that a step of the given length (in guesses) may lack, from its share."""
+    """Note the load (Pa or N) that a step of the given length (in units) may lack, from its share."""
     load = run.k.inertia / (length * abs(run.k.speed)) if run.counts.has_inertia == 1 else resistance(run)
     run.state.residual = load * share * run.params.tolerance * size_of_rate(run.jet, length)
 
@@ -288,7 +288,7 @@ def bound_straight_bit(run: Run, length: float, grown: float, rate_end: float) -
 
     The contact equation holds where the bit begins, and where it ends but for what is measured there. With two zeros, at 0 and 1,
     Schwarz's lemma gives |g| <= M x (1 - x) / (r^2 - x), at most M / (4 (r^2 - 1)). The bit is `length`
-    guesses long, `grown` is the slip (m) in it and `rate_end` the slip rate (m/s) at its end.
+    units long, `grown` is the slip (m) in it and `rate_end` the slip rate (m/s) at its end.
     """
     piece, powers, least, ratio = run.counts.piece, run.spare, math.inf, FIRST_RATIO
     for _ in range(STRAIGHT_DISCS):
@@ -339,7 +339,7 @@ def missing_at_end(run: Run, grown: float, rate_end: float) -> float:
 def measure_end(run: Run, rate: Floats, length: float, grown: float, rate_end: float) -> float:
     """Put the end of a step into the contact equation, and return what it lacks there and ignores at its start (Pa or N).
 
-    A miss that exceeds the tolerance is noted. `rate` is the slip rate on [0, 1], `length` the length of the step (in guesses),
+    A miss that exceeds the tolerance is noted. `rate` is the slip rate on [0, 1], `length` the length of the step (in units),
     `grown` the slip in it (m) and `rate_end` the slip rate at its end (m/s). Friction there is left in run.value.
     """
     missing, size = missing_at_end(run, grown, rate_end), size_at_end(rate, rate_end)

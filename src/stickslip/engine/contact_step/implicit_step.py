@@ -35,18 +35,18 @@ def slip_implicitly(run: Run, xi_to: float) -> None:
     """Slip for one implicit step, or up to what ends it: arrest, a knot of the law, or the place xi_to."""
     if run.counts.knots_in_rate == 1:
         settle_piece(run, abs(run.state.rate_now))
-    guess = call_part(run.implicit_steps, run, Task.COLLOCATE, xi_to - run.state.xi)
+    length = call_part(run.implicit_steps, run, Task.COLLOCATE, xi_to - run.state.xi)
     hanging = hangs(run)
     note_shock(run)
     rate = run.history[run.counts.length].rate
     stretch(run, 1.0, rate)
-    reached = guess >= xi_to - run.state.xi
+    reached = length >= xi_to - run.state.xi
     if run.counts.states == 0 and is_no_longer_stiff(run):
         run.counts.stiff = 0
     cut = Cut(StepEvent.NONE, 0, 1.0) if hanging else cut_at_first_event(run, rate, 1.0)
     cut = end_above_zero(run, rate, cut)
     keep_state(run, cut.end)
-    keep_step(run, rate, cut.end, xi_to if reached and cut.end == 1.0 else run.state.xi + cut.end * guess)
+    keep_step(run, rate, cut.end, xi_to if reached and cut.end == 1.0 else run.state.xi + cut.end * length)
     note_negative_friction(run)
     resolve(run, cut)
 

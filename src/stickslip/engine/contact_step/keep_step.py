@@ -16,7 +16,7 @@ from stickslip.engine.state.workspace import Run
 
 @kernel
 def keep_step(run: Run, rate: Floats, length: float, to: float) -> None:
-    """Record the step, which is `length` guesses long and ends at xi = to, and move the state there."""
+    """Record the step, which is `length` units long and ends at xi = to, and move the state there."""
     multiply(run.local, run.powers, run.history[run.counts.length].load)
     move(run, length, growth(run, rate, length, 1.0), total(rate), to)
 

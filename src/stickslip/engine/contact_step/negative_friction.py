@@ -60,7 +60,7 @@ def is_clearly_positive(run: Run, rate: Floats, duration: float) -> bool:
 def place_below_zero(run: Run, rate: Floats, length: float) -> float:
     """Return a place on [0, 1] of a step at which friction is below zero, or NONE if there is none.
 
-    `rate` is the magnitude of the slip rate (m/s) as a polynomial on [0, 1], and `length` the length of the step (in guesses). A
+    `rate` is the magnitude of the slip rate (m/s) as a polynomial on [0, 1], and `length` the length of the step (in units). A
     minimum between two places is found but for about a millionth of the change of friction between them.
     """
     if run.params.can_be_negative == 0.0:
@@ -112,7 +112,7 @@ def last_place_above_zero(run: Run, rate: Floats, length: float, below: float) -
 
 @kernel
 def friction_in_step(run: Run, rate: Floats, length: float, place: float) -> float:
-    """Return the friction coefficient at a place on [0, 1] of a step that is `length` guesses long."""
+    """Return the friction coefficient at a place on [0, 1] of a step that is `length` units long."""
     slip = run.state.law_slip + run.k.chi * growth(run, rate, length, place)
     contact_at(run, slip, max(evaluate(rate, place), 0.0), states_in_step(run, place * length))
     return run.params.reference / run.params.normal + run.value.mu

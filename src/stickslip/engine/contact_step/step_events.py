@@ -24,14 +24,14 @@ class Cut(NamedTuple):
 
 @inlined
 def stretch(run: Run, length: float, rate: Floats) -> None:
-    """Write the slip rate's magnitude over a step of the given length (in guesses) into `rate`, as a polynomial on [0, 1]."""
+    """Write the slip rate's magnitude over a step of the given length (in units) into `rate`, as a polynomial on [0, 1]."""
     powers_of(length, run.powers)
     multiply(run.jet, run.powers, rate)
 
 
 @inlined
 def growth(run: Run, rate: Floats, length: float, end: float) -> float:
-    """Return the slip (m, unsigned) in a step of the given length (in guesses) up to the place `end` on [0, 1].
+    """Return the slip (m, unsigned) in a step of the given length (in units) up to the place `end` on [0, 1].
 
     It is the integral of the rate over dphase = (A + B eta) d eta.
     """
@@ -86,7 +86,7 @@ def pass_knot(run: Run, turn: int) -> None:
 
 @kernel
 def cut_at_first_event(run: Run, rate: Floats, length: float) -> Cut:
-    """Find what ends a step of the given length (in guesses) early, and cut its slip rate, a polynomial on [0, 1], there."""
+    """Find what ends a step of the given length (in units) early, and cut its slip rate, a polynomial on [0, 1], there."""
     arrest = NONE
     if (run.counts.is_algebraic == 0 or run.counts.folds_move == 1) and rate[0] <= magnitude(rate):
         arrest = first_descent(rate, run.spare)

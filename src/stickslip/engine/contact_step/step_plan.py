@@ -63,9 +63,9 @@ def plan_to_end_of_branch(run: Run, xi_to: float) -> StepPlan:
 
 
 @kernel
-def plan_to_moving_fold(run: Run, guess: float, plan: StepPlan) -> StepPlan:
+def plan_to_moving_fold(run: Run, unit: float, plan: StepPlan) -> StepPlan:
     """Find where the series runs into a fold that moves with slip; return the plan as it was if that is not before its target."""
-    way = call_part(run.moving_folds, run, Task.LOOK_FOR_FOLD, guess)
+    way = call_part(run.moving_folds, run, Task.LOOK_FOR_FOLD, unit)
     if not way < plan.target - run.state.xi:
         return plan
     if way <= TIE:

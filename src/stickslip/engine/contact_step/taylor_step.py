@@ -1,7 +1,7 @@
 """Advance the contact in slip by one Taylor step, cut at the first event in it.
 
 The step is written straight into the next free row of the history: series, length, events, and only then is the row kept. A
-"guess" is the length (in xi) in whose units the series is computed; lengths of steps are given in guesses.
+"unit" is the length (in xi) in whose units the series is computed; lengths of steps are given in units.
 """
 
 from __future__ import annotations
@@ -30,33 +30,33 @@ from stickslip.engine.state.workspace import Run
 LONGEST_GUESS = 2.0
 """Guess at the length of the next step, relative to the last one (1)."""
 SHORTEST_GUESS = 1e-16
-"""Least guess as a share of the way to go (1): in units of a last step of next to no length, high orders would vanish or
+"""Least unit, as a share of the way to go (1): in units of a last step of next to no length, high orders would vanish or
 overflow."""
 HALVINGS = 40
 """Number of halvings of a step in which friction falls below zero (1): 2^-40 of a step is next to nothing."""
 
 
 @kernel
-def first_guess(run: Run, left: float) -> float:
+def first_unit(run: Run, left: float) -> float:
     """Return the length (in xi) in whose units the next series is computed, from the way (in xi) that is left.
 
     It is near the length of the step that will be taken, so that no coefficient overflows.
     """
     speed = run.state.speed + 2.0 * run.state.bend * run.state.xi
-    return guess_from(left, speed, run.state.last_step) if speed != 0.0 else left
+    return unit_from(left, speed, run.state.last_step) if speed != 0.0 else left
 
 
 @inlined
-def guess_from(left: float, speed: float, last_step: float) -> float:
-    """Return the guess (in xi) from the way that is left (in xi), dphase/dxi (s) and the length of the last step (s)."""
+def unit_from(left: float, speed: float, last_step: float) -> float:
+    """Return the unit (in xi) from the way that is left (in xi), dphase/dxi (s) and the length of the last step (s)."""
     return min(left, max(LONGEST_GUESS * last_step / abs(speed), SHORTEST_GUESS * left))
 
 
 @kernel
-def prepare_series(run: Run, guess: float) -> None:
-    """Prepare what the series is made of: run.load_along_slip, in units of `guess` (in xi), and the numbers in run.k."""
+def prepare_series(run: Run, unit: float) -> None:
+    """Prepare what the series is made of: run.load_along_slip, in units of `unit` (in xi), and the numbers in run.k."""
     direction, params, k = run.counts.mode, run.params, run.k
-    load_ahead(run, guess)
+    load_ahead(run, unit)
     k.rate = abs(run.state.rate_now)
     if run.counts.is_algebraic == 1:
         if run.counts.folds_move == 0 or run.state.table_slip == run.state.law_slip:
@@ -68,8 +68,8 @@ def prepare_series(run: Run, guess: float) -> None:
     piece = run.counts.piece
     edge = run.counts.leaving_rest != 0
     k.chi = direction if params.counts_net == 1.0 else 1.0
-    k.speed = (run.state.speed + 2.0 * run.state.bend * run.state.xi) * guess
-    k.bend = 2.0 * run.state.bend * guess * guess
+    k.speed = (run.state.speed + 2.0 * run.state.bend * run.state.xi) * unit
+    k.bend = 2.0 * run.state.bend * unit * unit
     k.slip, k.offset = run.state.law_slip + run.law[piece].slip_shift, run.law[piece].offset
     k.free = 0.0 if edge else 1.0
     k.force = params.normal * params.static_excess if edge else 0.0
@@ -81,37 +81,37 @@ def slip(run: Run, xi_to: float) -> None:
     plan = plan_step(run, xi_to)
     if plan.is_over:
         return
-    guess = expand_series(run, plan.target)
+    unit = expand_series(run, plan.target)
     if run.counts.folds_move == 1 and run.counts.at_fold not in (NearFold.APPROACHING, NearFold.DEPARTING):
-        plan = plan_to_moving_fold(run, guess, plan)
+        plan = plan_to_moving_fold(run, unit, plan)
         if plan.is_over:
             return
     note_shock(run)
-    take_planned_step(run, plan, guess)
+    take_planned_step(run, plan, unit)
     if run.counts.is_algebraic == 0:
         judge_stiffness(run)
 
 
 @kernel
 def expand_series(run: Run, target: float) -> float:
-    """Write the Taylor series of the slip rate's magnitude (m/s) from here into run.jet; return its unit, a guess (in xi)."""
+    """Write the Taylor series of the slip rate's magnitude (m/s) from here into run.jet; return its unit (a length in xi)."""
     is_last = run.counts.at_fold == NearFold.APPROACHING and 1.0 - run.state.xi < last_to_fold(run)
-    guess = target - run.state.xi if is_last else first_guess(run, target - run.state.xi)
-    calculate_series(run, guess)
+    unit = target - run.state.xi if is_last else first_unit(run, target - run.state.xi)
+    calculate_series(run, unit)
     if is_last:
         straight_to_fold(run)
     elif run.counts.at_fold == NearFold.DEPARTING:
         straight_from_fold(run)
-    while not math.isfinite(run.jet[at.TERMS - 1]) and guess > 1e-300:
-        guess *= 1e-3
-        calculate_series(run, guess)
-    return guess
+    while not math.isfinite(run.jet[at.TERMS - 1]) and unit > 1e-300:
+        unit *= 1e-3
+        calculate_series(run, unit)
+    return unit
 
 
 @kernel
-def calculate_series(run: Run, guess: float) -> None:
-    """Write the Taylor series of the slip rate's magnitude (m/s) from here into run.jet, in units of `guess` (in xi)."""
-    prepare_series(run, guess)
+def calculate_series(run: Run, unit: float) -> None:
+    """Write the Taylor series of the slip rate's magnitude (m/s) from here into run.jet, in units of `unit` (in xi)."""
+    prepare_series(run, unit)
     piece = run.counts.piece
     call_jet(run.law[piece].jet_at, constants_of(run, piece), numbers_of(run.k), run.load_along_slip, run.jet)
 
@@ -126,13 +126,13 @@ def note_shock(run: Run) -> None:
 
 
 @kernel
-def take_planned_step(run: Run, plan: StepPlan, guess: float) -> None:
+def take_planned_step(run: Run, plan: StepPlan, unit: float) -> None:
     """Take an explicit step: choose its length, prove it, cut it at the first event, and keep it.
 
-    `guess` (in xi) is the unit of the series. A step in which friction falls below zero is halved until it does not, or until
+    `unit` (in xi) is the unit of the series. A step in which friction falls below zero is halved until it does not, or until
     there is nothing left of it.
     """
-    length, reached = choose_length(run, plan.target, guess, usable_length(run.jet, run.params.tolerance))
+    length, reached = choose_length(run, plan.target, unit, usable_length(run.jet, run.params.tolerance))
     kept = run.history[run.counts.length]
     begin_step(run)
     bound = run.state.residual
@@ -151,7 +151,7 @@ def take_planned_step(run: Run, plan: StepPlan, guess: float) -> None:
         length *= 0.5 * cut.end
         reached, run.state.last_step = False, min(run.state.last_step, duration_of(run.k, length))
     multiply(run.local, run.powers, kept.load)
-    to = plan.target if reached and cut.end == 1.0 else run.state.xi + cut.end * length * guess
+    to = plan.target if reached and cut.end == 1.0 else run.state.xi + cut.end * length * unit
     move(run, cut.end * length, grown, rate_end, to)
     resolve(run, cut)
     if cut.event == StepEvent.NONE and plan.ends_branch and (reached or plan.target - run.state.xi < TIE):
@@ -165,26 +165,26 @@ def is_straight(run: Run) -> bool:
 
 
 @kernel
-def choose_length(run: Run, target: float, guess: float, length: float) -> tuple[float, bool]:
-    """Return the length (in guesses) of an explicit step that may be `length` guesses long, and whether it reaches the target."""
-    limit = length_to(run, target, guess)
+def choose_length(run: Run, target: float, unit: float, length: float) -> tuple[float, bool]:
+    """Return the length (in units) of an explicit step that may be `length` units long, and whether it reaches the target."""
+    limit = length_to(run, target, unit)
     if not is_straight(run):
         proven = proven_length(run, min(length, limit))
         length = proven if proven < min(length, limit) else length
-    return settle_length(run, target, guess, length)
+    return settle_length(run, target, unit, length)
 
 
 @inlined
-def length_to(run: Run, target: float, guess: float) -> float:
-    """Return the way to a place xi = `target`, in guesses."""
-    return (target - run.state.xi) / guess
+def length_to(run: Run, target: float, unit: float) -> float:
+    """Return the way to a place xi = `target`, in units."""
+    return (target - run.state.xi) / unit
 
 
 @inlined
-def settle_length(run: Run, target: float, guess: float, length: float) -> tuple[float, bool]:
+def settle_length(run: Run, target: float, unit: float, length: float) -> tuple[float, bool]:
     """Return the length of a proven step so that no tiny step is left before the target, and whether it reaches the target."""
-    limit = length_to(run, target, guess)
-    # Store the error-controlled length: truncation at an event must not shrink the next guess.
+    limit = length_to(run, target, unit)
+    # Store the error-controlled length: truncation at an event must not shrink the next unit.
     run.state.last_step = duration_of(run.k, length)
     reached = length >= limit
     if reached:
@@ -196,5 +196,5 @@ def settle_length(run: Run, target: float, guess: float, length: float) -> tuple
 
 @inlined
 def duration_of(k: SeriesInput, length: float) -> float:
-    """Return the duration (s) of a step of the given length (in guesses)."""
+    """Return the duration (s) of a step of the given length (in units)."""
     return length * abs(k.speed + 0.5 * k.bend * min(length, 1.0))

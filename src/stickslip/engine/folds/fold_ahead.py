@@ -88,10 +88,10 @@ def fold_ahead(jet: Floats) -> tuple[float, float]:
 
 
 @kernel
-def way_to_fold(run: Run, guess: float) -> float:
+def way_to_fold(run: Run, unit: float) -> float:
     """Return the way (in xi) to the fold that the present series runs into, and note the rate there in state.fold_rate.
 
-    The series is in units of `guess` (in xi). The way is NONE if no fold is seen, or if the law leaves its piece before it.
+    The series is in units of `unit` (in xi). The way is NONE if no fold is seen, or if the law leaves its piece before it.
     """
     eta, rate = fold_ahead(run.jet)
     if eta == NONE or rate <= 0.0:
@@ -107,4 +107,4 @@ def way_to_fold(run: Run, guess: float) -> float:
         if 0 <= knot < run.pieces - 1 and abs(run.law[knot].knot - slip) <= abs(walked):
             return NONE
     run.state.fold_rate = rate
-    return eta * guess
+    return eta * unit

@@ -317,13 +317,13 @@ def judged_error(run: Run, force: float, before: float) -> float:
 def first_length(run: Run, left: float) -> float:
     """Return the length (in xi, at most `left`) with which to try an implicit step: short enough for a disturbance that grows."""
     speed = abs(run.state.speed)
-    guess = min(left, run.state.last_step / speed)
-    if 0.5 * left < guess < left:
-        guess = 0.5 * left
-    load_ahead(run, guess)
+    trial = min(left, run.state.last_step / speed)
+    if 0.5 * left < trial < left:
+        trial = 0.5 * left
+    load_ahead(run, trial)
     start_of_step(run)
-    growth = growth_rate(run, LONGEST_GROWTH / (guess * speed)) if run.counts.mode != 0 else 0.0
-    return LONGEST_GROWTH / (growth * speed) if growth * guess * speed > LONGEST_GROWTH else guess
+    growth = growth_rate(run, LONGEST_GROWTH / (trial * speed)) if run.counts.mode != 0 else 0.0
+    return LONGEST_GROWTH / (growth * speed) if growth * trial * speed > LONGEST_GROWTH else trial
 
 
 @kernel
@@ -341,12 +341,12 @@ def collocate(run: Run, left: float) -> float:
             turn_with_bristles(run, left)
         else:
             left = turn_with_load(run, left)
-    guess = longest = first_length(run, left)
+    trial = longest = first_length(run, left)
     before, in_vain, solution_over = math.inf, 0, 0.0
     for _ in range(ATTEMPTS):
-        force = begin_step(run, guess)
-        solved = solve_stages(run, run.k.speed, force, guess / solution_over if solution_over > 0.0 else 0.0)
-        solution_over = guess if solved else 0.0
+        force = begin_step(run, trial)
+        solved = solve_stages(run, run.k.speed, force, trial / solution_over if solution_over > 0.0 else 0.0)
+        solution_over = trial if solved else 0.0
         if solved:
             interpolate(run.stage_rate, run.jet, run.spare)
             for n in range(run.counts.states):
@@ -359,19 +359,19 @@ def collocate(run: Run, left: float) -> float:
                     run.counts.rough += 1
                     run.state.roughest = max(run.state.roughest, error * run.params.tolerance)
                 # Where this step had to shrink, the next one probably has to shrink as well.
-                change = max(guess / longest, LEAST_TREND) if before < math.inf else 5.0
+                change = max(trial / longest, LEAST_TREND) if before < math.inf else 5.0
                 run.counts.unproven += 1 if math.isnan(run.state.residual) else 0
-                run.state.last_step = speed * (guess * min(factor, change) if error <= 1.0 else longest)
-                return guess
+                run.state.last_step = speed * (trial * min(factor, change) if error <= 1.0 else longest)
+                return trial
             before = error
-            guess *= max(min(factor, 0.8), 0.1)
+            trial *= max(min(factor, 0.8), 0.1)
         else:
             before = math.inf
-            guess *= 0.25
+            trial *= 0.25
     fill(run.jet, math.nan)
     for n in range(STATES):
         fill(ahead(run.state_jet, TERMS * n), math.nan)
-    return guess
+    return trial
 
 
 @kernel
@@ -391,12 +391,12 @@ def settles_unseen(run: Run, error: float) -> bool:
 
 
 @kernel
-def begin_step(run: Run, guess: float) -> float:
-    """Prepare the load and the start of an implicit step of length `guess` (in xi); return the force (Pa or N) that it ignores."""
-    load_ahead(run, guess)
+def begin_step(run: Run, trial: float) -> float:
+    """Prepare the load and the start of an implicit step of length `trial` (in xi); return the force (Pa or N) that it ignores."""
+    load_ahead(run, trial)
     is_odd = run.counts.sticks == 0 and run.counts.reverses == 0
     if is_odd and abs(run.load_along_slip[0] + run.params.reference) <= LOAD_ROUNDING * size_of_load(run):
         run.load_along_slip[0] = -run.params.reference  # The load passes through zero here: slip begins at rate zero.
-    run.k.speed, run.k.bend = run.state.speed * guess, 0.0
+    run.k.speed, run.k.bend = run.state.speed * trial, 0.0
     run.k.chi = run.counts.mode if run.params.counts_net == 1.0 else 1.0
     return start_of_step(run)

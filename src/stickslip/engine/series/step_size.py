@@ -15,7 +15,7 @@ UNITS = 2.0**52
 BIAS = 1023.0
 """Offset of the exponent in the bits of a float (1)."""
 FAR_FROM_GUESS = 0.2
-"""Length of a step, in guesses (1), below which the size of the slip rate is determined again: the guess was far too long."""
+"""Length of a step, in units (1), below which the size of the slip rate is determined again: the unit was far too long."""
 
 
 @inlined
@@ -38,9 +38,9 @@ def quick_exp2(x: float) -> float:
 
 @inlined
 def usable_length(jet: Floats, tolerance: float) -> float:
-    """Return the longest step (in guesses) whose last two terms stay below the tolerance, relative to the slip rate over the step.
+    """Return the longest step (in units) whose last two terms stay below the tolerance, relative to the slip rate over the step.
 
-    The guess is usually twice the step. If it is much longer (for a first step, or after a fold), the slip rate over the guess
+    The unit is usually twice the step. If it is much longer (for a first step, or after a fold), the slip rate over the unit
     may be larger by orders of magnitude than over the step: the length is then calculated again with the rate over the step.
     """
     if jet[TERMS - 1] == 0.0 and jet[TERMS - 2] == 0.0:
@@ -54,7 +54,7 @@ def usable_length(jet: Floats, tolerance: float) -> float:
 
 @kernel
 def length_with_gaps(jet: Floats, tolerance: float) -> float:
-    """Return the usable length (in guesses) if the last two terms are zero: the series is a polynomial, or has gaps.
+    """Return the usable length (in units) if the last two terms are zero: the series is a polynomial, or has gaps.
 
     Under a law in u^n only every n-th term differs from zero at u = 0. With gaps of up to half the length of the series, a term
     of its upper half remains, and bounds the terms that follow. A polynomial of lower degree holds at any length: inf.
@@ -68,7 +68,7 @@ def length_with_gaps(jet: Floats, tolerance: float) -> float:
 
 @inlined
 def length_at(jet: Floats, tolerance: float, expected: float) -> float:
-    """Return the usable length (in guesses) if the slip rate is as large as over a step of the expected length. Works on lanes."""
+    """Return the usable length (in units) if the slip rate is as large as over a step of the expected length. Works on lanes."""
     slow = max(abs(jet[0]), expected * abs(jet[1]))
     size = max(slow, expected * expected * max(abs(jet[2]), expected * abs(jet[3])))
     n = TERMS - 1

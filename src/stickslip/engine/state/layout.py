@@ -162,8 +162,8 @@ class SeriesInput(Record):
     damping: float  # k[0], Pa s/m or N s/m: as in `Params`
     normal: float  # k[1], Pa or N: as in `Params`
     chi: float  # k[2], +1 or -1: change of the law's slip over the slip q in the direction of motion
-    speed: float  # k[3], s: A in dt/deta = A + B eta, where eta is the distance in xi in units of the guess
-    bend: float  # k[4], s: B there, not 0 only next to folds (2 `State.bend` times the square of the guess)
+    speed: float  # k[3], s: A in dt/deta = A + B eta, where eta is the distance in xi in units of the series
+    bend: float  # k[4], s: B there, not 0 only next to folds (2 `State.bend` times the square of that unit)
     slip: float  # k[5], m: law slip at the start of the step, minus the reference slip of the piece of the law
     offset: float  # k[6], 1: sliding friction coefficient at that reference, minus the static coefficient at the start of the run
     inertia: float  # k[7], kg/m^2 or kg: as in `Params`

@@ -69,13 +69,13 @@ class Run(Record):
     counts: Counts = inside(Counts)
 
     load: Floats = floats_inside(TERMS)  # Pa or N: the present piece of load, as a polynomial in xi
-    local: Floats = floats_inside(TERMS)  # Pa or N: load from the present place on, in units of the guess; zero beyond the degree
+    local: Floats = floats_inside(TERMS)  # Pa or N: load from the present place on, in units of the series; zero beyond the degree
     load_along_slip: Floats = floats_inside(
         TERMS
     )  # Pa or N: the same as seen in the direction of slip, minus the reference strength
-    jet: Floats = floats_inside(TERMS)  # m/s: series of the magnitude of the slip rate, in units of the guess
+    jet: Floats = floats_inside(TERMS)  # m/s: series of the magnitude of the slip rate, in units of the series
     centres: Floats = floats_inside(TERMS)  # what the series writes right after itself, for `radii`
-    powers: Floats = floats_inside(TERMS)  # powers of the length of the step, in guesses
+    powers: Floats = floats_inside(TERMS)  # powers of the length of the step, in units of the series
     k: SeriesInput = inside(SeriesInput, TERMS)  # input of the series
     value: LawValue = inside(LawValue, TERMS)  # what the law's formula returned last
     ball: Ball = inside(Ball, TERMS)  # discs of slip, slip rate and state, and the radius of friction on them

@@ -58,7 +58,7 @@ def bring_first(run: Run) -> None:
     run.load[1] = first.slope * run.state.speed
     if run.counts.is_block == 1 and run.counts.trip > 0:
         run.load[0] = run.state.load_now + trips_leaped(run, run.counts.length - 1) * run.params.ramp
-    # from theta = h/c on, the load of a slab's first round trip holds the initial state, reflected by the driver
+    # from the phase h/c on, the load of a slab's first round trip holds the initial state, reflected by the driver
     run.state.amplified = (
         math.nan
         if run.counts.is_block == 1
