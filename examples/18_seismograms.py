@@ -15,6 +15,7 @@ import numpy as np
 from matplotlib import pyplot
 
 import stickslip as ss
+from stickslip.io.sampling import sample
 
 run = ss.simulate("fig5-slab-reconstructed")
 slab = run.problem.body
@@ -30,9 +31,11 @@ for place in stations:
 axes.set(xlabel="time (s)", ylabel="distance from the contact (km)", title="Particle velocity at three stations")
 
 # %%
-# An export for other programs is one call: on-fault time series as in the SCEC/USGS rupture benchmarks, or miniSEED and SAC with
-# ``run.to_seismogram("run.mseed", 100.0)``, which needs ``pip install "stickslip[seismology]"``. With ``x=4e3, station="S4"`` it
-# writes what the second station records. ObsPy reads the same numbers, to the last digit: HXV is the velocity, HXT the stress.
+# An export for other programs is one call: on-fault time series as in the SCEC/USGS rupture benchmarks. ``sample`` gives what a
+# station records at evenly spaced times, for ObsPy and other libraries: displacement, velocity and shear stress.
+
+station = sample(run, 100.0, x=4e3)
+print(f"the second station moves at up to {station.slip_rate.max():.3f} m/s")
 
 with tempfile.TemporaryDirectory() as folder:
     path = run.to_scec(Path(folder) / "fig5.txt", sampling_rate=100.0)

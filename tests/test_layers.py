@@ -89,7 +89,7 @@ ROOMS = {
     "solution": (("evaluation", "place"), ("accessors",), ("planar", "window"), ("solution",), ("interval",)),
     "io": (
         ("catalogue_rows", "sampling", "series", "soundness"),
-        ("planar_layout", "scec", "seismogram"),
+        ("planar_layout", "scec"),
         ("netcdf", "planar_store"),
     ),
     "run": (

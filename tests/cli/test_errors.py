@@ -146,7 +146,7 @@ CASES = [
         ["analogy", "fig6-slab", "--map", "alpa=1..2", "--map", "static=1..2"],
         "analogy: --map: parameter 'alpa' is unknown; did you mean 'alpha'?",
     ),
-    (["export", "fig6-slab", "a.csv"], "FILE a.csv: the name must end in .txt or .dat or .mseed or .sac"),
+    (["export", "fig6-slab", "a.csv"], "FILE a.csv: the name must end in .txt or .dat"),
     (["export", "fig6-slap", "a.txt"], "fig6-slap: no such file, and no bundled scenario of that name; did you mean"),
     (["export", "fig6-slab", "a.txt", "-r", "0"], "sampling rate must be a positive number of samples a second, got 0.0"),
     (["export", "second-event-maxwell", "a.txt"], "1.51e+12 samples are too many: use a lower rate, or a single event"),

@@ -75,6 +75,15 @@ def test_the_file_has_the_times_that_were_asked_for() -> None:
     assert len(sample(RUN, 0.1).time) == 1
 
 
+def test_samples_at_a_station_are_those_of_the_field() -> None:
+    run = ss.simulate("fig5-slab-reconstructed")
+    series = sample(run, 100.0, x=4e3)
+    field = run.field(4e3, np.arange(1201) / 100.0)
+    np.testing.assert_array_equal(series.slip, field.displacement - run.field(4e3, 0.0).displacement)
+    np.testing.assert_array_equal(series.slip_rate, field.velocity)
+    np.testing.assert_array_equal(series.traction, field.stress)
+
+
 def test_the_filter_keeps_what_is_slow_and_the_slip_of_what_is_fast() -> None:
     """Pulses some hundredths of a second long, sampled 5 times a second: samples miss them, the filtered ones hold their slip."""
     pytest.importorskip("scipy")

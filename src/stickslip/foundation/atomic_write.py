@@ -260,7 +260,7 @@ LOOKED_AT = 65_536
 def check_replaceable(path: Path, where: str) -> None:
     """Refuse to replace data that this package did not write, and scenarios, which people edit; an empty file may be replaced.
 
-    Pictures and seismograms are not looked into. Raises InputError, which begins with `where`.
+    Pictures are not looked into. Raises InputError, which begins with `where`.
     """
     suffix = path.suffix.lower()
     if suffix not in (".csv", ".txt", ".dat", ".toml", *BINARY) or not path.is_file() or not path.stat().st_size:

@@ -1,7 +1,7 @@
 """Figures, files and reports: the only file in which a solution, or a study, uses the packages above it.
 
 `solution.plot()` draws the default figure and `solution.plot.energy()`, `.field()` ... draw others; `to_dataset`, `to_netcdf`,
-`to_scec` and `to_seismogram` hand a run to other tools. Each imports what it needs when it is called.
+`to_scec` hands a run to other tools. Each imports what it needs when it is called.
 """
 
 from __future__ import annotations
@@ -202,15 +202,6 @@ class Exports(Readings):
         from stickslip.io.scec import write_scec
 
         return write_scec(self, path, sampling_rate, **options)
-
-    def to_seismogram(self, path: str | Path, sampling_rate: float, **options: Any) -> list[Path]:
-        """Write miniSEED or SAC files at a sampling rate (Hz) through ObsPy, and return their paths.
-
-        The options are those of `stickslip.io.seismogram.write_seismogram`.
-        """
-        from stickslip.io.seismogram import write_seismogram
-
-        return write_seismogram(self, path, sampling_rate, **options)
 
 
 def to_netcdf(solution: Solution, path: str | Path) -> Path:

@@ -3,71 +3,52 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from stickslip.cli.options import Duration, complete_source, option
 from stickslip.cli.output.files import announce, check_target
-from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
     from stickslip.studies.compare import Source
 
-TEXT = (".txt", ".dat")
-"""File suffixes of text in the SCEC layout."""
-SEISMOGRAMS = (".mseed", ".sac")
-"""File suffixes of seismograms."""
 RUN = "A TOML file, a bundled name, a file of `run --out` (.nc), or - for a scenario from standard input."
-PLACE = 'Seismograms: distance from the contact, m or with a unit ("5 km"); default the contact.'
-COMPONENTS = "SCEC: all eight columns of the three-dimensional benchmarks."
+COMPONENTS = "All eight columns of the three-dimensional benchmarks."
 
 
 def export(
     run: Annotated[str, typer.Argument(help=RUN, autocompletion=complete_source)],
-    file: Annotated[Path, typer.Argument(help="What to write: .txt or .dat (SCEC), .mseed, .sac.")],
+    file: Annotated[Path, typer.Argument(help="What to write (.txt or .dat).")],
     *,
     sampling_rate: Annotated[float, typer.Option("--sampling-rate", "-r", help="Samples a second.")] = 100.0,
     event: Annotated[int | None, option("Only this slip event, in local time: 0 the first, -1 the last.")] = None,
-    x: Annotated[str | None, option(PLACE, "--x")] = None,
     antialias: Annotated[bool, typer.Option("--antialias", help="Low-pass to half the sampling rate first.")] = False,
     components: Annotated[bool, typer.Option("--components", help=COMPONENTS)] = False,
     duration: Duration = None,
 ) -> None:
-    r"""Export slip, slip rate and stress of the contact at evenly spaced times, for tools of seismologists and rupture modellers.
+    r"""Export slip, slip rate and stress of the contact at evenly spaced times, for tools of rupture modellers.
 
-    .txt and .dat are on-fault time series as in the SCEC/USGS rupture benchmarks
-    (t slip slip-rate shear-stress; s, m, m/s, MPa); .mseed and .sac are
-    seismograms of slip rate and traction in SI (need ObsPy). Samples are exact,
-    and right limits at jumps.
+    The file holds on-fault time series as in the SCEC/USGS rupture benchmarks
+    (t slip slip-rate shear-stress; s, m, m/s, MPa). Samples are exact, and right
+    limits at jumps.
 
     \b
       stickslip export fig6-slab fig6.txt --sampling-rate 200
       stickslip export second-event-maxwell late.txt --event 1
-      stickslip export run.nc run.mseed --antialias
+      stickslip export run.nc run.txt --antialias
 
     Exit code: 0 done, 1 the run failed, 2 unusable input, 130 interrupted.
     """
     from stickslip.io.scec import write_scec
-    from stickslip.io.seismogram import import_obspy, write_seismogram
     from stickslip.run.progress import progress_line
 
-    check_target(file, "FILE", (*TEXT, *SEISMOGRAMS))
-    if file.suffix.lower() in TEXT:
-        if x is not None:
-            raise InputError("export: --x is for .mseed and .sac: .txt and .dat are on-fault time series")
-    else:
-        import_obspy()
-        if components:
-            raise InputError("export: --components is for .txt and .dat")
-    place, source = _place(x), _source(run, duration)
+    check_target(file, "FILE", (".txt", ".dat"))
+    source = _source(run, duration)
     with progress_line(f"{source.name}:") as report:
         solution = source.solution(report)
     readings = solution if event is None else solution.window(event)
-    if file.suffix.lower() in TEXT:
-        announce(write_scec(readings, file, sampling_rate, antialias=antialias, problem=source.name, components=components))
-    else:
-        announce(*write_seismogram(readings, file, sampling_rate, antialias=antialias, x=place))
+    announce(write_scec(readings, file, sampling_rate, antialias=antialias, problem=source.name, components=components))
     if not solution.status.ok:
         raise typer.Exit(1)
 
@@ -79,13 +60,3 @@ def _source(run: str, duration: str | None) -> Source:
 
     length = read(read_duration, duration, "export", "duration")
     return read_source(load(run, "export") if run == STDIN else run, length, who="export")
-
-
-def _place(text: str | None) -> Any:
-    """Return a distance (m) from the text that was typed, by default 0. Raises InputError."""
-    from stickslip.cli.overrides import read
-    from stickslip.foundation.quantities import Quantity
-    from stickslip.scenarios.entries import read_typed
-
-    distance = Quantity("m", "distance from the contact", at_least=0)
-    return read(lambda typed, *place: read_typed(typed, distance, *place), text, "export", "x", 0.0)
