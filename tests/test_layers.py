@@ -6,6 +6,7 @@ import ast
 import subprocess
 import sys
 from functools import cache
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import stickslip
@@ -35,7 +36,7 @@ LAYERS = (
 """Folders of the package from the bottom up; those of one layer do not know each other. `engine` never imports a `Problem`."""
 ROOMS = {
     "foundation": (
-        ("arrays", "constants", "errors"),
+        ("arrays", "constants", "errors", "place"),
         ("arguments", "atomic_write", "determined", "formatting", "units"),
         ("conversion", "headings", "netcdf_file", "zarr_folder"),
         ("columns", "quantities"),
@@ -86,7 +87,7 @@ ROOMS = {
         ("event_table",),
         ("energetics", "event_stream"),
     ),
-    "solution": (("evaluation", "place"), ("accessors",), ("planar", "window"), ("solution",), ("interval",)),
+    "solution": (("evaluation",), ("accessors",), ("planar", "window"), ("solution",), ("interval",)),
     "io": (
         ("catalogue_rows", "sampling", "series", "soundness"),
         ("planar_layout", "scec"),
@@ -147,15 +148,21 @@ ROOMS = {
 }
 """The same inside some folders."""
 LAZY_DOORS = {
-    "solution/accessors.py",
     "contact/sliding.py",
     "contact/uniqueness.py",
-    "scenarios/library.py",
+    "friction/custom/fit.py",
+    "friction/custom/fit_parameters.py",
+    "friction/formula/expression.py",
     "scenarios/scenario.py",
+    "solution/accessors.py",
+    "solution/planar.py",
+    "solution/solution.py",
+    "studies/inference/record.py",
 }
 """Files that may import upwards inside functions.
 
-A solution reaches figures and files there, findings are drawn, a name becomes a scenario, and a scenario gets other values.
+A run reaches figures and files there, findings are drawn, a scenario gets other values, a record is read, a law is found by its
+name, and a function of numpy becomes an operation of a formula.
 """
 
 ALLOWED = {
@@ -230,14 +237,9 @@ FILES = [path for path in sorted(PACKAGE.rglob("*.py")) if parts(path)[0] not in
 # ---- lists that may only become shorter ------------------------------------------------------------------------------------
 
 UPWARD_FOR_TYPES: dict[str, set[str]] = {
-    "contact/sliding.py": {"solution"},
-    "contact/uniqueness.py": {"solution"},
     "problem/parameters.py": {"problem.problem"},
     "problem/start.py": {"problem.problem"},
-    "scenarios/library.py": {"scenarios.scenario"},
     "scenarios/scenario.py": {"solution"},
-    "solution/accessors.py": {"solution.planar", "solution.solution"},
-    "solution/window.py": {"solution.solution"},
 }
 """Files that name something from above in an annotation only."""
 
@@ -253,6 +255,38 @@ def test_imports_point_down() -> None:
     assert {name: ups["eager"] for name, ups in found.items() if ups["eager"]} == {}
     assert {name: ups["later"] for name, ups in found.items() if ups["later"] and name not in LAZY_DOORS} == {}
     assert {name: ups["types"] for name, ups in found.items() if ups["types"]} == UPWARD_FOR_TYPES
+
+
+def test_what_stands_side_by_side_does_not_import_each_other_in_a_circle() -> None:
+    """Files and folders at every depth; names in annotations count, but for the files that lists name."""
+    found = {folder: circle for folder, imported in side_by_side().items() if (circle := circle_in(imported))}
+    assert found == {}
+
+
+def side_by_side() -> dict[str, dict[str, set[str]]]:
+    """Return for each folder what its files and folders import from each other, by their names."""
+    found: dict[str, dict[str, set[str]]] = {}
+    for path in FILES:
+        own, file = parts(path), str(path.relative_to(PACKAGE))
+        passed_over = ({"later"} if file in LAZY_DOORS else set()) | ({"types"} if file in UPWARD_FOR_TYPES else set())
+        for kind, name in imports(path):
+            root, *other = name.split(".")
+            if root != "stickslip" or kind in passed_over:
+                continue
+            shared = next((i for i, (a, b) in enumerate(zip(own, other, strict=False)) if a != b), None)
+            if shared is not None:
+                beside = other[shared] if _file(f"{root}.{'.'.join(other[: shared + 1])}") else "__init__"
+                found.setdefault("/".join(own[:shared]), {}).setdefault(own[shared], set()).add(beside)
+    return found
+
+
+def circle_in(imported: dict[str, set[str]]) -> list[str]:
+    """Return names each of which imports the one before it, the first and the last the same; empty if there are none."""
+    try:
+        TopologicalSorter(imported).prepare()
+    except CycleError as error:
+        return list(error.args[1])
+    return []
 
 
 def test_heavy_libraries_are_known_to_few() -> None:

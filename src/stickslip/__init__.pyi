@@ -15,8 +15,7 @@ from .problem import Problem, selection
 from .run.catalogue import catalogue
 from .run.resume import resume
 from .run.simulate import simulate
-from .scenarios.library import scenarios
-from .scenarios.scenario import load_scenario
+from .scenarios.scenario import load_scenario, scenarios
 from .scenarios.source import uniqueness
 from .solution.solution import Solution
 from .sweeps.sweep import sweep

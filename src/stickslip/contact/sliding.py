@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from stickslip.foundation.place import Place
     from stickslip.problem.problem import Problem
-    from stickslip.solution.place import Place
 
 RATES = np.geomspace(1e-15, 1e3, 73)
 """Slip rates (m/s) at which the stability of a law with states is examined, four a decade; changes are then found to rounding.

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from stickslip.solution.place import Place
+    from stickslip.foundation.place import Place
 
 MOST_SHOWN = 6
 """Largest number of folds, and of jumps, that `repr` and `summary` show."""

@@ -20,8 +20,8 @@ from stickslip.contact.regime_map import Axis
 from stickslip.figures.names import parameter_name
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import PALE, Numbers, label, shown
+from stickslip.foundation.place import Place
 from stickslip.problem.problem import Problem
-from stickslip.solution.place import Place
 
 LETTER, MARK = 0.062, 0.4
 """Widths (inches) of a letter of a key, and of the mark before it with the space around."""

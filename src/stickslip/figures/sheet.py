@@ -23,7 +23,7 @@ from stickslip.figures.style import image, styled
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.solution.place import Place
+from stickslip.foundation.place import Place
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -118,13 +118,13 @@ def to_dataset(run: Readings, t: ArrayLike, x: ArrayLike | None = None) -> xr.Da
     In a window t is local time, s since the start of the event. The event begins `epoch_trip` whole round trips, of
     `round_trip_time` seconds each, and `epoch_offset` seconds after the start of the run: these three are attributes.
     """
-    dataset = _readings(run, t, x)
+    dataset, solution = _readings(run, t, x), run.solution if isinstance(run, Window) else run
+    assert isinstance(solution, Solution)
     if isinstance(run, Window):
         dataset.time.attrs["long_name"] = "time since the start of the event"
         about = {"epoch_trip": run.epoch.trip, "epoch_offset": run.epoch.offset, "round_trip_time": run.history.round_trip_time}
-        return dataset.assign_attrs(provenance(run.solution) | about)
-    assert isinstance(run, Solution)
-    return dataset.assign_attrs(provenance(run))
+        return dataset.assign_attrs(provenance(solution) | about)
+    return dataset.assign_attrs(provenance(solution))
 
 
 def _readings(readings: Readings, t: ArrayLike, x: ArrayLike | None) -> xr.Dataset:

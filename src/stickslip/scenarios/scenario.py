@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -16,7 +17,7 @@ from stickslip.engine_input.limits import check_creep_rtol, check_shortest_event
 from stickslip.foundation.arguments import CheckedArguments, as_path, for_users, shown
 from stickslip.foundation.brief_repr import shown_fields
 from stickslip.foundation.conversion import Number
-from stickslip.foundation.errors import InputError
+from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.formatting import html_table
 from stickslip.foundation.quantities import check_fields, declare
 from stickslip.loading import LoadingHistory
@@ -237,3 +238,47 @@ def _in_tables(message: str) -> str:
     if message.startswith("needs either"):
         return f"[initial] {message.replace('initial_', '')}"
     return message.replace("initial_", "[initial] ")
+
+
+class BundledScenarios(Mapping[str, Scenario]):
+    """The bundled scenarios by name: `ss.scenarios["fig6-slab"]` reads one, `print(ss.scenarios)` lists all.
+
+    Iterating gives the names. A name that is not bundled raises InputError, which names the nearest one; a file is read with
+    `stickslip.load_scenario`.
+    """
+
+    def __getitem__(self, name: str) -> Scenario:
+        if not isinstance(name, str):
+            raise InputError(f"scenarios: a name must be text, such as 'fig6-slab', got {shown(name)}")
+        if name not in self:
+            cure = "a file is read with ss.load_scenario" if name.endswith(".toml") else nearest(name, library.names())
+            raise InputError(f"no bundled scenario {ascii(name)[:60]}; {cure}")
+        return load_scenario(name)
+
+    def __contains__(self, name: object) -> bool:
+        return name in library.names()
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(library.names())
+
+    def __len__(self) -> int:
+        return len(library.names())
+
+    def __repr__(self) -> str:
+        width = max(len(name) for name in self)
+        return "\n".join(f"{name:<{width}}  {entry.title}" for name, entry in library.entries().items())
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><th style='text-align:left'>{name}</th><td style='text-align:left'>{escape(entry.title)}</td>"
+            f"<td style='text-align:left'>{escape(entry.description)}</td></tr>"
+            for name, entry in library.entries().items()
+        )
+        return f"<table><caption>bundled scenarios: ss.scenarios[name], ss.simulate(name)</caption>{rows}</table>"
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return library.names()
+
+
+scenarios = BundledScenarios()
+"""The bundled scenarios, as `stickslip.scenarios`."""

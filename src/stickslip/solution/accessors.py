@@ -1,4 +1,4 @@
-"""Figures, files and reports: the only file in which a solution, or a study, uses the packages above it.
+"""Figures, files and reports: where a run, or a study, uses the packages above it.
 
 `solution.plot()` draws the default figure and `solution.plot.energy()`, `.field()` ... draw others; `to_dataset`, `to_netcdf`,
 `to_scec` hands a run to other tools. Each imports what it needs when it is called.
@@ -22,9 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from stickslip.solution.place import Place
-    from stickslip.solution.planar import PlanarSolution
-    from stickslip.solution.solution import Solution
+    from stickslip.foundation.place import Place
 
 MOST_VALUES = 20_000_000
 """Largest number of times multiplied by places in one dataset; each value takes up to 0.5 kB of memory while it is computed."""
@@ -149,31 +147,6 @@ class Plots(NamesAttributes, Generic[Run]):
         return animation.write(animation.data(self._run, start, end, frames), path, progress=progress)
 
 
-class SolutionPlots(Plots["Solution"]):
-    """Figures of a whole run: as in `Plots`, its catalogue, and its path through the solutions of the contact equation."""
-
-    def catalogue(self, event: int | None = None, **place: Unpack[Place]) -> Figure:
-        """Draw the slip events, one of them in ever closer zooms, and their distributions.
-
-        `event` is the row number in `solution.events` of the zooms; negative ones count from the last. By default it is the last
-        event whose slip is at least 99 % of the largest. A figure of one journal column has two panels in a row instead of three.
-        Panels for which a figure is too low are left out, the zooms first. Raises InputError if the run has no slip event, or not
-        the one asked for.
-        """
-        from stickslip.figures.runs import catalogue
-
-        return known_to_pyplot(catalogue.draw(catalogue.data(self._run, event), **place), place)
-
-    def path(self, **place: Unpack[Place]) -> Figure | Axes:
-        """Draw the solutions of the contact equation (the set K) and the path of the run through them.
-
-        Raises InputError for a block, a contact mass, or a law with a state variable, which have no such set.
-        """
-        from stickslip.figures.contact import admissible
-
-        return known_to_pyplot(admissible.draw(admissible.data(self._run.problem, self._run), **place), place)
-
-
 class Exports(Readings):
     """A run, or a window on it, that draws itself and hands itself to other tools."""
 
@@ -204,13 +177,6 @@ class Exports(Readings):
         return write_scec(self, path, sampling_rate, **options)
 
 
-def to_netcdf(solution: Solution, path: str | Path) -> Path:
-    """Write a solution to a netCDF file: see `Solution.to_netcdf`."""
-    from stickslip.io.netcdf import write_solution
-
-    return write_solution(solution, path)
-
-
 def figure_of_study(study: object) -> Any:
     """Return the module with the functions `data` and `draw` of a study."""
     from stickslip.figures.studies import figure_of
@@ -237,36 +203,3 @@ def check_size(t: ArrayLike, x: ArrayLike | None) -> None:
     wanted = np.size(t) * (1 if x is None else np.size(x))
     if wanted > MOST_VALUES:
         raise InputError(f"to_dataset: {wanted:.3g} values are too many: take fewer times or places (at most {MOST_VALUES:.0e})")
-
-
-class PlanarPlots(NamesAttributes):
-    """Figures of the run of a planar slab: `run.plot()` draws the default one, `run.plot.animation(path)` writes a film."""
-
-    def __init__(self, run: PlanarSolution) -> None:
-        self._run = run
-
-    def __call__(self, **place: Unpack[Place]) -> Figure:
-        """Draw the slip rate over y and time, and the motion in the middle against time; keywords as those of `Solution.plot`."""
-        from stickslip.figures.runs import planar
-
-        return known_to_pyplot(planar.draw(self._run, **place), place)
-
-    def animation(
-        self,
-        path: str | Path,
-        start: float | None = None,
-        end: float | None = None,
-        *,
-        frames: int | None = None,
-        progress: Callable[[int, int], object] | None = None,
-    ) -> Path:
-        """Write an animation of slip rate and slip on the contact to a .gif, .mp4 or .webm, and return the path.
-
-        The last two need ffmpeg. The animation shows profiles along a line, or maps of a plane, from `start` to `end` (s; by
-        default those of the run) in 150 `frames`, unless another number is given, 20 per second and at most those that the run has
-        kept. `progress` is called with the number of finished frames and the number of all frames. Raises InputError for fewer than
-        two frames, and if the software that writes such a file is missing.
-        """
-        from stickslip.figures.runs import planar
-
-        return planar.animate(self._run, path, start, end, frames=frames, progress=progress)

@@ -3,31 +3,34 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.foundation.arguments import NamesAttributes
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.formatting import brief
 from stickslip.observables.energy.balance import LONG_NAMES
 from stickslip.observables.planar import pulses, rupture_speed, rupture_times
 from stickslip.planar.slab import ENOUGH_NODES, PlanarSlab
-from stickslip.solution.accessors import PlanarPlots
+from stickslip.solution.accessors import known_to_pyplot
 from stickslip.trajectory.slip_events import default_event_rate
 from stickslip.trajectory.status import STATUSES, Status
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.figure import Figure
 
+    from stickslip.foundation.place import Place
     from stickslip.planar.solver import PlanarSolver
     from stickslip.planar.step import Motion
 
-Floats = NDArray[np.float64]
 FIELDS = {"slip": "m", "slip_rate": "m s-1", "traction": "Pa", "heat": "J m-2"}
 """Unit of each field of a frame."""
 MOTION = {"slip": "slip", "slip_rate": "rate", "traction": "traction", "heat": "heat"}
@@ -36,6 +39,39 @@ LARGEST_MISS = 0.1
 """Miss of the energy balance, as a share of the heat, from which a run is not called resolved."""
 FEWEST_STEPS, QUICK = 100.0, 2e8
 """Steps in a round trip in which energies are followed, at least; and `cost` up to which a summary has them: about two seconds."""
+
+
+class PlanarPlots(NamesAttributes):
+    """Figures of the run of a planar slab: `run.plot()` draws the default one, `run.plot.animation(path)` writes a film."""
+
+    def __init__(self, run: PlanarSolution) -> None:
+        self._run = run
+
+    def __call__(self, **place: Unpack[Place]) -> Figure:
+        """Draw the slip rate over y and time, and the motion in the middle against time; keywords as those of `Solution.plot`."""
+        from stickslip.figures.runs import planar
+
+        return known_to_pyplot(planar.draw(self._run, **place), place)
+
+    def animation(
+        self,
+        path: str | Path,
+        start: float | None = None,
+        end: float | None = None,
+        *,
+        frames: int | None = None,
+        progress: Callable[[int, int], object] | None = None,
+    ) -> Path:
+        """Write an animation of slip rate and slip on the contact to a .gif, .mp4 or .webm, and return the path.
+
+        The last two need ffmpeg. The animation shows profiles along a line, or maps of a plane, from `start` to `end` (s; by
+        default those of the run) in 150 `frames`, unless another number is given, 20 per second and at most those that the run has
+        kept. `progress` is called with the number of finished frames and the number of all frames. Raises InputError for fewer than
+        two frames, and if the software that writes such a file is missing.
+        """
+        from stickslip.figures.runs import planar
+
+        return planar.animate(self._run, path, start, end, frames=frames, progress=progress)
 
 
 @dataclass(frozen=True, eq=False)

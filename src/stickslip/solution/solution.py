@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,7 +17,7 @@ from stickslip.observables.event_table import events_table
 from stickslip.observables.proof import Proof, proven
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_event_rate
-from stickslip.solution.accessors import Exports, SolutionPlots, to_netcdf
+from stickslip.solution.accessors import Exports, Plots, known_to_pyplot
 from stickslip.solution.window import Window, window_around
 from stickslip.trajectory.history import History
 from stickslip.trajectory.slip_events import default_event_rate
@@ -27,8 +27,36 @@ from stickslip.trajectory.tables import creep_note, creep_table
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
+    from stickslip.foundation.place import Place
     from stickslip.observables.rule_influence import RuleInfluence
+
+
+class SolutionPlots(Plots["Solution"]):
+    """Figures of a whole run: as in `Plots`, its catalogue, and its path through the solutions of the contact equation."""
+
+    def catalogue(self, event: int | None = None, **place: Unpack[Place]) -> Figure:
+        """Draw the slip events, one of them in ever closer zooms, and their distributions.
+
+        `event` is the row number in `solution.events` of the zooms; negative ones count from the last. By default it is the last
+        event whose slip is at least 99 % of the largest. A figure of one journal column has two panels in a row instead of three.
+        Panels for which a figure is too low are left out, the zooms first. Raises InputError if the run has no slip event, or not
+        the one asked for.
+        """
+        from stickslip.figures.runs import catalogue
+
+        return known_to_pyplot(catalogue.draw(catalogue.data(self._run, event), **place), place)
+
+    def path(self, **place: Unpack[Place]) -> Figure | Axes:
+        """Draw the solutions of the contact equation (the set K) and the path of the run through them.
+
+        Raises InputError for a block, a contact mass, or a law with a state variable, which have no such set.
+        """
+        from stickslip.figures.contact import admissible
+
+        return known_to_pyplot(admissible.draw(admissible.data(self._run.problem, self._run), **place), place)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -161,7 +189,9 @@ class Solution(Exports):
 
     def to_netcdf(self, path: str | Path) -> Path:
         """Write the solution to a netCDF file, and return the path; `stickslip.open_solution` restores it bit for bit."""
-        return to_netcdf(self, path)
+        from stickslip.io.netcdf import write_solution
+
+        return write_solution(self, path)
 
     @property
     def plot(self) -> SolutionPlots:

@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-    from stickslip.solution.solution import Solution
-
 MARGIN = 0.1
 """Default time shown on either side of an event, as a share of its duration."""
 
@@ -37,7 +35,8 @@ class Window(Exports):
     `after` (s) are the times around its start that `curve` and `plot` show; values can be read at any time within the run.
     """
 
-    solution: Solution
+    solution: Exports
+    """The whole run."""
     history: History
     event: pd.Series
     before: float
@@ -97,7 +96,7 @@ AFTER = Quantity("s", "time to show after the start of an event", above=0)
 
 
 def window_around(
-    solution: Solution, event: pd.Series, before: float | str | WithUnit | None, after: float | str | WithUnit | None
+    solution: Exports, event: pd.Series, before: float | str | WithUnit | None, after: float | str | WithUnit | None
 ) -> Window:
     """Return the window on an event; see `Solution.window`."""
     lasts = float(event.duration)

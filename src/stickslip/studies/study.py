@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-    from stickslip.solution.place import Place
+    from stickslip.foundation.place import Place
 
 MAX_PIECES = 200_000
 """Default limit on the pieces of history of one run, which are held in memory (some 400 bytes each)."""

@@ -32,9 +32,9 @@ from stickslip.figures.style import (
 )
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.place import Place
 from stickslip.problem.problem import Problem
 from stickslip.resistance import Resistance
-from stickslip.solution.place import Place
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -15,8 +15,8 @@ from stickslip.figures.style import BLUE, GREY, INK, axis_text, quantity, spans_
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.place import Place
 from stickslip.friction import Fit, Smooth
-from stickslip.solution.place import Place
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -14,8 +14,8 @@ from stickslip.contact.regime_map import RegimeMap
 from stickslip.figures.panels import add_legend, draw_map, draw_parameters, finish, parameter_numbers
 from stickslip.figures.sheet import one_panel
 from stickslip.figures.style import INK, PALE, TWO, shown, styled, unit_shown
+from stickslip.foundation.place import Place
 from stickslip.problem.problem import Problem
-from stickslip.solution.place import Place
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

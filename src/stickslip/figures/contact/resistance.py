@@ -17,8 +17,8 @@ from stickslip.figures.panels import letter_panels, panels, zero_line
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import BLUE, GREY, INK, PURPLE, VERMILLION, curve_quantity, label, quantity, shown, styled, unit_shown
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.place import Place
 from stickslip.problem.problem import Problem
-from stickslip.solution.place import Place
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

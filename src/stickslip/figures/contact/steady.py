@@ -13,7 +13,7 @@ from stickslip.contact.steady import steady_traction
 from stickslip.figures.panels import add_legend, finish, set_log_ticks
 from stickslip.figures.sheet import one_panel
 from stickslip.figures.style import BLUE, GREY, INK, PALE, PURPLE, VERMILLION, curve_quantity, label, shown, styled, unit_shown
-from stickslip.solution.place import Place
+from stickslip.foundation.place import Place
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -25,10 +25,10 @@ from stickslip.figures.style import (
     shown,
     styled,
 )
+from stickslip.foundation.place import Place
 from stickslip.foundation.quantities import quantities_of
 from stickslip.friction import FrictionLaw
 from stickslip.problem.problem import Problem
-from stickslip.solution.place import Place
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -36,10 +36,10 @@ from stickslip.figures.style import (
 )
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.place import Place
 from stickslip.observables.event_table import that_count
 from stickslip.observables.predictability import is_followed, predictability
 from stickslip.solution.interval import last_large_event
-from stickslip.solution.place import Place
 from stickslip.solution.solution import Solution
 
 if TYPE_CHECKING:

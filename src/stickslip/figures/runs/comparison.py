@@ -23,7 +23,7 @@ from stickslip.figures.style import (
     unit_of,
     unit_shown,
 )
-from stickslip.solution.place import Place
+from stickslip.foundation.place import Place
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

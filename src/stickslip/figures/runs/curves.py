@@ -32,9 +32,9 @@ from stickslip.figures.style import (
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.place import Place
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.solution.evaluation import Curve, Readings, times_of
-from stickslip.solution.place import Place
 from stickslip.trajectory.tables import shock_columns
 
 if TYPE_CHECKING:

@@ -24,9 +24,9 @@ from stickslip.figures.style import (
     title_of,
     unit_of,
 )
+from stickslip.foundation.place import Place
 from stickslip.observables.energy.balance import energies
 from stickslip.solution.interval import choose_interval
-from stickslip.solution.place import Place
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -37,9 +37,9 @@ from stickslip.figures.style import (
     unit_shown,
 )
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.place import Place
 from stickslip.observables.field import slab_of
 from stickslip.solution.interval import choose_interval, fronts_of
-from stickslip.solution.place import Place
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -15,7 +15,7 @@ from stickslip.figures.runs.animation import FRAMES, Stage, Told, film
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import GREEN, INK, axis_text, styled, unit_of
 from stickslip.foundation.errors import InputError
-from stickslip.solution.place import Place
+from stickslip.foundation.place import Place
 from stickslip.solution.planar import PlanarSolution
 
 if TYPE_CHECKING:

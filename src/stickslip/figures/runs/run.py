@@ -22,10 +22,10 @@ from stickslip.figures.runs.curves import (
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import GREY, INK, PALE, styled, time_unit, title_of, unit_of
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.place import Place
 from stickslip.loading import LoadingHistory
 from stickslip.problem.problem import MAY_VARY
 from stickslip.solution.evaluation import Readings
-from stickslip.solution.place import Place
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

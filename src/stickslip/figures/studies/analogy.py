@@ -17,7 +17,7 @@ from matplotlib.ticker import FixedFormatter, FixedLocator, NullFormatter
 from stickslip.figures.panels import cell_edges, draw_map, draw_parameters, letter_panels, panels, parameter_numbers, set_title
 from stickslip.figures.style import INK, PALE, TWO, shown, styled
 from stickslip.foundation.arrays import Floats
-from stickslip.solution.place import Place
+from stickslip.foundation.place import Place
 from stickslip.studies.analogy import QUANTITIES, Analogy
 
 LARGEST_RATIO = 10.0

@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 
 from stickslip.figures.panels import add_legend, letter_panels, panels, set_log_ticks, zero_line
 from stickslip.figures.style import LINE_COLOURS, axis_text, curve_quantity, nearly_flat, quantity, styled, time_unit, unit_of
+from stickslip.foundation.place import Place
 from stickslip.solution.evaluation import Curve, Readings
-from stickslip.solution.place import Place
 
 if TYPE_CHECKING:
     from stickslip.solution.solution import Solution

@@ -17,7 +17,7 @@ from matplotlib.ticker import MaxNLocator
 from stickslip.figures.panels import add_legend, count_ticks, letter_panels, set_log_ticks, set_scale
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import BLUE, GREY, INK, SKY, VERMILLION, WIDE, curve_quantity, quantity, styled, time_unit, unit_of
-from stickslip.solution.place import Place
+from stickslip.foundation.place import Place
 
 if TYPE_CHECKING:
     from stickslip.studies.ensemble import Ensemble

@@ -13,7 +13,7 @@ from stickslip.figures.names import parameter_name
 from stickslip.figures.panels import add_legend, finish, set_log_ticks
 from stickslip.figures.sheet import one_panel
 from stickslip.figures.style import BLUE, ORANGE, label, quantity, shown, styled, unit_shown
-from stickslip.solution.place import Place
+from stickslip.foundation.place import Place
 from stickslip.studies.find import Edge
 
 if TYPE_CHECKING:

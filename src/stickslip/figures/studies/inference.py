@@ -21,7 +21,7 @@ from stickslip.figures.names import parameter_name, symbol
 from stickslip.figures.panels import add_legend, letter_panels, set_title, zero_line
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import BLUE, GREY, INK, SKY, VERMILLION, axis_text, quantity, spans_decades, styled, time_unit, unit_of
-from stickslip.solution.place import Place
+from stickslip.foundation.place import Place
 
 if TYPE_CHECKING:
     from stickslip.studies.inference.inference import Inference

@@ -16,7 +16,7 @@ from stickslip.figures.panels import add_legend, letter_panels, set_title, zero_
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import GREY, INK, LINE_COLOURS, curve_quantity, label, quantity, shown, styled, unit_shown
 from stickslip.foundation.arrays import Floats
-from stickslip.solution.place import Place
+from stickslip.foundation.place import Place
 from stickslip.studies.regularisations import kind_of
 
 if TYPE_CHECKING:

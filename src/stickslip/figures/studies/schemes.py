@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from stickslip.figures.panels import add_legend, letter_panels, set_log_ticks, set_title, zero_line
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import GREY, INK, LINE_COLOURS, curve_quantity, label, quantity, shown, styled, unit_shown
-from stickslip.solution.place import Place
+from stickslip.foundation.place import Place
 
 if TYPE_CHECKING:
     from stickslip.studies.schemes import Schemes

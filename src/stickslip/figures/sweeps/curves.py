@@ -16,7 +16,7 @@ from stickslip.figures.sheet import one_panel
 from stickslip.figures.style import BLUE, GREY, LINE_COLOURS
 from stickslip.figures.sweeps.varied import Scaled, Shown, folded, names_of, scaled, shown
 from stickslip.foundation.arrays import Floats
-from stickslip.solution.place import Place
+from stickslip.foundation.place import Place
 
 MOST_CURVES = 4
 """A second key of up to this number of values gives a family of curves, one of more a map: each curve has its own colour."""

@@ -21,7 +21,7 @@ from stickslip.figures.style import BLUE, GREY, INK, PALE
 from stickslip.figures.sweeps.colours import Colours, colours_of, explain, failed_area, prepare
 from stickslip.figures.sweeps.curves import mark_missing, missing_marks, show_ordinate
 from stickslip.figures.sweeps.varied import LITTLE, ROOM, Names, Scaled, Shown, names_of, scaled, shown
-from stickslip.solution.place import Place
+from stickslip.foundation.place import Place
 from stickslip.sweeps.results.layout import read_design
 
 PANELS = 9

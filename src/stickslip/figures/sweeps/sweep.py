@@ -19,7 +19,7 @@ from stickslip.figures.sweeps.curves import MOST_CURVES, draw_curves
 from stickslip.figures.sweeps.maps import draw_maps, draw_members
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.solution.place import Place
+from stickslip.foundation.place import Place
 from stickslip.sweeps.design.design import MEMBER
 from stickslip.sweeps.execution.chunk import FIRST_FAILURE, NOT_RUN
 

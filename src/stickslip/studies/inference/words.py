@@ -5,22 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.formatting import brief
 from stickslip.studies.inference.features import arrests_in
+from stickslip.studies.inference.fitted_record import FittedRecord
 from stickslip.studies.inference.free import DELAY, TREND
 from stickslip.studies.inference.memory import EVEN, LONGEST, WHITE
 from stickslip.studies.inference.noise import rounding_of
 from stickslip.studies.inference.part import first_sizes
 from stickslip.studies.inference.record import SHEAR
 from stickslip.studies.inference.windows import told
-
-if TYPE_CHECKING:
-    from stickslip.studies.inference.inference import Inference
 
 MISSED, MISSED_SHARE = 3.0, 0.2
 """Sizes of residuals, in the noise of neighbouring samples and in the scatter of the record, beyond which a run misses it."""
@@ -30,7 +28,7 @@ MANY = 1.5
 """Size of residuals, in the standard deviations that were given, from which they are told to be larger."""
 
 
-def notes_of(study: Inference) -> Iterator[str]:
+def notes_of(study: FittedRecord) -> Iterator[str]:
     """Yield sentences on what is not determined, and on what else to know before the numbers are used."""
     yield from warnings_of(study)
     yield from study.certainty.notes
@@ -45,21 +43,21 @@ def notes_of(study: Inference) -> Iterator[str]:
     yield from study.about
 
 
-def warnings_of(study: Inference) -> Iterator[str]:
+def warnings_of(study: FittedRecord) -> Iterator[str]:
     """Yield sentences on what speaks against the numbers as a whole."""
     if not study.estimate.finished:
         yield "interrupted: these are the best numbers so far"
     yield from _misfit(study)
 
 
-def minima_of(study: Inference) -> Iterator[str]:
+def minima_of(study: FittedRecord) -> Iterator[str]:
     """Yield a sentence on each other minimum that competes with the best one."""
     for x in study.estimate.others:
         values = [f"{one.label} {brief(v, one.declared.unit, 3)}" for one, v in zip(study.free, study.model.values(x), strict=True)]
         yield f"another minimum fits almost as well: {', '.join(values[:8])}; bounds or priors choose between them"
 
 
-def noise_of(study: Inference) -> Iterator[str]:
+def noise_of(study: FittedRecord) -> Iterator[str]:
     """Yield sentences on the memory of the noise, and on standard deviations that were given too small."""
     if study.features is not None:
         yield from _features(study, missed=False)
@@ -72,14 +70,14 @@ def noise_of(study: Inference) -> Iterator[str]:
             yield f"residuals of {name} are {size:.3g} times the standard deviations given; the intervals allow for it"
 
 
-def record_of(study: Inference) -> Iterator[str]:
+def record_of(study: FittedRecord) -> Iterator[str]:
     """Yield a sentence if numbers of the record itself were found, which no scenario holds."""
     own = [f"{name} = {study.values[name]:.4g}" for name in (TREND, DELAY) if name in study.values]
     if own:
         yield f"{' and '.join(own)} belong to the record: the run of the best scenario, and the explorer, are without them"
 
 
-def _features(study: Inference, *, missed: bool) -> Iterator[str]:
+def _features(study: FittedRecord, *, missed: bool) -> Iterator[str]:
     """Yield a sentence on each feature whose mean the run misses, or does not miss."""
     if study.features is None:
         return
@@ -92,7 +90,7 @@ def _features(study: Inference, *, missed: bool) -> Iterator[str]:
         yield f"{'the run misses ' * missed}{of}: the mean of the record is {mean}, and the run {ran}{away}"
 
 
-def _misfit(study: Inference) -> Iterator[str]:
+def _misfit(study: FittedRecord) -> Iterator[str]:
     """Yield sentences on what is left if that is no noise: far too much of it, a drift, or most where the run changes."""
     if study.features is not None:
         yield from _features(study, missed=True)
@@ -121,18 +119,18 @@ def _misfit(study: Inference) -> Iterator[str]:
             )
 
 
-def _scatter(study: Inference, name: str) -> float:
+def _scatter(study: FittedRecord, name: str) -> float:
     """Return the standard deviation of what was measured (SI)."""
     values = [part.record.measured[name] for part in study.model.parts if name in part.observed]
     return max(float(np.nanstd(np.concatenate(values))), 1e-300)
 
 
-def _rounding(study: Inference, name: str) -> float:
+def _rounding(study: FittedRecord, name: str) -> float:
     """Return half the step of the digitiser of a quantity (SI), 0 if it has none that shows."""
     return max(rounding_of(part.record.measured[name]) for part in study.model.parts if name in part.observed)
 
 
-def _drifts(study: Inference, name: str) -> bool:
+def _drifts(study: FittedRecord, name: str) -> bool:
     """Return True if what is left of a quantity remembers itself for as long as is looked for."""
     longest = max(part.record.clock[-1] for part in study.model.parts if name in part.observed)
     return study.model.memory.get(name, WHITE).time > 0.95 * LONGEST * float(longest)
@@ -146,7 +144,7 @@ def _sticks_and_slips(shear: Floats) -> bool:
     return len(bottoms) > 2 and falling < FALLING * bottoms[-1]
 
 
-def _never_slips(study: Inference, name: str) -> bool:
+def _never_slips(study: FittedRecord, name: str) -> bool:
     """Return True if shear drops in a record as in a slip event, and nothing of the kind happens in its run."""
     shown = study.curves[study.curves.quantity == name]
     drops = name in SHEAR and any(len(arrests_in(part.record.measured[name])) > 0 for part in study.parts)
