@@ -151,7 +151,7 @@ LAZY_DOORS = {
     "contact/sliding.py",
     "contact/uniqueness.py",
     "friction/custom/fit.py",
-    "friction/custom/fit_parameters.py",
+    "friction/custom/fit_search.py",
     "friction/formula/expression.py",
     "scenarios/scenario.py",
     "solution/accessors.py",
