@@ -13,7 +13,6 @@ from pathlib import Path
 import pytest
 
 from stickslip.cli import installation
-from stickslip.cli.installation import Trial, judged
 from stickslip.cli.main import main
 from stickslip.scenarios.templates import template
 from tests.cli.conftest import Outcome
@@ -34,8 +33,13 @@ def versions(monkeypatch: pytest.MonkeyPatch, **replaced: str | None) -> None:
     monkeypatch.setattr(metadata, "version", find)
 
 
-def without_trials(monkeypatch: pytest.MonkeyPatch, *trials: Callable[[], Trial]) -> None:
-    monkeypatch.setattr(installation, "TRIALS", trials)
+EXACT = 0.5e8 / 9.8e6 - 1.0
+"""Slip rate (m/s) that the self-test compares with."""
+
+
+def answering(monkeypatch: pytest.MonkeyPatch, rate: float = EXACT) -> None:
+    """Let the run of the self-test have this answer, without a run."""
+    monkeypatch.setattr(installation, "_slip_rate_after_onset", lambda: rate)
 
 
 def fault(found: Outcome) -> str:
@@ -86,7 +90,7 @@ def test_what_a_first_run_needs_the_self_test_has_compiled(tmp_path: Path) -> No
 
 def test_an_extra_that_is_missing_is_told_and_no_fault(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
     versions(monkeypatch, pyarrow=None)
-    without_trials(monkeypatch)
+    answering(monkeypatch)
     found = command("doctor")
     assert found.code == 0
     assert "pip install 'stickslip[parquet]'" in found.out
@@ -99,7 +103,7 @@ def test_a_library_that_is_missing_or_too_old_is_a_fault(
     command: Command, monkeypatch: pytest.MonkeyPatch, version: str | None, said: str
 ) -> None:
     versions(monkeypatch, numba=version)
-    without_trials(monkeypatch)
+    answering(monkeypatch)
     found = command("doctor")
     assert fault(found).startswith(f"{said}: pip install 'numba")
     assert ("self-test" in found.out) == (version is not None)
@@ -112,7 +116,7 @@ def test_a_package_without_metadata_is_a_fault(command: Command, monkeypatch: py
     monkeypatch.setattr(metadata, "requires", none)
     found = command("doctor")
     assert fault(found) == "No package metadata was found for stickslip: pip install --force-reinstall stickslip"
-    assert "terminal" in found.out
+    assert "python" in found.out
 
 
 def file_in_place(folder: Path) -> Path:
@@ -131,7 +135,7 @@ def test_a_cache_that_cannot_be_used_is_a_fault(
     command: Command, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, made: Callable[[Path], Path], said: str
 ) -> None:
     monkeypatch.setenv("STICKSLIP_CACHE_DIR", str(made(tmp_path)))
-    without_trials(monkeypatch)
+    answering(monkeypatch)
     text = fault(command("doctor"))
     assert said in text
     assert text.endswith("set STICKSLIP_CACHE_DIR to a folder that you own")
@@ -145,21 +149,6 @@ def test_a_full_disk_is_a_fault(monkeypatch: pytest.MonkeyPatch, tmp_path: Path)
         assert "(No space left on device)" in installation.compiled_code(tmp_path, "compiled-1").fault
 
 
-def test_code_of_other_versions_is_counted(tmp_path: Path) -> None:
-    for name in ("compiled-1", "compiled-2"):
-        (tmp_path / name).mkdir()
-        (tmp_path / name / "code").write_bytes(bytes(3_000_000))
-    shown = installation.compiled_code(tmp_path, "compiled-1")
-    assert shown.fault == ""
-    assert "3.0 MB, and 3.0 MB of other versions, which may be removed" in shown.value
-
-
-def test_a_terminal_that_is_not_utf_8_is_a_fault(monkeypatch: pytest.MonkeyPatch) -> None:
-    for encoding, is_fault in (("utf8", False), ("latin-1", True), ("ascii", True)):
-        monkeypatch.setattr("sys.stdout", io.TextIOWrapper(io.BytesIO(), encoding=encoding))
-        assert ("set PYTHONUTF8=1" in installation.terminal().fault) == is_fault
-
-
 def test_a_title_that_the_terminal_cannot_show_is_written_with_escapes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "mine.toml").write_text(template("slab").replace('title = ""', 'title = "ä and α"'), encoding="utf-8")
     shown = io.TextIOWrapper(io.BytesIO(), encoding="latin-1")
@@ -170,24 +159,26 @@ def test_a_title_that_the_terminal_cannot_show_is_written_with_escapes(tmp_path:
 
 
 def test_an_answer_off_the_closed_form_is_a_fault(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert judged(Trial("slip", 1.0 + 0.9e-9, 1.0, "m")).fault == ""
-    without_trials(monkeypatch, lambda: Trial("slip", 1.0 + 1.1e-9, 1.0, "m"))
-    assert fault(command("doctor")).startswith("slip 1.000000001 m, closed form 1 m: remove the cache")
-    assert judged(Trial("slip", float("nan"), 1.0, "m")).fault != ""
+    answering(monkeypatch, EXACT * (1.0 + 0.9e-9))
+    assert command("doctor").code == 0
+    for rate in (EXACT * (1.0 + 1.1e-9), float("nan")):
+        answering(monkeypatch, rate)
+        said = fault(command("doctor"))
+        assert said.startswith(f"slip rate of a slab {rate:.10g} m/s, closed form 4.102040816 m/s: remove the cache")
 
 
 def test_a_run_that_cannot_be_made_is_a_fault(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
-    def broken() -> Trial:
+    def broken() -> float:
         raise OSError("libLLVM.so:\ncannot be opened")
 
-    without_trials(monkeypatch, broken)
+    monkeypatch.setattr(installation, "_slip_rate_after_onset", broken)
     text = fault(command("doctor"))
     assert text == "the engine cannot run (OSError: libLLVM.so: cannot be opened): pip install --force-reinstall stickslip"
 
 
 def test_an_engine_that_is_not_compiled_is_a_fault(command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("stickslip.engine.compile.uncompiled.UNCOMPILED", True)
-    without_trials(monkeypatch)
+    answering(monkeypatch)
     assert fault(command("doctor")).endswith("unset it")
 
 

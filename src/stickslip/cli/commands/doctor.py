@@ -1,4 +1,4 @@
-"""`stickslip doctor`: look at the installation, and compare a few answers with closed forms."""
+"""`stickslip doctor`: look at the installation, and compare a short run with a closed form."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from stickslip.foundation.errors import InputError
 
 
 def doctor() -> None:
-    r"""Check this installation: versions, threads, cache, extras, and a self-test against closed forms.
+    r"""Check this installation: versions, cache, extras, and a short run against a closed form.
 
     The self-test takes about a second; the first time it compiles what a run
     needs, which takes about half a minute, once. An extra that is not installed
