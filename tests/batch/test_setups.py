@@ -100,6 +100,7 @@ def test_setups_of_a_batch_equal_those_of_single_runs(name: str) -> None:
             assert found[2:] == pytest.approx(setup.branches.T[2:], rel=0, abs=LEVEL * problem.strength)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("rule", OF_LEVELS)
 @pytest.mark.parametrize("name", ["rate", "stribeck", "gauss", "power"])
 def test_branches_of_a_batch_equal_those_of_the_contact_equation(name: str, rule: str) -> None:

@@ -160,7 +160,17 @@ def wrong_numbers(comment: str, code: str, said: str) -> list[str]:
     return [text for text in re.findall(number, comment) if not is_right(text)]
 
 
-def run_page(page: Path) -> None:
+LONG = ('"10 years" --catalogue', '"35 mm/year"', "pull_rate=0.5)", "stickslip analogy --figure")
+"""Texts in blocks that take several seconds each, and on which no other block depends: they are run with the slow tests."""
+
+
+def has_long_blocks(page: Path) -> bool:
+    """Return True if `run_page` leaves something out unless it is asked for the whole page."""
+    text = page.read_text(encoding="utf-8")
+    return any(one in text for one in LONG)
+
+
+def run_page(page: Path, *, whole: bool) -> None:
     """Run the blocks of a page in the present folder, and check that each does what the page shows."""
     mpl.use("agg")
     module = types.ModuleType(f"page_{page.stem.replace('-', '_')}")
@@ -169,6 +179,8 @@ def run_page(page: Path) -> None:
     sys.modules[module.__name__] = module  # where classes that a page defines look for their names
     try:
         for block in blocks_of(page):
+            if not whole and any(one in block.text for one in LONG):
+                continue
             _run_block(block, module, f"{page.name}, line {block.line}")
     finally:
         del sys.modules[module.__name__]

@@ -21,6 +21,7 @@ from tests.docs.pages import (
     PAPER,
     ROOT,
     blocks_of,
+    has_long_blocks,
     run_page,
     wrong_numbers,
 )
@@ -39,8 +40,16 @@ def _forget_rules() -> Iterator[None]:
 
 @pytest.mark.parametrize("page", [page for page in PAGES if page != PAPER], ids=page_name)  # tests/paper runs that page
 def test_every_example_does_what_its_page_shows(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """All but the blocks that take long, for which there is the next test."""
     monkeypatch.chdir(tmp_path)
-    run_page(page)
+    run_page(page, whole=False)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", [page for page in PAGES if has_long_blocks(page)], ids=page_name)
+def test_every_example_of_a_page_does_what_it_shows(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    run_page(page, whole=True)
 
 
 @pytest.mark.parametrize(

@@ -157,7 +157,7 @@ def sound(script: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, P
     return roots
 
 
-@pytest.mark.sampled(every=5)
+@pytest.mark.sampled(every=9)
 @pytest.mark.parametrize("damage", DAMAGE)
 @pytest.mark.parametrize("kind", KINDS)
 def test_what_is_damaged_is_compiled_again(kind: str, damage: str, tmp_path: Path, script: Path, sound: dict[str, Path]) -> None:

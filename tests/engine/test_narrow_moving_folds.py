@@ -85,6 +85,7 @@ def slip_after(w: float) -> float:
     return float(brentq(lambda u: time_to(u, w, jump) - DURATION, 3.0, 5.5, xtol=1e-12, rtol=1e-12))
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("w", WIDTHS[::-1])
 def test_perfect_delay_follows_folds_that_move(w: float) -> None:
     """Slip after 6 s to 1e-7; the slip of the jump to 1e-6."""

@@ -140,6 +140,7 @@ def test_the_first_round_trips_of_sliding_are_all_run() -> None:
     assert len(ss.simulate(CASES["fades"], 0.9 * PATIENCE * LAB.two_way_time).creep) == 0
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("case", ["swings", "state"])
 @pytest.mark.parametrize("share", [0.03, 0.5, 0.999])
 def test_a_resumed_run_leaps_as_if_it_had_not_stopped(case: str, share: float, tmp_path: Path) -> None:

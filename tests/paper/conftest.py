@@ -30,6 +30,6 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         return out / made.name
 
     with contextlib.chdir(home), patch("stickslip.paper.make", make_deep):
-        run_page(PAPER)
+        run_page(PAPER, whole=True)
     assert len(steps) == 8 + 20 + 2
     return home / "paper"
