@@ -63,7 +63,7 @@ CASES = [
         '"12 s"\nselection = 3',
         "[run] selection 3 is unknown; allowed: maximal, maxwell, minimal, perfect-delay or a registered one",
     ),
-    ('"12 s"', '"12 s"\np_wave = ', "line 19: 'p_wave =' is not TOML: p_wave has no value"),
+    ('"12 s"', '"12 s"\np_wave = ', "line 19: 'p_wave =' is not TOML: Invalid value"),
     ('"12 s"', "1" + 5000 * "0", None),
     ('"12 s"', 3000 * "[", None),
 ]  # fmt: skip

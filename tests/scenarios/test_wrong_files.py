@@ -1,4 +1,4 @@
-"""What is given in place of a scenario file, and slips of the pen in one, are told in one line with the cure."""
+"""What is given in place of a scenario file, and slips of the pen in one, are told in one line."""
 
 import os
 import tomllib
@@ -28,47 +28,35 @@ def refusal(path: Path) -> str:
     return message.removeprefix(f"{path}: ")
 
 
-CURES = [
-    ("alpha = 1,5", "alpha = 1.5, with a decimal point"),
-    ("alpha = -1_000,5  # s/m", "alpha = -1_000.5, with a decimal point"),
-    ("alpha = 1,5e3", "alpha = 1.5e3, with a decimal point"),
-    ("alpha = 1,5 s/m", 'alpha = "1.5 s/m", with a decimal point'),
-    ("alpha = .5", "alpha = 0.5, with a digit before the point"),
-    ("alpha = -.5e3", "alpha = -0.5e3, with a digit before the point"),
-    ("alpha = 5.", "alpha = 5.0, with a digit after the point"),
-    ("alpha = 5.e3", "alpha = 5.0e3, with a digit after the point"),
-    ("alpha = 1 000.5", "alpha = 1000.5, without gaps"),
-    ("alpha = 1'000", "alpha = 1000, without gaps"),
-    ("alpha = 05", "alpha = 5, without the first 0"),
-    ("alpha = 1 s/m", 'alpha = "1 s/m", in quotes'),
-    ("alpha = 1s/m", 'alpha = "1s/m", in quotes'),
-    ("alpha = word", 'alpha = "word", in quotes'),
-    ('alpha = "1 s/m', 'alpha = "1 s/m", with both quotes'),
-    ("alpha = \u201c1 s/m\u201d", 'alpha = "1 s/m", with straight quotes'),
-    ("alpha = True", "alpha = true, in small letters"),
-    ("alpha = 1;", "alpha = 1, and no other sign"),
-    ("alpha == 1", "alpha = 1, and no other sign"),
-    ("alpha = 10^3", "alpha = the number itself, as 1e3: nothing is calculated"),
-    ("alpha : 1", "alpha = 1"),
-    ("alpha 1", "KEY = VALUE, or # before a comment"),
-    ("[friction", "[friction]"),
+FORM = 'write a number as 1.5 or 1e3, and a word or a number with a unit in quotes, as "1.5 s/m"'
+SLIPS = [
+    ("alpha = 1,5", FORM),
+    ("alpha = .5", FORM),
+    ("alpha = 5.", FORM),
+    ("alpha = 05", FORM),
+    ("alpha = 1 s/m", FORM),
+    ("alpha = word", FORM),
+    ('alpha = "1 s/m', FORM),
+    ("alpha = \u201c1 s/m\u201d", FORM),
+    ("alpha = 10^3", FORM),
+    ("alpha =", "Invalid value"),
+    ("alpha : 1", "Expected '=' after a key in a key/value pair"),
+    ("alpha 1", "Expected '=' after a key in a key/value pair"),
+    ("[friction", "Expected ']' at the end of a table declaration"),
 ]
 
 
-@pytest.mark.parametrize(("line", "cure"), CURES)
-def test_a_slip_of_the_pen_is_told_with_its_line_and_its_cure(tmp_path: Path, line: str, cure: str):
+@pytest.mark.parametrize(("line", "why"), SLIPS)
+def test_a_slip_of_the_pen_is_told_with_its_line(tmp_path: Path, line: str, why: str):
     file = tmp_path / "mine.toml"
     text = GOOD.replace("[friction]", line) if line.startswith("[") else GOOD.replace(ALPHA, line)
     file.write_text(text, encoding="utf-8")
     place = LINE if not line.startswith("[") else GOOD.splitlines().index("[friction]") + 1
-    message = refusal(file)
-    assert message.startswith(f"line {place}: ")
-    assert message.endswith(f" is not TOML: write {cure}")
+    assert refusal(file) == f"line {place}: {line!a} is not TOML: {why}"
 
 
-@pytest.mark.parametrize("cure", [cure for _, cure in CURES if cure.startswith("alpha = ") and "number itself" not in cure])
-def test_the_cure_is_toml(cure: str):
-    assert "alpha" in tomllib.loads(cure.rpartition(", ")[0] or cure)
+def test_values_as_the_message_writes_them_are_toml():
+    assert tomllib.loads('a = 1.5\nb = 1e3\nc = "1.5 s/m"')
 
 
 UNSAFE = ["alpha = 1,5\x1b[31m", f"alpha = {'1' * 900_000}x", f"[{'a ' * 400_000}", f"alpha = {'1+' * 90_000}"]
@@ -80,16 +68,15 @@ def test_a_line_that_is_not_safe_to_show_is_cut_and_quoted(tmp_path: Path, line:
     file.write_text(GOOD.replace(ALPHA, line))
     message = refusal(file)
     assert message.isprintable()
-    assert message.startswith("not TOML: ")
+    assert "not TOML: " in message
     assert len(message) < 200
 
 
 @pytest.mark.parametrize(
     ("line", "message"),
     [
-        ("alpha =", "line {n}: 'alpha =' is not TOML: alpha has no value"),
-        ("alpha = 1\nalpha = 2", "line {m}: 'alpha = 2' is not TOML: 'alpha' is given twice"),
-        ("alpha = [1, 2", "line {k}: '[loading]' is not TOML: a bracket or a quotation mark before it is not closed"),
+        ("alpha = 1\nalpha = 2", "line {m}: 'alpha = 2' is not TOML: Cannot overwrite a value"),
+        ("alpha = [1, 2", "line {k}: '[loading]' is not TOML: Unclosed array"),
         ('alpha = "1,5 s/m"', "got '1,5 s/m': write '1.5 s/m', with a decimal point"),
         ('alpha = "1,5"', "got '1,5': write '1.5', with a decimal point"),
     ],
@@ -98,7 +85,7 @@ def test_other_slips_are_told(tmp_path: Path, line: str, message: str):
     file = tmp_path / "mine.toml"
     file.write_text(GOOD.replace(ALPHA, line))
     heading = GOOD.splitlines().index("[loading]") + 1
-    assert refusal(file).endswith(message.format(n=LINE, m=LINE + 1, k=heading))
+    assert refusal(file).endswith(message.format(m=LINE + 1, k=heading))
 
 
 def test_a_folder_tells_its_scenarios(tmp_path: Path):
