@@ -17,8 +17,7 @@ from matplotlib import pyplot as plt
 
 import stickslip as ss
 from stickslip.figures.style import GREY, LINE_COLOURS
-from stickslip.schemes.registry import SCHEMES
-from stickslip.schemes.run import run_scheme
+from stickslip.schemes.run import SCHEMES, run_scheme
 
 FIGURE = Path(__file__).with_name("figures") / "scheme-pulses.png"
 CASES = ((5.0, 1e-2), (50.0, 1e-3))

@@ -20,8 +20,7 @@ from stickslip.bodies import as_slab
 from stickslip.figures.style import LINE_COLOURS
 from stickslip.problem.problem import Problem
 from stickslip.schemes.contract import Series
-from stickslip.schemes.registry import SCHEMES
-from stickslip.schemes.run import run_scheme
+from stickslip.schemes.run import SCHEMES, run_scheme
 from stickslip.studies.regularisations import regularised
 from stickslip.studies.verdict import RulePaths, exact_runs
 

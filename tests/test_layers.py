@@ -37,10 +37,11 @@ LAYERS = (
 ROOMS = {
     "foundation": (
         ("arrays", "constants", "errors", "place"),
-        ("arguments", "atomic_write", "determined", "formatting", "units"),
-        ("conversion", "headings", "netcdf_file", "zarr_folder"),
+        ("arguments", "atomic_write", "determined", "units"),
+        ("conversion", "headings", "netcdf_file"),
         ("columns", "quantities"),
-        ("brief_repr", "other_values", "text_columns"),
+        ("other_values", "show", "text_columns"),
+        ("zarr_folder",),
     ),
     "friction": (
         ("formula",),
@@ -69,7 +70,6 @@ ROOMS = {
         ("driving", "echo", "layout", "memory", "nodes"),
         ("friction", "slab"),
         ("step",),
-        ("compiled",),
         ("solver",),
     ),
     "scenarios": (
@@ -133,11 +133,10 @@ ROOMS = {
     "explorer": (("model",), ("page",), ("server", "static"), ("notebook",)),
     "schemes": (
         ("contract",),
-        ("finite_elements",),
-        ("central_differences", "characteristics", "newmark", "sbp"),
-        ("registry", "run"),
+        ("explicit", "implicit", "sbp"),
+        ("run",),
     ),
-    "reference": (("rate_and_state",), ("block", "planar", "slab")),
+    "reference": (("rate_and_state",), ("block", "folds", "planar", "slab")),
     "cli": (
         ("output", "overrides"),
         ("long_run", "options", "installation"),

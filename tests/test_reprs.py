@@ -14,8 +14,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import stickslip as ss
-from stickslip.foundation.formatting import UNHANDY, brief, html_table
 from stickslip.foundation.quantities import Quantity, Series, declare, fields_of, quantity
+from stickslip.foundation.show import UNHANDY, brief, html_table
 from stickslip.friction import LAWS, FrictionLaw
 from stickslip.loading import HISTORIES
 

@@ -17,10 +17,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from typing_extensions import override
 
-from stickslip.foundation.brief_repr import Declared, brief_repr
 from stickslip.foundation.conversion import Number, Numbers, unit_among
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, Series, check_fields, declare, fields_of, quantity
+from stickslip.foundation.show import Declared, brief_repr
 
 VARYING = "m/s or Pa"
 """Unit of the varying quantity: m/s for a pull rate, Pa for a far stress."""

@@ -16,7 +16,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.foundation.brief_repr import brief_repr
+from stickslip.foundation.show import brief_repr
 from stickslip.friction import FrictionLaw
 from stickslip.friction.formula.differences import difference
 from stickslip.friction.formula.expression import Expression

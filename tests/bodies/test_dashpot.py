@@ -12,7 +12,7 @@ from stickslip.batch.run import run_members
 from stickslip.bodies import BODIES, has_dashpot
 from stickslip.engine_input.limits import leaps_over
 from stickslip.scenarios.scenario import Scenario
-from stickslip.schemes.registry import SCHEMES
+from stickslip.schemes.run import SCHEMES
 
 DROP = 0.3e8
 """Stress drop (Pa) of the Coulomb contact below."""

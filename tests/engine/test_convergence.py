@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import trapezoid
 
 import stickslip as ss
-from stickslip.reference.slab.pulse_period import PulseTrain
+from stickslip.reference.slab import PulseTrain
 from stickslip.studies.verdict import local_orders
 from tests.problems import DENSITY, IMPEDANCE, MODULUS, NORMAL, ROUND, SLAB, THICKNESS, slip_law_block, slip_law_slab
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 import stickslip as ss
 from stickslip.friction import LAWS
 from stickslip.friction.contract import one_argument
-from stickslip.reference.slab.stuck import StuckSlab
+from stickslip.reference.slab import StuckSlab
 from tests.engine.drawn import NORMAL, few, problems, ran
 
 TIMES = 301

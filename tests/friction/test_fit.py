@@ -12,7 +12,7 @@ from scipy.stats import binom
 
 import stickslip as ss
 from stickslip.foundation.determined import misses_trend
-from stickslip.foundation.formatting import with_uncertainty
+from stickslip.foundation.show import with_uncertainty
 from stickslip.friction import LAWS, FromExpression, Points, fit, fit_each
 from stickslip.friction.custom.fit_search import leaves, rebuilt, slopes, template
 from tests.problems import RATE_LAW, measured

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import jax
 import pytest
 
-from stickslip.planar.compiled import functions_of
+from stickslip.planar.solver import functions_of
 
 
 @pytest.fixture(scope="session", autouse=True)

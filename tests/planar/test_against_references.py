@@ -6,11 +6,12 @@ from math import inf
 
 import numpy as np
 import pytest
+from tests.reference.convolution import convolution
 from tests.reference.planar_cases import weakening_patch, weakening_plane
 
 import stickslip as ss
 from stickslip.planar.solver import PlanarSolver
-from stickslip.reference.planar import PlanarCase, convolution, volume
+from stickslip.reference.planar import PlanarCase, volume
 
 DURATION = 7.0  # in units of h/c: three echoes
 

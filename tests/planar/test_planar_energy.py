@@ -12,7 +12,7 @@ from tests.planar.patches import LAW, SLAB, patch
 
 import stickslip as ss
 from stickslip.observables.energy.planar import NAMES
-from stickslip.planar import compiled, solver
+from stickslip.planar import solver
 from stickslip.planar.friction import Contact
 from stickslip.planar.memory import Recurrence
 from stickslip.reference.planar import LawAtNodes, PlanarCase, Volume
@@ -93,7 +93,7 @@ def test_a_wrong_memory_of_the_half_space_is_seen(monkeypatch: pytest.MonkeyPatc
 
 def test_a_wrong_echo_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     """Under a dead load: a driver that reflects 0.9 of the waves, and one that reflects all wavenumbers as it does the mean."""
-    right = compiled.echo_of
+    right = solver.echo_of
     like = patch(nodes=64, length=2e4)
     contact = replace(like, problem=ss.Problem(replace(SLAB, driver_impedance=0.0), LAW, initial_load=60e6), along=like.along)
     assert missed(ss.simulate(contact, 9.0)) < 3e-3
@@ -101,8 +101,8 @@ def test_a_wrong_echo_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
         lambda sent, echo, spectra, reflection: right(sent, echo, spectra, 0.9 * reflection),
         lambda sent, echo, spectra, reflection: (reflection * sent, echo),
     ):
-        monkeypatch.setattr(compiled, "echo_of", wrong)
-        compiled.functions_of.cache_clear()
+        monkeypatch.setattr(solver, "echo_of", wrong)
+        solver.functions_of.cache_clear()
         assert missed(ss.simulate(contact, 9.0)) > 1e-2
 
 

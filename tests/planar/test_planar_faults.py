@@ -14,7 +14,7 @@ import pytest
 from tests.planar.patches import LAW, SLAB, patch, state_patch
 
 import stickslip as ss
-from stickslip.planar.compiled import functions_of
+from stickslip.planar.solver import functions_of
 from stickslip.run import progress
 from stickslip.run.planar_run import PlanarReport
 

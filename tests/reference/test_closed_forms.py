@@ -9,11 +9,8 @@ from scipy.integrate import quad, solve_ivp
 
 import stickslip as ss
 from stickslip.reference.block import CoulombBlock, LinearBlock
-from stickslip.reference.slab.coulomb import CoulombSlab
-from stickslip.reference.slab.folds import HyperbolicFolds
-from stickslip.reference.slab.growth_rate import growth_rate
-from stickslip.reference.slab.pulse_period import PulseTrain
-from stickslip.reference.slab.stuck import StuckSlab
+from stickslip.reference.folds import HyperbolicFolds
+from stickslip.reference.slab import CoulombSlab, PulseTrain, StuckSlab, growth_rate
 
 mpmath = pytest.importorskip("mpmath")
 

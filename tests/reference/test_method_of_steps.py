@@ -9,9 +9,7 @@ from scipy.optimize import brentq
 
 import stickslip as ss
 from stickslip.reference.block import CoulombBlock, LinearBlock
-from stickslip.reference.slab.coulomb import CoulombSlab
-from stickslip.reference.slab.pulse_period import PulseTrain
-from stickslip.reference.slab.stuck import StuckSlab
+from stickslip.reference.slab import CoulombSlab, PulseTrain, StuckSlab
 from tests.reference.method_of_steps import method_of_steps
 
 V = 0.05 / 31_557_600.0

@@ -18,7 +18,6 @@ from stickslip.reference.planar import (
     PlanarSeries,
     SlipWeakeningAtNodes,
     Volume,
-    convolution,
     volume,
 )
 from stickslip.reference.planar.closed_forms import (
@@ -28,7 +27,8 @@ from stickslip.reference.planar.closed_forms import (
     growth_rate_on_slab,
     linear_fracture_energy,
 )
-from stickslip.reference.slab.growth_rate import growth_rate
+from stickslip.reference.slab import growth_rate
+from tests.reference.convolution import convolution
 from tests.reference.planar_cases import slip_difference, weakening_patch, weakening_plane
 
 METHODS = (volume, convolution)

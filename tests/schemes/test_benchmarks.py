@@ -16,8 +16,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.netcdf_file import read
 from stickslip.io.series import read_series
 from stickslip.schemes.contract import Series
-from stickslip.schemes.registry import SCHEMES
-from stickslip.schemes.run import run_scheme
+from stickslip.schemes.run import SCHEMES, run_scheme
 from stickslip.studies.benchmarks import BENCHMARKS, benchmark_of, exact_series, judge_benchmark, judge_series, write_benchmark
 from stickslip.studies.schemes import schemes
 

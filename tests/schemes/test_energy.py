@@ -9,8 +9,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.schemes.contract import Sample, Series
-from stickslip.schemes.registry import SCHEMES
-from stickslip.schemes.run import run_scheme
+from stickslip.schemes.run import SCHEMES, run_scheme
 from stickslip.studies.schemes import schemes
 
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)

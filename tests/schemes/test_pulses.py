@@ -9,8 +9,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import stickslip as ss
-from stickslip.schemes.registry import SCHEMES
-from stickslip.schemes.run import run_scheme
+from stickslip.schemes.run import SCHEMES, run_scheme
 
 SLAB = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)
 CRITICAL = 1.193

@@ -12,9 +12,8 @@ import stickslip as ss
 from stickslip.foundation.errors import InputError
 from stickslip.io.series import read_series
 from stickslip.schemes.contract import Meeting, Series
-from stickslip.schemes.finite_elements import Elements
-from stickslip.schemes.registry import SCHEMES, scheme_of
-from stickslip.schemes.run import SEARCHES, GridContact, grid_of, run_scheme
+from stickslip.schemes.implicit import Elements
+from stickslip.schemes.run import SCHEMES, SEARCHES, GridContact, grid_of, run_scheme, scheme_of
 from stickslip.schemes.sbp import NORMS, difference
 from stickslip.studies.benchmarks import judge_series
 from stickslip.studies.scheme_measures import arrest_in, period_of, pulses_in

@@ -14,7 +14,7 @@ import pytest
 import stickslip as ss
 from stickslip.contact.regime_map import Axis
 from stickslip.foundation.errors import InputError
-from stickslip.reference.slab.folds import HyperbolicFolds, fold_delay
+from stickslip.reference.folds import HyperbolicFolds, fold_delay
 from stickslip.scenarios.scenario import Scenario
 from stickslip.studies.regularisations import KINDS, passage, regularised
 from stickslip.studies.regularise import Regularisation, regularise

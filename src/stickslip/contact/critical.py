@@ -16,8 +16,8 @@ from stickslip.contact.branches import resistance
 from stickslip.contact.folds import Verdict, certificate, lowest_slope, lowest_slopes
 from stickslip.contact.roots import sign_change, sign_changes
 from stickslip.foundation.arguments import NamesAttributes, for_users
-from stickslip.foundation.brief_repr import brief_repr
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.show import brief_repr
 from stickslip.problem.parameters import Parameter
 from stickslip.problem.problem import Problem, check_problem
 from stickslip.resistance import Resistance

@@ -18,8 +18,8 @@ from stickslip.contact.panels import panels_between
 from stickslip.contact.slopes import FASTEST, MOST_EVALUATIONS, pieces_of
 from stickslip.contact.turns import PROVEN, find_turns, folds_of
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.brief_repr import brief_repr
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.show import brief_repr
 from stickslip.resistance import Resistance
 
 Verdict = Literal["proven", "not decided"]

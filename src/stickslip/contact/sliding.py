@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, ClassVar, Unpack
 
 import numpy as np
 
-from stickslip.foundation.brief_repr import brief_repr
 from stickslip.foundation.constants import YEAR
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.formatting import brief
+from stickslip.foundation.show import brief, brief_repr
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -22,8 +22,8 @@ from stickslip.contact.slopes import FASTEST
 from stickslip.foundation.arguments import NamesAttributes
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.formatting import brief, html_table
 from stickslip.foundation.quantities import quantities_of
+from stickslip.foundation.show import brief, html_table
 from stickslip.friction.law import rises_with_rate
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SELECTION_RULES

@@ -23,7 +23,7 @@ from zarr.storage import LocalStore
 
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.formatting import clean
+from stickslip.foundation.show import clean
 
 COMPRESSED = (ZstdCodec(), Crc32cCodec())
 """Codecs of every array: compression, then a CRC-32C checksum after each chunk, which every reader of zarr verifies."""

@@ -14,9 +14,9 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.foundation.brief_repr import Declared
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import check_fields
+from stickslip.foundation.show import Declared
 from stickslip.friction.formula.expression import STATES
 
 Formula = Callable[..., Any]

@@ -27,8 +27,7 @@ from scipy.special import comb
 
 from stickslip.engine.state.layout import TERMS
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.brief_repr import brief_repr
-from stickslip.foundation.formatting import brief
+from stickslip.foundation.show import brief, brief_repr
 from stickslip.friction.formula.bounds import largest, on_discs
 from stickslip.friction.formula.expression import VARIABLES, Expression
 from stickslip.friction.formula.operations.sets import Disc

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from stickslip.contact.branches import branches
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.brief_repr import brief_repr
 from stickslip.foundation.constants import YEAR
+from stickslip.foundation.show import brief_repr
 from stickslip.resistance import Branch
 from stickslip.trajectory.history import History, Side
 from stickslip.trajectory.tables import shock_columns

@@ -6,6 +6,8 @@ Everything reaches the contact as a load: Z v + tau = beta(y, t) at every node (
 
 F from the memory of the half-space (`memory.py`), P from the driver (`echo.py`), and the loading as in 1D, because it is the same
 at all nodes. The error is of order 2 in the time step where the motion is smooth, and of order 1 where nodes begin or end to slip.
+
+Contacts that differ in numbers only share what is compiled (`functions_of`), so that a second run begins at once.
 """
 
 from __future__ import annotations
@@ -13,21 +15,94 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from functools import cached_property
-from typing import Any
+from functools import cached_property, lru_cache
+from typing import Any, NamedTuple
 
 import jax
 import numpy as np
+from jax.sharding import PartitionSpec
 from numpy.typing import NDArray
 
-from stickslip.planar.compiled import Spread, functions_of
 from stickslip.planar.driving import locked_load
-from stickslip.planar.echo import Echo, echo_weights, kernel_spectra, silent
+from stickslip.planar.echo import Echo, echo_of, echo_weights, kernel_spectra, silent
 from stickslip.planar.friction import Contact, Nodes
 from stickslip.planar.layout import Layout, whole
 from stickslip.planar.memory import horizon, recurrence
 from stickslip.planar.slab import PlanarSlab
-from stickslip.planar.step import Constants, Motion, Waves
+from stickslip.planar.step import Constants, Motion, Step, Waves
+
+ALIKE = PartitionSpec()
+"""How an array is spread that every device holds."""
+
+
+class Spread(NamedTuple):
+    """How the arrays of a run are spread over devices."""
+
+    motion: Motion
+    waves: Waves
+    echo: Echo
+    constants: Constants
+    spectra: PartitionSpec
+
+    @classmethod
+    def of(cls, layout: Layout, parameters: tuple[str, ...]) -> Spread:
+        """Return how they are spread for a law with parameters of these names."""
+        rank = len(layout.shape)
+        y, more = layout.along_y(rank), layout.along_y(rank + 1)
+        k, paths, histories = (layout.along_k(rank + extra) for extra in (1, 2, 3))
+        nodes = Nodes(y, y, more, dict.fromkeys(parameters, more), y, ALIKE)
+        return cls(
+            motion=Motion(y, y, y, y, more, y, y),
+            waves=Waves(paths, k, k, k, k, paths, paths),
+            echo=Echo(histories, paths, paths, ALIKE, k),
+            constants=Constants(nodes, y, paths, paths, layout.along_k(rank), ALIKE),
+            spectra=histories,
+        )
+
+
+class Compiled(NamedTuple):
+    """The functions of a run on all devices."""
+
+    march: Callable[..., Any]
+    """Take the steps between two numbers of a round trip."""
+    open: Callable[..., Any]
+    """Find the motion just after a round trip has begun, when its echo has arrived."""
+    turn: Callable[..., Any]
+    """Turn what was sent in a round trip into what arrives in the next."""
+
+
+MOST_FORMS = 16
+"""Number of compiled forms of runs that are kept at a time; each takes some 7 MB."""
+
+
+@lru_cache(maxsize=MOST_FORMS)
+def functions_of(contact: Contact, layout: Layout, parameters: tuple[str, ...]) -> Compiled:
+    """Return the functions of runs with these formulas, this number of nodes and these names of parameters.
+
+    JAX keeps what it has compiled of functions that are gone, so all is forgotten when there are too many forms. A run that goes on
+    is then compiled once more.
+    """
+    if functions_of.cache_info().currsize >= MOST_FORMS:
+        functions_of.cache_clear()
+        jax.clear_caches()
+    step, spread = Step(contact, layout), Spread.of(layout, parameters)
+
+    def march(motion: Motion, waves: Waves, constants: Constants, loading: Any, between: Any) -> Any:
+        def one(number: Any, now: tuple[Motion, Waves]) -> tuple[Motion, Waves]:
+            return step.taken(now, constants, loading[number + 1], number + 1)
+
+        return jax.lax.fori_loop(between[0], between[1], one, (motion, waves))
+
+    def turn(sent: Any, echo: Echo, spectra: Any, reflection: Any) -> tuple[Any, Echo]:
+        return echo_of(sent, echo, spectra, reflection)
+
+    now, sent = (spread.motion, spread.waves), spread.waves.sent
+    return Compiled(
+        layout.on_devices(march, (*now, spread.constants, ALIKE, ALIKE), now, donate=(0, 1)),
+        layout.on_devices(step.opened, (*now, spread.constants, ALIKE), now, donate=(0, 1)),
+        layout.on_devices(turn, (sent, spread.echo, spread.spectra, ALIKE), (sent, spread.echo), donate=(1,)),
+    )
+
 
 Floats = NDArray[np.float64]
 
@@ -130,7 +205,9 @@ class PlanarSolver:
             return 0
         with in_double_precision():
             if self.step == self.steps:
-                self._begin_next_round_trip()
+                self.waves = self.waves._replace(arriving=self._turn(self.waves.sent))
+                self.trip, self.step = self.trip + 1, 0
+                self._open_round_trip()
             taken = min(count, self.steps - self.step, self.steps_left)
             loading, between = self.loading[self.trip], np.array([self.step, self.step + taken])
             self.motion, self.waves = jax.block_until_ready(
@@ -138,11 +215,6 @@ class PlanarSolver:
             )
             self.step += taken
             return taken
-
-    def _begin_next_round_trip(self) -> None:
-        self.waves = self.waves._replace(arriving=self._turn(self.waves.sent))
-        self.trip, self.step = self.trip + 1, 0
-        self._open_round_trip()
 
     def _turn(self, sent: Any) -> Any:
         """Return what arrives in the next round trip, of what was sent in this one, and keep the echoes of those after it."""

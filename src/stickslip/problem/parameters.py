@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError, full_name
-from stickslip.foundation.formatting import brief
 from stickslip.foundation.other_values import with_values
 from stickslip.foundation.quantities import (
     Choice,
@@ -25,6 +24,7 @@ from stickslip.foundation.quantities import (
     in_units,
     quantities_of,
 )
+from stickslip.foundation.show import brief
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.loading import VARYING, LoadingHistory
 

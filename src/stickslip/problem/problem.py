@@ -13,11 +13,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.bodies import BODIES, BodyOnCharacteristics
 from stickslip.foundation.arguments import CheckedArguments, check_type, is_number, shown
-from stickslip.foundation.brief_repr import brief_repr, fields_in, shown_fields
 from stickslip.foundation.conversion import Converted, Number, OptionalNumber, WithUnit
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.formatting import brief, html_table
 from stickslip.foundation.quantities import Quantity, check_fields, quantities_of, quantity
+from stickslip.foundation.show import brief, brief_repr, fields_in, html_table, shown_fields
 from stickslip.friction import FrictionLaw
 from stickslip.friction.custom.from_function import as_law
 from stickslip.loading import SILENT, VARYING, LoadingHistory

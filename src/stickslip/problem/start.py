@@ -15,7 +15,7 @@ import numpy as np
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.formatting import brief
+from stickslip.foundation.show import brief
 from stickslip.friction.contract import STATE_NAMES, one_argument
 from stickslip.loading import LoadingHistory
 

@@ -11,7 +11,7 @@ import numpy as np
 
 import stickslip as ss
 from stickslip.figures.studies import inference as figures
-from stickslip.foundation.formatting import about_time, number, sentence
+from stickslip.foundation.show import about_time, number, sentence
 from stickslip.reports.page import DIGITS, picture, rendered, save_figure, save_text, superscript, with_unit
 from stickslip.studies.inference.infer import ranking
 from stickslip.studies.inference.inference import Inference

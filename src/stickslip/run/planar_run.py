@@ -17,7 +17,7 @@ from stickslip.engine.state.layout import Stop
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.formatting import number
+from stickslip.foundation.show import number
 from stickslip.planar.slab import PlanarSlab
 from stickslip.run.options import RunOptions
 from stickslip.run.progress import Pace, how_far, how_fast

@@ -12,7 +12,7 @@ from typing import Any, Literal, NamedTuple, TypeVar
 
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.formatting import about_time, clean, in_unit, number
+from stickslip.foundation.show import about_time, clean, in_unit, number
 
 News = TypeVar("News")
 Show = Callable[[str], object]

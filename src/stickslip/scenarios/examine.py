@@ -15,8 +15,8 @@ from stickslip.contact.sliding import SteadySlidings
 from stickslip.contact.steady import proven_slidings
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
 from stickslip.engine_input.limits import MOST_PIECES, PATIENCE, automatic_length, creep_tolerance, leaps_over, lumps_by_itself
-from stickslip.foundation.formatting import brief
 from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, Text, fields_of, in_units
+from stickslip.foundation.show import brief
 from stickslip.friction import FrictionLaw, RateAndState, SinusoidalSlip
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.friction.laws.combined import LawOfParts
@@ -24,7 +24,7 @@ from stickslip.friction.piecewise import PiecewiseLaw, noise_in
 from stickslip.loading import VARYING, LoadingHistory
 from stickslip.problem.problem import Problem
 from stickslip.problem.start import STEADY
-from stickslip.reference.slab.pulse_period import PulseTrain
+from stickslip.reference.slab import PulseTrain
 from stickslip.scenarios.entries import key_of
 from stickslip.scenarios.scenario import Scenario, doubts
 from stickslip.scenarios.schema import quantities_in

@@ -8,8 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from stickslip.foundation.formatting import brief
 from stickslip.foundation.quantities import quantities_of
+from stickslip.foundation.show import brief
 from stickslip.planar.nodes import varying
 from stickslip.planar.slab import ENOUGH_NODES, PlanarSlab
 from stickslip.scenarios.contact import LOCKED, Contact, Patch, Points

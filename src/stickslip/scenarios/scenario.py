@@ -15,11 +15,10 @@ import tomli_w
 
 from stickslip.engine_input.limits import check_creep_rtol, check_shortest_event
 from stickslip.foundation.arguments import CheckedArguments, as_path, for_users, shown
-from stickslip.foundation.brief_repr import shown_fields
 from stickslip.foundation.conversion import Number
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.foundation.formatting import html_table
 from stickslip.foundation.quantities import check_fields, declare
+from stickslip.foundation.show import html_table, shown_fields
 from stickslip.loading import LoadingHistory
 from stickslip.planar.slab import PlanarSlab
 from stickslip.problem.problem import Problem

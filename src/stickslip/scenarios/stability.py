@@ -10,7 +10,7 @@ from stickslip.contact.rules.loop import first_rate, resolved
 from stickslip.friction import RateAndState
 from stickslip.problem.problem import Problem
 from stickslip.reference.rate_and_state import SteadySliding
-from stickslip.reference.slab.growth_rate import growth_rate
+from stickslip.reference.slab import growth_rate
 
 
 def loading_rate(problem: Problem) -> float:

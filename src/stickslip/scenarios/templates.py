@@ -10,8 +10,8 @@ from types import MappingProxyType
 from typing import Any
 
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.foundation.formatting import clean
 from stickslip.foundation.quantities import NamedNumbers, Part, fields_of
+from stickslip.foundation.show import clean
 from stickslip.friction import LAWS, FrictionLaw
 from stickslip.friction.contract import STATE_NAMES, StateVariable, states_in
 from stickslip.loading import HISTORIES

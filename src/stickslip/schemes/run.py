@@ -1,4 +1,4 @@
-"""Run a numerical scheme on a grid, with the friction of a problem at its contact node.
+"""List the numerical schemes, and run one on a grid, with the friction of a problem at its contact node.
 
 If friction falls fast enough with the slip rate, several slip rates solve the contact equation `impedance v + S mu(u, v) = load` of
 a step. A program then takes one of them, by the way in which it searches. `SEARCHES` has the usual ways.
@@ -19,6 +19,41 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.problem.problem import Problem
 from stickslip.schemes.contract import Answer, Grid, Meeting, Sample, Scheme, Series
+from stickslip.schemes.explicit import CentralDifferences, Characteristics, MassRedistribution, Regularised
+from stickslip.schemes.implicit import Newmark, Theta
+from stickslip.schemes.sbp import SummationByParts
+
+_ALL: tuple[Scheme, ...] = (
+    Characteristics(),
+    CentralDifferences("central-differences", "central differences, lumped mass", 0.8),
+    CentralDifferences("central-differences-cfl1", "central differences, lumped mass, Courant number 1", 1.0),
+    MassRedistribution(),
+    Newmark("newmark", "finite elements, Newmark, constant mean acceleration", 0.0),
+    Newmark("hht", "finite elements, HHT-alpha, alpha = 0.1", 0.1),
+    Theta("theta", "finite elements, theta = 0.6", 0.6),
+    Theta("backward-euler", "finite elements, backward Euler", 1.0),
+    SummationByParts(2),
+    SummationByParts(4),
+    SummationByParts(6),
+    Regularised(),
+)
+SCHEMES: dict[str, Scheme] = {scheme.name: scheme for scheme in _ALL}
+"""The schemes by name."""
+
+
+def scheme_of(scheme: str | Scheme) -> Scheme:
+    """Return the scheme of a name, or a scheme as it is. Raises InputError for an unknown name and for what is no scheme."""
+    if isinstance(scheme, str):
+        if scheme not in SCHEMES:
+            raise InputError(f"schemes: there is no scheme {ascii(scheme)[:60]}; {nearest(scheme, SCHEMES)}")
+        return SCHEMES[scheme]
+    missing = [name for name in ("name", "title", "order", "courant", "largest_courant", "begin") if not hasattr(scheme, name)]
+    if missing:
+        raise InputError(f"schemes: a scheme needs {', '.join(missing)}: see stickslip.schemes.contract.Scheme")
+    return scheme
+
+
+# ---- the contact and the run --------------------------------------------------------------------------------------------
 
 SEARCHES = {
     "stick-first": "stick wherever the static strength holds, otherwise the smallest root",

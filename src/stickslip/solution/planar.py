@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip.foundation.arguments import NamesAttributes
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.formatting import brief
+from stickslip.foundation.show import brief
 from stickslip.observables.energy.balance import LONG_NAMES
 from stickslip.observables.planar import pulses, rupture_speed, rupture_times
 from stickslip.planar.slab import ENOUGH_NODES, PlanarSlab

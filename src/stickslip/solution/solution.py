@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.formatting import brief, how_long, html_table
+from stickslip.foundation.show import brief, how_long, html_table
 from stickslip.observables.event_table import events_table
 from stickslip.observables.proof import Proof, proven
 from stickslip.problem.problem import Problem

@@ -13,8 +13,8 @@ from stickslip.contact.steady import steady_slidings
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest_and_all
-from stickslip.foundation.formatting import brief
 from stickslip.foundation.quantities import Quantity
+from stickslip.foundation.show import brief
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import DURATION
 from stickslip.run.simulate import simulate

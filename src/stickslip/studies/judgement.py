@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.formatting import brief
+from stickslip.foundation.show import brief
 from stickslip.studies.scheme_measures import Measured
 from stickslip.studies.verdict import UNTOLD, RulePaths
 

@@ -25,8 +25,7 @@ from stickslip.foundation.netcdf_file import write
 from stickslip.problem.problem import Problem
 from stickslip.scenarios.source import read_duration_and_problem
 from stickslip.schemes.contract import Scheme, Series
-from stickslip.schemes.registry import scheme_of
-from stickslip.schemes.run import FEWEST_CELLS, LARGEST_CELLS, check_runs, run_scheme
+from stickslip.schemes.run import FEWEST_CELLS, LARGEST_CELLS, check_runs, run_scheme, scheme_of
 from stickslip.solution.solution import Solution
 from stickslip.studies.judgement import TOLERANCE, Judgement
 from stickslip.studies.scheme_measures import COLUMNS, Measured
@@ -205,7 +204,7 @@ def schemes(
     duration : float or str, optional
         Duration of each run (s, or a text with a unit); by default the scenario's.
     scheme : str, Scheme or sequence of them
-        Names in `stickslip.schemes.registry.SCHEMES`, or objects like `stickslip.schemes.contract.Scheme`.
+        Names in `stickslip.schemes.run.SCHEMES`, or objects like `stickslip.schemes.contract.Scheme`.
     cells : int or sequence of int
         Number of cells in the thickness, for each mesh.
     search : str

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from stickslip.foundation.arguments import check_whole, for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.formatting import about_time, number
+from stickslip.foundation.show import about_time, number
 from stickslip.problem.problem import Problem
 from stickslip.run.progress import told
 from stickslip.scenarios.scenario import Scenario

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from stickslip.engine.compile.cache import SOURCES
 from stickslip.engine.state.layout import Counts, Floats, Integers, Stop
-from stickslip.foundation.formatting import brief
+from stickslip.foundation.show import brief
 
 DECIDE = (
     *("batch", "bodies", "contact", "creep", "engine", "engine_input"),

@@ -15,7 +15,7 @@ from stickslip.cli.options import Changes, Dpi, ScenarioName, Size, axes_of, opt
 from stickslip.cli.output.files import Look, Target, announce, check_targets, drawing, write_files
 from stickslip.cli.output.show import print_words, say, titled
 from stickslip.foundation.errors import InputError, InputWarning
-from stickslip.foundation.formatting import brief, clean, with_unit
+from stickslip.foundation.show import brief, clean, with_unit
 
 if TYPE_CHECKING:
     from stickslip.contact.folds import Fold

@@ -13,7 +13,7 @@ from stickslip.cli.options import Changes, Dpi, FigureFile, Size, complete_fitte
 from stickslip.cli.output.files import Look, Target, announce, check_targets, drawing, write_files
 from stickslip.cli.output.show import console, print_sentences, print_words, say
 from stickslip.foundation.errors import InputError, InputWarning
-from stickslip.foundation.formatting import clean
+from stickslip.foundation.show import clean
 
 if TYPE_CHECKING:
     from stickslip.friction import Fit, Points, Smooth

@@ -78,7 +78,7 @@ def _cells(text: str) -> list[int]:
 
 def _study(scenario: Scenario, scheme: str, cells: list[int], search: str, courant: float | None) -> Schemes:
     from stickslip.run.progress import progress_line
-    from stickslip.schemes.registry import SCHEMES
+    from stickslip.schemes.run import SCHEMES
     from stickslip.studies.schemes import schemes as study
 
     names = list(SCHEMES) if scheme == "all" else [name.strip() for name in scheme.split(",") if name.strip()]

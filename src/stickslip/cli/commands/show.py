@@ -28,7 +28,7 @@ from stickslip.cli.output.files import Look, announce, check_targets, drawing
 from stickslip.cli.output.pictures import Pictures
 from stickslip.cli.output.show import console, say
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.formatting import clean
+from stickslip.foundation.show import clean
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from stickslip.cli.output.files import file_size
 from stickslip.cli.output.show import console, say, titled
-from stickslip.foundation.formatting import brief
+from stickslip.foundation.show import brief
 from stickslip.scenarios.scenario import doubts
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import sys
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from stickslip.foundation.formatting import clean, sentence
+from stickslip.foundation.show import clean, sentence
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stickslip.cli.output.show import console, print_numbers, print_sentences, print_words, say, titled
-from stickslip.foundation.formatting import clean, number, with_unit
+from stickslip.foundation.show import clean, number, with_unit
 from stickslip.studies.regularisations import kind_of
 
 if TYPE_CHECKING:

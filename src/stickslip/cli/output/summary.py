@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from stickslip.cli.output.files import announce
 from stickslip.cli.output.show import console, fits, print_numbers, say, titled
 from stickslip.engine_input.limits import creep_tolerance
-from stickslip.foundation.formatting import clean, how_long, number, readable_unit, with_unit
+from stickslip.foundation.show import clean, how_long, number, readable_unit, with_unit
 from stickslip.scenarios.scenario import doubts, read_scenario
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stickslip.cli.output.show import console, print_numbers, say, titled
-from stickslip.foundation.formatting import about_time, clean, number, readable_unit, with_unit
+from stickslip.foundation.show import about_time, clean, number, readable_unit, with_unit
 
 if TYPE_CHECKING:
     import xarray as xr

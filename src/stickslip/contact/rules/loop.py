@@ -13,7 +13,7 @@ from typing import ClassVar, Literal
 
 from stickslip.contact.branches import rate_on, resistance
 from stickslip.contact.rules.selection import area, selection_table
-from stickslip.foundation.brief_repr import brief_repr
+from stickslip.foundation.show import brief_repr
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SelectionTable
 from stickslip.resistance import Branch, Resistance

@@ -11,8 +11,8 @@ from stickslip.bodies import BODIES
 from stickslip.explorer.model.ranges import Range, range_of
 from stickslip.explorer.model.setting import Setting
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.formatting import brief
 from stickslip.foundation.quantities import Choice, Field, NamedNumbers, Part, Quantity, Series, Text, fields_of
+from stickslip.foundation.show import brief
 from stickslip.foundation.units import split_quantity, to_si
 from stickslip.friction import LAWS
 from stickslip.friction.contract import STATE_NAMES, StateVariable

@@ -14,7 +14,7 @@ from stickslip.explorer.model.fault import FaultAnswer
 from stickslip.explorer.model.setting import Setting, inner_leaves_of
 from stickslip.explorer.model.words import short
 from stickslip.foundation.arguments import shown
-from stickslip.foundation.formatting import clean
+from stickslip.foundation.show import clean
 
 
 def toml_of(setting: Setting) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from stickslip.foundation.formatting import brief
+from stickslip.foundation.show import brief
 
 DIGITS = 4
 """Number of significant digits."""

@@ -32,7 +32,7 @@ from stickslip.explorer.page.words import told_steps, words_of
 from stickslip.figures.style import unit_of
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.formatting import number
+from stickslip.foundation.show import number
 
 SHORT = 8
 """Columns of at most this many numbers are written as they are."""

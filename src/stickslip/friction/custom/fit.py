@@ -15,7 +15,7 @@ from stickslip.foundation.arguments import NamesAttributes, for_users
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.determined import covariance_of, misses_trend, sizes_and_correlation, undetermined
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.formatting import html_table, text_table, with_uncertainty
+from stickslip.foundation.show import html_table, text_table, with_uncertainty
 from stickslip.friction.custom.fit_search import WHOLE, Leaf, leaves, numbers_of, rebuilt, search, slopes, template
 from stickslip.friction.custom.points import Points
 from stickslip.friction.law import FrictionLaw

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.determined import UNSEEN as DETERMINED
 from stickslip.foundation.determined import covariance_of, sizes_and_correlation, undetermined
-from stickslip.foundation.formatting import brief
+from stickslip.foundation.show import brief
 from stickslip.studies.inference.directions import IDLE, better_known, null_directions, told, without
 from stickslip.studies.inference.estimate import Estimate, pieces_of
 from stickslip.studies.inference.free import Free

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.formatting import brief
+from stickslip.foundation.show import brief
 from stickslip.studies.inference.noise import noise_of, saturated, spikes
 from stickslip.studies.inference.record import HIGHEST, LOADING, LOWEST, SHEAR, UNITS, Record
 

@@ -13,8 +13,8 @@ import numpy as np
 from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.atomic_write import write_atomically, write_table
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.formatting import brief, with_uncertainty
 from stickslip.foundation.netcdf_file import write
+from stickslip.foundation.show import brief, with_uncertainty
 from stickslip.io.netcdf import origin
 from stickslip.scenarios.scenario import Scenario
 from stickslip.solution.accessors import report_of_study

@@ -10,7 +10,7 @@ import numpy as np
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.formatting import brief
+from stickslip.foundation.show import brief
 from stickslip.loading import LoadingHistory, Steps
 from stickslip.studies.inference.noise import GAUSSIAN, noise_of, rounding_of
 from stickslip.studies.inference.record import Record

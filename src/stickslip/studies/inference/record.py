@@ -11,7 +11,7 @@ import numpy as np
 from stickslip.foundation.arguments import CheckedArguments, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.formatting import brief
+from stickslip.foundation.show import brief
 
 SHEAR = ("friction", "shear_stress", "shear_force")
 """What may be measured of the resistance; a record is fitted by the first of these that it has."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.foundation.formatting import brief
+from stickslip.foundation.show import brief
 from stickslip.friction.law import FrictionLaw
 from stickslip.loading import LoadingHistory
 from stickslip.problem.problem import Problem

@@ -11,7 +11,7 @@ import numpy as np
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, full_name
-from stickslip.foundation.formatting import brief
+from stickslip.foundation.show import brief
 from stickslip.loading import LoadingHistory
 from stickslip.problem.problem import Problem
 from stickslip.studies.inference.by_features import events_of

@@ -9,7 +9,7 @@ from itertools import product
 import numpy as np
 import pandas as pd
 
-from stickslip.foundation.formatting import brief
+from stickslip.foundation.show import brief
 from stickslip.studies.inference.estimate import Estimate
 from stickslip.studies.inference.loading import loading_of
 from stickslip.studies.inference.part import Part

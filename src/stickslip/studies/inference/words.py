@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.formatting import brief
+from stickslip.foundation.show import brief
 from stickslip.studies.inference.features import arrests_in
 from stickslip.studies.inference.fitted_record import FittedRecord
 from stickslip.studies.inference.free import DELAY, TREND

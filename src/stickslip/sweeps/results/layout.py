@@ -22,7 +22,7 @@ from stickslip.foundation import zarr_folder
 from stickslip.foundation.arguments import check_whole, shown
 from stickslip.foundation.constants import PAPER
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.formatting import clean
+from stickslip.foundation.show import clean
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.io.netcdf import LONG_NAMES
 from stickslip.sweeps.design.design import GRID, IN_WORDS

@@ -1,20 +1,165 @@
-"""Define the infinite elastic slab, paper eqs (7)-(13)."""
+"""Define the bodies that slide on the contact, and what is asked of any: a rigid block on a spring, and an elastic slab."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import Field, dataclass
 from functools import cached_property
-from typing import ClassVar
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
-from stickslip.bodies.spring_block import SpringBlock
-from stickslip.foundation.brief_repr import Declared
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.conversion import Number, OptionalNumber
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import check_fields, quantity
+from stickslip.foundation.show import Declared
+
+
+class Body(Protocol):
+    """What every body that slides on a contact has, whatever solves its motion. Its loads are stresses (Pa) or forces (N).
+
+    Units below are for a slab; for a block read N for Pa, and kg for kg/m^2.
+    """
+
+    __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
+
+    kind: ClassVar[str]
+    """Name in scenario files."""
+    load_unit: ClassVar[str]
+    """Unit of loads and tractions."""
+    energy_unit: ClassVar[str]
+    """Unit of energies, in the form that files store."""
+
+    @property
+    def normal_load(self) -> float:
+        """The normal load S on the contact (Pa), compression positive."""
+        ...
+
+    @property
+    def stiffness(self) -> float:
+        """The decrease of the load per metre of slow slip (Pa/m)."""
+        ...
+
+    @property
+    def impedance(self) -> float:
+        """The load per slip rate that is characteristic of the body (Pa s/m): Z of a slab, sqrt(K m) of a block."""
+        ...
+
+    @property
+    def damping(self) -> float:
+        """The load per slip rate by which the body resists slip (Pa s/m): by radiation of waves, or by viscosity."""
+        ...
+
+    @property
+    def inertia(self) -> float:
+        """The mass that slips with the contact (kg/m^2): the contact mass of a slab, the whole mass of a block."""
+        ...
+
+    @property
+    def has_inertia(self) -> bool:
+        """True if a mass slips with the contact, so that its slip rate cannot jump."""
+        ...
+
+
+class BodyOnCharacteristics(Body, Protocol):
+    """What the exact solver needs besides: how slip acts on the contact again, after a round trip, along characteristics.
+
+    Units are those of `Body`.
+    """
+
+    has_waves: ClassVar[bool]
+    """True if slip sends waves into the body, which come back as load one round trip later; False if the body is rigid."""
+
+    @property
+    def driver_impedance(self) -> float:
+        """The impedance of the driver (Pa s/m), inf for a driver that prescribes its displacement."""
+        ...
+
+    @property
+    def is_driven_rigidly(self) -> bool:
+        """True if the driver does not give way, or by less than rounding."""
+        ...
+
+    @property
+    def reflection(self) -> float:
+        """The share of an outgoing wave that comes back from the driver, between -1 and 1; 0 without waves."""
+        ...
+
+    @property
+    def round_trip_time(self) -> float:
+        """The time (s) after which slip acts on the contact again: 2 h/c of a slab, the period of a block."""
+        ...
+
+
+def has_dashpot(body: BodyOnCharacteristics) -> bool:
+    """Return True if the contact of a body with waves resists slip by another damping than its waves, whose damping is Z."""
+    return body.has_waves and body.damping != body.impedance
+
+
+def as_slab(body: BodyOnCharacteristics, refusal: str = "needs an elastic slab") -> ElasticSlab:
+    """Return a body that must be a slab. Raises InputError with the text `refusal` for any other body."""
+    if not isinstance(body, ElasticSlab):
+        raise InputError(refusal)
+    return body
+
+
+def as_block(body: BodyOnCharacteristics) -> SpringBlock:
+    """Return a body that must be a block; raise InputError for any other body."""
+    if not isinstance(body, SpringBlock):
+        raise InputError("needs a spring-block")
+    return body
+
+
+@dataclass(frozen=True)
+class SpringBlock(Declared):
+    """A rigid block pulled through a spring: m dv/dt + damping v + tau = K (D0 + V t - u). Loads and tractions are forces, in N."""
+
+    kind: ClassVar[str] = "spring-block"
+    source: ClassVar[str] = "Campillo et al. 1996, eqs (4)-(6); the damping is an addition"
+    load_unit: ClassVar[str] = "N"
+    energy_unit: ClassVar[str] = "J"
+    has_waves: ClassVar[bool] = False
+    has_inertia: ClassVar[bool] = True
+    driver_impedance: ClassVar[float] = math.inf
+    """The end of the spring is displaced as prescribed, as the face of a slab is by a rigid driver."""
+    is_driven_rigidly: ClassVar[bool] = True
+    reflection: ClassVar[float] = 0.0
+
+    mass: Number = quantity("kg", "mass m", above=0)
+    stiffness: Number = quantity("N/m", "stiffness K of the spring", above=0)
+    normal_force: Number = quantity("N", "normal force S on the contact, compression positive", above=0)
+    damping: Number = quantity("N s/m", "viscous resistance to slip", at_least=0, default=0.0)
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+
+    @property
+    def period(self) -> float:
+        """The period of free undamped oscillation, 2 pi sqrt(m / K) (s)."""
+        found: float = 2.0 * math.pi * np.sqrt(self.mass / self.stiffness)
+        return found
+
+    @property
+    def round_trip_time(self) -> float:
+        """The period (s), after which the spring has brought the block's motion back."""
+        return self.period
+
+    @property
+    def impedance(self) -> float:
+        """Sqrt(K m) (N s/m), which takes the place of a slab's impedance."""
+        found: float = np.sqrt(self.stiffness * self.mass)
+        return found
+
+    @property
+    def normal_load(self) -> float:
+        """The normal force S (N)."""
+        return self.normal_force
+
+    @property
+    def inertia(self) -> float:
+        """The mass (kg)."""
+        return self.mass
 
 
 @dataclass(frozen=True)
@@ -163,3 +308,7 @@ class ElasticSlab(Declared):
             )
         mass = self.density * self.thickness / 3.0 + self.contact_mass
         return SpringBlock(mass=mass, stiffness=self.stiffness, normal_force=self.normal_stress)
+
+
+BODIES: dict[str, type[BodyOnCharacteristics]] = {body.kind: body for body in (SpringBlock, ElasticSlab)}
+"""Every body by its name in scenario files."""

@@ -1,1 +1,0 @@
-"""Closed-form solutions for the elastic slab."""
