@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 import stickslip as ss
 from stickslip.figures.style import GREY, LINE_COLOURS
-from stickslip.reference.planar.closed_forms import SteadyFront
+from stickslip.reference.planar import SteadyFront
 from stickslip.solution.planar import PlanarSolution
 
 FIGURE = Path(__file__).with_name("figures") / "long-faults.png"

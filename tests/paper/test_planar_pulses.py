@@ -25,7 +25,7 @@ from stickslip.paper.planar import (
     table,
     weakening,
 )
-from stickslip.reference.planar import LawAtNodes, PlanarCase, Volume
+from tests.reference.planar_methods import FrictionalVolume, LawAtNodes, PlanarCase
 
 TRIP = 40.0 / 7.0
 PAGE = Path(__file__).parents[2] / "docs" / "fault-in-2d-and-3d.md"
@@ -98,7 +98,7 @@ def test_the_volume_method_sees_the_pulses_after_the_echo_too() -> None:
     body, values, middle = large.body, large.values, large.shape[0] // 2
     friction = LawAtNodes(fault.problem.friction, values.normal, values.law_slip)
     case = PlanarCase(body.density, body.wave_speed, body.thickness, large.extent, values.load, friction, locked=large.locked)
-    run, rates = Volume(case, 340, 2.0 * TRIP), []
+    run, rates = FrictionalVolume(case, 340, 2.0 * TRIP), []
     while run.time < 2.0 * TRIP:
         run.advance()
         rates.append((run.time - 0.5 * run.step_of_time, run.slip_rate[middle]))

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from tests.reference.convolution import convolution
 from tests.reference.planar_cases import weakening_patch, weakening_plane
+from tests.reference.planar_methods import PlanarCase, volume
 
 import stickslip as ss
 from stickslip.planar.solver import PlanarSolver
-from stickslip.reference.planar import PlanarCase, volume
 
 DURATION = 7.0  # in units of h/c: three echoes
 

@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 from tests.planar.patches import LAW, SLAB, patch
+from tests.reference.planar_methods import FrictionalVolume, LawAtNodes, PlanarCase
 
 import stickslip as ss
 from stickslip.observables.energy.planar import NAMES
 from stickslip.planar import solver
 from stickslip.planar.friction import Contact
 from stickslip.planar.memory import Recurrence
-from stickslip.reference.planar import LawAtNodes, PlanarCase, Volume
 from stickslip.solution.planar import PlanarSolution
 
 DRIVERS: dict[str, dict[str, Any]] = {
@@ -59,8 +59,8 @@ def test_energies_are_those_of_the_volume_method_which_solves_the_problem_itself
     contact = replace(like, problem=ss.Problem(slab, LAW, initial_load=60e6), along=like.along)
     run = ss.simulate(contact, 7.0)
     friction = LawAtNodes(LAW, np.full(128, 1e8))
-    case = PlanarCase(2800.0, 3500.0, 1e4, (2e4,), contact.values.load, friction, impedance, contact.locked)
-    volume = Volume(case, 256, 7.1)
+    case = PlanarCase(2800.0, 3500.0, 1e4, (2e4,), contact.values.load, friction, contact.locked, driver_impedance=impedance)
+    volume = FrictionalVolume(case, 256, 7.1)
     while volume.time < 7.0:
         volume.advance()
     kinetic, elastic, beyond = volume.energies()

@@ -24,8 +24,10 @@ from math import ceil, inf
 import numpy as np
 from scipy.special import j1
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.reference.planar.setting import Array, PlanarCase, PlanarSeries, Waves
+from stickslip.observables.energy.planar import Waves
+from tests.reference.planar_methods import PlanarCase, PlanarSeries
 
 POINTS, WEIGHTS = np.polynomial.legendre.leggauss(32)
 """Points and weights on the interval from -1 to 1, for one step of time."""
@@ -62,18 +64,18 @@ class _Waves:
         return np.asarray(self._outgoing[n] - _convolve(self._echo, self._outgoing, n))
 
 
-def _convolve(kernel: Array, history: Waves, n: int) -> Waves:
+def _convolve(kernel: Floats, history: Waves, n: int) -> Waves:
     """Return the sum of kernel[m] history[n - m]."""
     return np.asarray(np.einsum("m...,m...->...", kernel[: n + 1], history[n::-1]))
 
 
-def _kernel_of_half_space(w: Array, step: float, steps: int) -> Array:
+def _kernel_of_half_space(w: Floats, step: float, steps: int) -> Floats:
     """Return the integral of w J1(w a) / a over each step: from -1/2 to 1/2 step without what is before 0, and so on."""
     edges = step * np.maximum(np.arange(steps + 1) - 0.5, 0.0)
     return np.array([_integral(lambda a: w * j1(w * a) / a, low, high) for low, high in pairwise(edges)])
 
 
-def _kernel_of_echo(w: Array, case: PlanarCase, steps: int, delay: int) -> Array:
+def _kernel_of_echo(w: Floats, case: PlanarCase, steps: int, delay: int) -> Floats:
     """Return the integral of w R J1(w sqrt(a^2 - R^2)) / sqrt(a^2 - R^2) over each step that begins half a step before R + n step.
 
     With b = sqrt(a^2 - R^2) the integrand is w R J1(w b) / sqrt(R^2 + b^2), which is smooth in b at the arrival of the echo.
@@ -84,7 +86,7 @@ def _kernel_of_echo(w: Array, case: PlanarCase, steps: int, delay: int) -> Array
     return np.array([_integral(lambda b: w * R * j1(w * b) / np.hypot(R, b), low, high) for low, high in pairwise(since)])
 
 
-def _integral(kernel: Callable[[float], Array], low: float, high: float) -> Array:
+def _integral(kernel: Callable[[float], Floats], low: float, high: float) -> Floats:
     """Return the integral from `low` to `high` by Gauss points."""
     half = 0.5 * (high - low)
     return np.asarray(sum(half * weight * kernel(low + half * (1.0 + at)) for at, weight in zip(POINTS, WEIGHTS, strict=True)))

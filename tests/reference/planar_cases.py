@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.reference.planar import PlanarCase, PlanarSeries, SlipWeakeningAtNodes
+from tests.reference.planar_methods import PlanarCase, PlanarSeries, SlipWeakeningAtNodes
 
 
 def weakening_patch(nodes: int = 64, driver_impedance: float = inf, **more: Any) -> PlanarCase:
@@ -15,7 +15,7 @@ def weakening_patch(nodes: int = 64, driver_impedance: float = inf, **more: Any)
     y = np.arange(nodes) / nodes * 4.0 - 2.0
     load = 1.0 + 0.3 * np.exp(-((y / 0.4) ** 2)) + 0.03 * np.sin(0.5 * np.pi * y)
     friction = SlipWeakeningAtNodes((nodes,), 1.1, 0.55 + 0.05 * np.cos(np.pi * y), 0.8)
-    return PlanarCase(1.0, 1.0, 1.0, (4.0,), load, friction, driver_impedance, **more)
+    return PlanarCase(1.0, 1.0, 1.0, (4.0,), load, friction, driver_impedance=driver_impedance, **more)
 
 
 def weakening_plane(nodes: int = 16) -> PlanarCase:

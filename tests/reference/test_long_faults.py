@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from stickslip.reference.planar import PlanarCase, SlipWeakeningAtNodes, Volume
-from stickslip.reference.planar.closed_forms import SteadyFront
+from stickslip.reference.planar import SteadyFront
+from tests.reference.planar_methods import FrictionalVolume, PlanarCase, SlipWeakeningAtNodes
 
 Array = NDArray[np.float64]
 
@@ -42,7 +42,7 @@ class Front:
     """A run of two fronts that leave y = 0."""
 
     y: Array
-    run: Volume
+    run: FrictionalVolume
     friction: ForcedFront
     passed: Array
     """When half of the weakening had happened at each node; NaN if it has not."""
@@ -77,7 +77,7 @@ def start(length: float, per_thickness: int, duration: float, strength: float = 
     y = np.arange(n) / per_thickness - 0.5 * length
     friction = ForcedFront(y, share, strength, *forced)
     case = PlanarCase(1.0, 1.0, 1.0, (length,), np.full(n, DYNAMIC + 1.0), friction)
-    return Front(y, Volume(case, 2 * per_thickness, duration), friction, np.full(n, np.nan))
+    return Front(y, FrictionalVolume(case, 2 * per_thickness, duration), friction, np.full(n, np.nan))
 
 
 THEORY = SteadyFront(1.0, 1.0, 1.0, 1.0)

@@ -13,14 +13,6 @@ import pytest
 import stickslip as ss
 from stickslip.foundation.errors import InputError
 from stickslip.reference.planar import (
-    LawAtNodes,
-    PlanarCase,
-    PlanarSeries,
-    SlipWeakeningAtNodes,
-    Volume,
-    volume,
-)
-from stickslip.reference.planar.closed_forms import (
     CRITICAL_PATCH,
     SteadyFront,
     growth_rate_on_half_space,
@@ -30,6 +22,14 @@ from stickslip.reference.planar.closed_forms import (
 from stickslip.reference.slab import growth_rate
 from tests.reference.convolution import convolution
 from tests.reference.planar_cases import slip_difference, weakening_patch, weakening_plane
+from tests.reference.planar_methods import (
+    FrictionalVolume,
+    LawAtNodes,
+    PlanarCase,
+    PlanarSeries,
+    SlipWeakeningAtNodes,
+    volume,
+)
 
 METHODS = (volume, convolution)
 Method = Callable[[PlanarCase, float, int], PlanarSeries]
@@ -63,7 +63,7 @@ def test_uniform_slip_under_a_pull_and_under_other_drivers_is_that_of_the_engine
         body = ss.ElasticSlab(2800.0, 3500.0, 1e4, normal_stress=1e8, driver_impedance=impedance)
         run = ss.simulate(ss.Problem(body, law, initial_load=5.6e7, pull_rate=pull), 17.1)
         friction = LawAtNodes(law, np.full(2, 1e8))
-        case = PlanarCase(2800.0, 3500.0, 1e4, (1e4,), np.full(2, 5.6e7), friction, impedance, pull_rate=pull)
+        case = PlanarCase(2800.0, 3500.0, 1e4, (1e4,), np.full(2, 5.6e7), friction, pull_rate=pull, driver_impedance=impedance)
         found = method(case, 17.0, 100)
         exact = run.slip(found.times)
         assert found.slip[:, 1] == pytest.approx(exact, abs=3e-4 * exact.max())
@@ -84,7 +84,7 @@ def test_methods_agree_by_order_two_under_a_law_of_slip_and_slip_rate() -> None:
     """Without onset and arrest: 8e-5 of the largest slip at 64 steps in R, and a quarter of the difference at 32."""
     law = ss.friction.FromExpression("0.5 + 0.2*v/(0.1 + v)*(1 + 0.3*exp(-u/0.2))")
     load = 1.0 + 0.3 * np.cos(2.0 * np.pi * np.arange(16) / 16)
-    case = PlanarCase(1.0, 1.0, 1.0, (4.0,), load, LawAtNodes(law, np.ones(16)), 0.5)
+    case = PlanarCase(1.0, 1.0, 1.0, (4.0,), load, LawAtNodes(law, np.ones(16)), driver_impedance=0.5)
     coarse, fine = (slip_difference(volume(case, 5.0, n), convolution(case, 5.0, n)) for n in (32, 64))
     assert fine < 8e-5
     assert coarse / fine == pytest.approx(4.0, rel=0.1)
@@ -104,7 +104,7 @@ def test_methods_agree_around_barriers() -> None:
     """At fixed nodes the difference is of order 2 in the step of time, though slip has the shape of a root at barriers."""
     y = np.arange(32) / 8.0 - 2.0
     friction = SlipWeakeningAtNodes((32,), 1.1, 0.5, 0.5)
-    case = PlanarCase(1.0, 1.0, 1.0, (4.0,), np.full(32, 1.2), friction, 0.5, locked=np.abs(y) > 1.0)
+    case = PlanarCase(1.0, 1.0, 1.0, (4.0,), np.full(32, 1.2), friction, driver_impedance=0.5, locked=np.abs(y) > 1.0)
     runs = [(volume(case, 4.0, n), convolution(case, 4.0, n)) for n in (64, 128)]
     coarse, fine = (slip_difference(*pair) for pair in runs)
     assert fine < 3e-3
@@ -209,7 +209,7 @@ def test_energy_balance_of_the_volume_method(driver_impedance: float) -> None:
     """Energy and heat add up to a constant within 1e-12; the constant stems from the jump at the start, and is of order 1."""
     missing = []
     for steps in (64, 128):
-        run = Volume(weakening_patch(32, driver_impedance), steps, 5.0)
+        run = FrictionalVolume(weakening_patch(32, driver_impedance), steps, 5.0)
         sums = []
         while run.time < 5.0:
             run.advance()

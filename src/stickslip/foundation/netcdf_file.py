@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from stickslip.foundation.arguments import check_ordinary
 from stickslip.foundation.atomic_write import FULL, Sink, write_atomically
@@ -78,6 +78,7 @@ def write_variables(variables: Mapping[str, Variable], attrs: Mapping[str, Any],
     The file is the one that `write` makes of a dataset of the same arrays. xarray, which takes a third of a second to import, is
     not needed.
     """
+    import h5py
 
     def fill(file: Any) -> None:
         file.attrs.update(attrs)
@@ -85,18 +86,12 @@ def write_variables(variables: Mapping[str, Variable], attrs: Mapping[str, Any],
         sizes = [zip(variable.dims, arrays[name].shape, strict=True) for name, variable in variables.items()]
         file.dimensions = dict(chain.from_iterable(sizes))
         for name, variable in variables.items():
-            made = file.create_variable(name, variable.dims, _stored_type(arrays[name]))
+            kind = h5py.string_dtype() if arrays[name].dtype.kind == "U" else arrays[name].dtype  # texts have any length
+            made = file.create_variable(name, variable.dims, kind)
             made.attrs.update(variable.attrs)
             made[...] = arrays[name]
 
     return write_with(fill, path)
-
-
-def _stored_type(values: NDArray[Any]) -> Any:
-    """Return the type in which a file stores an array: texts have any length."""
-    import h5py
-
-    return h5py.string_dtype() if values.dtype.kind == "U" else values.dtype
 
 
 def write_with(fill: Callable[[Any], object], path: Path) -> Path:
@@ -191,14 +186,12 @@ def _tables(path: Path) -> xr.Dataset:
 
     with h5py.File(path, "r") as file:
         tables = {name: table for name, table in file.items() if not _is_axis(table)}
-        found = {name: xr.Variable(_dimensions(table), _values(table), _about(table)) for name, table in tables.items()}
+        found = {}
+        for name, table in tables.items():
+            is_text = h5py.check_string_dtype(table.dtype)
+            values = np.asarray(table.asstr()[...], str) if is_text else np.asarray(table[...])
+            found[name] = xr.Variable(_dimensions(table), values, _about(table))
         return xr.Dataset(found, attrs=_about(file))
-
-
-def _values(table: h5py.Dataset) -> NDArray[Any]:
-    import h5py
-
-    return np.asarray(table.asstr()[...], str) if h5py.check_string_dtype(table.dtype) else np.asarray(table[...])
 
 
 def _dimensions(table: h5py.Dataset) -> list[str]:

@@ -135,9 +135,9 @@ def _looked_up(unit: str, hint: str) -> tuple[Fraction, dict[str, Any]]:
     registry = _registry()
     try:
         parsed = registry.parse_units(f"1{unit}" if unit.startswith("/") else unit)  # the parser understands 1/ m, but not / m
-        for name in parsed._units:
-            if _is_logarithmic(registry, name.removeprefix("delta_")):
-                raise pint.UndefinedUnitError(name.removeprefix("delta_"))
+        for name in (one.removeprefix("delta_") for one in parsed._units):
+            if name in registry._units and registry._units[name].is_logarithmic:
+                raise pint.UndefinedUnitError(name)  # no factor converts decibels to SI units, although pint gives them one
         return Fraction(registry.get_root_units(parsed)[0]), dict(parsed.dimensionality)
     except pint.UndefinedUnitError as error:
         name = str(error.args[0])
@@ -146,11 +146,6 @@ def _looked_up(unit: str, hint: str) -> tuple[Fraction, dict[str, Any]]:
         raise InputError(f"'{name}' is not a unit; {examples}") from None
     except (pint.PintError, ValueError):  # ValueError for the unit "nan", from fractions
         raise InputError(f"'{unit}' is not a unit{hint}") from None
-
-
-def _is_logarithmic(registry: Any, name: str) -> bool:
-    """Return True for decibels and the like, which no factor converts to SI units, although pint gives them one."""
-    return name in registry._units and bool(registry._units[name].is_logarithmic)
 
 
 def to_si(number: float, unit: str, si: str) -> float:

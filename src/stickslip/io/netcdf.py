@@ -169,7 +169,9 @@ def write_solution(solution: Solution, path: str | Path) -> Path:
     loading history is not registered, the file could not be read back.
     """
     file = as_path("to_netcdf: path", path)
-    variables = history_variables(solution) | _drawing(solution) | _tables(solution)
+    time, values = solution.curves_together(solution.curves, 0.0, float(solution.breaks[-1]), DRAWN_POINTS)
+    curves = _curves(solution, time, dict(zip(solution.curves, values, strict=True)))
+    variables = history_variables(solution) | curves | _tables(solution)
     try:
         return write_variables(variables, _engine(solution) | provenance(solution) | {"stickslip_format": FORMAT}, file)
     except FullDiskError as error:
@@ -205,7 +207,11 @@ def history_variables(solution: Solution) -> dict[str, Variable]:
         if isinstance(loading, LoadingHistory) and HISTORIES.get(loading.kind) is not type(loading):
             name, place = type(loading).__name__, f'stickslip.loading.HISTORIES["{loading.kind}"]'
             raise InputError(f"save: files do not know {name}: set {place} = {name}")
-    return _history(solution) | ({} if solution.checkpoint is None else _checkpoint(solution.checkpoint))
+    variables = _history(solution)
+    if solution.checkpoint is not None:
+        axes = {name: tuple(f"engine_{axis}" for axis in of) for name, of in zip(ARRAYS, AXES, strict=True)}
+        variables |= {f"engine_{name}": Variable(axes[name], getattr(solution.checkpoint, name)) for name in ARRAYS}
+    return variables
 
 
 def _history(solution: Solution) -> dict[str, Variable]:
@@ -230,20 +236,9 @@ def _history(solution: Solution) -> dict[str, Variable]:
     return variables
 
 
-def _checkpoint(checkpoint: Checkpoint) -> dict[str, Variable]:
-    axes = {name: tuple(f"engine_{axis}" for axis in of) for name, of in zip(ARRAYS, AXES, strict=True)}
-    return {f"engine_{name}": Variable(axes[name], getattr(checkpoint, name)) for name in ARRAYS}
-
-
 def _engine(solution: Solution) -> dict[str, Any]:
     """Return the attribute with the hash of the engine's code, if the state of the engine is known."""
     return {} if solution.checkpoint is None else {"engine": solution.checkpoint.engine}
-
-
-def _drawing(solution: Solution) -> dict[str, Variable]:
-    end = float(solution.breaks[-1])
-    time, values = solution.curves_together(solution.curves, 0.0, end, DRAWN_POINTS)
-    return _curves(solution, time, dict(zip(solution.curves, values, strict=True)))
 
 
 def _tables(solution: Solution) -> dict[str, Variable]:

@@ -16,13 +16,13 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 
 import numpy as np
 import zarr
-from numpy.typing import NDArray
 from typing_extensions import override
 from zarr.storage import MemoryStore
 
 import stickslip
 from stickslip.foundation import zarr_folder
 from stickslip.foundation.arguments import shown
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.constants import PAPER
 from stickslip.foundation.errors import InputError, printable
@@ -36,7 +36,6 @@ from stickslip.trajectory.status import STATUSES, UNDER_WAY, Status
 if TYPE_CHECKING:
     from stickslip.planar.solver import PlanarSolver
 
-Floats = NDArray[np.float64]
 FORMAT = 1
 """Version of the layout; a folder with another version is refused."""
 KIND, SENT = "stickslip_planar", "waves/sent"

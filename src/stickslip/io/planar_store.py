@@ -16,11 +16,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
 from typing_extensions import override
 
 from stickslip.engine.state.layout import Stop
 from stickslip.foundation import netcdf_file, zarr_folder
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.atomic_write import held, sync, write_atomically
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.netcdf_file import Variable
@@ -49,7 +49,6 @@ if TYPE_CHECKING:
     from stickslip.planar.solver import PlanarSolver
     from stickslip.planar.step import Motion
 
-Floats = NDArray[np.float64]
 STATE = "state.nc"
 """File of the checkpoint."""
 BUSY = "another run is writing into it"

@@ -83,8 +83,12 @@ def sample(
         raise InputError(f"samples must lie within the run, {low:g} to {high:g} s, got {first:g} to {last:g} s")
     count = _count((last - first) * sampling_rate, MOST_VALUES // (FINER * len(NODES)) if antialias else MOST_VALUES)
     if antialias:
+        from scipy import signal
+
         fine = first + np.arange((count - 1) * FINER + 1) / (FINER * sampling_rate)
-        return SampledRun(first, sampling_rate, *(_thinned(one) for one in _means(run, fine, 1.0 / (FINER * sampling_rate), x)))
+        means = _means(run, fine, 1.0 / (FINER * sampling_rate), x)
+        # beyond its ends a series is continued by its end values
+        return SampledRun(first, sampling_rate, *(signal.resample_poly(one, 1, FINER, padtype="edge") for one in means))
     return SampledRun(first, sampling_rate, *_values(run, np.minimum(first + np.arange(count) / sampling_rate, last), x))
 
 
@@ -118,10 +122,3 @@ def _means(run: Readings, time: Floats, width: float, x: float) -> Iterator[Floa
     nodes = edges[:-1, None] + lengths[:, None] * NODES
     for one in _values(run, nodes.ravel(), x):
         yield np.add.reduceat(lengths * (one.reshape(nodes.shape) @ WEIGHTS), cells) / np.diff(bounds)
-
-
-def _thinned(values: Floats) -> Floats:
-    """Low-pass a series and keep every eighth value; beyond its ends the series is continued by its end values."""
-    from scipy import signal
-
-    return np.asarray(signal.resample_poly(values, 1, FINER, padtype="edge"))

@@ -21,6 +21,7 @@ import stickslip as ss
 from stickslip.bodies import as_slab
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import BLUE, GREEN, GREY, INK, VERMILLION, quantity, styled
+from stickslip.foundation.arrays import Floats
 from stickslip.observables.planar import pulses
 from stickslip.paper.cases import Runs, problem, typed
 from stickslip.planar.slab import PROCESS_ZONE
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-Floats = NDArray[np.float64]
 PAPERS_EXCESS = 3430.0 / 0.5e8
 """The excess of the paper's slab (reconstructed) as a share of the amplitude of its friction: u0 = u_c + 1 mm."""
 LARGE = 0.1

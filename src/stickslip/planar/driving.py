@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stickslip.bodies import ElasticSlab
+from stickslip.foundation.arrays import Floats
 from stickslip.loading import LoadingHistory
 from stickslip.problem.problem import Problem
-
-Floats = NDArray[np.float64]
 
 
 def locked_load(problem: Problem, steps: int, round_trips: int) -> Floats:

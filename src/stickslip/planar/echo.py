@@ -18,7 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import j1, roots_legendre
 
-Floats = NDArray[np.float64]
+from stickslip.foundation.arrays import Floats
+
 MOST = 1024
 """Largest number of Gauss points of one step of the integral, where J1 oscillates many times within the step."""
 BLOCK = 100_000

@@ -17,7 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import roots_jacobi, roots_legendre
 
-Floats = NDArray[np.float64]
+from stickslip.foundation.arrays import Floats
+
 Complex = NDArray[np.complex128]
 
 POINTS = 5

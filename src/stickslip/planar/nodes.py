@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, full_name
 from stickslip.foundation.other_values import unchecked, with_values
 from stickslip.foundation.quantities import Quantity, in_units, quantities_of
@@ -20,7 +21,6 @@ from stickslip.friction.formula.functions import evaluate
 from stickslip.problem.parameters import put_many
 from stickslip.problem.problem import LOAD, Problem
 
-Floats = NDArray[np.float64]
 MANY = 256
 """Number of different nodes up to which each is checked as a problem of its own; of more, the extremes are, and some others."""
 MAY_VARY = ("friction.", "body.normal_stress", "initial.")

@@ -23,6 +23,7 @@ import numpy as np
 from jax.sharding import PartitionSpec
 from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.planar.driving import locked_load
 from stickslip.planar.echo import Echo, echo_of, echo_weights, kernel_spectra, silent
 from stickslip.planar.friction import Contact, Nodes
@@ -102,9 +103,6 @@ def functions_of(contact: Contact, layout: Layout, parameters: tuple[str, ...]) 
         layout.on_devices(step.opened, (*now, spread.constants, ALIKE), now, donate=(0, 1)),
         layout.on_devices(turn, (sent, spread.echo, spread.spectra, ALIKE), (sent, spread.echo), donate=(1,)),
     )
-
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(eq=False)

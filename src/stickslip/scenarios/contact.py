@@ -9,6 +9,7 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import Number, OptionalNumber
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity, check_fields, declare, fields_of
@@ -16,7 +17,6 @@ from stickslip.planar.nodes import full_names, varying
 from stickslip.planar.slab import COUNTS, PlanarSlab
 from stickslip.problem.problem import Problem
 
-Floats = NDArray[np.float64]
 LOCKED = "locked"
 """Name of the profile that is true where the contact never slips."""
 PRESSED = ("body.normal_stress", "initial.load", "initial.excess")

@@ -340,14 +340,10 @@ class FromExpression(RemembersSlip):
         scales = [
             abs(value.value) ** (1 if value.unit == "m s^-1" else -1)
             for value in self.values
-            if value.value and value.unit in _RATES
+            if value.value and value.unit in ("m s^-1", "m^-1 s")  # as `si_base` writes them
         ]
         if units:
             return tuple(scales)
         constants = [node.value for node in nodes_of(self.tree) if node.operation == "constant"]
         sizes = [abs(number) for number in (*self.piece_values(0), *constants) if number]
         return tuple(dict.fromkeys(scale for size in sizes for scale in (size, 1.0 / size)))
-
-
-_RATES = ("m s^-1", "m^-1 s")
-"""Units of slip rates and of their inverses, as `si_base` writes them."""

@@ -1,25 +1,25 @@
 """Energy of the run of a planar slab, as differences from its start.
 
 What is inside the slab is found from the slip of the contact, by methods that share no code with the solver: the mean motion by the
-two waves of the slab in 1D, and the rest by the volume method of `stickslip.reference.planar`, whose contact is made to slip as in
-the run. The heat is that of the law. So the balance tests the run: it closes if waves in a slab whose contact slips like this bring
-the load under which the law lets it slip like this.
+two waves of the slab in 1D, and the rest by the volume method (`Volume`), whose contact is made to slip as in the run. The heat is
+that of the law. So the balance tests the run: it closes if waves in a slab whose contact slips like this bring the load under which
+the law lets it slip like this. Tests add friction to the volume method, as a solver of their own
+(`tests/reference/planar_methods.py`).
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.foundation.arrays import Floats
+from stickslip.foundation.errors import InputError
 from stickslip.planar.driving import locked_load
 from stickslip.planar.slab import PlanarSlab
-from stickslip.reference.planar import PlanarCase, Volume
-
-Floats = NDArray[np.float64]
-
 
 NAMES = ("work", "stored", "elastic", "kinetic", "heat", "radiated", "balance")
 """The energies of a planar slab, with the meaning that they have in `balance.LONG_NAMES`."""
@@ -89,17 +89,10 @@ def _uneven_motion(slab: PlanarSlab, slips: Iterator[Floats], here: tuple[slice,
     """Return kinetic and elastic energy in the slab, and the energy beyond the driver, of wavenumbers above 0, after each step."""
     body = slab.body
     zero = np.zeros(slab.shape)
-    case = PlanarCase(
-        body.density,
-        body.wave_speed,
-        body.thickness,
-        slab.extent,
-        slab.values.load,
-        lambda slip, rate, nodes: (slip, slip, slip),  # the contact is not solved
-        math.inf if body.is_driven_rigidly else body.driver_impedance,
-    )
+    driver = math.inf if body.is_driven_rigidly else body.driver_impedance
+    medium = PlanarMedium(body.density, body.wave_speed, body.thickness, slab.extent, slab.values.load, driver_impedance=driver)
     moved, found = list(slips), []
-    run = Volume(case, steps, len(moved) * body.two_way_time / steps)
+    run = Volume(medium, steps, len(moved) * body.two_way_time / steps)
     for slip in moved:
         whole = zero.copy()
         whole[here] = slip
@@ -118,3 +111,133 @@ def _slip_at(at: Floats, times: Floats, slip: Floats, slip_rate: Floats) -> Iter
         x = (time - times[n]) / length
         turned = slip_rate[n] * (1.0 - x) ** 2 * x - slip_rate[n + 1] * x**2 * (1.0 - x)
         yield slip[n] + (slip[n + 1] - slip[n]) * x**2 * (3.0 - 2.0 * x) + length * turned - slip[0]
+
+
+Waves = NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class PlanarMedium:
+    """A slab 0 < x < h with scalar waves u_tt = c^2 (u_xx + u_yy + u_zz), periodic along the contact at x = 0.
+
+    `length` is the period along each direction (m): one number in 2D, two in 3D; the shape of `initial_load` (Pa), which is in
+    equilibrium, gives the numbers of nodes. `driver_impedance` (Pa s/m) is that of the half-space beyond x = h, in which waves are
+    as fast, and which reflects every wave by the factor (Z - Zd) / (Z + Zd); infinite for a rigid driver, 0 for a dead load.
+    """
+
+    density: float
+    wave_speed: float
+    thickness: float
+    length: tuple[float, ...]
+    initial_load: Floats
+    driver_impedance: float = field(default=math.inf, kw_only=True)
+
+    def __post_init__(self) -> None:
+        if len(self.length) != np.ndim(self.initial_load):
+            raise InputError("PlanarMedium: length must have a number for each axis of initial_load")
+
+    @property
+    def impedance(self) -> float:
+        """Z = rho c (Pa s/m)."""
+        return self.density * self.wave_speed
+
+    @property
+    def two_way_time(self) -> float:
+        """R = 2 h / c (s)."""
+        return 2.0 * self.thickness / self.wave_speed
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The numbers of nodes along the contact."""
+        return np.shape(self.initial_load)
+
+    @property
+    def node_area(self) -> float:
+        """The length (2D, m) or area (3D, m^2) of the contact that belongs to a node."""
+        return float(np.prod(np.divide(self.length, self.shape)))
+
+    def frequencies(self) -> Floats:
+        """Return w = |k| c (1/s) for each wave of the real Fourier transform along the contact."""
+        steps = [size / n for n, size in zip(self.shape, self.length, strict=True)]
+        axes = [np.fft.fftfreq(n, step) for n, step in zip(self.shape, steps, strict=True)]
+        axes[-1] = np.fft.rfftfreq(self.shape[-1], steps[-1])
+        squares = sum(one**2 for one in np.meshgrid(*axes, indexing="ij"))
+        return np.asarray(2.0 * np.pi * self.wave_speed * np.sqrt(squares))
+
+    def to_waves(self, values: Floats) -> Waves:
+        """Return the Fourier transform along the contact."""
+        return np.fft.rfftn(values)
+
+
+class Volume:
+    """The displacement of the whole slab, step by step, for a `duration` (s) at most, by one line of nodes for each wave along it.
+
+    A wave exp(i k y) obeys the Klein-Gordon equation u_tt = c^2 u_xx - w^2 u, w = |k| c. With dx = c dt the scheme
+
+        u_i(n+1) + u_i(n-1) = cos(w dt) [u_{i+1}(n) + u_{i-1}(n)]
+
+    is stable for every w, of order 2, and exact for w = 0. The lines end at a rigid driver. Otherwise they go on through the
+    half-space of impedance Zd beyond x = h, so far that nothing comes back to the slab from their end in time. At x = h, where half
+    cells meet,
+
+        (Z + Zd) [u_i(n+1) + u_i(n-1)] = 2 cos(w dt) [Z u_{i-1}(n) + Zd u_{i+1}(n)].
+
+    The number of steps in R = 2 h / c is even, because half as many cells fill the thickness. `slip` (m) is that now.
+    """
+
+    def __init__(self, case: PlanarMedium, steps_per_two_way_time: int, duration: float) -> None:
+        if steps_per_two_way_time < 2 or steps_per_two_way_time % 2:
+            raise InputError(f"volume: steps_per_two_way_time is {steps_per_two_way_time}, but must be even and at least 2")
+        self.case, self.step_of_time, self.steps = case, case.two_way_time / steps_per_two_way_time, 0
+        inside, beyond = steps_per_two_way_time // 2, 0
+        if case.driver_impedance == 0.0:
+            beyond = 1  # without mass; its far end stays at rest
+        elif case.driver_impedance < math.inf:
+            beyond = max(1, math.ceil(0.5 * (duration / self.step_of_time - inside)) + 1)
+        self._impedance = np.repeat((case.impedance, case.driver_impedance if beyond else 0.0), (inside, beyond))
+        """Impedance of each cell."""
+        near = 2.0 * self._impedance[:-1] / (self._impedance[:-1] + self._impedance[1:])
+        self._near = near.reshape(-1, *(1,) * len(case.shape))
+        self._cosine = np.cos(case.frequencies() * self.step_of_time)
+        self._now: Waves = np.zeros((inside + beyond + 1, *self._cosine.shape), complex)
+        self._before = self._now.copy()
+        self.slip = np.zeros(case.shape)
+        self._slip_before = self.slip
+
+    def move(self, slip: Floats) -> None:
+        """Take one step of time, after which the contact has a given slip (m)."""
+        now, after = self._now, self._before  # the memory of the latter is used again
+        self._slip_before, self.slip = self.slip, slip
+        after[1:-1] = self._cosine * (self._near * now[:-2] + (2.0 - self._near) * now[2:]) - after[1:-1]
+        after[0] = self.case.to_waves(slip)
+        self._before, self._now = now, after
+        self.steps += 1
+
+    def energies(self) -> tuple[float, float, float]:
+        """Return the kinetic and elastic energy of the slab, and that of the driver, half a step ago, less those at the start.
+
+        They are J per m of strike in 2D, J in 3D, of what has been added to the initial state. The work of the initial stress,
+        which acts at the contact, -initial load times slip, is part of the elastic energy. A rigid driver must be at rest.
+        """
+        case, dt, inside = self.case, self.step_of_time, round(0.5 * self.case.two_way_time / self.step_of_time)
+        now, before, along = self._now, self._before, 2.0 * (1.0 - self._cosine) / dt**2  # w^2 as the scheme has it
+        velocity, stretch, stretch_before = (now - before) / dt, np.diff(now, axis=0) / dt, np.diff(before, axis=0) / dt
+        moving, shifted = self._product(velocity, velocity), self._product(along * now, before)
+        stretched = self._product(self._cosine * stretch, stretch_before)
+        work = case.node_area * float(np.sum(case.initial_load * (0.5 * (self.slip + self._slip_before))))
+        parts = []
+        for cells in (self._impedance * (np.arange(len(self._impedance)) < inside), self._impedance.copy()):
+            masses = 0.25 * dt * (np.append(cells, 0.0) + np.append(0.0, cells))
+            parts.append((float(masses @ moving), float(masses @ shifted + 0.5 * dt * (cells @ stretched))))
+        (kinetic, elastic), whole = parts[0], sum(parts[1])
+        return kinetic, elastic - work, whole - kinetic - elastic if len(self._impedance) > inside else 0.0
+
+    def _product(self, one: Waves, other: Waves) -> Floats:
+        """Return the integral over the contact of the product of two quantities, for each layer parallel to it."""
+        count, last = int(np.prod(self.case.shape)), self.case.shape[-1]
+        twice = np.full(one.shape[-1], 2.0)  # the real transform keeps one of each pair k, -k
+        twice[0] = 1.0
+        if last % 2 == 0:
+            twice[-1] = 1.0
+        products = twice * (one * other.conj()).real
+        return np.asarray(products.sum(axis=tuple(range(1, one.ndim))) * self.case.node_area / count)
