@@ -1,7 +1,7 @@
 """Declare the fields of bodies, laws and loading histories: unit, meaning and allowed values of each, once, with the field.
 
 The owners check their values against these declarations (`check_fields`); scenario files, `stickslip new`, the Parameters section
-of a docstring (`foundation.brief_repr`) and the documentation are made from them.
+of a docstring (`foundation.show`) and the documentation are made from them.
 """
 
 from __future__ import annotations

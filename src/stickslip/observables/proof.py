@@ -2,7 +2,7 @@
 
 The engine's own bound of a step (`engine.contact_step.certificate`) rests on its series: their first coefficients are those of the
 solution. Here the same is shown of a finished step without that premise. Let g be what the contact equation lacks, y the place in
-the step minus 1/2, and |g| <= M for |y| <= R, by the formula of the law on discs (`friction.formula.discs`). The ellipse with the
+the step minus 1/2, and |g| <= M for |y| <= R, by the formula of the law on discs (`friction.formula.bounds`). The ellipse with the
 ends of the step as its foci and the larger half-axis R lies in that disc, and has the parameter q = 2 R + sqrt(4 R^2 - 1). Let p be
 the polynomial of degree n through the values of g at n + 1 Chebyshev points of the step. Then (Trefethen 2019, Approximation Theory
 and Approximation Practice, ch. 8)
