@@ -13,8 +13,8 @@ import stickslip as ss
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, Text, fields_of
 from stickslip.friction import LAWS, FrictionLaw, FromExpression
+from stickslip.problem.fields import INITIAL_STATES
 from stickslip.problem.selection_rule import SELECTION_RULES
-from stickslip.problem.start import INITIAL_STATES
 
 EXTREME = 0.15
 """Share of problems whose numbers are drawn from many decades."""

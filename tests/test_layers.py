@@ -64,7 +64,7 @@ ROOMS = {
         ("on_demand",),
         ("loop",),
     ),
-    "problem": (("parameters", "run_quantities", "selection_rule", "start"), ("problem",)),
+    "problem": (("run_quantities", "selection_rule"), ("fields",), ("parameters", "start"), ("problem",)),
     "engine_input": (("branch_table", "forcing", "limits"), ("prepare",)),
     "planar": (
         ("driving", "echo", "layout", "memory", "nodes"),
@@ -236,8 +236,6 @@ FILES = [path for path in sorted(PACKAGE.rglob("*.py")) if parts(path)[0] not in
 # ---- lists that may only become shorter ------------------------------------------------------------------------------------
 
 UPWARD_FOR_TYPES: dict[str, set[str]] = {
-    "problem/parameters.py": {"problem.problem"},
-    "problem/start.py": {"problem.problem"},
     "scenarios/scenario.py": {"solution"},
 }
 """Files that name something from above in an annotation only."""

@@ -7,6 +7,7 @@ import inspect
 import math
 import pickle
 from collections.abc import Callable
+from dataclasses import FrozenInstanceError
 from pathlib import Path
 from typing import Any
 
@@ -277,6 +278,13 @@ def test_an_attribute_that_is_not_there_is_answered_with_those_that_are(owner: A
         getattr(owner, attribute)
     assert str(caught.value).startswith(hint)
     assert not hasattr(owner, attribute)
+
+
+@pytest.mark.parametrize("name", ["initial_load", "inital_load"])
+def test_a_problem_refuses_to_be_changed(name: str) -> None:
+    problem = ss.scenarios["fig6-slab"].problem
+    with pytest.raises(FrozenInstanceError, match=f"cannot assign to field '{name}'"):
+        setattr(problem, name, 1.0)
 
 
 def test_an_error_in_a_property_is_not_hidden_by_the_hint() -> None:

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 import stickslip as ss
 from stickslip.friction import LAWS, FrictionLaw
 from stickslip.friction.contract import STATE_NAMES
+from stickslip.problem.fields import INITIAL_STATES
 from stickslip.problem.selection_rule import SELECTION_RULES
-from stickslip.problem.start import INITIAL_STATES
 from stickslip.scenarios import read_scenario
 from tests.friction.drawn import laws
 

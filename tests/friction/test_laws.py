@@ -23,7 +23,7 @@ from stickslip.friction import (
     SinusoidalSlip,
 )
 from stickslip.friction.formula.differences import difference
-from stickslip.problem.start import INITIAL_STATES
+from stickslip.problem.fields import INITIAL_STATES
 from stickslip.scenarios.scenario import Scenario, read_scenario
 from stickslip.scenarios.templates import template
 

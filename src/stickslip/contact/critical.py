@@ -199,7 +199,7 @@ def _zeros_if_straight(here: tuple[float, float], margin_at: Callable[[float], f
     return None
 
 
-def _proven(found: Parameter, value: float, law_slip: float | None) -> Regime | None:
+def _proven(found: Parameter[Problem], value: float, law_slip: float | None) -> Regime | None:
     """Return the proven regime at a value of a parameter, or None if it is not decided."""
     try:
         g = resistance(found.put(value), law_slip)
@@ -210,7 +210,7 @@ def _proven(found: Parameter, value: float, law_slip: float | None) -> Regime | 
     return "irregular" if g.law.static_excess > 0.0 else certificate(g).regime
 
 
-def _proven_change(found: Parameter, value: float, law_slip: float | None) -> tuple[float, float] | None:
+def _proven_change(found: Parameter[Problem], value: float, law_slip: float | None) -> tuple[float, float] | None:
     """Return the narrowest tried interval around a critical value whose ends have provably different regimes, or None."""
     for step in _STEPS:
         low, high = sorted((value * (1.0 - step), value * (1.0 + step)))
@@ -220,7 +220,7 @@ def _proven_change(found: Parameter, value: float, law_slip: float | None) -> tu
     return None
 
 
-def _walk(found: Parameter, way: int) -> list[float]:
+def _walk(found: Parameter[Problem], way: int) -> list[float]:
     """Return values on one side of the present value, away from it, up to the last one that the problem accepts.
 
     That one counts, because the regime may change there.

@@ -135,7 +135,7 @@ class RegimeMap:
     present: tuple[float, float]
 
 
-def two_parameters(problem: Problem, x: Axis, y: Axis, where: str) -> tuple[Parameter, Parameter]:
+def two_parameters(problem: Problem, x: Axis, y: Axis, where: str) -> tuple[Parameter[Problem], Parameter[Problem]]:
     """Return the parameters of two axes. Raises InputError, which begins with `where`, if both are the same."""
     names = (problem.parameters[x.parameter], problem.parameters[y.parameter])
     if names[0].name == names[1].name:
@@ -143,7 +143,7 @@ def two_parameters(problem: Problem, x: Axis, y: Axis, where: str) -> tuple[Para
     return names
 
 
-def put_both(names: tuple[Parameter, Parameter], values: tuple[float, float]) -> Problem | None:
+def put_both(names: tuple[Parameter[Problem], Parameter[Problem]], values: tuple[float, float]) -> Problem | None:
     """Return the problem with other values of two parameters, or None if it refuses them."""
     with suppress(InputError):
         return put_many(names[0].problem, {names[0].name: values[0], names[1].name: values[1]})

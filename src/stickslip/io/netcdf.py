@@ -23,7 +23,7 @@ from stickslip.io.soundness import check_history, history_table, number
 from stickslip.loading import HISTORIES, LoadingHistory
 from stickslip.observables.event_table import EVENT_COLUMNS, event_columns, unit_for
 from stickslip.observables.predictability import attributes_of, is_followed, predictability
-from stickslip.problem.problem import MAY_VARY
+from stickslip.problem.fields import MAY_VARY
 from stickslip.problem.selection_rule import names as rule_names
 from stickslip.scenarios import Scenario, read_scenario
 from stickslip.solution.evaluation import Curve, Readings

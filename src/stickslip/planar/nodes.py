@@ -18,8 +18,9 @@ from stickslip.foundation.quantities import Quantity, in_units, quantities_of
 from stickslip.friction import FrictionLaw
 from stickslip.friction.contract import one_argument
 from stickslip.friction.formula.functions import evaluate
+from stickslip.problem.fields import LOAD
 from stickslip.problem.parameters import put_many
-from stickslip.problem.problem import LOAD, Problem
+from stickslip.problem.problem import Problem
 
 MANY = 256
 """Number of different nodes up to which each is checked as a problem of its own; of more, the extremes are, and some others."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, Generic, NamedTuple, TypeVar
 
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError, full_name
@@ -27,9 +27,7 @@ from stickslip.foundation.quantities import (
 from stickslip.foundation.show import brief
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.loading import VARYING, LoadingHistory
-
-if TYPE_CHECKING:
-    from stickslip.problem.problem import Problem
+from stickslip.problem.fields import ProblemFields
 
 PRESSING = "pressing"
 """Name of the normal load with the initial load and the far stress in proportion: pressed harder, a contact is as near to slip."""
@@ -37,6 +35,8 @@ LOADING = ("pull_rate", "far_stress", "far_stress_rate")
 """Fields of a problem that are in the table [loading] of a scenario."""
 STRESSES = ("far_stress", "far_stress_rate")
 """Those of them that follow the normal load when a contact is pressed harder."""
+
+P = TypeVar("P", bound=ProblemFields)
 
 
 class Entry(NamedTuple):
@@ -50,13 +50,13 @@ class Entry(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Parameter:
+class Parameter(Generic[P]):
     """A number of a problem: its full name, such as "friction.alpha", its value (SI), and its unit, meaning and allowed range."""
 
     name: str
     value: float
     declared: Quantity
-    problem: Problem
+    problem: P
 
     def __repr__(self) -> str:
         return f"Parameter({self.name} = {brief(self.value, self.unit)}, {self.declared.meaning})"
@@ -66,12 +66,12 @@ class Parameter:
         """The SI unit of the value, "1" for a pure number."""
         return self.declared.unit
 
-    def put(self, value: float) -> Problem:
+    def put(self, value: float) -> P:
         """Return a new problem with another value (SI) of this number. Raises InputError if the problem does not allow it."""
         return put_many(self.problem, {self.name: value})
 
 
-class Parameters(Mapping[str, Parameter]):
+class Parameters(Mapping[str, Parameter[P]], Generic[P]):
     """The numbers of a problem by name, those that are not given left out: of the friction law, of the body, of loading and start.
 
     `parameters["alpha"]` finds "friction.alpha" if no other name ends with ".alpha". It raises InputError if the name fits no
@@ -79,22 +79,31 @@ class Parameters(Mapping[str, Parameter]):
     initial excess which is not given, and `PRESSING`, with which the initial load and the far stress change in proportion.
     """
 
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: P, load: float, excess: float) -> None:
         self._problem = problem
+        self._loads = {"initial_load": load, "initial_excess": excess}
 
     @cached_property
-    def _found(self) -> dict[str, Parameter]:
+    def _found(self) -> dict[str, Parameter[P]]:
         return {
             one.name: Parameter(one.name, one.value, one.declared, self._problem)
             for one in entries_of(self._problem)
             if isinstance(one.declared, Quantity) and one.value is not None and not isinstance(one.value, str)  # "steady"
         }
 
-    def __getitem__(self, name: str) -> Parameter:
+    def __getitem__(self, name: str) -> Parameter[P]:
         if not isinstance(name, str):
             raise InputError(f'parameters: a name must be text such as "friction.alpha", got {shown(name)}')
-        known = self._found | {one.name: one for one in _derived(self._problem) if one.name not in self._found}
+        known = self._found | {one.name: one for one in self._derived() if one.name not in self._found}
         return known[full_name(name, known, "parameter ", "is unknown")]
+
+    def _derived(self) -> Iterator[Parameter[P]]:
+        """Yield the numbers that follow from others."""
+        problem = self._problem
+        for name, value in self._loads.items():
+            declared = replace(quantities_of(type(problem))[name], unit=problem.load_unit)
+            yield Parameter(name.replace("_", "."), value, declared, problem)
+        yield Parameter(PRESSING, problem.normal, pressing_of(problem), problem)
 
     def __contains__(self, name: object) -> bool:
         return name in self._found
@@ -109,7 +118,7 @@ class Parameters(Mapping[str, Parameter]):
         return "\n".join(f"{one.name} = {brief(one.value, one.unit)}" for one in self._found.values())
 
 
-def entries_of(problem: Problem) -> Iterator[Entry]:
+def entries_of(problem: ProblemFields) -> Iterator[Entry]:
     """Yield every entry of a problem that can have another value, given or not: numbers, and words such as those of a law."""
     yield from _entries_in(problem.friction, "friction")
     yield from _entries_in(problem.body, "body")
@@ -122,7 +131,7 @@ def entries_of(problem: Problem) -> Iterator[Entry]:
     yield from _of_start(problem)
 
 
-def _of_start(problem: Problem) -> Iterator[Entry]:
+def _of_start(problem: ProblemFields) -> Iterator[Entry]:
     """Yield the entries of the start. An initial load replaces an initial excess, and an excess a load."""
     declared = quantities_of(type(problem))
     yield Entry("initial.slip", declared["initial_slip"], problem.initial_slip)
@@ -135,15 +144,7 @@ def _of_start(problem: Problem) -> Iterator[Entry]:
     yield Entry("initial.rate", declared["initial_rate"], problem.initial_rate)
 
 
-def _derived(problem: Problem) -> Iterator[Parameter]:
-    """Yield the numbers that follow from others."""
-    for name, value in (("load", problem.load), ("excess", problem.excess)):
-        declared = replace(quantities_of(type(problem))[f"initial_{name}"], unit=problem.load_unit)
-        yield Parameter(f"initial.{name}", value, declared, problem)
-    yield Parameter(PRESSING, problem.normal, pressing_of(problem), problem)
-
-
-def put_many(problem: Problem, values: Mapping[str, Any], make: Callable[..., Any] = replace) -> Problem:
+def put_many(problem: P, values: Mapping[str, Any], make: Callable[..., Any] = replace) -> P:
     """Return a problem with other values (SI) of its numbers, by their full names; an initial load replaces an excess, and back.
 
     A contact is pressed harder before other numbers are put. `make` is as for `foundation.other_values.with_values`.
@@ -162,19 +163,19 @@ def put_many(problem: Problem, values: Mapping[str, Any], make: Callable[..., An
     return with_values(problem, changes, make) if changes else problem
 
 
-def normal_field(problem: Problem) -> str:
+def normal_field(problem: ProblemFields) -> str:
     """Return the name of the body's field that holds the normal load."""
     return "normal_stress" if problem.body.has_waves else "normal_force"
 
 
-def pressing_of(problem: Problem) -> Quantity:
+def pressing_of(problem: ProblemFields) -> Quantity:
     """Return the declaration of `PRESSING`."""
     name = normal_field(problem)
     meaning = f"{name.replace('_', ' ')}, with the initial load and the far stress in proportion"
     return replace(quantities_of(type(problem.body))[name], meaning=meaning)
 
 
-def pressed(problem: Problem, value: float) -> Problem:
+def pressed(problem: P, value: float) -> P:
     """Return a problem with another normal load (Pa or N), at the same ratios of initial load and far stress to it.
 
     Raises InputError if the problem does not allow the value.

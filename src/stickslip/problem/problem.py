@@ -3,46 +3,31 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import FrozenInstanceError, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, NoReturn, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.bodies import BODIES, BodyOnCharacteristics
-from stickslip.foundation.arguments import CheckedArguments, check_type, is_number, shown
-from stickslip.foundation.conversion import Converted, Number, OptionalNumber, WithUnit
+from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import Quantity, check_fields, quantities_of, quantity
+from stickslip.foundation.quantities import quantities_of
 from stickslip.foundation.show import brief, brief_repr, fields_in, html_table, shown_fields
-from stickslip.friction import FrictionLaw
-from stickslip.friction.custom.from_function import as_law
+from stickslip.friction.contract import one_argument
 from stickslip.loading import SILENT, VARYING, LoadingHistory
+from stickslip.problem.fields import INITIAL_STATES, LOAD, STEADY, ProblemFields
 from stickslip.problem.parameters import Parameters
-from stickslip.problem.selection_rule import PERFECT_DELAY, SELECTION_RULES, SelectionRule, checked, name_of
-from stickslip.problem.start import INITIAL_STATES, STEADY, Start, check_rate, start_of, starts_steadily
+from stickslip.problem.selection_rule import PERFECT_DELAY, SELECTION_RULES, name_of
+from stickslip.problem.start import Start, start_of
 
-MAY_VARY = ("pull_rate", "far_stress")
-"""Fields of a problem that may be a loading history instead of a number."""
 DAY = 86_400.0
 """A day, s: what is called a round trip of a block that never sticks."""
-A_HISTORY = "; what varies in time is one of stickslip.loading, such as Steps([0.0, 10.0], [1e-6, 1e-5])"
-"""Hint for a value that is no number."""
-LOAD = "Pa or N"
-"""Unit of a load: Pa on a slab, N on a block."""
 LONGEST_ROUND_TRIP = 1e6
 """Largest number of periods of a block (1) in what is called its round trip."""
 
 
-def _required() -> Any:
-    """Return a field without a default; type checkers read the annotation `Converted` only where a field has a value."""
-    return field()
-
-
-@dataclass(frozen=True)
-class Problem(CheckedArguments):
+class Problem(ProblemFields):
     """Everything that a run needs except its duration and its tolerance.
 
     Parameters
@@ -102,43 +87,14 @@ class Problem(CheckedArguments):
     is the same everywhere.
     """
 
-    body: BodyOnCharacteristics
-    friction: Converted[FrictionLaw, FrictionLaw | Callable[..., Any] | str] = _required()  # noqa: RUF009 - makes a field
-    pull_rate: Converted[float | LoadingHistory, float | str | WithUnit | LoadingHistory] = quantity(
-        "m/s", "rate V at which the driver is pulled", default=0.0
-    )
-    initial_slip: Number = quantity("m", "slip u0 at the start", default=0.0)
-    initial_load: OptionalNumber = quantity(LOAD, "shear load on the contact at the start", default=None)
-    initial_excess: OptionalNumber = quantity(LOAD, "initial load minus static strength, kept exactly", default=None)
-    # not declared as a quantity, because the law determines its unit
-    initial_state: OptionalNumber = field(default=None)  # type: ignore[arg-type] # the annotation is that of a converted value
-    initial_second_state: OptionalNumber = field(default=None)  # type: ignore[arg-type] # as for the one before
-    initial_rate: OptionalNumber = quantity(
-        "m/s", 'slip rate v0 at the start, or "steady": that of steady sliding at the pull rate', default=None
-    )
-    far_stress: Converted[float | LoadingHistory | None, float | str | WithUnit | LoadingHistory | None] = quantity(
-        "Pa", "shear stress far beyond a driver of finite impedance", default=None
-    )
-    far_stress_rate: Number = quantity("Pa/s", "rate of change of the far stress", default=0.0)
-    selection: str | SelectionRule = "perfect-delay"
+    def __setattr__(self, name: str, value: Any) -> NoReturn:
+        """Refuse what a dataclass refuses: that of the fields lets its subclasses have further attributes."""
+        raise FrozenInstanceError(f"cannot assign to field {name!r}")
 
     def __post_init__(self) -> None:
-        bodies = tuple(BODIES.values())
-        if isinstance(self.body, FrictionLaw) and isinstance(self.friction, bodies):
-            names = f"{shown(self.body)} as body and {shown(self.friction)} as friction"
-            raise InputError(f"Problem: body comes first, then friction: got {names}")
-        check_type("Problem: body", self.body, bodies, "an ElasticSlab or a SpringBlock")
-        object.__setattr__(self, "friction", as_law("Problem: friction", self.friction))
-        self._check_varying()
-        steady = ("initial_rate",) if str(self.initial_rate) == STEADY else ()
-        check_fields(self, but=(*self._varying, *steady), units={LOAD: self.body.load_unit})
-        self._check_slip()
-        self._check_load()
-        self._check_state()
+        super().__post_init__()
         _ = self.rate  # refuses a start at which nothing balances
-        check_rate(self)
-        object.__setattr__(self, "selection", checked(self.selection))
-        self._check_far_side()
+        self._check_rate()
 
     def _shown(self) -> dict[str, str]:
         """Return the texts of the fields that differ from their defaults, by name; body and friction come first."""
@@ -165,81 +121,23 @@ class Problem(CheckedArguments):
             rows.append((name, shown[name].strip("'"), declared[name].meaning if name in declared else ""))
         return html_table("stickslip Problem", rows)
 
-    def _check_varying(self) -> None:
-        for name in MAY_VARY:
-            value, declared = getattr(self, name), quantities_of(Problem)[name]
-            if isinstance(value, LoadingHistory):
-                if value.unit not in (VARYING, declared.unit):
-                    raise InputError(f"Problem: {name} must be in {declared.unit}, got a history of values in {value.unit}")
-            elif value is not None or name == "pull_rate":
-                try:
-                    declared.check("Problem", name, value)
-                except InputError as error:
-                    raise InputError(f"{error}{'' if is_number(value) else A_HISTORY}") from None
-        if len(self._varying) > 1:
-            raise InputError("Problem: only one of pull_rate and far_stress may vary in time")
-        if isinstance(self.far_stress_rate, LoadingHistory):
-            raise InputError("Problem: far_stress_rate must be a number in Pa/s: what may vary in time is pull_rate or far_stress")
-        for name in self._varying:
-            getattr(self, name).check()
-
-    def _check_load(self) -> None:
-        steady = self.has_initial_rate and not self.given_states
-        if (self.initial_load is None) == (self.initial_excess is None) and not (steady and self.initial_load is None):
-            found = "neither" if self.initial_load is None else "both"
-            raise InputError(f"Problem: needs either initial_load or initial_excess (load minus static strength), got {found}")
-
-    def _check_slip(self) -> None:
-        try:
-            self.friction.check_start(self.law_slip)
-        except InputError as error:
-            raise InputError(f"Problem: friction: {error}") from None
-
-    def _check_state(self) -> None:
-        law, name = self.friction, type(self.friction).__name__
-        for needless in INITIAL_STATES[len(law.states) :]:
-            if getattr(self, needless) is not None:
-                raise InputError(f"Problem: {needless}: {name} has no {'second ' if law.states else ''}state variable")
-        if not law.states:
+    def _check_rate(self) -> None:
+        """Raise InputError if the problem has an initial rate that it cannot have."""
+        given = self.initial_rate
+        if given is None or self.body.has_inertia:
             return
-        if not law.sticks and self.initial_excess is not None:
-            raise InputError(f"Problem: initial_excess: {name} has no static strength to exceed, give initial_load")
-        healed = law.sticks or (law.reverses and self.initial_load is not None)
-        steady = self.has_initial_rate and starts_steadily(self)
-        for i, state in enumerate(() if steady else law.states):
-            field_name = INITIAL_STATES[i]
-            value = getattr(self, field_name)
-            if value is None and not healed:
-                raise InputError(f"Problem: needs {field_name}, the {state.meaning}, in {state.unit}")
-            signed = state.signed or state.reverses
-            above = None if law.sticks or signed else 0.0
-            declared = Quantity(state.unit, state.meaning, above=above, at_least=None if signed else 0.0)
-            if isinstance(value, str) and value == STEADY:
-                _ = self._steady_states  # refuses where there is none
-                continue
-            value = float(np.ravel(law.healed_state)[i]) if value is None else value
-            if isinstance(value, tuple | list | np.ndarray) and len(law.states) > 1:
-                both = " and ".join(INITIAL_STATES)
-                raise InputError(f"Problem: {field_name} must be one number, got {shown(value)}: each state has its own, {both}")
-            object.__setattr__(self, field_name, declared.check("Problem", field_name, value))
-
-    def _check_far_side(self) -> None:
-        if self.body.is_driven_rigidly and (self.far_stress is not None or self.far_stress_rate != 0.0):
-            raise InputError("Problem: far_stress and far_stress_rate need a slab with a finite driver_impedance")
-
-    @property
-    def _varying(self) -> tuple[str, ...]:
-        return tuple(name for name in MAY_VARY if isinstance(getattr(self, name), LoadingHistory))
-
-    @property
-    def varies(self) -> bool:
-        """True if the pull rate or the far stress is a loading history; a constant far_stress_rate does not count."""
-        return len(self._varying) > 0
-
-    @property
-    def first_pull_rate(self) -> float:
-        """The pull rate V (m/s) at and before the start, which determines the initial velocity in a slab."""
-        return self.pull_rate.first if isinstance(self.pull_rate, LoadingHistory) else self.pull_rate
+        if given == 0.0 and not (self.starts_steadily or self.friction.sticks):
+            return  # the start from rest, which it is without a mass: a sweep over the mass may include 0
+        if not self.starts_steadily:
+            why = "a contact without mass has no slip rate of its own, load and friction determine it"
+            raise InputError(
+                f"Problem: initial_rate: {why}: leave it out, or leave out load and state, so that it starts in steady sliding"
+            )
+        if self.has_initial_rate and resistance_slope(self) <= 0.0:
+            raise InputError(
+                f"Problem: initial_rate: at {brief(self.rate, 'm/s')} friction falls faster with the slip rate than waves carry"
+                " away, so that a contact without mass leaves this rate at once: give another rate, or the contact a mass"
+            )
 
     @property
     def loading_texts(self) -> dict[str, str]:
@@ -275,9 +173,9 @@ class Problem(CheckedArguments):
         return max(period, min(DAY, LONGEST_ROUND_TRIP * period, swing))
 
     @property
-    def parameters(self) -> Parameters:
+    def parameters(self) -> Parameters[Self]:
         """The numbers of the problem by name: `problem.parameters["friction.alpha"].value`, in SI."""
-        return Parameters(self)
+        return Parameters(self, self.load, self.excess)
 
     @property
     def folds_move(self) -> bool:
@@ -305,34 +203,6 @@ class Problem(CheckedArguments):
         """The name of the selection rule."""
         return name_of(self.selection)
 
-    @property
-    def normal(self) -> float:
-        """S: the normal stress (Pa) of the slab, or the normal force (N) of the block."""
-        return self.body.normal_load
-
-    @property
-    def load_unit(self) -> str:
-        """The unit of loads and tractions: Pa for the slab, N for the block."""
-        return self.body.load_unit
-
-    @property
-    def law_slip(self) -> float:
-        """The slip (m) that the friction law sees at the start.
-
-        It is the initial slip u0, or its magnitude if the law counts the path. It is 0 for a law that remembers slip only since
-        the last arrest, because the start counts as an arrest.
-        """
-        if self.friction.memory == "since-arrest":
-            return 0.0
-        return abs(self.initial_slip) if self.friction.counts == "path" else self.initial_slip
-
-    @property
-    def has_initial_rate(self) -> bool:
-        """True if the contact starts at a slip rate of its own: one that is given, or because it has inertia and never sticks."""
-        if self.friction.sticks:
-            return self.initial_rate is not None and self.initial_rate != 0.0
-        return self.body.has_inertia or self.initial_rate is not None
-
     @cached_property
     def _start(self) -> Start:
         return start_of(self)
@@ -353,36 +223,11 @@ class Problem(CheckedArguments):
         return self.load - self.body.damping * self.rate
 
     @property
-    def given_states(self) -> tuple[float, ...]:
-        """The initial states, as users see them; none for a law without a state, or in steady sliding that is not written out."""
-        given: list[Any] = [getattr(self, name) for name in INITIAL_STATES]
-        return tuple(self._steady_states[i] if value == STEADY else value for i, value in enumerate(given) if value is not None)
-
-    @cached_property
-    def _steady_states(self) -> list[float]:
-        """The states of steady sliding at the pull rate, as users see them. Raises InputError if there are none."""
-        law, rate = self.friction, self.first_pull_rate
-        states = law.steady_state(abs(rate)) if rate != 0.0 else None
-        if states is None:
-            why = f"{type(law).__name__} does not say in which state it slides steadily" if rate else "the pull rate is 0 at first"
-            raise InputError(f"Problem: initial_state '{STEADY}': {why}: give a number")
-        return [-one if rate < 0.0 and i in law.reverses else one for i, one in enumerate(np.ravel(states).tolist())]
-
-    @property
     def states(self) -> tuple[float, ...]:
         """The initial states in the form that the formulas use (`FrictionLaw.inner_state`); none for a law without one."""
         if self.has_initial_rate:
             return self._start.states
         return self.friction.inner_states(self.given_states)
-
-    @cached_property
-    def strength(self) -> float:
-        """The static strength S mu_static(u0) at the start (Pa or N).
-
-        It is the reference from which loads are stored as differences. For a law that sticks and has a state it is the strength
-        in the healed state 0. For a law that never sticks it is 0.
-        """
-        return self.normal * float(self.friction.static_coefficient(self.law_slip))
 
     @cached_property
     def excess(self) -> float:
@@ -417,3 +262,23 @@ def check_problem(who: str, problem: Any, wanted: str = "a Problem") -> None:
     elif isinstance(getattr(problem, "problem", None), Problem):
         hint = "; take its .problem"
     raise InputError(f"{who}: problem must be {wanted}, got {shown(problem)}{hint}")
+
+
+def resistance_slope(problem: Problem) -> float:
+    """Return how damping v + S mu grows with the slip rate at the start (Pa s/m or N s/m)."""
+    slopes = problem.friction.slopes(problem.law_slip, abs(problem.rate), one_argument(problem.states))
+    return problem.body.damping + problem.normal * float(slopes[1])
+
+
+def written_out(problem: Problem) -> Problem:
+    """Return a problem with its initial load and state as numbers, where they followed from steady sliding."""
+    if not problem.has_initial_rate or not problem.starts_steadily:
+        return problem
+    law, rate = problem.friction, problem.initial_rate
+    if not problem.body.has_inertia:
+        rate = None  # it follows from load and state
+    elif law.sticks or isinstance(rate, str):
+        rate = problem.rate
+    seen = np.ravel(law.outer_state(np.array(one_argument(problem.states)))) if law.states else np.zeros(0)
+    states: dict[str, Any] = dict(zip(INITIAL_STATES, seen.tolist(), strict=False))
+    return replace(problem, initial_load=problem.load, initial_rate=rate, **states)

@@ -8,26 +8,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief
-from stickslip.friction.contract import STATE_NAMES, one_argument
+from stickslip.friction.contract import one_argument
 from stickslip.loading import LoadingHistory
-
-if TYPE_CHECKING:
-    from stickslip.problem.problem import Problem
+from stickslip.problem.fields import STEADY, ProblemFields
 
 FASTEST, SLOWEST = 1e3, 1e-300
 """Slip rates (m/s) between which load and friction must balance; a contact that would be slower starts at rate 0."""
-STEADY = "steady"
-"""Initial state, or initial rate, that stands for the one of steady sliding at the pull rate."""
-INITIAL_STATES = tuple(f"initial_{name}" for name in STATE_NAMES)
-"""Names of the initial states in a `Problem`."""
 AT_ONCE, ROUNDS = 304, 8
 """Number of slip rates that are tried together, first one in each decade, and how often they close in on the balance."""
 
@@ -40,51 +33,7 @@ class Start(NamedTuple):
     states: tuple[float, ...]  # those that reverse: in the forward direction
 
 
-def starts_steadily(problem: Problem) -> bool:
-    """Return True if a problem gives neither load nor state: a contact that starts in motion then starts in steady sliding."""
-    return problem.initial_load is None and problem.initial_excess is None and not problem.given_states
-
-
-def check_rate(problem: Problem) -> None:
-    """Raise InputError if a problem has an initial rate that it cannot have."""
-    given = problem.initial_rate
-    if given is None or problem.body.has_inertia:
-        return
-    if given == 0.0 and not (starts_steadily(problem) or problem.friction.sticks):
-        return  # the start from rest, which it is without a mass: a sweep over the mass may include 0
-    if not starts_steadily(problem):
-        why = "a contact without mass has no slip rate of its own, load and friction determine it"
-        raise InputError(
-            f"Problem: initial_rate: {why}: leave it out, or leave out load and state, so that it starts in steady sliding"
-        )
-    if problem.has_initial_rate and resistance_slope(problem) <= 0.0:
-        raise InputError(
-            f"Problem: initial_rate: at {brief(problem.rate, 'm/s')} friction falls faster with the slip rate than waves carry"
-            " away, so that a contact without mass leaves this rate at once: give another rate, or the contact a mass"
-        )
-
-
-def resistance_slope(problem: Problem) -> float:
-    """Return how damping v + S mu grows with the slip rate at the start (Pa s/m or N s/m)."""
-    slopes = problem.friction.slopes(problem.law_slip, abs(problem.rate), one_argument(problem.states))
-    return problem.body.damping + problem.normal * float(slopes[1])
-
-
-def written_out(problem: Problem) -> Problem:
-    """Return a problem with its initial load and state as numbers, where they followed from steady sliding."""
-    if not problem.has_initial_rate or not starts_steadily(problem):
-        return problem
-    law, rate = problem.friction, problem.initial_rate
-    if not problem.body.has_inertia:
-        rate = None  # it follows from load and state
-    elif law.sticks or isinstance(rate, str):
-        rate = problem.rate
-    seen = np.ravel(law.outer_state(np.array(one_argument(problem.states)))) if law.states else np.zeros(0)
-    states: dict[str, Any] = dict(zip(INITIAL_STATES, seen.tolist(), strict=False))
-    return replace(problem, initial_load=problem.load, initial_rate=rate, **states)
-
-
-def start_of(problem: Problem) -> Start:
+def start_of(problem: ProblemFields) -> Start:
     """Return the start of a problem that `has_initial_rate`. Raises InputError if it lacks something, or if nothing balances."""
     rate = problem.initial_rate
     if problem.initial_load is None and problem.initial_excess is None:
@@ -101,7 +50,7 @@ def start_of(problem: Problem) -> Start:
     return Start(rate, load, states)
 
 
-def _steady_rate(problem: Problem) -> float:
+def _steady_rate(problem: ProblemFields) -> float:
     """Return the slip rate (m/s) of steady sliding: the pull rate, unless the driver gives way and its far stress is given.
 
     It then is the fastest at which friction and a driver of impedance Zd balance, Zd v + S mu(v) = far stress + Zd V.
@@ -126,7 +75,7 @@ def _steady_rate(problem: Problem) -> float:
     return math.copysign(beyond, drive)
 
 
-def _steady(problem: Problem, rate: float) -> Start:
+def _steady(problem: ProblemFields, rate: float) -> Start:
     """Return steady sliding at a slip rate (m/s) of either sign."""
     law, states = problem.friction, tuple[float, ...]()
     if rate == 0.0:
@@ -146,13 +95,13 @@ def _steady(problem: Problem, rate: float) -> Start:
     return Start(rate, load, tuple(math.copysign(1.0, rate) * one if i in law.reverses else one for i, one in enumerate(states)))
 
 
-def _resistance(problem: Problem, states: tuple[float, ...]) -> Callable[[Any], Floats]:
+def _resistance(problem: ProblemFields, states: tuple[float, ...]) -> Callable[[Any], Floats]:
     """Return the load (Pa or N) that slip rates v >= 0 (m/s) take: damping v + S mu."""
     law, slip, damping, normal = problem.friction, problem.law_slip, problem.body.damping, problem.normal
     return lambda rate: np.asarray(damping * rate + normal * law.coefficient(slip, rate, one_argument(states)))
 
 
-def _balance(resistance: Callable[[Any], Floats], load: float, problem: Problem) -> float:
+def _balance(resistance: Callable[[Any], Floats], load: float, problem: ProblemFields) -> float:
     """Return the slowest slip rate (m/s, >= 0) at which the resistance is a load (>= 0), to rounding."""
     rates = np.geomspace(SLOWEST, FASTEST, AT_ONCE)
     beyond = resistance(rates) > load

@@ -22,8 +22,8 @@ from stickslip.friction.contract import STATE_NAMES
 from stickslip.friction.laws.combined import LawOfParts
 from stickslip.friction.piecewise import PiecewiseLaw, noise_in
 from stickslip.loading import VARYING, LoadingHistory
+from stickslip.problem.fields import STEADY
 from stickslip.problem.problem import Problem
-from stickslip.problem.start import STEADY
 from stickslip.reference.slab import PulseTrain
 from stickslip.scenarios.entries import key_of
 from stickslip.scenarios.scenario import Scenario, doubts

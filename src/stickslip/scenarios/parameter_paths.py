@@ -16,11 +16,11 @@ from stickslip.foundation.errors import InputError, full_name
 from stickslip.foundation.quantities import Choice, Quantity, quantities_of
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.planar.nodes import varying
+from stickslip.problem.fields import STEADY
 from stickslip.problem.parameters import PRESSING, entries_of, pressed, pressing_of
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import DURATION
 from stickslip.problem.selection_rule import names as rules
-from stickslip.problem.start import STEADY
 from stickslip.scenarios.contact import LOCKED, Contact
 from stickslip.scenarios.contact_table import PLACES, TAPER
 from stickslip.scenarios.entries import Source

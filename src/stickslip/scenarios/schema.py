@@ -19,10 +19,10 @@ from stickslip.foundation.quantities import Part, Quantity, fields_of, in_units
 from stickslip.friction import LAWS
 from stickslip.friction.contract import STATE_NAMES, StateVariable
 from stickslip.loading import HISTORIES, VARYING
-from stickslip.problem.problem import LOAD, MAY_VARY, Problem
+from stickslip.problem.fields import LOAD, MAY_VARY, STEADY
+from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import CREEP_RTOL, DURATION, RTOL, SHORTEST_EVENT
 from stickslip.problem.selection_rule import SELECTION_RULES, names, unknown
-from stickslip.problem.start import STEADY
 from stickslip.scenarios.contact import Contact
 from stickslip.scenarios.entries import DocumentPlace, Source, describe, key_of, read_entry, read_points, read_typed
 

@@ -15,8 +15,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.observables.event_table import catalogue_statistics
 from stickslip.observables.predictability import LOST
-from stickslip.problem.problem import Problem
-from stickslip.problem.start import resistance_slope, written_out
+from stickslip.problem.problem import Problem, resistance_slope, written_out
 from stickslip.solution.solution import Solution
 
 LEAST_DISTURBANCE, LARGEST_DISTURBANCE = 1e-15, 1e-2

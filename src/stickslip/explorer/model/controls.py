@@ -17,8 +17,8 @@ from stickslip.foundation.units import split_quantity, to_si
 from stickslip.friction import LAWS
 from stickslip.friction.contract import STATE_NAMES, StateVariable
 from stickslip.loading import HISTORIES
+from stickslip.problem.fields import STEADY
 from stickslip.problem.selection_rule import SELECTION_RULES, names
-from stickslip.problem.start import STEADY
 from stickslip.run.planar_run import FRAMES
 from stickslip.scenarios import library
 from stickslip.scenarios.contact import Contact

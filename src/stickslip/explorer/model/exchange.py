@@ -18,8 +18,7 @@ from stickslip.foundation.quantities import Quantity, fields_of
 from stickslip.friction import FrictionLaw
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.loading import HISTORIES
-from stickslip.problem.problem import Problem
-from stickslip.problem.start import written_out
+from stickslip.problem.problem import Problem, written_out
 from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source, key_of, to_table
 from stickslip.scenarios.schema import KINDS, entries_in, kind_of, read_part

@@ -24,7 +24,7 @@ from stickslip.figures.style import GREY, INK, PALE, styled, time_unit, title_of
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.place import Place
 from stickslip.loading import LoadingHistory
-from stickslip.problem.problem import MAY_VARY
+from stickslip.problem.fields import MAY_VARY
 from stickslip.solution.evaluation import Readings
 
 if TYPE_CHECKING:
