@@ -233,13 +233,6 @@ def upward(path: Path) -> dict[str, set[str]]:
 
 FILES = [path for path in sorted(PACKAGE.rglob("*.py")) if parts(path)[0] not in ("__init__", "__main__")]
 
-# ---- lists that may only become shorter ------------------------------------------------------------------------------------
-
-UPWARD_FOR_TYPES: dict[str, set[str]] = {
-    "scenarios/scenario.py": {"solution"},
-}
-"""Files that name something from above in an annotation only."""
-
 
 def test_every_folder_has_its_place() -> None:
     assert {parts(path)[0] for path in FILES} == set(HEIGHT)
@@ -251,11 +244,11 @@ def test_imports_point_down() -> None:
     found = {str(path.relative_to(PACKAGE)): upward(path) for path in FILES}
     assert {name: ups["eager"] for name, ups in found.items() if ups["eager"]} == {}
     assert {name: ups["later"] for name, ups in found.items() if ups["later"] and name not in LAZY_DOORS} == {}
-    assert {name: ups["types"] for name, ups in found.items() if ups["types"]} == UPWARD_FOR_TYPES
+    assert {name: ups["types"] for name, ups in found.items() if ups["types"]} == {}
 
 
 def test_what_stands_side_by_side_does_not_import_each_other_in_a_circle() -> None:
-    """Files and folders at every depth; names in annotations count, but for the files that lists name."""
+    """Files and folders at every depth; names in annotations count, and what `LAZY_DOORS` import inside functions does not."""
     found = {folder: circle for folder, imported in side_by_side().items() if (circle := circle_in(imported))}
     assert found == {}
 
@@ -264,11 +257,10 @@ def side_by_side() -> dict[str, dict[str, set[str]]]:
     """Return for each folder what its files and folders import from each other, by their names."""
     found: dict[str, dict[str, set[str]]] = {}
     for path in FILES:
-        own, file = parts(path), str(path.relative_to(PACKAGE))
-        passed_over = ({"later"} if file in LAZY_DOORS else set()) | ({"types"} if file in UPWARD_FOR_TYPES else set())
+        own, is_door = parts(path), str(path.relative_to(PACKAGE)) in LAZY_DOORS
         for kind, name in imports(path):
             root, *other = name.split(".")
-            if root != "stickslip" or kind in passed_over:
+            if root != "stickslip" or (kind == "later" and is_door):
                 continue
             shared = next((i for i, (a, b) in enumerate(zip(own, other, strict=False)) if a != b), None)
             if shared is not None:

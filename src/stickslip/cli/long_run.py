@@ -168,7 +168,7 @@ def solve(request: Request) -> tuple[Scenario, Solution]:
         others = {"progress": report, "checkpoint": request.out or request.resume, "max_pieces": request.max_pieces}
         options = RunOptions.to_continue(stopped, request.duration, request.events, **others)
         solution = resume_run(stopped, request.resume, options)
-    return Scenario.of(solution, request.resume.stem), solution
+    return solution.scenario(request.resume.stem), solution
 
 
 def list_events(request: Request) -> tuple[Scenario, Catalogue]:
@@ -189,7 +189,7 @@ def list_events(request: Request) -> tuple[Scenario, Catalogue]:
         others = {"progress": report, "max_pieces": request.max_pieces}
         options = RunOptions.to_continue(paused.stopped, request.duration, request.events, **others)
         found = paused.resume(options)
-    return replace(Scenario.of(paused.stopped, request.resume.stem), duration=options.duration), found
+    return replace(paused.stopped.scenario(request.resume.stem), duration=options.duration), found
 
 
 def check_same(request: Request, problem: Problem) -> None:

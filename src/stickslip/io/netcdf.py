@@ -25,7 +25,7 @@ from stickslip.observables.event_table import EVENT_COLUMNS, event_columns, unit
 from stickslip.observables.predictability import attributes_of, is_followed, predictability
 from stickslip.problem.fields import MAY_VARY
 from stickslip.problem.selection_rule import names as rule_names
-from stickslip.scenarios import Scenario, read_scenario
+from stickslip.scenarios import read_scenario
 from stickslip.solution.evaluation import Curve, Readings
 from stickslip.solution.solution import Solution
 from stickslip.solution.window import Window
@@ -95,7 +95,7 @@ def origin(solution: Solution) -> dict[str, Any]:
         "title": f"stickslip run: {type(solution.problem.body).__name__}, {type(solution.problem.friction).__name__}",
         "source": f"stickslip {stickslip.__version__}",
         "references": PAPER,
-        "scenario": Scenario.of(solution).to_toml(),
+        "scenario": solution.scenario().to_toml(),
         "selection_rule": solution.problem.rule,
         "rtol": solution.rtol,
         "duration": solution.duration,

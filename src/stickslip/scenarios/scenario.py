@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any
 
 import tomli_w
 
@@ -29,9 +29,6 @@ from stickslip.scenarios.contact_table import contact_table, read_contact
 from stickslip.scenarios.entries import Source, to_table
 from stickslip.scenarios.schema import CONTACT, KINDS, read_document, read_part, read_table, without_owner
 from stickslip.scenarios.text_of_files import about_suffix, read_text, why_not_toml
-
-if TYPE_CHECKING:
-    from stickslip.solution.solution import Solution
 
 UNNAMED = "scenario"
 """Name of a scenario that has none of its own."""
@@ -98,21 +95,6 @@ class Scenario(CheckedArguments):
     def document(self) -> dict[str, Any]:
         """The scenario as a parsed TOML document, in SI; it must not be changed. Raises InputError as `to_toml` does."""
         return tomllib.loads(self.to_toml())
-
-    @classmethod
-    def of(cls, solution: Solution, name: str = UNNAMED) -> Self:
-        """Return the scenario of which a solution is a run."""
-        return cls(
-            problem=solution.problem,
-            duration=solution.asked_duration,
-            rtol=solution.rtol,
-            max_events=solution.max_events,
-            creep_rtol=solution.creep_rtol,
-            shortest_event=solution.shortest_event,
-            title=solution.title,
-            description=solution.description,
-            name=name,
-        )
 
     def with_values(self, values: Mapping[str, Any]) -> Scenario:
         """Return a scenario in which some parameters have other values, such as {"friction.alpha": 2.0, "body.thickness": "5 km"}.

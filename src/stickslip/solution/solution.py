@@ -17,6 +17,7 @@ from stickslip.observables.event_table import events_table
 from stickslip.observables.proof import Proof, proven
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_event_rate
+from stickslip.scenarios.scenario import UNNAMED, Scenario
 from stickslip.solution.accessors import Exports, Plots, known_to_pyplot
 from stickslip.solution.window import Window, window_around
 from stickslip.trajectory.history import History
@@ -186,6 +187,20 @@ class Solution(Exports):
         from stickslip.observables.energy.balance import energy
 
         return energy(self.history, t)
+
+    def scenario(self, name: str = UNNAMED) -> Scenario:
+        """Return the scenario of which this is a run."""
+        return Scenario(
+            problem=self.problem,
+            duration=self.asked_duration,
+            rtol=self.rtol,
+            max_events=self.max_events,
+            creep_rtol=self.creep_rtol,
+            shortest_event=self.shortest_event,
+            title=self.title,
+            description=self.description,
+            name=name,
+        )
 
     def to_netcdf(self, path: str | Path) -> Path:
         """Write the solution to a netCDF file, and return the path; `stickslip.open_solution` restores it bit for bit."""

@@ -133,9 +133,8 @@ class StoredRun(Stored):
     def summarise(self) -> None:
         """Print the summary on standard output."""
         from stickslip.cli.output.summary import show_solution
-        from stickslip.scenarios.scenario import Scenario
 
-        show_solution(Scenario.of(self.solution, self.path.stem), self.solution)
+        show_solution(self.solution.scenario(self.path.stem), self.solution)
         self.print_origin()
 
     def draw(self, pictures: Pictures) -> None:
