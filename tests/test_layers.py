@@ -37,7 +37,7 @@ LAYERS = (
 ROOMS = {
     "foundation": (
         ("arrays", "constants", "errors", "place"),
-        ("arguments", "atomic_write", "determined", "units"),
+        ("arguments", "atomic_write", "axis", "determined", "units"),
         ("conversion", "headings", "netcdf_file"),
         ("columns", "quantities"),
         ("other_values", "show", "text_columns"),

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 import stickslip as ss
-from stickslip.contact.regime_map import Axis
+from stickslip.foundation.axis import Axis
 from stickslip.run.progress import LONG_RUN, Report, progress_line
 
 PROBLEM = ss.load_scenario("fig6-slab").problem

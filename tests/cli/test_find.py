@@ -49,6 +49,7 @@ def test_find_prints_the_bracket_and_writes_the_runs(command: Command, axis: str
     ("arguments", "message"),
     [
         (["--along", "pull_rate=1"], "--along must be NAME or NAME=LOW..HIGH"),
+        (["--along", "pull_rate=1..2:0"], "--along must be NAME or NAME=LOW..HIGH"),
         (["--along", "pull_rate=0.4..0.5"], "give ends that differ"),
         (["--what", "event"], "did you mean 'events'?"),
     ],

@@ -61,6 +61,7 @@ def test_priors_bounds_and_begins_are_read(command):
         (["--free", "a", "--weight", "-1"], "infer: weight must be at least 0"),
         (["--free", "alpha"], "infer: free: 'alpha' is no number of this problem"),
         (["--free", "a", "--bound", "a=1"], "infer: --bound must be NAME=LOW..HIGH"),
+        (["--free", "a", "--bound", "a=1..2:log"], "infer: --bound must be NAME=LOW..HIGH"),
         (["--free", "a", "--prior", "a"], "infer: --prior must be NAME=VALUE"),
         (["--free", "a", "--out", "a.txt"], "--out a.txt: the name must end in .nc or .csv"),
         (["--free", "a", "--parts", "events"], "infer: parts must be 'rests' or left out, got 'events'"),

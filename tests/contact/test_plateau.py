@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 
 import stickslip as ss
 from stickslip.contact.critical import margin
-from stickslip.contact.regime_map import Axis, put_both, regime_map, regimes_along_slip, slip_reach
+from stickslip.contact.regime_map import put_both, regime_map, regimes_along_slip, slip_reach
 from stickslip.contact.roots import sign_change, sign_changes
+from stickslip.foundation.axis import Axis
 from stickslip.friction import LAWS
 from stickslip.problem.selection_rule import SELECTION_RULES
 from tests.friction.drawn import laws
@@ -60,7 +61,7 @@ def test_the_map_is_empty_where_the_problem_is_refused():
 @pytest.mark.parametrize(
     ("x", "y", "message"),
     [
-        (("alpha", 1.0, 1.0), ("static", 0.1, 1.0), "must go from a smaller to a larger value"),
+        (("alpha", 1.0, 1.0), ("static", 0.1, 1.0), "must go from a smaller to a larger number"),
         (("alpha", 0.0, 1.0, 5, True), ("static", 0.1, 1.0), "must begin above 0"),
         (("alpha", 0.0, 1.0, 1), ("static", 0.1, 1.0), "must have 2 to 1000 points, got 1"),
         (("alpha", 0.0, 1.0), ("friction.alpha", 0.1, 1.0), "two different parameters"),

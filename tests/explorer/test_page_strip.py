@@ -10,7 +10,7 @@ import pytest
 
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.solve import solve
-from stickslip.explorer.model.strip import SHOWN, Strip, StripRange, setting_at, strip_of
+from stickslip.explorer.model.strip import SHOWN, Strip, setting_at, strip_of, strip_range
 from stickslip.explorer.model.tour import TOUR
 from stickslip.explorer.page.explorer import Explorer
 from stickslip.explorer.page.strip import StripView, place_of, view_of_strip
@@ -48,11 +48,11 @@ def test_a_chosen_parameter_brings_a_strip_of_its_usual_range(explorer: Explorer
 
 def test_a_range_can_be_typed_with_units_and_a_wrong_one_is_refused_in_the_bar(explorer: Explorer, view: StripView) -> None:
     view.bar._handle_msg({"parameter": "body.thickness", "low": "1 km", "high": "20 km", "log": False})
-    good = StripRange("body.thickness", 1e3, 2e4)
+    good = strip_range("body.thickness", 1e3, 2e4)
     assert explorer.strip == good
     for low, high, message in (
         ("1 km", "2 s", "strip: body.thickness must be"),
-        ("20 km", "1 km", "strip: body.thickness must go from a smaller"),
+        ("20 km", "1 km", "axis: body.thickness must go from a smaller"),
         ("x" * 5000, "1 km", "strip: body.thickness must be"),
     ):
         view.bar._handle_msg({"parameter": "body.thickness", "low": low, "high": high, "log": False})
@@ -85,7 +85,7 @@ def test_the_range_of_a_strip_is_shown_and_read_in_the_unit_of_the_slider(
 
 def test_a_typed_number_and_the_axis_of_the_strip_are_in_the_unit_of_the_field(explorer: Explorer, view: StripView) -> None:
     view.bar._handle_msg({"parameter": "body.thickness", "low": "1", "high": "20", "log": False})
-    assert explorer.strip == StripRange("body.thickness", 1e3, 2e4)
+    assert explorer.strip == strip_range("body.thickness", 1e3, 2e4)
     assert view._stage.named["axis:strip_x@strip_slip"].axis_label == "body.thickness (km)"
     assert view._stage.named["here:strip_slip"].location == 10.0
     view._tapped(SimpleNamespace(x=5.0))
@@ -111,7 +111,7 @@ def test_a_click_goes_to_the_nearest_run_of_the_strip(explorer: Explorer, view: 
 
 
 def test_a_click_on_a_logarithmic_strip_counts_in_powers_of_ten(explorer: Explorer, view: StripView) -> None:
-    explorer.show_strip(StripRange("friction.alpha", 0.1, 10.0, log=True))
+    explorer.show_strip(strip_range("friction.alpha", 0.1, 10.0, log=True))
     view._tapped(SimpleNamespace(x=0.5))
     assert explorer.setting.value("friction.alpha") == pytest.approx(10**0.5, rel=0.02)
 

@@ -12,7 +12,7 @@ import stickslip as ss
 from stickslip.explorer.model.answer import Backdrop
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.solve import solve
-from stickslip.explorer.model.strip import StripRange
+from stickslip.explorer.model.strip import strip_range
 from stickslip.explorer.page.explorer import Explorer
 from stickslip.explorer.page.panels import view_of
 from stickslip.scenarios.scenario import Scenario
@@ -64,7 +64,7 @@ def test_a_step_of_the_tour_brings_its_strip_at_once_and_its_cursor_with_the_ans
     told: list[str] = []
     for news in ("tour", "strip", "setting", "answer", "cursor"):
         explorer.listen(news, lambda news=news: told.append(news))  # type: ignore[arg-type, misc]
-    strip = StripRange("friction.alpha", 0.1, 2.0)
+    strip = strip_range("friction.alpha", 0.1, 2.0)
     explorer.show_step(3, SLAB.with_value("friction.alpha", 2.0), strip, 4.5)
     assert (explorer.tour, explorer.strip, explorer.cursor) == (3, strip, 0.0)
     desk.do_next()

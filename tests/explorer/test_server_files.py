@@ -16,7 +16,7 @@ from stickslip.explorer.model.answer import Answer
 from stickslip.explorer.model.exchange import with_kind
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.solve import solve
-from stickslip.explorer.model.strip import StripRange
+from stickslip.explorer.model.strip import strip_range
 from stickslip.explorer.page.explorer import Explorer
 from stickslip.explorer.page.files import FORMATS, content_of, export, file_name, opened, plain_name
 from stickslip.explorer.page.tools import Tools, begin, query_of
@@ -225,7 +225,7 @@ def test_a_link_reproduces_the_view(explorer: Explorer, answer: Answer) -> None:
     explorer.pin()
     explorer.change(SETTING.with_value("friction.alpha", 0.9), 2.5)
     explorer.show_step(3, None, None, 0.0)
-    explorer.show_strip(StripRange("friction.alpha", 0.1, 2.0, log=True))
+    explorer.show_strip(strip_range("friction.alpha", 0.1, 2.0, log=True))
     query = query_of(explorer)
     assert "scenario=fig6-slab&friction.alpha=0.9&" in query
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,28 +11,29 @@ import pytest
 import stickslip as ss
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.solve import Stopped
-from stickslip.explorer.model.strip import KEPT, MEMBERS, Strip, StripRange, present, strip_of, strip_text, usual_range
+from stickslip.explorer.model.strip import KEPT, MEMBERS, Strip, present, strip_of, strip_range, strip_text, usual_range
+from stickslip.foundation.axis import Axis
 from stickslip.foundation.errors import InputError
 from stickslip.scenarios.parameter_paths import find_parameter
 from stickslip.sweeps.design.quantities import QUANTITIES
 
-ALPHA = StripRange("friction.alpha", 0.05, 2.0)
+ALPHA = strip_range("friction.alpha", 0.05, 2.0)
 SLAB = Setting.bundled("fig6-slab")
 
 CASES = {
     "fig6-slab": ALPHA,
-    "fig5-slab-reconstructed": StripRange("friction.wavenumber", 5.0, 60.0),
+    "fig5-slab-reconstructed": strip_range("friction.wavenumber", 5.0, 60.0),
     "fig6-block-reconstructed": ALPHA,
-    "fig7-slab-critical": StripRange("friction.alpha", 0.19, 0.21),
-    "cycles-block": StripRange("friction.distance", 0.01, 0.02),  # friction that heals is not for the batch
-    "fig4-loop": StripRange("loading.pull_rate", 1.0, 3.0),
+    "fig7-slab-critical": strip_range("friction.alpha", 0.19, 0.21),
+    "cycles-block": strip_range("friction.distance", 0.01, 0.02),  # friction that heals is not for the batch
+    "fig4-loop": strip_range("loading.pull_rate", 1.0, 3.0),
 }
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_each_run_of_a_strip_is_the_single_run_at_its_value(name: str) -> None:
     setting = Setting.bundled(name)
-    strip = strip_of(setting.scenario(), CASES[name], members=5)
+    strip = strip_of(setting.scenario(), replace(CASES[name], points=5))
     for i, value in enumerate(strip.values.tolist()):
         scenario = setting.with_value(strip.parameter, value).scenario()
         solution = ss.simulate(scenario)
@@ -60,24 +62,34 @@ def test_a_strip_has_two_hundred_runs_with_their_units() -> None:
 @pytest.mark.parametrize(
     ("where", "message"),
     [
-        (StripRange("friction.alfa", 0.0, 1.0), "strip: 'friction.alfa' is not a parameter of this scenario; did you mean"),
-        (StripRange("run.selection", 0.0, 1.0), "strip: run.selection is a word; a strip needs a parameter that varies"),
-        (StripRange("run.events", 1.0, 9.0), "strip: run.events is a whole number; a strip needs"),
-        (StripRange("friction.alpha", 1.0, 1.0), "strip: friction.alpha must go from a smaller to a larger number, got 1.0 to 1.0"),
-        (StripRange("friction.alpha", 0.0, math.inf), "strip: friction.alpha must go from a smaller"),
-        (StripRange("friction.alpha", math.nan, 1.0), "strip: friction.alpha must go from a smaller"),
-        (StripRange("friction.alpha", 0.0, 1.0, log=True), "strip: a logarithmic range of friction.alpha must begin above 0"),
+        (strip_range("friction.alfa", 0.0, 1.0), "strip: 'friction.alfa' is not a parameter of this scenario; did you mean"),
+        (strip_range("run.selection", 0.0, 1.0), "strip: run.selection is a word; a strip needs a parameter that varies"),
+        (strip_range("run.events", 1.0, 9.0), "strip: run.events is a whole number; a strip needs"),
     ],
 )
-def test_a_strip_that_cannot_be_made_is_refused_in_one_line(where: StripRange, message: str) -> None:
+def test_a_strip_that_cannot_be_made_is_refused_in_one_line(where: Axis, message: str) -> None:
     with pytest.raises(InputError) as error:
         strip_of(SLAB.scenario(), where)
     assert str(error.value).startswith(message)
     assert "\n" not in str(error.value)
 
 
+@pytest.mark.parametrize(
+    ("low", "high", "log", "message"),
+    [
+        (1.0, 1.0, False, "axis: friction.alpha must go from a smaller to a larger number, got 1 to 1"),
+        (0.0, math.inf, False, "axis: friction.alpha must go from a smaller"),
+        (math.nan, 1.0, False, "axis: friction.alpha must go from a smaller"),
+        (0.0, 1.0, True, "axis: friction.alpha must begin above 0"),
+    ],
+)
+def test_ends_that_make_no_range_are_refused(low: float, high: float, log: bool, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        strip_range("friction.alpha", low, high, log=log)
+
+
 def test_runs_with_values_that_are_not_allowed_have_a_reason_and_do_not_stop_the_others() -> None:
-    strip = strip_of(SLAB.scenario(), StripRange("friction.alpha", -0.5, 1.5), members=9)
+    strip = strip_of(SLAB.scenario(), Axis("friction.alpha", -0.5, 1.5, 9))
     bad = strip.values < 0.0
     np.testing.assert_array_equal(np.isnan(strip.results["slip"]), bad)
     assert sorted(strip.refused) == np.flatnonzero(bad).tolist()
@@ -97,7 +109,7 @@ def test_progress_is_told_where_runs_are_made_one_after_the_other_and_can_end_th
             raise StopError
 
     with pytest.raises(StopError):
-        strip_of(Setting.bundled("cycles-block").scenario(), StripRange("friction.distance", 0.01, 0.02), told, members=30)
+        strip_of(Setting.bundled("cycles-block").scenario(), Axis("friction.distance", 0.01, 0.02, 30), told)
     assert said == ["strip: 0 of 30 runs", "strip: 1 of 30 runs"]
 
 
@@ -106,8 +118,8 @@ def test_a_strip_that_is_stopped_shows_the_runs_so_far() -> None:
         if text.startswith("strip: 3 "):
             raise Stopped
 
-    where = StripRange("friction.distance", 0.01, 0.02)
-    strip = strip_of(Setting.bundled("cycles-block").scenario(), where, told, members=5)
+    where = Axis("friction.distance", 0.01, 0.02, 5)
+    strip = strip_of(Setting.bundled("cycles-block").scenario(), where, told)
     assert np.isfinite(strip.results["slip"]).tolist() == [True] * 3 + [False] * 2
     assert strip_text(strip) == f"{strip.meaning}; 2 runs failed: it was stopped"
 
@@ -115,19 +127,19 @@ def test_a_strip_that_is_stopped_shows_the_runs_so_far() -> None:
 @pytest.mark.parametrize(
     ("name", "parameter", "expected"),
     [
-        ("fig6-slab", "friction.alpha", StripRange("friction.alpha", 0.2, 5.0, log=True)),
-        ("fig6-slab", "initial.slip", StripRange("initial.slip", 0.0, 1.0)),
-        ("fig6-slab", "initial.load", StripRange("initial.load", 0.0, 1.0)),  # the scenario gives the excess in its place
-        ("block-or-slab", "drop", StripRange("friction.parameters.drop", 0.05, 1.25, log=True)),
+        ("fig6-slab", "friction.alpha", strip_range("friction.alpha", 0.2, 5.0, log=True)),
+        ("fig6-slab", "initial.slip", strip_range("initial.slip", 0.0, 1.0)),
+        ("fig6-slab", "initial.load", strip_range("initial.load", 0.0, 1.0)),  # the scenario gives the excess in its place
+        ("block-or-slab", "drop", strip_range("friction.parameters.drop", 0.05, 1.25, log=True)),
     ],
 )
-def test_the_usual_range_lies_about_the_present_value(name: str, parameter: str, expected: StripRange) -> None:
+def test_the_usual_range_lies_about_the_present_value(name: str, parameter: str, expected: Axis) -> None:
     assert usual_range(Setting.bundled(name).scenario(), parameter) == expected
 
 
 def test_the_usual_range_of_a_negative_number_ends_at_zero() -> None:
     scenario = SLAB.with_value("initial.slip", -0.5).scenario()
-    assert usual_range(scenario, "initial.slip") == StripRange("initial.slip", -1.0, 0.0)
+    assert usual_range(scenario, "initial.slip") == strip_range("initial.slip", -1.0, 0.0)
 
 
 @pytest.mark.parametrize(

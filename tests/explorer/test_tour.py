@@ -175,7 +175,7 @@ def test_a_step_is_short_and_can_be_shown(step: Step) -> None:
     assert step.question.endswith("?")
     scenario = step.setting.scenario()
     assert 0.0 <= step.cursor <= scenario.duration
-    strip = strip_of(scenario, step.strip, members=5)
+    strip = strip_of(scenario, replace(step.strip, points=5))
     assert strip.refused == {}
     assert strip.values[0] <= strip.here <= strip.values[-1]
 
@@ -189,7 +189,7 @@ def test_the_tour_has_eight_steps_with_titles_of_their_own() -> None:
 
 def test_the_stiff_block_does_not_slip_and_the_strip_shows_where_that_begins() -> None:
     step = TOUR[0]
-    strip = strip_of(step.setting.scenario(), replace(step.strip, low=1.5e14, high=3.0e14, log=False), members=31)
+    strip = strip_of(step.setting.scenario(), replace(step.strip, low=1.5e14, high=3.0e14, points=31, log=False))
     # by the linear theory of the start, S (static - dynamic) alpha = 2 sqrt(K m)
     limit = (1e14 * 0.5 * 1.0 / 2) ** 2 / 2.8e12
     runs_away = np.nan_to_num(strip.results["peak_rate"]) > 0.1
@@ -198,13 +198,13 @@ def test_the_stiff_block_does_not_slip_and_the_strip_shows_where_that_begins() -
 
 
 def test_a_pulse_comes_later_the_closer_the_start_is_to_the_maximum() -> None:
-    strip = strip_of(TOUR[1].setting.scenario(), TOUR[1].strip, members=9)
+    strip = strip_of(TOUR[1].setting.scenario(), replace(TOUR[1].strip, points=9))
     scenarios = (TOUR[1].setting.with_value("initial.slip", value).scenario() for value in strip.values.tolist())
     assert (np.diff([only_event(ss.simulate(one))["peak_time"] for one in scenarios]) < 0).all()
 
 
 def test_slip_grows_with_the_thickness_in_steps_of_one_pulse() -> None:
-    strip = strip_of(TOUR[2].setting.scenario(), TOUR[2].strip, members=30)
+    strip = strip_of(TOUR[2].setting.scenario(), replace(TOUR[2].strip, points=30))
     steps = strip.results["slip"] / (2 * math.pi / 50)
     np.testing.assert_allclose(steps, steps.round(), rtol=0, atol=0.03)
     assert set(steps.round()) == {1, 2, 3, 4, 5, 6}
@@ -213,13 +213,13 @@ def test_slip_grows_with_the_thickness_in_steps_of_one_pulse() -> None:
 
 @pytest.mark.parametrize("k", [3, 4, 6])
 def test_the_strip_in_alpha_shows_where_the_contact_becomes_irregular(k: int) -> None:
-    strip = strip_of(TOUR[k].setting.scenario(), TOUR[k].strip, members=9)
+    strip = strip_of(TOUR[k].setting.scenario(), replace(TOUR[k].strip, points=9))
     np.testing.assert_array_equal(strip.results["irregular"], strip.values > 0.196)
     assert {0.0, 1.0} == set(strip.results["irregular"])
 
 
 def test_the_rate_after_the_jump_is_a_straight_line_in_normal_stress() -> None:
-    strip = strip_of(TOUR[5].setting.scenario(), TOUR[5].strip, members=9)
+    strip = strip_of(TOUR[5].setting.scenario(), replace(TOUR[5].strip, points=9))
     rate, jumps = strip.results["peak_rate"], strip.values > 19.6e6
     np.testing.assert_allclose(rate[jumps], strip.values[jumps] * 0.5 / 9.8e6 - 1.0, rtol=1e-7)
     assert np.isnan(rate[~jumps]).all()

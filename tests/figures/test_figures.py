@@ -15,12 +15,13 @@ from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 
 import stickslip as ss
-from stickslip.contact.regime_map import Axis, regime_map
+from stickslip.contact.regime_map import regime_map
 from stickslip.figures.contact import admissible, regimes, resistance, systems
 from stickslip.figures.runs import comparison
 from stickslip.figures.runs.run import draw
 from stickslip.figures.studies import ensemble, regularise
 from stickslip.figures.style import INK, STYLE, image
+from stickslip.foundation.axis import Axis
 from tests.figures.legible import BLOCK, BLOCK_PROBLEM, LAW, SLAB, SLAB_PROBLEM, has_unit, labels, size_of
 
 mpl.use("Agg")

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.contact.regime_map import Axis
+from stickslip.foundation.axis import Axis
 from stickslip.foundation.errors import InputError
 from stickslip.reference.folds import HyperbolicFolds, fold_delay
 from stickslip.scenarios.scenario import Scenario

@@ -9,8 +9,8 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
-from stickslip.contact.regime_map import Axis
 from stickslip.figures.studies import analogy as figure
+from stickslip.foundation.axis import Axis
 from stickslip.studies.analogy import QUANTITIES, Analogy, _stands, analogy, block_for, weakening
 from stickslip.studies.regularisations import difference, passage
 from stickslip.studies.verdict import Errors, Verdict, groups, judge, local_orders, order_of

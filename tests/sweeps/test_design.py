@@ -196,7 +196,7 @@ BAD = {
     "friction.alpha=1..2:1": "needs at least 2 points",
     "friction.alpha=1..2:99999999": "at most 10000000 are allowed",
     "friction.alpha=2..1:5": "must go from a smaller to a larger number, got 2 to 1 s/m",
-    "friction.alpha=0..1:5:log": "must be above 0 for :log",
+    "friction.alpha=0..1:5:log": "must begin above 0",
     "friction.alpha=1..2:x": "friction.alpha must be a number in s/m",
     "friction.alpha=1..2 km:5": "'2 km': 'km' does not convert to s/m",
     "friction.alpha=1,1": "has the value 1.0 twice",
@@ -234,7 +234,7 @@ BAD_DESIGNS: list[tuple[dict[str, Any], str]] = [
     ({"vary": {"alpha": (1, 2)}, "kind": "lhs", "members": 5, "seed": -1}, "seed must be a whole number"),
     ({"vary": typed("alpha=1..2:5"), "kind": "random", "members": 5}, "takes no number of points"),
     ({"vary": {"alpha": (2, 1)}, "kind": "lhs", "members": 5}, "must go from a smaller to a larger number, got 2 to 1 s/m"),
-    ({"vary": {"alpha": (0, 1, "log")}, "kind": "lhs", "members": 5}, "must be above 0 for :log"),
+    ({"vary": {"alpha": (0, 1, "log")}, "kind": "lhs", "members": 5}, "must begin above 0"),
     ({"vary": {"run.selection": ("minimal", "maxwell")}, "kind": "lhs", "members": 5}, "takes words, not a range"),
     (
         {"vary": {"alpha": (1, 2, 3)}, "kind": "lhs", "members": 5},

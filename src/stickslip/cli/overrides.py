@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import re
 import sys
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import typer
 
 from stickslip.engine_input.limits import check_creep_rtol, check_shortest_event
 from stickslip.foundation.arguments import shown
+from stickslip.foundation.axis import Axis, TypedRange
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import SHORTEST_EVENT, check_rtol
@@ -24,11 +24,6 @@ from stickslip.scenarios.schema import check_events, check_rule, read_duration
 from stickslip.scenarios.source import all_slips_alike
 from stickslip.scenarios.text_of_files import LARGEST_SCENARIO_FILE, text_of
 
-if TYPE_CHECKING:
-    from stickslip.contact.regime_map import Axis
-
-_AXIS = re.compile(r"(?P<name>[^=]+)=(?P<low>.+?)\.\.(?P<high>[^:]+)(?::(?P<points>\d{1,6}))?(?P<log>:log)?")
-"""The axis of a map, as it is typed."""
 Reader = Callable[[Any, str, str], Any]
 """A function that converts what was typed, given also the name of the command and of the option for messages."""
 STDIN = "-"
@@ -120,15 +115,14 @@ def read_axis(problem: Problem, text: str, where: str) -> Axis:
 
     The axis has 40 points if no number is given. Raises InputError with a message that begins with `where`.
     """
-    from stickslip.contact.regime_map import Axis
-
-    parts = _AXIS.fullmatch(text)
-    if parts is None:
+    name, _, ends = text.partition("=")
+    typed = TypedRange.of(ends)
+    if typed is None:
         raise InputError(f'{where} must be NAME=LOW..HIGH[:POINTS][:log], as "friction.alpha=0.01..10:50:log", got {shown(text)}')
     try:
-        found = problem.parameters[parts["name"].strip()]
-        ends = [read_typed(parts[end], found.declared, where, found.name) for end in ("low", "high")]
-        return Axis(found.name, ends[0], ends[1], int(parts["points"] or 40), bool(parts["log"]))
+        found = problem.parameters[name.strip()]
+        low, high = (read_typed(end, found.declared, where, found.name) for end in (typed.low, typed.high))
+        return Axis(found.name, low, high, 40 if typed.points is None else typed.points, typed.log)
     except InputError as error:
         message = str(error)
         raise InputError(message if message.startswith(where) else f"{where}: {message}") from None

@@ -14,6 +14,7 @@ from stickslip.contact.branches import resistance
 from stickslip.contact.critical import Regime, check_no_contact_mass, margin, margins
 from stickslip.contact.roots import sign_changes
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.axis import Axis
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import NamedNumbers, Part, Quantity, Series, fields_of
 from stickslip.friction import FrictionLaw
@@ -85,38 +86,8 @@ def regimes_along_slip(problem: Problem) -> tuple[RegimeInterval, ...]:
     return tuple(RegimeInterval(low, high, regimes[k % 2]) for k, (low, high) in enumerate(pairwise(edges)))
 
 
-MOST_POINTS = 1000
-"""Largest number of points on an axis; the cost of a map grows with the product of both."""
 _AT_A_TIME = 100
 """Number of points that are computed together: enough for numpy, and seldom enough for a progress display."""
-
-
-@dataclass(frozen=True)
-class Axis:
-    """A parameter of a problem (a key of `problem.parameters`), and the 2 to 1000 values (SI) that it takes along an axis of a map.
-
-    With `log` the values are evenly spaced in their logarithm. Raises InputError for ends or numbers that make no axis.
-    """
-
-    parameter: str
-    low: float
-    high: float
-    points: int = 40
-    log: bool = False
-
-    def __post_init__(self) -> None:
-        if not self.low < self.high:
-            raise InputError(f"axis {self.parameter}: must go from a smaller to a larger value, got {self.low:g} to {self.high:g}")
-        if self.log and not self.low > 0.0:
-            raise InputError(f"axis {self.parameter}: a logarithmic axis must begin above 0, got {self.low:g}")
-        if not 2 <= self.points <= MOST_POINTS:
-            raise InputError(f"axis {self.parameter}: must have 2 to {MOST_POINTS} points, got {self.points}")
-
-    @property
-    def values(self) -> Floats:
-        """The values along the axis (SI), ascending, shape (points,)."""
-        spaced = np.geomspace if self.log else np.linspace
-        return np.asarray(spaced(self.low, self.high, self.points))
 
 
 @dataclass(frozen=True)

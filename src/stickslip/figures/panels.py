@@ -16,10 +16,10 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator, StrMethodFormatter
 from numpy.typing import NDArray
 
-from stickslip.contact.regime_map import Axis
 from stickslip.figures.names import parameter_name
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import PALE, Numbers, label, shown
+from stickslip.foundation.axis import Axis
 from stickslip.foundation.place import Place
 from stickslip.problem.problem import Problem
 

@@ -20,9 +20,10 @@ import pandas as pd
 
 from stickslip.bodies import as_slab
 from stickslip.contact.critical import margin
-from stickslip.contact.regime_map import Axis, put_both, two_parameters
+from stickslip.contact.regime_map import put_both, two_parameters
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.axis import Axis
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem

@@ -45,25 +45,21 @@ def find(
     Exit code: 0 done, 2 unusable input, 130 interrupted.
     """
     from stickslip.cli.overrides import load_with
+    from stickslip.foundation.axis import TypedRange
     from stickslip.run.progress import progress_line
+    from stickslip.scenarios.entries import typed_number
     from stickslip.studies.find import find as study
 
     look = Look(dpi, size)
     check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))
     look.check(figure)
     name, given, ends = along.partition("=")
-    low, dots, high = ends.partition("..")
-    if given and not (low and dots and high):
+    typed = TypedRange.of(ends)
+    if given and (typed is None or typed.points is not None or typed.log):
         raise InputError(f'find: --along must be NAME or NAME=LOW..HIGH, as "pull_rate=1 mm/s..1 m/s", got {ascii(along)[:60]}')
     chosen = load_with("find", scenario, changes, duration=duration)
-    values = (_typed(low), _typed(high)) if given else (None, None)
+    values = (typed_number(typed.low), typed_number(typed.high)) if typed else (None, None)
     with progress_line(f"{chosen.name}:") as report:
         found = study(chosen, name.strip(), *values, what=what, within=within, progress=report)
     print_sentences(titled(chosen), found.text)
     announce(*write_files((out, found.to_csv), (figure, drawing(found.plot, look))))
-
-
-def _typed(text: str) -> float | str:
-    from stickslip.scenarios.entries import typed_number
-
-    return typed_number(text)

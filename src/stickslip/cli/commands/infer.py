@@ -182,14 +182,17 @@ def _values(texts: list[str] | None, where: str) -> dict[str, Any] | None:
 
 def _bounds(texts: list[str] | None) -> dict[str, Any] | None:
     """Return limits by name. Raises InputError."""
+    from stickslip.foundation.axis import TypedRange
+    from stickslip.scenarios.entries import typed_number
+
     if not texts:
         return None
     found = {}
     for name, value in (_values(texts, "--bound") or {}).items():
-        low, dots, high = str(value).partition("..")
-        if not dots:
+        typed = TypedRange.of(str(value))
+        if typed is None or typed.points is not None or typed.log:
             raise InputError(
                 f'infer: --bound must be NAME=LOW..HIGH, as "friction.a=0.001..0.1", got {ascii(name)[:40]}={ascii(value)[:40]}'
             )
-        found[name] = (_typed(low), _typed(high))
+        found[name] = (typed_number(typed.low), typed_number(typed.high))
     return found

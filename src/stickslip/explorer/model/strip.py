@@ -16,6 +16,7 @@ import numpy as np
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.solve import Stopped
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.axis import Axis
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity
 from stickslip.problem.parameters import PRESSING
@@ -33,26 +34,9 @@ SHOWN = ("pulses", "slip", "first_end", "peak_rate")
 KEPT = (*SHOWN, "irregular")
 
 
-@dataclass(frozen=True)
-class StripRange:
-    """The range that a strip covers: a parameter by its place in a scenario file, and its ends in SI.
-
-    With `log` the values are evenly spaced in the logarithm.
-    """
-
-    parameter: str
-    low: float
-    high: float
-    log: bool = False
-
-    def values(self, members: int = MEMBERS) -> Floats:
-        """Return the values of the parameter (SI), in ascending order. Raises InputError for ends that make no range."""
-        if not (math.isfinite(self.low) and math.isfinite(self.high) and self.low < self.high):
-            raise InputError(f"strip: {self.parameter} must go from a smaller to a larger number, got {self.low} to {self.high}")
-        if self.log and not self.low > 0.0:
-            raise InputError(f"strip: a logarithmic range of {self.parameter} must begin above 0, got {self.low}")
-        space: Callable[..., Floats] = np.geomspace if self.log else np.linspace
-        return space(self.low, self.high, members)
+def strip_range(parameter: str, low: float, high: float, *, log: bool = False) -> Axis:
+    """Return the range that a strip covers: a parameter by its place in a scenario file, and its ends in SI. Raises InputError."""
+    return Axis(parameter, low, high, MEMBERS, log)
 
 
 @dataclass(frozen=True)
@@ -82,15 +66,15 @@ class Strip:
         return int(np.argmin(np.abs(scaled(self.values) - scaled(value))))
 
 
-def strip_of(scenario: Scenario, where: StripRange, told: Told = lambda text: None, members: int = MEMBERS) -> Strip:
+def strip_of(scenario: Scenario, where: Axis, told: Told = lambda text: None) -> Strip:
     """Run a scenario for many values of one parameter.
 
     `told` is called with a line on the progress while runs are made one after the other; if it raises `Stopped`, the runs so far
     are the result. A run whose value makes no valid scenario, or that does not come to its end, has NaN and a reason. Raises
-    InputError if there is no such parameter, if it is a word and no number, or if the range is none.
+    InputError if there is no such parameter, or if it is a word and no number.
     """
     found = numeric(scenario, where.parameter)
-    values = where.values(members)
+    values = where.values
     work = Work(scenario.to_toml(), (found,), quantities_named(KEPT))
     results, refused = _run(work, found.name, values, told)
     units = {name: QUANTITIES[name].unit_for(scenario.problem) for name in KEPT}
@@ -127,7 +111,7 @@ def present(scenario: Scenario, parameter: ParameterPath) -> float:
     return math.nan if value is None else float(parameter.read(value, "strip"))
 
 
-def usual_range(scenario: Scenario, name: str) -> StripRange:
+def usual_range(scenario: Scenario, name: str) -> Axis:
     """Return the range of a strip that nobody has chosen: from a fifth of the present value to five times it, logarithmic.
 
     Around a value that is negative the range ends at zero, and around zero, or where no value is given, it is 0 to 1 in SI.
@@ -135,8 +119,8 @@ def usual_range(scenario: Scenario, name: str) -> StripRange:
     found = numeric(scenario, name)
     here = present(scenario, found)
     if here > 0.0 and math.isfinite(here):
-        return StripRange(found.name, here / 5.0, here * 5.0, log=True)
-    return StripRange(found.name, 2.0 * here, 0.0) if -math.inf < here < 0.0 else StripRange(found.name, 0.0, 1.0)
+        return strip_range(found.name, here / 5.0, here * 5.0, log=True)
+    return strip_range(found.name, 2.0 * here, 0.0) if -math.inf < here < 0.0 else strip_range(found.name, 0.0, 1.0)
 
 
 def numeric(scenario: Scenario, name: str) -> ParameterPath:

@@ -10,7 +10,8 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from stickslip.explorer.model.setting import Setting
-from stickslip.explorer.model.strip import StripRange
+from stickslip.explorer.model.strip import strip_range
+from stickslip.foundation.axis import Axis
 
 Panel = Literal["law", "contact", "shape", "slip", "rate", "traction", "field", "energy", "profile_rate", "profile_slip"]
 """The panels of the page to which a step can point."""
@@ -30,7 +31,7 @@ class Step:
     question: str
     panel: Panel
     cursor: float
-    strip: StripRange | None
+    strip: Axis | None
     scenario: str
     changes: Mapping[str, Any] = field(default_factory=dict)
 
@@ -54,7 +55,7 @@ TOUR = (
         "The paper prints a spring ten times as stiff, 3.43e14 N/m. Does the block still slip?",
         "rate",
         1.84,
-        StripRange("body.stiffness", 1e13, 4e14, log=True),
+        strip_range("body.stiffness", 1e13, 4e14, log=True),
         "fig6-block-reconstructed",
     ),
     Step(
@@ -67,7 +68,7 @@ TOUR = (
         "Move the start closer to the maximum, which is at 0.3142 m. When does the pulse come?",
         "law",
         1.568,
-        StripRange("initial.slip", 0.317, 0.335),
+        strip_range("initial.slip", 0.317, 0.335),
         "fig5-slab-u0-1e-2",
         {"initial.excess": None, "initial.load": 1.5e8},
     ),
@@ -81,7 +82,7 @@ TOUR = (
         "A thicker slab gets its echo later. Why does its slip grow in steps?",
         "slip",
         2.257,
-        StripRange("body.thickness", 1e3, 2.2e4),
+        strip_range("body.thickness", 1e3, 2.2e4),
         "fig5-slab-reconstructed",
     ),
     Step(
@@ -94,7 +95,7 @@ TOUR = (
         "Make alpha larger. From where on does the run leave the curve and jump?",
         "contact",
         2.857,
-        StripRange("friction.alpha", 0.02, 0.4),
+        strip_range("friction.alpha", 0.02, 0.4),
         "fig4-loop",
         {"friction.alpha": 0.1},
     ),
@@ -108,7 +109,7 @@ TOUR = (
         "Make alpha smaller. Where does the falling part vanish?",
         "contact",
         4.6476,
-        StripRange("friction.alpha", 0.05, 2.0),
+        strip_range("friction.alpha", 0.05, 2.0),
         "fig4-loop",
     ),
     Step(
@@ -121,7 +122,7 @@ TOUR = (
         "Change the normal stress. Why does the rate of slip follow a straight line?",
         "rate",
         2.857,
-        StripRange("body.normal_stress", 1e7, 2e8),
+        strip_range("body.normal_stress", 1e7, 2e8),
         "fig6-slab",
     ),
     Step(
@@ -134,7 +135,7 @@ TOUR = (
         "Where is alpha_c if the normal stress is twice as large?",
         "rate",
         2.857,
-        StripRange("friction.alpha", 0.15, 0.25),
+        strip_range("friction.alpha", 0.15, 0.25),
         "fig7-slab-critical",
     ),
     Step(
@@ -146,7 +147,7 @@ TOUR = (
         "Choose the rule 'maxwell'. At which loads does the contact jump now?",
         "contact",
         5.213,
-        StripRange("loading.pull_rate", 1.5, 3.0),
+        strip_range("loading.pull_rate", 1.5, 3.0),
         "fig4-loop",
     ),
 )

@@ -10,7 +10,7 @@ from stickslip.explorer.model.answer import Answer
 from stickslip.explorer.model.fault import FaultAnswer
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.solve import Told
-from stickslip.explorer.model.strip import StripRange
+from stickslip.foundation.axis import Axis
 from stickslip.foundation.errors import InputError, gathered
 from stickslip.scenarios.scenario import Scenario
 
@@ -58,7 +58,7 @@ class Explorer:
     answer: Any
     shown: tuple[Setting, Any] | None
     pinned: tuple[Setting, Any] | None
-    strip: StripRange | None
+    strip: Axis | None
 
     def listen(self, news: News, call: Callable[[], None]) -> None:
         """Have `call` called whenever there are news of this kind."""
@@ -113,7 +113,7 @@ class Explorer:
         if self._shown == self._asked:
             self._desk.ask(work, done, self._fail)
 
-    def show_step(self, step: int, setting: Setting | None, strip: StripRange | None, cursor: float) -> None:
+    def show_step(self, step: int, setting: Setting | None, strip: Axis | None, cursor: float) -> None:
         """Show a step of the tour: its setting, strip and cursor; 0 closes the tour and leaves the page as it is."""
         self.tour = step
         self.tell("tour")
@@ -121,7 +121,7 @@ class Explorer:
             self.change(setting, cursor)
             self.show_strip(strip)
 
-    def show_strip(self, strip: StripRange | None) -> None:
+    def show_strip(self, strip: Axis | None) -> None:
         """Show a strip, or none."""
         self.strip = strip
         self.tell("strip")

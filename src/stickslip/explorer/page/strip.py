@@ -15,12 +15,12 @@ from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.strip import (
     SHOWN,
     Strip,
-    StripRange,
     choices,
     numeric,
     present,
     setting_at,
     strip_of,
+    strip_range,
     strip_text,
     usual_range,
 )
@@ -29,6 +29,7 @@ from stickslip.explorer.page.explorer import Explorer
 from stickslip.explorer.page.stage import Stage
 from stickslip.explorer.page.view import Key, View, axis_label, heading, limits
 from stickslip.figures.style import SPELLED, unit_of
+from stickslip.foundation.axis import Axis
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity
 from stickslip.scenarios.entries import typed_number
@@ -116,7 +117,7 @@ class StripView:
     def __init__(self, explorer: Explorer) -> None:
         self._explorer, self._stage = explorer, Stage()
         self.strip: Strip | None = None
-        self._made_of: tuple[StripRange, Any] | None = None
+        self._made_of: tuple[Axis, Any] | None = None
         self._unit = ("", 1.0)
         self.bar = StripBar(self._choose, sizing_mode="stretch_width", margin=0)
         found = plots(self._stage)
@@ -149,13 +150,11 @@ class StripView:
         except InputError as error:
             self._tell(str(error))
 
-    def _entered(self, name: str, data: dict[str, Any]) -> StripRange:
+    def _entered(self, name: str, data: dict[str, Any]) -> Axis:
         found = numeric(self._explorer.setting.scenario(), name)
         size = self._unit_of(usual_range(self._explorer.setting.scenario(), name))[1]
         low, high = (_read(str(data.get(end))[:100], found, size) for end in ("low", "high"))
-        chosen = StripRange(found.name, low, high, log=data.get("log") is True)
-        chosen.values(2)
-        return chosen
+        return strip_range(found.name, low, high, log=data.get("log") is True)
 
     def _ask(self) -> None:
         """Have the strip worked out, unless it is the one that is shown: then only its mark moves."""
@@ -176,7 +175,7 @@ class StripView:
         scenario = explorer.answer.scenario
         explorer.beside(lambda told: strip_of(scenario, where, told), lambda strip: self._show(strip, made_of))
 
-    def _show(self, strip: Strip, made_of: tuple[StripRange, Any]) -> None:
+    def _show(self, strip: Strip, made_of: tuple[Axis, Any]) -> None:
         self.strip, self._made_of = strip, made_of
         with pn.io.hold():
             self._unit = unit_shown(self._explorer.setting, made_of[0])
@@ -204,7 +203,7 @@ class StripView:
         nearest = float(self.strip.values[self.strip.nearest(value)])
         explorer.change(setting_at(explorer.setting, self.strip.parameter, nearest))
 
-    def _unit_of(self, where: StripRange) -> tuple[str, float]:
+    def _unit_of(self, where: Axis) -> tuple[str, float]:
         """Return the unit of a range: that of the strip that is shown, if it is one of the same parameter."""
         is_shown = self.strip is not None and self.strip.parameter == where.parameter
         return self._unit if is_shown else unit_shown(self._explorer.setting, where)
@@ -220,7 +219,7 @@ class StripView:
         self.bar.state = {"choices": choices(scenario), "chosen": chosen, "said": said}
 
 
-def unit_shown(setting: Setting, where: StripRange) -> tuple[str, float]:
+def unit_shown(setting: Setting, where: Axis) -> tuple[str, float]:
     """Return the unit (name, size in SI) in which the controls show a parameter, or a readable one if it has no control.
 
     It is that of a pure number if the scenario has no such parameter, as before the first answer of a link.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from typing import Any
 from urllib.parse import parse_qsl, quote, urlencode
 
@@ -11,11 +12,12 @@ import param
 from panel.custom import JSComponent
 
 from stickslip.explorer.model.setting import Setting, parameters_of, setting_of
-from stickslip.explorer.model.strip import StripRange
+from stickslip.explorer.model.strip import strip_range
 from stickslip.explorer.model.tour import tour_of
 from stickslip.explorer.page.components import asset
 from stickslip.explorer.page.explorer import Explorer
 from stickslip.explorer.page.files import content_of, export, formats_of, opened
+from stickslip.foundation.axis import Axis
 from stickslip.foundation.errors import InputError
 
 MOST_FIELDS = 500
@@ -106,12 +108,14 @@ def _step(text: str, count: int) -> int:
     return int(text) if text.isdecimal() and text.isascii() and len(text) < 3 and 1 <= int(text) <= count else 0
 
 
-def _strip(text: str) -> StripRange | None:
+def _strip(text: str) -> Axis | None:
     parameter, *ends = text.split(":")
     low, high = (_number(one) for one in [*ends, "", ""][:2])
     if low is None or high is None or not parameter.replace(".", "").replace("_", "").isalnum():
         return None
-    return StripRange(parameter, low, high, log=ends[2:] == ["log"])
+    with suppress(InputError):
+        return strip_range(parameter, low, high, log=ends[2:] == ["log"])
+    return None
 
 
 class ToolBar(JSComponent):  # type: ignore[misc] # panel has no types

@@ -11,7 +11,7 @@ from functools import partial
 from typing import Any, Literal
 
 from stickslip.explorer.model.solve import Stopped, Told
-from stickslip.explorer.model.strip import StripRange
+from stickslip.foundation.axis import Axis
 from stickslip.foundation.errors import InputError
 
 Call = Callable[[], None]
@@ -172,8 +172,8 @@ def unforeseen(error: Exception) -> InputError:
 
 FIRST_RUNS = (("fig6-slab", 20.0), ("fig6-block-reconstructed", 20.0), ("rate-and-state-block", 1.0), ("fig4-loop", 1.0))
 """Scenarios, each with a duration (s), that between them use the parts of the engine that most runs need."""
-FIRST_STRIP, FEW = StripRange("friction.alpha", 0.05, 2.0), 16
-"""A strip, and a number of its runs, by which batches are warmed."""
+FIRST_STRIP = Axis("friction.alpha", 0.05, 2.0, 16)
+"""A strip of a few runs, by which batches are warmed."""
 LINE = "The engine is being loaded: the first picture takes a moment longer."
 
 
@@ -214,7 +214,7 @@ class Warming:
             try:
                 for name, duration in FIRST_RUNS:
                     simulate(load_scenario(name), duration)
-                strip_of(load_scenario(FIRST_RUNS[0][0]), FIRST_STRIP, members=FEW)
+                strip_of(load_scenario(FIRST_RUNS[0][0]), FIRST_STRIP)
             finally:
                 announce_by(tell)
         except Exception as error:  # pages say what is wrong when they run into it themselves

@@ -7,7 +7,7 @@ import math
 import zlib
 from base64 import b64encode
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -159,7 +159,7 @@ def content_of(step: Step, places: int) -> dict[str, Any]:
     setting = step.setting
     assert step.strip is not None
     strip = strip_of(setting.scenario(), step.strip)
-    kept = np.union1d(step.strip.values(places), [strip.here])
+    kept = np.union1d(replace(step.strip, points=places).values, [strip.here])
     unit, size = unit_of(strip.unit, strip.values, log=strip.log)
     shown = view_of_strip(strip)
     return {

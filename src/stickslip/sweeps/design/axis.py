@@ -5,7 +5,6 @@ On the command line an axis is a text such as "thickness=1km..50km:300:log" or "
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -14,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.foundation.arguments import shown
+from stickslip.foundation.axis import TypedRange, check_ends, spaced
 from stickslip.foundation.conversion import has_unit, without_unit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Choice, Quantity
@@ -27,7 +27,6 @@ LARGEST_AXIS = 10_000_000
 EQUAL = 1e-9
 """Relative difference up to which the ratios of successive values count as equal."""
 FORM = '"KEY=LOW..HIGH:POINTS", followed by ":log" for equal ratios, or "KEY=VALUE,VALUE,..."'
-_RANGE = re.compile(r"(?P<low>.+?)\.\.(?P<high>[^:]+)(?::(?P<points>\d{1,9}))?(?P<log>:log)?")
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,12 +60,8 @@ class Axis:
         if isinstance(parameter.declared, Choice):
             words = ", ".join(parameter.declared.allowed)
             raise InputError(f"{where}: {parameter.name} takes words, not a range: list some of {words}")
-        unit = parameter.unit
         low, high = (float(parameter.read(_without_unit(parameter, end, where), where)) for end in ends)
-        if not np.isfinite([low, high]).all() or not low < high:
-            raise InputError(f"{where}: {parameter.name} must go from a smaller to a larger number, got {low:g} to {high:g} {unit}")
-        if log and low <= 0.0:
-            raise InputError(f"{where}: {parameter.name} must be above 0 for :log, got {low:g} {unit}")
+        check_ends(f"{where}: {parameter.name}", low, high, log=log, unit=parameter.unit)
         return cls(parameter, np.empty(0), (low, high), log)
 
     def at(self, shares: NDArray[np.float64]) -> Values:
@@ -148,13 +143,12 @@ def _typed_axis(scenario: Scenario, text: str, where: str) -> Axis:
     if not equals or not name or not content:
         raise InputError(f"{where} must be {FORM}, got {shown(text)}")
     parameter = find_parameter(scenario, name, where)
-    found = _RANGE.fullmatch(content)
-    texts = found.group("low", "high") if found else content.split(",")
-    values = [typed_value(parameter, one) for one in texts]
-    if not found:
+    found = TypedRange.of(content)
+    values = [typed_value(parameter, one) for one in (found[:2] if found else content.split(","))]
+    if found is None:
         return Axis(parameter, read_values(parameter, values, where))
-    axis = Axis.of_range(parameter, values, bool(found["log"]), where)
-    return axis if found["points"] is None else _with_points(axis, int(found["points"]), where)
+    axis = Axis.of_range(parameter, values, found.log, where)
+    return axis if found.points is None else _with_points(axis, found.points, where)
 
 
 def _with_points(axis: Axis, points: int, where: str) -> Axis:
@@ -163,5 +157,4 @@ def _with_points(axis: Axis, points: int, where: str) -> Axis:
     if points < 2:
         raise InputError(f"{where}: {axis.parameter.name} needs at least 2 points, got {points}")
     assert axis.ends
-    spaced = np.geomspace if axis.log else np.linspace
-    return replace(axis, values=np.asarray(spaced(*axis.ends, points)))
+    return replace(axis, values=spaced(*axis.ends, points, log=axis.log))
