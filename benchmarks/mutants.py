@@ -45,7 +45,7 @@ class Named:
 
 
 NAMED = (
-    Named("echo-sign", "engine/waves/incoming_load.py", "params.reflection * (2.0 *", "-params.reflection * (2.0 *"),
+    Named("echo-sign", "engine/waves/incoming_load.py", "share * (2.0 *", "-share * (2.0 *"),
     Named(
         "factor-two-in-the-echo",
         "engine/waves/incoming_load.py",

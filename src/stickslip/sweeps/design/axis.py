@@ -33,7 +33,7 @@ FORM = '"KEY=LOW..HIGH:POINTS", followed by ":log" for equal ratios, or "KEY=VAL
 class Axis:
     """A parameter with its `values`, or with the `ends` (SI) between which samples are drawn.
 
-    If `log` is True, samples are distributed evenly in the logarithm, and a step between two values is divided into equal ratios.
+    If `log` is True, samples are distributed evenly in the logarithm, and figures have a logarithmic axis.
     """
 
     parameter: ParameterPath
