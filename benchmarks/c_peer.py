@@ -16,7 +16,7 @@ from benchmarks.problems import Case
 from benchmarks.runner import Runner, UnavailableError
 from stickslip.engine.contact_step import certificate
 from stickslip.engine.formula_code.taylor_series import SIGNATURES, FormulaWriter
-from stickslip.engine.memory.records import FLOATS, Record
+from stickslip.engine.memory.records import FLOATS, MemoryRecord
 from stickslip.engine.state import layout, workspace
 from stickslip.friction.formula.expression import Expression
 
@@ -50,12 +50,12 @@ def c_function(writer: FormulaWriter, part: str) -> str:
     return f"static void {part}(const {arguments}) {{\n" + "\n".join(lines) + "\n}\n"
 
 
-def structure(record: type[Record], name: str = "") -> str:
+def structure(record: type[MemoryRecord], name: str = "") -> str:
     """A record of the engine as a structure of C, place for place."""
     lines = []
     for field, place in record.places.items():
         kind = "double" if place.kind in (float, FLOATS) else "int64_t"
-        if isinstance(place.kind, type) and issubclass(place.kind, Record):
+        if isinstance(place.kind, type) and issubclass(place.kind, MemoryRecord):
             lines.append(f"    {place.kind.__name__} {'' if place.inside else '*'}{field};")
             if place.size > place.kind.total:
                 lines.append(f"    double after_{field}[{place.size - place.kind.total}];")
@@ -77,7 +77,9 @@ def header(writer: FormulaWriter) -> str:
         numbers = ", ".join(repr(float(number)) for number in getattr(certificate, name))
         defines.append(f"static const double {name}[] = {{{numbers}}};")
     defines.append(f"#define DISCS {len(certificate.RATIOS)}")
-    records = [structure(one) for one in vars(layout).values() if isinstance(one, type) and issubclass(one, Record) and one.places]
+    records = [
+        structure(one) for one in vars(layout).values() if isinstance(one, type) and issubclass(one, MemoryRecord) and one.places
+    ]
     return (
         "\n".join([*defines, *records, structure(workspace.Run, "Memory"), *SINES, *NAMES])
         + "\n\n"

@@ -11,7 +11,7 @@ import numpy as np
 
 import stickslip as ss
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, Text, fields_of
+from stickslip.foundation.quantities import Choice, LawField, NamedNumbers, NumberSeries, Quantity, Text, fields_of
 from stickslip.friction import LAWS, FrictionLaw, FromExpression
 from stickslip.problem.fields import INITIAL_STATES
 from stickslip.problem.selection_rule import SELECTION_RULES
@@ -133,13 +133,13 @@ class Drawing:
         """A value of a declared field of a law."""
         if isinstance(declared, Quantity):
             return self.number(declared)
-        if isinstance(declared, Series):
+        if isinstance(declared, NumberSeries):
             count = int(self.rng.integers(2, 7))
             values = [self.number(declared.item) for _ in range(count)]
             return tuple(sorted(set(values))) if declared.ascending else tuple(values)
         if isinstance(declared, Choice):
             return self.one_of(*declared.allowed)
-        assert isinstance(declared, Part | NamedNumbers | Text)
+        assert isinstance(declared, LawField | NamedNumbers | Text)
         return None
 
     def law(self, kind: str) -> FrictionLaw:

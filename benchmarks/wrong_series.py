@@ -25,7 +25,7 @@ from stickslip.engine.formula_code.taylor_series import FormulaWriter
 from stickslip.engine_input import prepare
 from stickslip.friction.formula import expression as e
 from stickslip.friction.formula.operations import FUNCTIONS, OPERATIONS
-from stickslip.observables.proof import Motion, _unsure_duration, proven
+from stickslip.observables.proof import MotionOnDiscs, _unsure_duration, proven
 from stickslip.trajectory.history import History, Positions
 
 DIGITS, PLACES = 40, 200
@@ -222,7 +222,7 @@ def of_duration(history: History) -> float:
     The bound holds for a duration within this rounding, `missed` for the one that the history has.
     """
     moving = np.flatnonzero(history.store.mode != 0)
-    thrust = np.abs(Motion.of(history, moving).thrust).sum(axis=1)
+    thrust = np.abs(MotionOnDiscs.of(history, moving).thrust).sum(axis=1)
     return float(np.max(_unsure_duration(history, moving)[:, 0] * thrust, initial=0.0))
 
 

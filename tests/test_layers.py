@@ -234,6 +234,14 @@ def upward(path: Path) -> dict[str, set[str]]:
 FILES = [path for path in sorted(PACKAGE.rglob("*.py")) if parts(path)[0] not in ("__init__", "__main__")]
 
 
+def test_no_two_classes_have_one_name() -> None:
+    """A name that grep finds once: annotations of one class do not read as those of another."""
+    trees = {path: ast.parse(path.read_text(encoding="utf-8")) for path in FILES}
+    places = [(node.name, path.name) for path, tree in trees.items() for node in ast.walk(tree) if isinstance(node, ast.ClassDef)]
+    names = [name for name, _ in places]
+    assert [place for place in places if names.count(place[0]) > 1] == []
+
+
 def test_every_folder_has_its_place() -> None:
     assert {parts(path)[0] for path in FILES} == set(HEIGHT)
     for package, rooms in ROOM_HEIGHT.items():

@@ -18,7 +18,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import stickslip as ss
-from stickslip.foundation.quantities import Quantity, Series
+from stickslip.foundation.quantities import NumberSeries, Quantity
 from stickslip.loading import HISTORIES, HoldAndSlide, PiecewiseLinear, Sinusoidal, Steps
 from stickslip.scenarios import read_scenario
 
@@ -209,7 +209,7 @@ def test_infinity_has_a_word_where_it_is_allowed() -> None:
     ],
 )
 def test_series_take_units_one_by_one_or_together(given: Any) -> None:
-    found = Series(LENGTH, ascending=True).check("Owner", "field", given)
+    found = NumberSeries(LENGTH, ascending=True).check("Owner", "field", given)
     assert found == (0.001, 0.002, 0.003)
     assert all(type(one) is float for one in found)
 
@@ -227,7 +227,7 @@ def test_series_take_units_one_by_one_or_together(given: Any) -> None:
 )
 def test_mistakes_in_series_name_the_index(given: Any, message: str) -> None:
     with pytest.raises(ss.InputError, match=f"^Owner: {message}$"):
-        Series(LENGTH, ascending=True).check("Owner", "field", given)
+        NumberSeries(LENGTH, ascending=True).check("Owner", "field", given)
 
 
 def test_parameters_of_an_expression_may_be_quantities_of_pint() -> None:

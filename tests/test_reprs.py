@@ -14,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import stickslip as ss
-from stickslip.foundation.quantities import Quantity, Series, declare, fields_of, quantity
+from stickslip.foundation.quantities import NumberSeries, Quantity, declare, fields_of, quantity
 from stickslip.foundation.show import UNHANDY, brief, html_table
 from stickslip.friction import LAWS, FrictionLaw
 from stickslip.loading import HISTORIES
@@ -130,7 +130,7 @@ class Own(FrictionLaw):
     kind = "own"
     example: ClassVar = {"level": 0.5}
     level: float = quantity("1", "level")
-    slips: Any = declare(Series(Quantity("m", "slips")), (0.0, 1.0))
+    slips: Any = declare(NumberSeries(Quantity("m", "slips")), (0.0, 1.0))
     note: str = "plain"
 
     @staticmethod

@@ -19,7 +19,7 @@ from typing_extensions import override
 
 from stickslip.foundation.conversion import Number, Numbers, unit_among
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import Quantity, Series, check_fields, declare, fields_of, quantity
+from stickslip.foundation.quantities import NumberSeries, Quantity, check_fields, declare, fields_of, quantity
 from stickslip.foundation.show import Declared, brief_repr
 
 VARYING = "m/s or Pa"
@@ -78,9 +78,9 @@ class LoadingHistory(Declared, ABC):
 
     def _varying(self) -> Iterator[Any]:
         for name, (declared, _) in fields_of(type(self)).items():
-            item, value = declared.item if isinstance(declared, Series) else declared, getattr(self, name)
+            item, value = declared.item if isinstance(declared, NumberSeries) else declared, getattr(self, name)
             if isinstance(item, Quantity) and item.unit == VARYING:
-                yield from value if isinstance(declared, Series) and isinstance(value, list | tuple) else (value,)
+                yield from value if isinstance(declared, NumberSeries) and isinstance(value, list | tuple) else (value,)
 
     def __repr__(self) -> str:
         return brief_repr(self, {VARYING: self.unit})
@@ -134,8 +134,8 @@ class PiecewiseLinear(LoadingHistory):
     example: ClassVar = {"times": [0.0, "10 s", "20 s"], "values": [1e-6, 1e-5, 1e-6]}
     columns: ClassVar = {"time": "times", "value": "values"}
 
-    times: Numbers = declare(Series(Quantity("s", "times of the points", at_least=0), ascending=True))
-    values: Numbers = declare(Series(Quantity(VARYING, "values at these times")))
+    times: Numbers = declare(NumberSeries(Quantity("s", "times of the points", at_least=0), ascending=True))
+    values: Numbers = declare(NumberSeries(Quantity(VARYING, "values at these times")))
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -157,8 +157,10 @@ class Steps(PiecewiseLinear):
 
     kind = "steps"
 
-    times: Numbers = declare(Series(Quantity("s", "times from which each value holds, the first 0", at_least=0), ascending=True))
-    values: Numbers = declare(Series(Quantity(VARYING, "the values")))
+    times: Numbers = declare(
+        NumberSeries(Quantity("s", "times from which each value holds, the first 0", at_least=0), ascending=True)
+    )
+    values: Numbers = declare(NumberSeries(Quantity(VARYING, "the values")))
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -204,7 +206,7 @@ class HoldAndSlide(LoadingHistory):
 
     slide: Number = quantity(VARYING, "value during a slide")
     slide_time: Number = quantity("s", "duration of the slide before each hold", above=0)
-    hold_times: Numbers = declare(Series(Quantity("s", "duration of each hold", above=0), least=1))
+    hold_times: Numbers = declare(NumberSeries(Quantity("s", "duration of each hold", above=0), least=1))
     hold: Number = quantity(VARYING, "value during a hold", default=0.0)
 
     @property

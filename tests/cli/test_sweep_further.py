@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from stickslip.cli.output.sweep_summary import Change, cases, changes
+from stickslip.cli.output.sweep_summary import ChangeAlongKey, cases, changes
 from stickslip.sweeps.execution import cluster
 
 MAP = ["sweep", "fig6-slab", "-v", "friction.alpha=0.1..0.4:3", "-v", "body.normal_stress=50MPa..200MPa:3"]
@@ -68,7 +68,7 @@ def small() -> xr.Dataset:
 
 def test_changes_are_between_neighbours_that_differ() -> None:
     assert cases(small(), "pulses") == {1.0: 3, 2.0: 1, 3.0: 1}
-    assert changes(small(), "pulses") == [Change("a", 1, 1.0, 2.0), Change("b", 2, 5.0, 9.0)]
+    assert changes(small(), "pulses") == [ChangeAlongKey("a", 1, 1.0, 2.0), ChangeAlongKey("b", 2, 5.0, 9.0)]
     assert changes(small().isel(b=[0]), "pulses") == []
 
 

@@ -15,7 +15,7 @@ from stickslip.contact.branches import branches_of, resistance
 from stickslip.contact.critical import critical_normal_stress, critical_value, margin
 from stickslip.contact.folds import certificate, lowest_slope
 from stickslip.contact.uniqueness import uniqueness_of
-from stickslip.engine.state.layout import Branch
+from stickslip.engine.state.layout import BranchRow
 from stickslip.engine_input.branch_table import table_of_branches
 from stickslip.friction import LAWS, FromExpression
 from stickslip.scenarios.scenario import read_scenario
@@ -80,8 +80,8 @@ def test_a_bump_of_any_width_has_its_two_folds(width):
 def test_the_engine_is_given_the_folds_of_a_bump(width):
     table, stick_to = table_of_branches(bump(width), 0.0)
     wanted = [float(one) for one in folds_of_bump(width)]
-    assert Branch.of(table).rate_from.tolist() == pytest.approx([0.0, wanted[1]], rel=1e-12, abs=0)
-    assert Branch.of(table).rate_to[0] == pytest.approx(wanted[0], rel=1e-12, abs=0)
+    assert BranchRow.of(table).rate_from.tolist() == pytest.approx([0.0, wanted[1]], rel=1e-12, abs=0)
+    assert BranchRow.of(table).rate_to[0] == pytest.approx(wanted[0], rel=1e-12, abs=0)
     assert stick_to == 0.0
 
 

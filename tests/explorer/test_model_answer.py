@@ -10,7 +10,7 @@ import pytest
 import stickslip as ss
 from stickslip.explorer.model.answer import Answer
 from stickslip.explorer.model.pictures import energy_picture
-from stickslip.explorer.model.sampled_waves import SampledWaves, Shown
+from stickslip.explorer.model.sampled_waves import SampledWaves, ShownInterval
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.solve import MOST_PIECES, Stopped, companion_of, solve
 from stickslip.foundation.arrays import Floats
@@ -96,7 +96,7 @@ def test_parts_of_the_energy_balance_and_are_those_of_the_run(name: str) -> None
     size = max(float(np.ptp(values)) for values in parts.values()) or 1.0
     rounding = 2e-4 if found.solution.problem.body.has_waves else 1e-9  # the waves of a slab are sampled
     assert sum(parts.values()) == pytest.approx(found.energy.parts["total"], abs=rounding * size)
-    shown = Shown.of(found.solution)
+    shown = ShownInterval.of(found.solution)
     chosen = np.linspace(0, len(found.energy.time) - 1, 5).astype(int)
     history = shown.readings.history
     exact = energies(history, history.find(np.minimum(found.energy.time[chosen] - shown.begin, history.span[1]), "right"))
@@ -112,7 +112,7 @@ def test_energy_of_a_wrong_history_shows_a_gap_between_the_parts_and_the_total(n
     run = answer(name).solution
     own = run.history
     wrong = History(scaled_rate(own.store, 1.1), run.problem, own.round_trip_time, own.ramp, own.duration)
-    shown = Shown.of(replace(run, history=wrong))
+    shown = ShownInterval.of(replace(run, history=wrong))
     found = energy_picture(shown, SampledWaves(shown)).parts
     stack = sum(values for part, values in found.items() if part != "total")
     assert np.abs(stack - found["total"]).max() > 0.01 * np.ptp(found["total"])
@@ -120,7 +120,7 @@ def test_energy_of_a_wrong_history_shows_a_gap_between_the_parts_and_the_total(n
 
 @on_slabs
 def test_inside_of_the_slab_is_the_field_of_the_run(name: str) -> None:
-    found, shown = answer(name), Shown.of(answer(name).solution)
+    found, shown = answer(name), ShownInterval.of(answer(name).solution)
     slab = found.slab
     time = np.linspace(shown.start, shown.end, len(slab.time))
     edges = np.concatenate([time[:1], (time[1:] + time[:-1]) / 2, time[-1:]])
@@ -265,7 +265,7 @@ def test_long_run_that_is_stopped_is_shown_up_to_there() -> None:
 @pytest.mark.parametrize("name", ["tides-block", "fig6-block-reconstructed", "fig6-slab"])
 def test_energy_of_a_long_run_is_that_of_a_short_one(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     exact = answer(name).energy
-    shown = Shown.of(answer(name).solution)
+    shown = ShownInterval.of(answer(name).solution)
     monkeypatch.setattr("stickslip.explorer.model.pictures.LONG_HISTORY", 0)
     rough = energy_picture(shown, SampledWaves(shown) if "slab" in name else None)
     assert set(rough.parts) == set(exact.parts)

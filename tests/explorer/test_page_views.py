@@ -17,7 +17,7 @@ from stickslip.explorer.page.explorer import Explorer
 from stickslip.explorer.page.page import Panels, build, build_for_notebook
 from stickslip.explorer.page.panels import view_of
 from stickslip.explorer.page.panels.motion import DRAWN
-from stickslip.explorer.page.view import Key, View, heading, limits, round_step, view_bytes
+from stickslip.explorer.page.view import LegendKey, View, heading, limits, round_step, view_bytes
 from stickslip.explorer.page.words import Words
 from tests.explorer.desk_at_once import DeskAtOnce
 
@@ -208,7 +208,7 @@ def test_steps_are_one_two_or_five(size: float, step: float) -> None:
 
 
 def test_headings_are_escaped() -> None:
-    assert "<b>" not in heading("<b>", [Key("<b>", "slip")])
+    assert "<b>" not in heading("<b>", [LegendKey("<b>", "slip")])
 
 
 def test_a_kept_run_is_shown_in_the_units_of_both() -> None:
@@ -216,7 +216,7 @@ def test_a_kept_run_is_shown_in_the_units_of_both() -> None:
     view = view_of(slab, slab)
     np.testing.assert_array_equal(view.columns["pinned"]["slip"], view.columns["motion"]["slip"])
     np.testing.assert_array_equal(view.columns["pinned_law"]["x"], view.columns["law"]["x"])
-    assert all(Key("pinned", "pin") in view.keys[name] for name in ("slip", "rate", "traction", "law", "contact"))
+    assert all(LegendKey("pinned", "pin") in view.keys[name] for name in ("slip", "rate", "traction", "law", "contact"))
     other = view_of(block, slab)
     assert np.isnan(other.columns["pinned"]["traction"]).all()  # Pa beside N
     for name in ("slip", "rate"):

@@ -70,9 +70,9 @@ def test_saved_tables_hold_all_digits_and_where_they_come_from(answer: Answer) -
 def test_saved_figures_are_those_of_the_command_line(answer: Answer, tmp_path: Path, kind: str) -> None:
     from matplotlib import image
 
-    from stickslip.cli.output.files import Look, drawing
+    from stickslip.cli.output.files import FigureLook, drawing
 
-    by_command = drawing(answer.solution.plot, Look())(tmp_path / f"by-command.{kind}")
+    by_command = drawing(answer.solution.plot, FigureLook())(tmp_path / f"by-command.{kind}")
     by_page = tmp_path / f"by-page.{kind}"
     by_page.write_bytes(export(kind, SETTING, answer)[2])
     if kind == "png":

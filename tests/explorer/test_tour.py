@@ -13,7 +13,7 @@ import pytest
 import stickslip as ss
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.strip import strip_of
-from stickslip.explorer.model.tour import TOUR, Step
+from stickslip.explorer.model.tour import TOUR, TourStep
 from stickslip.solution.solution import Solution
 
 NUMBER = re.compile(r"(?<![\w.])\d[\d.]*(?:e[+-]?\d+)?(?<!\.)")
@@ -160,7 +160,7 @@ def spelled(text: str, value: float) -> str:
 
 
 @pytest.mark.parametrize(("step", "claims"), list(zip(TOUR, CLAIMS, strict=True)), ids=[step.title for step in TOUR])
-def test_every_number_of_the_tour_is_that_of_its_own_run(step: Step, claims: Callable[[Solution], Claims]) -> None:
+def test_every_number_of_the_tour_is_that_of_its_own_run(step: TourStep, claims: Callable[[Solution], Claims]) -> None:
     told = set(NUMBER.findall(" ".join((step.text, step.look, step.question))))
     known = claims(ss.simulate(step.setting.scenario()))
     assert told == set(known)
@@ -168,7 +168,7 @@ def test_every_number_of_the_tour_is_that_of_its_own_run(step: Step, claims: Cal
 
 
 @pytest.mark.parametrize("step", TOUR, ids=lambda step: step.title)
-def test_a_step_is_short_and_can_be_shown(step: Step) -> None:
+def test_a_step_is_short_and_can_be_shown(step: TourStep) -> None:
     assert 40 <= len(step.text.split()) <= 80
     assert len(step.look.split()) <= 25
     assert len(step.question.split()) <= 25

@@ -24,7 +24,7 @@ from stickslip.figures.panels import letter_panels, set_title
 from stickslip.figures.style import UNITS, image, unit_of
 from stickslip.figures.sweeps.colours import FEW, colours_of, shades
 from stickslip.figures.sweeps.curves import jumps
-from stickslip.figures.sweeps.varied import Shown
+from stickslip.figures.sweeps.varied import ShownQuantity
 from stickslip.scenarios.library import names
 from stickslip.scenarios.parameter_paths import ParameterPath, parameter_paths
 from tests.figures.legible import SIZES, SLAB_PROBLEM
@@ -254,9 +254,9 @@ def test_counts_jump_wherever_they_change() -> None:
     assert jumps(np.array([1.0, 1.0, 2.0, 2.0, np.nan, 3.0, 4.0]), whole=True).tolist() == [False, True, False, False, False, True]
 
 
-def share(*values: float) -> Shown:
+def share(*values: float) -> ShownQuantity:
     members = xr.DataArray(np.array(values), dims="member")
-    return Shown(members, xr.zeros_like(members), "share", is_flag=False, ends=("slides", "sticks"))
+    return ShownQuantity(members, xr.zeros_like(members), "share", is_flag=False, ends=("slides", "sticks"))
 
 
 def test_shares_of_0_and_1_have_two_colours_with_words() -> None:

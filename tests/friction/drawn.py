@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from stickslip import InputError
 from stickslip.engine.compiled_formula import compile_formula
 from stickslip.engine.state.layout import LawValue
-from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, Text, fields_of
+from stickslip.foundation.quantities import Choice, LawField, NamedNumbers, NumberSeries, Quantity, Text, fields_of
 from stickslip.friction import LAWS, FrictionLaw, FromExpression
 
 SIZES = {"1": (0.0, 1.5), "m": (1e-3, 2.0), "m/s": (1e-3, 2.0), "s/m": (0.0, 5.0), "1/m": (-10.0, 10.0), "s": (1e-3, 1.0)}
@@ -38,7 +38,7 @@ def laws(draw: st.DrawFn, kind: str) -> FrictionLaw:
     given = {name: draw(_field(entry)) for name, (entry, default) in fields_of(LAWS[kind]).items() if _wanted(name, kind, default)}
     if kind == "lagged":
         given["rate"] = draw(laws(draw(st.sampled_from(["hyperbolic-rate", "exponential-stribeck"]))))
-    elif any(isinstance(entry, Part) for entry, _ in fields_of(LAWS[kind]).values()):
+    elif any(isinstance(entry, LawField) for entry, _ in fields_of(LAWS[kind]).values()):
         slip, rate = draw(st.sampled_from(PAIRS))
         given = {"slip": draw(laws(slip)), "rate": draw(laws(rate))}
     lengths = [len(value) for value in given.values() if isinstance(value, tuple)]
@@ -60,14 +60,14 @@ def _wanted(name: str, kind: str, default: Any) -> bool:
 def _field(entry: Any) -> st.SearchStrategy[Any]:
     if isinstance(entry, Quantity):
         return _number(entry)
-    if isinstance(entry, Series):
+    if isinstance(entry, NumberSeries):
         drawn = st.lists(_number(entry.item), min_size=2, max_size=6, unique_by=lambda x: round(x, 2))
         return drawn.map(sorted).map(tuple) if entry.ascending else drawn.map(tuple)
     if isinstance(entry, Choice):
         return st.sampled_from(entry.allowed)
     if isinstance(entry, Text):
         return st.sampled_from(list(EXPRESSIONS))
-    assert isinstance(entry, Part | NamedNumbers)
+    assert isinstance(entry, LawField | NamedNumbers)
     return st.none()
 
 

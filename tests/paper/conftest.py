@@ -9,12 +9,12 @@ import pytest
 
 from stickslip.paper import make
 from stickslip.paper.cases import Runs
-from stickslip.paper.claims import CLAIMS, Verdict
+from stickslip.paper.claims import CLAIMS, ClaimVerdict
 from tests.docs.pages import PAPER, run_page
 
 
 @pytest.fixture(scope="package")
-def verdicts() -> dict[int, Verdict]:
+def verdicts() -> dict[int, ClaimVerdict]:
     runs = Runs()
     return {number: measure(runs) for number, measure in CLAIMS.items()}
 

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from stickslip.paper.claims import CLAIMS, STATEMENTS, Outcome, Verdict
+from stickslip.paper.claims import CLAIMS, STATEMENTS, ClaimVerdict, Outcome
 
 PRINTED, READING, QUALIFIED, NOT = Outcome.PRINTED, Outcome.READING, Outcome.QUALIFIED, Outcome.NOT
 
@@ -90,7 +90,7 @@ def test_every_claim_has_a_measurement() -> None:
 
 
 @pytest.mark.parametrize("number", CLAIMS)
-def test_every_claim_has_its_expected_outcome(number: int, verdicts: dict[int, Verdict]) -> None:
+def test_every_claim_has_its_expected_outcome(number: int, verdicts: dict[int, ClaimVerdict]) -> None:
     found = verdicts[number]
     assert found.outcome == OUTCOMES[number]
     assert found.number == number
@@ -102,19 +102,19 @@ def test_every_claim_has_its_expected_outcome(number: int, verdicts: dict[int, V
 
 @pytest.mark.parametrize(("number", "label", "expected", "rtol"), NUMBERS)
 def test_every_measured_number_is_the_expected_one(
-    number: int, label: str, expected: float, rtol: float, verdicts: dict[int, Verdict]
+    number: int, label: str, expected: float, rtol: float, verdicts: dict[int, ClaimVerdict]
 ) -> None:
     assert verdicts[number].value(label) == pytest.approx(expected, rel=rtol, abs=0)
 
 
-def test_pulses_change_with_excess_and_with_the_law(verdicts: dict[int, Verdict]) -> None:
+def test_pulses_change_with_excess_and_with_the_law(verdicts: dict[int, ClaimVerdict]) -> None:
     counts = [m.value for m in verdicts[4].measured if m.label.startswith("pulses,")]
     excess, law = counts[:4], [counts[4], counts[0], counts[5]]
     assert sorted(set(excess)) == excess
     assert sorted(set(law)) == law
 
 
-def test_hysteresis_is_read_at_the_load(verdicts: dict[int, Verdict]) -> None:
+def test_hysteresis_is_read_at_the_load(verdicts: dict[int, ClaimVerdict]) -> None:
     """Stick on the way up, the fast root of the contact equation on the way down: Z v + S (muD + (muS - muD)/(1 + v)) = load."""
     folds = 6.4471887242357346e7, 8e7
     excess = 0.5 * sum(folds) - 0.3e8  # (Z v - excess)(1 + v) + S (muS - muD) = 0
@@ -124,24 +124,24 @@ def test_hysteresis_is_read_at_the_load(verdicts: dict[int, Verdict]) -> None:
     assert rates == pytest.approx([0.0, fast], rel=1e-9, abs=0.0)
 
 
-def test_slip_law_answers_smoothly(verdicts: dict[int, Verdict]) -> None:
+def test_slip_law_answers_smoothly(verdicts: dict[int, ClaimVerdict]) -> None:
     spread = [m.value for m in verdicts[10].measured if m.label.startswith("relative change")]
     assert len(spread) == 2
     assert max(spread) < 1e-2
 
 
-def test_every_rule_gives_shocks(verdicts: dict[int, Verdict]) -> None:
+def test_every_rule_gives_shocks(verdicts: dict[int, ClaimVerdict]) -> None:
     counts = [m.value for m in verdicts[11].measured if m.label.startswith("shocks")]
     assert len(counts) == 4
     assert min(counts) >= 3
 
 
-def test_first_event_is_the_same_under_every_rule(verdicts: dict[int, Verdict]) -> None:
+def test_first_event_is_the_same_under_every_rule(verdicts: dict[int, ClaimVerdict]) -> None:
     slips = [m.value for m in verdicts[12].measured if m.label.startswith("slip of the first event")]
     assert slips == pytest.approx([23.4402332474] * 4, rel=1e-9, abs=0)
 
 
-def test_shocks_take_over_away_from_the_critical_value(verdicts: dict[int, Verdict]) -> None:
+def test_shocks_take_over_away_from_the_critical_value(verdicts: dict[int, ClaimVerdict]) -> None:
     shares = [m.value for m in verdicts[13].measured if m.label.startswith("share")]
     assert shares == sorted(shares)
     assert 0.5 < shares[0] < 0.6
@@ -150,14 +150,14 @@ def test_shocks_take_over_away_from_the_critical_value(verdicts: dict[int, Verdi
     assert min(shares[2:]) > 0.99
 
 
-def test_rise_time_goes_with_mass(verdicts: dict[int, Verdict]) -> None:
+def test_rise_time_goes_with_mass(verdicts: dict[int, ClaimVerdict]) -> None:
     rise = [m.value for m in verdicts[14].measured if m.label.startswith("rise time, block")]
     assert rise[3] / rise[2] == pytest.approx(1e-2, rel=0.02, abs=0)
     rise = [m.value for m in verdicts[14].measured if m.label.startswith("rise time, slab")]
     assert [rise[1] / rise[0], rise[2] / rise[1]] == pytest.approx([0.1, 0.1], rel=1e-3, abs=0)
 
 
-def test_rest_is_the_reloading_time(verdicts: dict[int, Verdict]) -> None:
+def test_rest_is_the_reloading_time(verdicts: dict[int, ClaimVerdict]) -> None:
     found = verdicts[15]
     for reading in ("slip law, K = G × 10³ m", "slip law, ω = 50 /m", "rate law, K = G × 10³ m"):
         expected = found.value(f"reloading time (strength − force)/(K V), {reading}")
@@ -166,6 +166,6 @@ def test_rest_is_the_reloading_time(verdicts: dict[int, Verdict]) -> None:
     assert found.value("rest, rate law, K = G × 10³ m") == pytest.approx(2.061159848 / 0.05, rel=1e-6, abs=0)
 
 
-def test_load_follows_the_formula_to_twice_the_claim(verdicts: dict[int, Verdict]) -> None:
+def test_load_follows_the_formula_to_twice_the_claim(verdicts: dict[int, ClaimVerdict]) -> None:
     for part in ("to h/c", "from h/c to 2h/c"):
         assert verdicts[20].value(f"largest relative departure, {part}") < 1e-14

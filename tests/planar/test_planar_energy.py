@@ -14,8 +14,8 @@ from tests.reference.planar_methods import FrictionalVolume, LawAtNodes, PlanarC
 import stickslip as ss
 from stickslip.observables.energy.planar import NAMES
 from stickslip.planar import solver
-from stickslip.planar.friction import Contact
-from stickslip.planar.memory import Recurrence
+from stickslip.planar.friction import ContactOfNodes
+from stickslip.planar.memory import MemoryRecurrence
 from stickslip.solution.planar import PlanarSolution
 
 DRIVERS: dict[str, dict[str, Any]] = {
@@ -84,8 +84,8 @@ def test_a_wrong_memory_of_the_half_space_is_seen(monkeypatch: pytest.MonkeyPatc
     """Waves along the contact that are half as strong again: four times the error of the right ones."""
     right = solver.recurrence
 
-    def wrong(*given: Any) -> Recurrence:
-        return Recurrence(*(part if name == "decay" else 1.5 * part for name, part in right(*given)._asdict().items()))
+    def wrong(*given: Any) -> MemoryRecurrence:
+        return MemoryRecurrence(*(part if name == "decay" else 1.5 * part for name, part in right(*given)._asdict().items()))
 
     monkeypatch.setattr(solver, "recurrence", wrong)
     assert missed(ss.simulate(patch(nodes=64, length=2e4), 8.0)) > 1e-2
@@ -108,12 +108,12 @@ def test_a_wrong_echo_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_wrong_law_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     """Slip rates under friction that is 1 % higher than that of the law miss the contact equation, which every step checks."""
-    right = Contact.rate
+    right = ContactOfNodes.rate
 
-    def wrong(self: Contact, nodes: Any, load: Any, *others: Any) -> Any:
+    def wrong(self: ContactOfNodes, nodes: Any, load: Any, *others: Any) -> Any:
         return right(self, nodes._replace(normal=1.01 * nodes.normal), load, *others)
 
-    monkeypatch.setattr(Contact, "rate", wrong)
+    monkeypatch.setattr(ContactOfNodes, "rate", wrong)
     assert ss.simulate(patch(nodes=64, length=2e4), 8.0).status.name == "off the law"
 
 

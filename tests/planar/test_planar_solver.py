@@ -18,7 +18,7 @@ from tests.planar.patches import LAW, SLAB, patch
 
 import stickslip as ss
 from stickslip.planar.echo import echo_weights
-from stickslip.planar.friction import Contact, Nodes
+from stickslip.planar.friction import ContactOfNodes, Nodes
 from stickslip.planar.memory import exponentials
 from stickslip.planar.solver import PlanarSolver, in_double_precision
 
@@ -76,7 +76,7 @@ def test_slip_rates_that_are_found_stay_while_others_are_sought(monkeypatch: pyt
     law, impedance = ss.friction.RateAndState(reference=0.6, a=0.01, b=0.015, distance=0.1), SLAB.impedance
     problem = ss.Problem(SLAB, law, initial_load=60e6, initial_state=1.0)
     slab = ss.PlanarSlab(problem, nodes=64, length=2e4)
-    nodes, contact = Nodes.of(slab.values, slab.locked, impedance), Contact.of(law)
+    nodes, contact = Nodes.of(slab.values, slab.locked, impedance), ContactOfNodes.of(law)
     rates, slip, states = np.geomspace(1e-9, 10.0, 64), np.zeros(64), slab.values.states
     with in_double_precision():
         load = impedance * rates + 1e8 * contact.coefficient(nodes, slip, rates, states)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from stickslip import ElasticSlab, InputError, Problem, SpringBlock
 from stickslip.bodies import BODIES
-from stickslip.foundation.quantities import Part, fields_of, quantities_of, quantity
+from stickslip.foundation.quantities import LawField, fields_of, quantities_of, quantity
 from stickslip.friction import LAWS, FrictionLaw
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.scenarios import templates
@@ -90,7 +90,7 @@ def test_a_starter_with_any_law_explains_every_key_of_it(name: str, law: type[Fr
     for key, (declared, _) in entries_in("friction", law).items():
         place = (f"{key} = ", f"[friction.{key}]")
         assert any(line.lstrip("# ").startswith(place) for line in text.splitlines())
-        assert isinstance(declared, Part) or describe(declared) in text
+        assert isinstance(declared, LawField) or describe(declared) in text
     with pytest.raises(InputError, match=r"^new: \[friction\] kind 'hyperbolic' is unknown; did you mean 'hyperbolic-rate'\?$"):
         templates.template(name, "hyperbolic")
     with pytest.raises(InputError, match=r"^new: only slab, lab-slab and block take a friction law; fig6-slab has its own$"):

@@ -11,7 +11,7 @@ import stickslip as ss
 from stickslip.studies.inference.by_features import by_features, means_of
 from stickslip.studies.inference.features import Samples, features_in
 from stickslip.studies.inference.inference import Inference
-from stickslip.studies.inference.memory import Block, memory_of
+from stickslip.studies.inference.memory import ResidualBlock, memory_of
 from stickslip.studies.inference.part import Part
 from tests.studies.laboratory import CoulombBlock, CoulombSlab, correlated
 
@@ -142,7 +142,7 @@ def test_what_has_no_features_is_one_line(data: Any, options: Any, message: str)
 def test_slopes_that_are_all_alike_count_once_in_the_memory_of_noise() -> None:
     """Means of features change all events alike with each number; three such columns made white noise seem to last for ever."""
     noise = correlated(24, 0.0, 5)
-    block = [Block(slice(0, 24), np.arange(24.0))]
+    block = [ResidualBlock(slice(0, 24), np.arange(24.0))]
     one, three = (memory_of(noise, np.ones((24, count)) * np.arange(1.0, 1.0 + count), block) for count in (1, 3))
     assert tuple(one) == pytest.approx(tuple(three))
     assert three.time == 0.0

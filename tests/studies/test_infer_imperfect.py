@@ -12,7 +12,7 @@ from scipy.optimize import least_squares
 
 import stickslip as ss
 from stickslip.loading import PiecewiseLinear, Steps
-from stickslip.studies.inference.memory import WHITE, Block, Memory, memory_of, spread_by, spreads_of, unevenness
+from stickslip.studies.inference.memory import WHITE, Memory, ResidualBlock, memory_of, spread_by, spreads_of, unevenness
 from stickslip.studies.inference.part import Part, approached
 from stickslip.studies.inference.record import Record
 from tests.studies.laboratory import correlated
@@ -119,7 +119,7 @@ def test_each_run_of_a_search_is_told() -> None:
 
 
 TIME = np.arange(1200) * 0.01
-BLOCKS = [Block(slice(0, 700), TIME[:700]), Block(slice(700, 1200), TIME[700:])]
+BLOCKS = [ResidualBlock(slice(0, 700), TIME[:700]), ResidualBlock(slice(700, 1200), TIME[700:])]
 SLOPES = np.column_stack([np.ones(1200), TIME, np.exp(-(((TIME - 6.0) / 0.3) ** 2)), np.exp(-np.maximum(TIME - 4.0, 0.0))])
 NOISE = Memory(0.2, 0.8, 0.6)
 
@@ -134,16 +134,16 @@ def left_of(noise: Floats) -> Floats:
 
 
 def test_the_memory_of_noise_is_found_below_white_noise() -> None:
-    found = np.array([memory_of(left_of(drawn(seed)), SLOPES, [Block(slice(0, 1200), TIME)]) for seed in range(12)])
+    found = np.array([memory_of(left_of(drawn(seed)), SLOPES, [ResidualBlock(slice(0, 1200), TIME)]) for seed in range(12)])
     assert np.median(found, axis=0) == pytest.approx(NOISE, rel=0.15)
-    alone = [memory_of(left_of(drawn(seed, WHITE)), SLOPES, [Block(slice(0, 1200), TIME)]) for seed in range(12)]
+    alone = [memory_of(left_of(drawn(seed, WHITE)), SLOPES, [ResidualBlock(slice(0, 1200), TIME)]) for seed in range(12)]
     assert [one.time for one in alone] == [0.0] * 12
 
 
 def test_the_memory_of_many_samples_is_that_of_their_means() -> None:
     time = np.arange(20_000) * 1e-3
     noise = 0.8 * correlated(20_000, 200.0, 1) + 0.6 * correlated(20_000, 0.0, 2)
-    found = memory_of(noise - noise.mean(), np.ones((20_000, 1)), [Block(slice(0, 20_000), time)])
+    found = memory_of(noise - noise.mean(), np.ones((20_000, 1)), [ResidualBlock(slice(0, 20_000), time)])
     assert found.time == pytest.approx(0.2, rel=0.4)
     assert found.white == pytest.approx(0.6, rel=0.1)
 
@@ -163,7 +163,7 @@ def test_covariances_are_the_products_with_whole_matrices() -> None:
 
 def test_intervals_hold_the_truth_under_noise_that_remembers_itself() -> None:
     """120 draws of four numbers: 95 % with a standard error of 1 % (numbers of one draw are not independent: 2 %)."""
-    influence, block = np.linalg.pinv(SLOPES).T, [Block(slice(0, 1200), TIME)]
+    influence, block = np.linalg.pinv(SLOPES).T, [ResidualBlock(slice(0, 1200), TIME)]
     held = 0
     for seed in range(120):
         noise = drawn(seed)
@@ -174,7 +174,7 @@ def test_intervals_hold_the_truth_under_noise_that_remembers_itself() -> None:
 
 def test_a_misfit_is_told_from_noise_that_is_larger_somewhere() -> None:
     """A bump where the run changes is a misfit; noise that is larger there, and noise with a memory, are noise."""
-    block = [Block(slice(0, 1200), TIME)]
+    block = [ResidualBlock(slice(0, 1200), TIME)]
     bump = left_of(drawn(1, WHITE) + 12.0 * np.gradient(SLOPES[:, 2], TIME))
     assert unevenness(bump, SLOPES, WHITE, block).misfit > 2.0
     larger = left_of(drawn(1, WHITE) * (1.0 + 4.0 * SLOPES[:, 2]))

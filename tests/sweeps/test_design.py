@@ -13,7 +13,7 @@ import pytest
 import stickslip as ss
 from stickslip.scenarios.parameter_paths import find_parameter, parameter_paths
 from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
-from stickslip.sweeps.design.axis import Axis, typed_axes
+from stickslip.sweeps.design.axis import DesignAxis, typed_axes
 from stickslip.sweeps.design.design import read_design
 from stickslip.sweeps.execution.plan import make_plan, tile_of
 
@@ -21,7 +21,7 @@ SLAB = load_scenario("fig6-slab")
 NESTED = load_scenario("block-or-slab")
 
 
-def typed(*texts: str) -> list[Axis]:
+def typed(*texts: str) -> list[DesignAxis]:
     """Return the axes that were typed on the command line."""
     return typed_axes(SLAB, texts, "--vary")
 

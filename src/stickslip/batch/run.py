@@ -12,7 +12,7 @@ import numpy as np
 
 from stickslip.batch.kernels.reduction import COLUMNS, OF_EVENTS, Reduced
 from stickslip.batch.kernels.runs import Group, engine_address, run_group
-from stickslip.batch.kernels.tables import Stage
+from stickslip.batch.kernels.tables import LaneStage
 from stickslip.batch.kernels.workspace import LARGEST_CAPACITY, new_workspace, table_of
 from stickslip.batch.long_member import run_alone
 from stickslip.batch.setups import Alike, alike, set_up
@@ -166,14 +166,14 @@ class _Batch:
             lane = run_group(members, base, stride, work)
             if lane == WIDTH or self.stop[0] != 0:
                 break
-            if work.stage[lane] == Stage.AT_END:
+            if work.stage[lane] == LaneStage.AT_END:
                 work = work.with_turns(2 * len(work.turns))
             elif work.code[lane] == Stop.NEED_PART:
                 lend_part(work.table[lane])  # and to the other lanes by `table_of`
             elif work.code[lane] != Stop.PAUSED and work.capacity < LARGEST_CAPACITY:
                 work = work.larger()
             else:
-                n, work.stage[lane] = int(work.member[lane]), Stage.FREE
+                n, work.stage[lane] = int(work.member[lane]), LaneStage.FREE
                 self.long.append((int(places[n]), out[n].copy()))
         self.of_thread.work = work
         for n in np.flatnonzero(codes == BAD_PARAMETERS).tolist():

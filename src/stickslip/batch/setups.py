@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stickslip.batch.kernels.branch_search import MOST_BRANCHES, NEVER_RISES, TOO_MANY, Found, Resistances, search_branches
+from stickslip.batch.kernels.branch_search import MOST_BRANCHES, NEVER_RISES, TOO_MANY, FoundBranches, Resistances, search_branches
 from stickslip.batch.kernels.runs import fill_constants
 from stickslip.batch.kernels.tables import Setups
 from stickslip.batch.vectorised_problem import Values, member, vectorised_problem
@@ -16,7 +16,7 @@ from stickslip.contact.slopes import FASTEST as FASTEST_SEARCHED
 from stickslip.contact.slopes import Pieces
 from stickslip.contact.turns import find_turns, folds_of
 from stickslip.engine.compiled_formula import compile_formula, keep_with
-from stickslip.engine.state.layout import Branch, Counts, Floats, Integers, LawPiece, Params, State
+from stickslip.engine.state.layout import BranchRow, Counts, Floats, Integers, LawPiece, Params, State
 from stickslip.engine_input.branch_table import is_algebraic, table_of_branches
 from stickslip.engine_input.limits import set_lumping, wait_for_creep
 from stickslip.engine_input.prepare import (
@@ -190,10 +190,10 @@ def branches_of(problem: Problem, group: Alike, constants: Floats, count: int) -
         ends_of_search = np.zeros(count), np.full(count, FASTEST_SEARCHED)
         of = Pieces((tree,), 0 * members, members, numbers, slip, damping, normal, slowest, fastest, *ends_of_search)
         branches, edges = ends_of_branches(of)
-    found = Found(Branch.table(count, 1 if one_way else MOST_BRANCHES), branches, np.empty(count))
+    found = FoundBranches(BranchRow.table(count, 1 if one_way else MOST_BRANCHES), branches, np.empty(count))
     address = int(LawPiece(group.functions[0]).value_at)
     search_branches(Resistances(address, constants, damping, normal, start, slowest, fastest), edges, np.empty(4), found)
-    table = Branch.of(found.table)
+    table = BranchRow.of(found.table)
     exists = np.arange(found.table.shape[1]) < branches[:, None]
     start, end = np.where(exists, table.excess_from, np.inf), np.where(exists, table.excess_to, -np.inf)
     stick_to, table.keep_from[...], table.keep_to[...] = levels(one.rule, start, end)

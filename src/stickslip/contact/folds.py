@@ -81,7 +81,7 @@ class Certificate:
 
 
 @dataclass(frozen=True)
-class Lowest:
+class LowestSlope:
     """The smallest g' (Pa s/m) at slip rates up to 1e30 m/s: proven bounds, its value to rounding, and where it is (m/s).
 
     The verdict is "not decided" if the lower bound could not be brought close to the upper one.
@@ -132,12 +132,12 @@ def panels(g: Resistance, low: float, high: float) -> Floats:
 
 
 @lru_cache(maxsize=64)
-def lowest_slope(g: Resistance) -> Lowest:
+def lowest_slope(g: Resistance) -> LowestSlope:
     """Return `lowest_slopes` of one contact."""
     return lowest_slopes([g])[0]
 
 
-def lowest_slopes(contacts: Sequence[Resistance], tolerance: float = _TOLERANCE) -> list[Lowest]:
+def lowest_slopes(contacts: Sequence[Resistance], tolerance: float = _TOLERANCE) -> list[LowestSlope]:
     """Bound the smallest g' of each contact, and find it to rounding, for contacts under laws of one kind.
 
     The tolerance of the bounds is relative to the larger of Z and the smallest g' itself.
@@ -150,7 +150,7 @@ def lowest_slopes(contacts: Sequence[Resistance], tolerance: float = _TOLERANCE)
     lowest = []
     for g, least, most, rate, slope in zip(contacts, *columns, strict=True):
         near = most - least <= _NEAR * tolerance * max(g.damping, abs(most))
-        lowest.append(Lowest("proven" if near else "not decided", least, most, slope, rate))
+        lowest.append(LowestSlope("proven" if near else "not decided", least, most, slope, rate))
     return lowest
 
 

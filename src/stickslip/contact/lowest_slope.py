@@ -19,7 +19,7 @@ PARTS = np.linspace(0.0, 1.0, 257)
 """Places in a cell at which the sign of g'' is asked for at once."""
 
 
-class Lowest(NamedTuple):
+class LowestOfEach(NamedTuple):
     """Hold bounds (Pa s/m) of the smallest g' of each contact, and in which cell of slip rates (m/s) the upper one was found."""
 
     at_least: Floats
@@ -30,11 +30,11 @@ class Lowest(NamedTuple):
     high: Floats
 
 
-def find_lowest(of: Pieces, tolerance: float) -> Lowest:
+def find_lowest(of: Pieces, tolerance: float) -> LowestOfEach:
     """Bound the smallest g' of each contact until both bounds agree to a tolerance, relative to Z or to g' if that is larger."""
     many = int(of.contact[-1]) + 1
     nothing, left = np.full(many, np.inf), np.full(many, MOST_EVALUATIONS)
-    found = Lowest(nothing, nothing.copy(), np.zeros(many, np.int64), *np.zeros((3, many)))
+    found = LowestOfEach(nothing, nothing.copy(), np.zeros(many, np.int64), *np.zeros((3, many)))
     damping = of.damping[np.searchsorted(of.contact, np.arange(many))]
     piece, edges = np.arange(len(of.begin)), of.first_edges()
     while len(piece):
@@ -64,7 +64,7 @@ def _edges_in(low: Floats, high: Floats) -> Floats:
     return np.array(edges)
 
 
-def _lower(found: Lowest, contact: Integers, at_most: Floats, piece: Integers, edges: Floats) -> None:
+def _lower(found: LowestOfEach, contact: Integers, at_most: Floats, piece: Integers, edges: Floats) -> None:
     """Note that g' is at most this small at edges, where this is news; the smallest g' is then sought between their neighbours."""
     order = np.lexsort((at_most.ravel(), contact.ravel()))
     by_contact = contact.ravel()[order]
@@ -75,7 +75,7 @@ def _lower(found: Lowest, contact: Integers, at_most: Floats, piece: Integers, e
         column[contact.ravel()[best]] = values.ravel()[best]
 
 
-def polished(of: Pieces, found: Lowest) -> tuple[Floats, Floats]:
+def polished(of: Pieces, found: LowestOfEach) -> tuple[Floats, Floats]:
     """Return the slip rate (m/s) of the smallest g' of each contact and its value (Pa s/m) to rounding, where g'' changes sign."""
     low, high = found.low, found.high
     for _ in range(64):

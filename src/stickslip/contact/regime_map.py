@@ -16,7 +16,7 @@ from stickslip.contact.roots import sign_changes
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.axis import Axis
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import NamedNumbers, Part, Quantity, Series, fields_of
+from stickslip.foundation.quantities import LawField, NamedNumbers, NumberSeries, Quantity, fields_of
 from stickslip.friction import FrictionLaw
 from stickslip.problem.parameters import Parameter, put_many
 from stickslip.problem.problem import Problem
@@ -45,9 +45,9 @@ def _slips(law: FrictionLaw) -> Iterator[float]:
     """Yield the characteristic slips (m) of a law: its parameters in m, and 2 pi divided by its parameters in 1/m."""
     for name, (declared, _) in fields_of(type(law)).items():
         value = getattr(law, name)
-        if isinstance(declared, Part):
+        if isinstance(declared, LawField):
             yield from _slips(value)
-        elif isinstance(declared, Series) and declared.item.unit == "m" and value:
+        elif isinstance(declared, NumberSeries) and declared.item.unit == "m" and value:
             yield abs(value[-1])
         elif isinstance(declared, Quantity) and value:
             yield from _length(value, declared.unit)

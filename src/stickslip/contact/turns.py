@@ -69,7 +69,7 @@ def find_turns(of: Pieces, budget: int = MOST_EVALUATIONS, most: int = MOST_EVAL
 
     That of a contact ends early once it is known to turn more than `most` times.
     """
-    search = _Search(of, budget, most)
+    search = _TurnSearch(of, budget, most)
     waiting, at_rest, at_end = search.first_cells()
     knots = np.flatnonzero((of.contact[1:] == of.contact[:-1]) & (at_end[:-1] * at_rest[1:] <= 0)) + 1
     found = Cells(knots, of.begin[knots], of.begin[knots], at_end[knots - 1], at_rest[knots])
@@ -86,7 +86,7 @@ def find_turns(of: Pieces, budget: int = MOST_EVALUATIONS, most: int = MOST_EVAL
     return Turns(cells._replace(low=low, high=high), known, at_rest, at_end, int((budget - search.left).sum()))
 
 
-class _Search:
+class _TurnSearch:
     """A search for turns: what it has found, and how many bounds it may still work out."""
 
     def __init__(self, of: Pieces, budget: int, most: int) -> None:

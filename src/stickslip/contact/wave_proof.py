@@ -47,7 +47,7 @@ def slope_symbols(many: int) -> tuple[tuple[Expression, ...], ...]:
     return tuple(tuple(Parameter(f"{of}_{by}") for by in ("v", *states)) for of in ("mu", *states))
 
 
-class Range(NamedTuple):
+class CellBounds(NamedTuple):
     """Lower and upper bounds, one of each for each cell."""
 
     low: Any
@@ -102,7 +102,7 @@ def of_slab(body: BodyOnCharacteristics, normal: float, slopes: Mapping[Expressi
     return settles & stable, at_once | unstable
 
 
-def _edges(c0: Range, c1: Range, c2: Range) -> tuple[Range, Range, Any, Any]:
+def _edges(c0: CellBounds, c1: CellBounds, c2: CellBounds) -> tuple[CellBounds, CellBounds, Any, Any]:
     """Return the roots y1 and y2 of c2 y^2 + c1 y + c0, at least 0, and where c1 < 0 makes both exist, or lets none exist.
 
     The larger root falls with each coefficient, and the smaller one grows, so that the corners bound them. At a corner without
@@ -116,8 +116,8 @@ def _edges(c0: Range, c1: Range, c2: Range) -> tuple[Range, Range, Any, Any]:
         for zero, one, two, root in zip(*coefficients, (most, least), strict=True)
     )
     inner = np.where((c1.high < 0.0) & (gap_least > 0.0), 2.0 * c0.high / (least - c1.high), -c1.low / (2.0 * c2.low))
-    found = Range(2.0 * c0.low / (most - c1.low), inner), Range(y2_low, y2_high)
-    y1, y2 = (Range(np.maximum(one.low * (1.0 - OUT), 0.0), np.maximum(one.high * (1.0 + OUT), 0.0)) for one in found)
+    found = CellBounds(2.0 * c0.low / (most - c1.low), inner), CellBounds(y2_low, y2_high)
+    y1, y2 = (CellBounds(np.maximum(one.low * (1.0 - OUT), 0.0), np.maximum(one.high * (1.0 + OUT), 0.0)) for one in found)
     return y1, y2, gap_least > 0.0, gap_most < 0.0
 
 
@@ -135,21 +135,21 @@ class _Slab:
     normal: float
     slopes: Mapping[Expression, Disc]
 
-    def range(self, name: str, y: Disc | None = None) -> Range:
+    def range(self, name: str, y: Disc | None = None) -> CellBounds:
         """Return the range of a number of the equation, where w^2 is in the disc y."""
         body, own, driver = self.body, self.body.impedance, self.body.driver_impedance
         share = 0.0 if body.is_driven_rigidly else driver / (own * own + driver * driver)
         numbers = {"m": body.inertia, "D": body.damping, "Z": own, "S": self.normal}
         found = on_discs(EQUATION[name], numbers, {**self.slopes, SHARE: Disc.of(share, OUT * share), SQUARE: y or Disc.of(0.0)})
         radius = found.radius + OUT * found.most
-        return Range(found.centre - radius, found.centre + radius)
+        return CellBounds(found.centre - radius, found.centre + radius)
 
-    def turns(self, y: Range, *, p_turns: bool) -> Range:
+    def turns(self, y: CellBounds, *, p_turns: bool) -> CellBounds:
         """Return the whole number of turns next to the phase of the echo relative to P, at frequencies whose squares are y.
 
         arg P grows from 0 if P has its roots to the left; `p_turns` says whether it lies between 0 and 2 pi or between -pi and pi.
         """
-        w = Range(np.sqrt(y.low) * (1.0 - OUT), np.sqrt(y.high) * (1.0 + OUT))
+        w = CellBounds(np.sqrt(y.low) * (1.0 - OUT), np.sqrt(y.high) * (1.0 + OUT))
         disc = Disc.of(0.5 * (y.low + y.high), 0.5 * (y.high - y.low) + OUT * y.high)
         direct, echo = self._angle("P", disc, w, turns=p_turns), self._angle("Q", disc, w, turns=True)
         low, high = echo.low - direct.high, echo.high - direct.low
@@ -162,10 +162,10 @@ class _Slab:
         low = low - w.high * self.body.round_trip_time * (1.0 + OUT)
         high = np.fmin(high, 3.0 * np.pi) - w.low * self.body.round_trip_time * (1.0 - OUT)
         if self.body.reflection < 0.0:  # arg r is pi, half a turn
-            return Range(*(np.floor(end / (2.0 * np.pi)) + 1.0 for end in (low, high)))
-        return Range(*(np.floor(end / (2.0 * np.pi) + 0.5) for end in (low, high)))
+            return CellBounds(*(np.floor(end / (2.0 * np.pi)) + 1.0 for end in (low, high)))
+        return CellBounds(*(np.floor(end / (2.0 * np.pi) + 0.5) for end in (low, high)))
 
-    def _angle(self, name: str, y: Disc, w: Range, *, turns: bool) -> Range:
+    def _angle(self, name: str, y: Disc, w: CellBounds, *, turns: bool) -> CellBounds:
         """Return the angle (rad) of a number, from 0 to 2 pi if it `turns`, else from -pi to pi; nan if it is not known."""
         real, over_w = self.range(f"{name}_re", y), self.range(name, y)
         odd = np.minimum(w.low * over_w.low, w.high * over_w.low), np.maximum(w.low * over_w.high, w.high * over_w.high)
@@ -174,4 +174,4 @@ class _Slab:
         low, high = reduce(np.minimum, corners), reduce(np.maximum, corners)
         is_known = (over_w.low > 0.0) | ((over_w.high < 0.0) & (w.low > 0.0)) | ((real.high < 0.0) if turns else (real.low > 0.0))
         out = OUT * (base + np.abs(low) + np.abs(high))
-        return Range(np.where(is_known, low - out, np.nan), np.where(is_known, high + out, np.nan))
+        return CellBounds(np.where(is_known, low - out, np.nan), np.where(is_known, high + out, np.nan))

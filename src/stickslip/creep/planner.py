@@ -31,7 +31,7 @@ INTERPOLATION = 0.1
 
 
 @dataclass(frozen=True)
-class Plan:
+class CreepPlan:
     """States of a creep from the round trip of the pattern on, and the error of slip at the last of them (m).
 
     The last state lies a whole number of round trips after the pattern's.
@@ -63,7 +63,7 @@ class Planner:
     largest: float = 0.0  # largest error of a state so far, m
     swing: float = 0.0  # largest range so far by which slip oscillates from one round trip to the next, m
 
-    def plan(self) -> Plan | None:
+    def plan(self) -> CreepPlan | None:
         """Return a plan for a leap, or None if no leap is possible."""
         # the start's own error is not used: for one round trip, slip rates near 0 look like borders of slip
         start = self.averaged.start()
@@ -88,7 +88,7 @@ class Planner:
             states.append(self.averaged.reaching(whole, states[-1].lift, last.lift))
         if len(states) == 1:
             return None
-        return Plan(states, self.error(states[-1], 0.0))
+        return CreepPlan(states, self.error(states[-1], 0.0))
 
     def error(self, state: Creep, swing: float) -> float:
         """Return a bound of the error of slip so far (m), given the amplitude of slip from one round trip to the next."""

@@ -40,7 +40,7 @@ FADED = 0.1
 """Share of the tolerance within which slip rates and states are taken for stable steady sliding: other leaps begin there."""
 
 
-class Step(NamedTuple):
+class SlowStep(NamedTuple):
     """A step of the integration: from one moment to another (round trips since the leap began), with all between them."""
 
     begin: float
@@ -53,7 +53,7 @@ class SlowLeap:
     """A leap over slow sliding, and the averaged state where it lands."""
 
     motion: SlowMotion
-    steps: list[Step]
+    steps: list[SlowStep]
     trips: int
     landing: Floats
     error: float  # of the slip, m
@@ -113,7 +113,7 @@ class SlowLeaps:
         landing = steps[-1].between(float(trips))
         return SlowLeap(self.motion, steps, trips, landing, self.error) if self._is_slow(landing) else None
 
-    def _steps(self, start: Floats, most: int) -> list[Step]:
+    def _steps(self, start: Floats, most: int) -> list[SlowStep]:
         """Return the steps of the integration as far as the motion stays slow and its error is allowed."""
         from scipy.integrate import DOP853  # takes a moment to load, which other runs do not need
 
@@ -124,12 +124,12 @@ class SlowLeaps:
             return self.motion.at(y.reshape(start.shape)).change.ravel()
 
         solver = DOP853(change, 0.0, start.ravel(), float(most), rtol=PRECISION, atol=allowed.ravel())
-        steps: list[Step] = []
+        steps: list[SlowStep] = []
         while solver.status == "running" and len(steps) < MOST_STEPS:
             solver.step()
             if solver.status == "failed":
                 break
-            step = Step(solver.t_old, solver.t, _shaped(solver.dense_output(), start.shape))
+            step = SlowStep(solver.t_old, solver.t, _shaped(solver.dense_output(), start.shape))
             end = self._reached(step)
             steps.append(step._replace(end=end))
             self.at_end = step.end == most
@@ -137,7 +137,7 @@ class SlowLeaps:
                 break
         return steps
 
-    def _reached(self, step: Step) -> float:
+    def _reached(self, step: SlowStep) -> float:
         """Return the last moment of a step at which the motion is slow."""
         low, high = step.begin, step.end
         if self._is_slow(step.between(high)):

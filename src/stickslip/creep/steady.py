@@ -35,7 +35,7 @@ from stickslip.contact.sliding import Sliding
 from stickslip.contact.steady import steady_slidings
 from stickslip.creep.leaping_run import LeapingRun
 from stickslip.creep.pattern import Pattern, monotone_parts
-from stickslip.engine.state.layout import TERMS, Branch, Floats
+from stickslip.engine.state.layout import TERMS, BranchRow, Floats
 from stickslip.foundation.errors import InputError
 from stickslip.friction.formula.bounds import Enclosure
 from stickslip.problem.problem import Problem
@@ -248,7 +248,7 @@ class SteadyLeaps:
 
     def _keeps_branch(self, run: LeapingRun, deviation: Deviation, growth: float) -> bool:
         """Return True if the selection rule keeps the branch at all loads of deviations that have grown by a factor."""
-        branch, most = Branch(run.setup.branches[run.count.branch]), growth * deviation.largest_load
+        branch, most = BranchRow(run.setup.branches[run.count.branch]), growth * deviation.largest_load
         there = deviation.load_there
         seen = there if deviation.rate_there > 0.0 else -there - 2.0 * self.problem.strength
         rounding = BELOW_REST * deviation.largest_load

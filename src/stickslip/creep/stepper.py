@@ -11,7 +11,7 @@ from stickslip.creep.averaged import AveragedCreep, Strength
 from stickslip.creep.landing import Piece, landing
 from stickslip.creep.leaping_run import LeapingRun
 from stickslip.creep.pattern import Pattern, monotone_parts
-from stickslip.creep.planner import Plan, Planner, hermite
+from stickslip.creep.planner import CreepPlan, Planner, hermite
 from stickslip.creep.slow_landing import SlowLanding
 from stickslip.creep.slow_leaps import SlowLeaps
 from stickslip.creep.steady import SHORTEST_LEAP, SteadyLeaps
@@ -45,7 +45,7 @@ class HistoryWriter:
     state: State  # where the leap begins
     count: Counts
 
-    def write_way(self, n: int, trip: int, averaged: AveragedCreep, plan: Plan, last_slip: float) -> int:
+    def write_way(self, n: int, trip: int, averaged: AveragedCreep, plan: CreepPlan, last_slip: float) -> int:
         """Write the averaged slip from `trip` on, as cubics from state to state, up to `last_slip` (m).
 
         Load and traction are means over a round trip, so that their work and heat are those of the round trips that the pieces
@@ -64,7 +64,7 @@ class HistoryWriter:
         self.store.phase_to[n - 1] += np.spacing((trip + plan.trips) * self.round_trip_time)  # no gap before the next round trip
         return n
 
-    def _nodes(self, plan: Plan, last_slip: float) -> list[tuple[float, float, float]]:
+    def _nodes(self, plan: CreepPlan, last_slip: float) -> list[tuple[float, float, float]]:
         """Return the time since the start of the leap (s), slip (m) and slip rate (m/s) at the ends of the cubics.
 
         The mean over a round trip is taken as the value in its middle.
@@ -261,7 +261,7 @@ class CreepLeaps:
 
     # ---- the leap -----------------------------------------------------------------------------------------------------------
 
-    def _leap(self, run: LeapingRun, averaged: AveragedCreep, plan: Plan) -> bool:
+    def _leap(self, run: LeapingRun, averaged: AveragedCreep, plan: CreepPlan) -> bool:
         """Leap, compute exact round trips after the landing, and return True if they continue as the leap predicts."""
         begun, slip = int(run.count.trip), float(run.state.slip_now)
         self._write(run, averaged, plan)
@@ -275,7 +275,7 @@ class CreepLeaps:
         tolerance = max(self.tolerance * (abs(slip) + expected), plan.error)
         return abs(self.direction * (0.5 * (first + now) - slip) - expected) <= tolerance
 
-    def _write(self, run: LeapingRun, averaged: AveragedCreep, plan: Plan) -> None:
+    def _write(self, run: LeapingRun, averaged: AveragedCreep, plan: CreepPlan) -> None:
         """Write the leap as pieces of the history, and set the engine to its end."""
         pieces = landing(averaged, plan.states[-1])
         run.reserve(run.length + len(plan.states) + len(pieces))

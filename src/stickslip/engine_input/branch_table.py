@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from stickslip.contact.rules.selection import selection_table
-from stickslip.engine.state.layout import Branch, Counts, Floats, Params, Setup, State
+from stickslip.engine.state.layout import BranchRow, Counts, Floats, Params, Setup, State
 from stickslip.friction.formula.differences import difference
 from stickslip.problem.problem import Problem
 
@@ -33,8 +33,8 @@ def table_of_branches(problem: Problem, law_slip: float) -> tuple[Floats, float]
     if not is_algebraic(problem):
         return np.array([[0.0, math.inf, -math.inf, math.inf, -math.inf, math.inf]]), 0.0
     branches, levels = selection_table(problem, problem.law_slip + law_slip)
-    table, change = Branch.table(len(branches)), strength_change(problem, law_slip)
-    found = Branch.of(table)
+    table, change = BranchRow.table(len(branches)), strength_change(problem, law_slip)
+    found = BranchRow.of(table)
     found.rate_from, found.rate_to = [one.rate_from for one in branches], [one.rate_to for one in branches]
     found.keep_from, found.keep_to = np.array(levels.keep_from) + change, np.array(levels.keep_to) + change
     found.excess_from = np.array([one.excess_from for one in branches]) + change
@@ -54,7 +54,7 @@ def strength_change(problem: Problem, law_slip: float) -> float:
     return problem.normal * float(difference(law.trees()[home], law.numbers(home), start, law_slip, 0.0)[0])
 
 
-def branch_of(branches: Branch, rate: float) -> int:
+def branch_of(branches: BranchRow, rate: float) -> int:
     """Return the branch to which a slip rate (m/s) belongs.
 
     It is the nearest branch, because rounding may put a rate at a fold outside of every branch.
@@ -65,6 +65,6 @@ def branch_of(branches: Branch, rate: float) -> int:
 def renewed(problem: Problem, setup: Setup, params: Params, state: State, count: Counts) -> Setup:
     """Return the setup with the branches at the present law slip, and update `params`, `state` and `count` to match."""
     table, params.stick_to = table_of_branches(problem, float(state.law_slip))
-    count.branch = branch_of(Branch.of(table), abs(float(state.rate_now)))
+    count.branch = branch_of(BranchRow.of(table), abs(float(state.rate_now)))
     state.table_slip = state.law_slip
     return setup._replace(branches=table)

@@ -61,7 +61,7 @@ def _of_problem(problem: Problem, _: SelectionRule) -> tuple[Setup, State, Count
         shared.flags.writeable = False
     state, counts = start_of(problem)
     if counts.is_algebraic and counts.mode != 0:
-        counts.branch = branch_of(at.Branch.of(branches), abs(problem.rate))
+        counts.branch = branch_of(at.BranchRow.of(branches), abs(problem.rate))
     return setup, state, counts
 
 

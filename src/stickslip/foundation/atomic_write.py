@@ -194,7 +194,7 @@ def _close(number: int | None) -> None:
         os.close(number)
 
 
-class Sink(io.FileIO):
+class SafeSink(io.FileIO):
     """A binary file for libraries that crash if a write fails: it stores the first error and reports success.
 
     Bytes that could not be written read back as zeros. Call `check` after the library has closed its file.

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import has_unit as is_quantity
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.headings import COLUMNS, Found, find, is_signed, note_units
+from stickslip.foundation.headings import COLUMNS, FoundColumn, find, is_signed, note_units
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ def read_mapping(table: Any, wanted: Sequence[str], place: str, *, raw: bool = F
     header = [str(heading) for heading in headings]
     chosen = find(header, wanted, place)
     columns: dict[str, Floats] = {}
-    without: dict[str, Found] = {}
+    without: dict[str, FoundColumn] = {}
     for name, one in chosen.items():
         given, factor = table[headings[one.place]], one.factor
         try:

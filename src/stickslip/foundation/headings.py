@@ -19,7 +19,7 @@ from stickslip.foundation.units import si_factor, split_quantity, tabulated
 
 
 @dataclass(frozen=True)
-class Column:
+class HeadingColumn:
     """A column that may be looked for: the SI unit of its numbers, other headings for it, and whether they may be negative."""
 
     unit: str
@@ -33,45 +33,47 @@ def _driven(*what: str) -> tuple[str, ...]:
     return tuple(f"{end} {one}" for end in ends for one in what)
 
 
-COLUMNS: Mapping[str, Column] = {
-    "slip": Column(
+COLUMNS: Mapping[str, HeadingColumn] = {
+    "slip": HeadingColumn(
         "m",
         ("u", "displacement", "slip distance", "cumulative slip", "slip displacement", "fault slip", "h slip"),
         signed=True,
     ),
-    "slip_rate": Column(
+    "slip_rate": HeadingColumn(
         "m/s", ("v", "rate", "velocity", "slip velocity", "sliding velocity", "speed", "sliding speed", "h slip rate")
     ),
-    "friction": Column(
+    "friction": HeadingColumn(
         "1",
         (
             *("mu", "μ", "friction coefficient", "coefficient of friction", "cof", "friction coeff", "coeff of friction"),
             *("mu app", "μ app", "app friction", "apparent friction", "apparent friction coefficient"),
         ),
     ),
-    "shear_stress": Column("Pa", ("tau", "τ", "shear", "traction", "shr stress", "h shear stress"), signed=True),
-    "normal_stress": Column(
+    "shear_stress": HeadingColumn("Pa", ("tau", "τ", "shear", "traction", "shr stress", "h shear stress"), signed=True),
+    "normal_stress": HeadingColumn(
         "Pa",
         (
             *("sigma", "σ", "sigma n", "σ n", "σn", "sig n", "normal", "nor stress", "norm stress"),
             *("effective normal stress", "eff normal stress", "effns"),
         ),
     ),
-    "time": Column("s", ("t", "elapsed time", "time elapsed", "test time")),
-    "load_point": Column("m", ("lp", "lpd", *_driven("displacement", "disp", "position")), signed=True),
-    "load_rate": Column("m/s", ("vlp", "v lp", *_driven("rate", "velocity", "speed")), signed=True),
-    "rotation_rate": Column("rad/s", ("rpm", "rotation", "rotation speed", "rotational speed", "angular velocity"), signed=True),
-    "rotation": Column("rad", ("angle", "rotation angle", "revolutions"), signed=True),
-    "radius": Column("m", ("mean radius", "equivalent radius")),
-    "shear_force": Column("N", ("force", "shear load", "friction force"), signed=True),
-    "normal_force": Column("N", ("normal load",)),
-    "friction_deviation": Column("1", ("standard deviation", "friction error", "mu error", "sd friction", "sd mu")),
-    "shear_stress_deviation": Column("Pa", ("shear stress error", "traction deviation", "tau error", "sd tau")),
-    "shear_force_deviation": Column("N", ("shear force error", "force error", "sd force")),
-    "slip_deviation": Column("m", ("slip error", "sd slip")),
-    "slip_rate_deviation": Column("m/s", ("slip rate error", "sd slip rate")),
-    "pull_rate": Column("m/s", signed=True),
-    "far_stress": Column("Pa", signed=True),
+    "time": HeadingColumn("s", ("t", "elapsed time", "time elapsed", "test time")),
+    "load_point": HeadingColumn("m", ("lp", "lpd", *_driven("displacement", "disp", "position")), signed=True),
+    "load_rate": HeadingColumn("m/s", ("vlp", "v lp", *_driven("rate", "velocity", "speed")), signed=True),
+    "rotation_rate": HeadingColumn(
+        "rad/s", ("rpm", "rotation", "rotation speed", "rotational speed", "angular velocity"), signed=True
+    ),
+    "rotation": HeadingColumn("rad", ("angle", "rotation angle", "revolutions"), signed=True),
+    "radius": HeadingColumn("m", ("mean radius", "equivalent radius")),
+    "shear_force": HeadingColumn("N", ("force", "shear load", "friction force"), signed=True),
+    "normal_force": HeadingColumn("N", ("normal load",)),
+    "friction_deviation": HeadingColumn("1", ("standard deviation", "friction error", "mu error", "sd friction", "sd mu")),
+    "shear_stress_deviation": HeadingColumn("Pa", ("shear stress error", "traction deviation", "tau error", "sd tau")),
+    "shear_force_deviation": HeadingColumn("N", ("shear force error", "force error", "sd force")),
+    "slip_deviation": HeadingColumn("m", ("slip error", "sd slip")),
+    "slip_rate_deviation": HeadingColumn("m/s", ("slip rate error", "sd slip rate")),
+    "pull_rate": HeadingColumn("m/s", signed=True),
+    "far_stress": HeadingColumn("Pa", signed=True),
 }
 """The columns that are known, by their plain heading. Capitals, spaces, dots, - and _ make no difference, nor does CamelCase."""
 LARGEST: Mapping[str, float] = {"slip": 100.0, "slip_rate": 100.0, "load_point": 100.0, "load_rate": 100.0}
@@ -94,7 +96,7 @@ _SIGNS = str.maketrans({"μ": "µ", "·": " ", "⁻": "-", "⁰": "0", "¹": "1"
 _POWER = re.compile(r"(?<=[A-Za-zµ])(-?\d)")
 
 
-class Found(NamedTuple):
+class FoundColumn(NamedTuple):
     """Where a column stands in a header, the factor of its unit to SI, and the unit as it is written, or None."""
 
     place: int
@@ -102,7 +104,7 @@ class Found(NamedTuple):
     unit: str | None
 
 
-def find(header: Sequence[str], wanted: Sequence[str], place: str) -> dict[str, Found]:
+def find(header: Sequence[str], wanted: Sequence[str], place: str) -> dict[str, FoundColumn]:
     """Return what a header has of the wanted columns. Raises InputError for two of one kind, and for a unit that does not fit."""
     if len(header) > MOST_COLUMNS:
         raise InputError(f"{place}: more than {MOST_COLUMNS} columns: not a table of numbers")
@@ -118,7 +120,7 @@ def find(header: Sequence[str], wanted: Sequence[str], place: str) -> dict[str, 
             raise InputError(f"{place}: columns {at[0] + 1} and {at[1] + 1} both are the {column}: {cure}")
         if at:
             unit = told[at[0]][2]  # type: ignore[index]
-            found[column] = Found(at[0], factor_of(unit, column, f"{place}, column {at[0] + 1}"), unit)
+            found[column] = FoundColumn(at[0], factor_of(unit, column, f"{place}, column {at[0] + 1}"), unit)
     return {column: found[column] for column in wanted if column in found}
 
 
@@ -209,7 +211,7 @@ def _unit_text(unit: str) -> str:
 
 def factor_of(unit: str | None, column: str, place: str) -> Fraction:
     """Return the factor from the unit in a heading to SI. Raises InputError, which does not repeat the unit."""
-    known = COLUMNS.get(column, Column("1"))
+    known = COLUMNS.get(column, HeadingColumn("1"))
     if unit is None or (known.unit == "1" and unit.strip().casefold() in PURE):
         return Fraction(1)
     if known.unit == "1":
@@ -225,12 +227,12 @@ def factor_of(unit: str | None, column: str, place: str) -> Fraction:
 
 def is_signed(column: str) -> bool:
     """Return True if the numbers of a column may be negative."""
-    return COLUMNS.get(column, Column("1")).signed
+    return COLUMNS.get(column, HeadingColumn("1")).signed
 
 
 def example(column: str) -> str:
     """Return a heading for a column, with its unit in SI."""
-    unit = COLUMNS.get(column, Column("1")).unit
+    unit = COLUMNS.get(column, HeadingColumn("1")).unit
     return column if unit == "1" else f"{column} ({unit})"
 
 
@@ -254,7 +256,7 @@ def missing(header: Sequence[str], column: str) -> str:
     return f"rename {quoted(close)}?" if hint.startswith("did") and close != column else f"write it as {example(column)}"
 
 
-def note_units(chosen: Mapping[str, Found], columns: Mapping[str, Floats], place: str) -> None:
+def note_units(chosen: Mapping[str, FoundColumn], columns: Mapping[str, Floats], place: str) -> None:
     """Issue an `InputWarning` for a column without a unit that is hardly in SI.
 
     That is so if another heading has a unit other than SI, or if its numbers are larger than any slip or slip rate. The ratio of
@@ -264,11 +266,11 @@ def note_units(chosen: Mapping[str, Found], columns: Mapping[str, Floats], place
         warn(f"{place}: {message}")
 
 
-def _unit_doubts(chosen: Mapping[str, Found], columns: Mapping[str, Floats]) -> Iterator[str]:
+def _unit_doubts(chosen: Mapping[str, FoundColumn], columns: Mapping[str, Floats]) -> Iterator[str]:
     units = {name: found.unit for name, found in chosen.items()}
     if units.get("shear_stress", "") is units.get("normal_stress", "") is None:
         del units["shear_stress"], units["normal_stress"]
-    sized = {name: unit for name, unit in units.items() if COLUMNS.get(name, Column("1")).unit != "1"}
+    sized = {name: unit for name, unit in units.items() if COLUMNS.get(name, HeadingColumn("1")).unit != "1"}
     foreign = any(chosen[name].factor != 1 for name in sized)
     for name in (name for name, unit in sized.items() if unit is None):
         if foreign or np.max(np.abs(columns[name]), initial=0.0) > LARGEST.get(name, math.inf):

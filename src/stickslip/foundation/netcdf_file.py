@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from stickslip.foundation.arguments import check_ordinary
-from stickslip.foundation.atomic_write import FULL, Sink, write_atomically
+from stickslip.foundation.atomic_write import FULL, SafeSink, write_atomically
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
@@ -112,7 +112,7 @@ def _sealed(draft: Path, fill: Callable[[Any], object]) -> None:
     """Write the file, then its checksum. Failed writes are hidden from the HDF5 library, which would crash on them."""
     import h5netcdf
 
-    sink = Sink(draft)
+    sink = SafeSink(draft)
     try:
         try:
             with h5netcdf.File(sink, "w") as file:

@@ -123,7 +123,7 @@ class Quantity:
 
 
 @dataclass(frozen=True)
-class Series:
+class NumberSeries:
     """Declare a list of numbers of one kind, optionally in ascending order."""
 
     item: Quantity
@@ -169,7 +169,7 @@ def _is_list(value: Any) -> bool:
 
 
 @dataclass(frozen=True)
-class Part:
+class LawField:
     """Declare a field that holds another friction law."""
 
     meaning: str
@@ -256,7 +256,7 @@ class NamedNumbers:
         return tuple(Named(n, Quantity("1", "").check(owner, f"{self.key} {ascii(n)[:60]}", x), unit) for n, x, unit in named)
 
 
-Field = Quantity | Series | Part | Text | Choice | NamedNumbers
+Field = Quantity | NumberSeries | LawField | Text | Choice | NamedNumbers
 """Every kind of declaration."""
 _Declared = TypeVar("_Declared", bound=Field)
 
@@ -324,7 +324,7 @@ def check_fields(owner: Any, but: Collection[str] = (), units: Mapping[str, str]
 
 def in_units(declared: _Declared, units: Mapping[str, str]) -> _Declared:
     """Return a declaration with its unit, or that of its items, replaced as `units` says."""
-    if isinstance(declared, Series) and declared.item.unit in units:
+    if isinstance(declared, NumberSeries) and declared.item.unit in units:
         return dataclasses.replace(declared, item=dataclasses.replace(declared.item, unit=units[declared.item.unit]))
     if isinstance(declared, Quantity) and declared.unit in units:
         return dataclasses.replace(declared, unit=units[declared.unit])

@@ -14,7 +14,7 @@ import numpy as np
 
 from stickslip.foundation.arguments import CheckedArguments
 from stickslip.foundation.constants import YEAR
-from stickslip.foundation.quantities import Choice, Field, NamedNumbers, Part, Quantity, Series, fields_of, in_units
+from stickslip.foundation.quantities import Choice, Field, LawField, NamedNumbers, NumberSeries, Quantity, fields_of, in_units
 
 _PREFIXES = ((1e12, "T"), (1e9, "G"), (1e6, "M"), (1e3, "k"))
 """SI prefixes with their factors, largest first."""
@@ -182,9 +182,9 @@ def _document_fields(kind: type, source: str) -> None:
 def _described(declared: Field) -> str:
     """Return meaning, unit and bounds of a field as a sentence."""
     parts = [declared.meaning]
-    if isinstance(declared, Quantity | Series):
-        parts = [(declared.item if isinstance(declared, Series) else declared).described]
-    if isinstance(declared, Series):
+    if isinstance(declared, Quantity | NumberSeries):
+        parts = [(declared.item if isinstance(declared, NumberSeries) else declared).described]
+    if isinstance(declared, NumberSeries):
         parts += [f"{declared.least} or more numbers"] + ["ascending"] * declared.ascending
     if isinstance(declared, Choice):
         parts.append(" or ".join(f'"{word}"' for word in declared.allowed))
@@ -221,7 +221,7 @@ def fields_in(owner: Any, place: str) -> Iterator[tuple[str, str, str]]:
     """Yield name, value and meaning of each declared field of a body, a law or a history; names begin with `place`."""
     for name, (declared, _) in fields_of(type(owner)).items():
         value = getattr(owner, name)
-        if isinstance(declared, Part):
+        if isinstance(declared, LawField):
             yield from ((f"{place}{name}", type(value).__name__, declared.meaning), *fields_in(value, f"{place}{name}."))
         elif value is not None:
             yield f"{place}{name}", _text(value, declared).strip("'"), declared.meaning
@@ -235,7 +235,7 @@ def _text(value: Any, declared: Any) -> str:
     """Return a value of a field as text; quantities that have a unit are quoted, as they are given."""
     if isinstance(declared, NamedNumbers):
         return f"{{{', '.join(f'{one.name!r}: {_number(one.value, one.unit)}' for one in value)}}}"
-    item = declared.item if isinstance(declared, Series) else declared
+    item = declared.item if isinstance(declared, NumberSeries) else declared
     unit = item.unit if isinstance(item, Quantity) and " or " not in item.unit else ""
     if isinstance(value, np.ndarray) and value.ndim:
         return f"<array of shape {value.shape}>"
@@ -250,7 +250,7 @@ def _several(values: tuple[Any, ...], declared: Any) -> str:
     texts = [_text(one, declared) for one in (values if len(values) <= MOST_SHOWN else (values[0], values[-1]))]
     if len(values) > MOST_SHOWN:
         return f"<{len(values)} values, {texts[0]} to {texts[1]}>"
-    return f"[{', '.join(texts)}]" if isinstance(declared, Series) else f"({', '.join(texts)}{',' * (len(texts) == 1)})"
+    return f"[{', '.join(texts)}]" if isinstance(declared, NumberSeries) else f"({', '.join(texts)}{',' * (len(texts) == 1)})"
 
 
 def _number(value: float, unit: str) -> str:

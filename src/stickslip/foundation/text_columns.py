@@ -26,7 +26,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.headings import (
     MOST_COLUMNS,
     PURE,
-    Found,
+    FoundColumn,
     count_named,
     example,
     factor_of,
@@ -207,7 +207,7 @@ def _split(line: str, separator: str) -> list[str]:
         return line.split(separator)
 
 
-def _are_units(row: Sequence[str], header: Sequence[str], chosen: Mapping[str, Found]) -> bool:
+def _are_units(row: Sequence[str], header: Sequence[str], chosen: Mapping[str, FoundColumn]) -> bool:
     """Return True if a row below the headings holds the units of the chosen columns, and contradicts none of the headings."""
     cells = {name: _bare(row[one.place]) if one.place < len(row) else "" for name, one in chosen.items()}
     try:
@@ -229,7 +229,7 @@ class _Rows(NamedTuple):
     place: str
     separator: str
     width: int
-    chosen: Mapping[str, Found]
+    chosen: Mapping[str, FoundColumn]
     raw: bool
 
     def read(self, lines: Iterator[str], number: int, most: int) -> tuple[NDArray[np.int64], Floats]:

@@ -17,7 +17,7 @@ from typing_extensions import override
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import Number
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import Choice, Quantity, Series, declare, fields_of, quantity
+from stickslip.foundation.quantities import Choice, NumberSeries, Quantity, declare, fields_of, quantity
 from stickslip.friction.contract import STATE_NAMES, one_argument
 from stickslip.friction.values import LawValues
 
@@ -256,7 +256,7 @@ def _sizes(law: LawValues) -> list[tuple[str, float]]:
     """Return the unit and the magnitude of each number of a law that is not 0."""
     found = []
     for name, (declared, _) in fields_of(type(law)).items():
-        item = declared.item if isinstance(declared, Series) else declared
+        item = declared.item if isinstance(declared, NumberSeries) else declared
         if isinstance(item, Quantity):
             value = getattr(law, name)
             values = value if isinstance(value, tuple) else (value,)

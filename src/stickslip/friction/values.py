@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from typing_extensions import override
 
 from stickslip.foundation.arrays import shared
-from stickslip.foundation.quantities import Quantity, Series, fields_of, quantities_of
+from stickslip.foundation.quantities import NumberSeries, Quantity, fields_of, quantities_of
 from stickslip.friction.contract import Formula, LawContract, one_argument
 from stickslip.friction.formula.bounds import bounds
 from stickslip.friction.formula.differences import value_and_slopes
@@ -212,7 +212,7 @@ class LawValues(LawContract):
         """The characteristic slip rates (m/s): the parameters in m/s, and the inverses of those in s/m."""
         scales: list[float] = []
         for name, (declared, _) in fields_of(type(self)).items():
-            item = declared.item if isinstance(declared, Series) else declared
+            item = declared.item if isinstance(declared, NumberSeries) else declared
             if isinstance(item, Quantity) and item.unit in ("m/s", "s/m"):
                 value = getattr(self, name) or ()
                 sizes = [abs(number) for number in (value if isinstance(value, tuple) else (value,)) if number]

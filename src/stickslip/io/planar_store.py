@@ -47,7 +47,7 @@ from stickslip.trajectory.status import INTERRUPTED, STATUSES, UNDER_WAY, engine
 
 if TYPE_CHECKING:
     from stickslip.planar.solver import PlanarSolver
-    from stickslip.planar.step import Motion
+    from stickslip.planar.step import PlanarMotion
 
 STATE = "state.nc"
 """File of the checkpoint."""
@@ -144,7 +144,7 @@ class PlanarStore(Frames):
     # ---- while the run continues -------------------------------------------------------------------------------------------------
 
     @override
-    def add(self, time: float, motion: Motion) -> float:
+    def add(self, time: float, motion: PlanarMotion) -> float:
         fastest = super().add(time, motion)
         if len(self.times) % self._arrays["slip"].chunks[0] == 0:
             self._write_frames()

@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.engine.memory.records import Record
+from stickslip.engine.memory.records import MemoryRecord
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Branch, Cause, Counts, HistoryPiece, Incoming, Setup, State, Stop
+from stickslip.engine.state.layout import BranchRow, Cause, Counts, HistoryPiece, Incoming, Setup, State, Stop
 from stickslip.engine.state.workspace import WORK_ROWS, counts_in
 from stickslip.engine_input.branch_table import table_of_branches
 from stickslip.engine_input.prepare import prepare
@@ -169,7 +169,7 @@ def _shapes_of_checkpoint(checkpoint: Checkpoint) -> Iterator[Fault]:
     shapes = {
         "state": (State.total,),
         "scratch": (WORK_ROWS, at.TERMS),
-        "branch": (max(branches, 1), Branch.total),
+        "branch": (max(branches, 1), BranchRow.total),
         "stick_to": (1,),
     }
     for name, shape in shapes.items():
@@ -177,7 +177,7 @@ def _shapes_of_checkpoint(checkpoint: Checkpoint) -> Iterator[Fault]:
     yield "shape or type of engine_count", not _is(checkpoint.count, (Counts.total,), "i")
 
 
-def _places(record: Record, *names: str) -> Any:
+def _places(record: MemoryRecord, *names: str) -> Any:
     places = [record.places[name] for name in names]
     return record.numbers[[n for place in places for n in range(place.first, place.first + place.size)]]
 

@@ -69,7 +69,7 @@ def field(history: History, slip: Callable[[ArrayLike], Floats], x: ArrayLike, t
     batch = np.floor(moment / (ROUNDS * waves.round))
     for number in np.unique(batch):
         chosen = batch == number
-        rise[chosen], velocity[chosen], stress[chosen] = _Inside(waves, moment[chosen]).field(away[chosen], side)
+        rise[chosen], velocity[chosen], stress[chosen] = _InsideOfSlab(waves, moment[chosen]).field(away[chosen], side)
     return Field(*(np.reshape(values, place.shape) for values in (at_contact.ravel() + rise, velocity, stress)))
 
 
@@ -78,7 +78,7 @@ def slab_of(problem: Problem) -> ElasticSlab:
     return as_slab(problem.body, "field: a block is rigid and has no interior field: only an ElasticSlab has a field")
 
 
-class _Inside:
+class _InsideOfSlab:
     """The slab at several times (s since the epoch), evaluated from one interval of its past."""
 
     def __init__(self, waves: Waves, time: Floats) -> None:

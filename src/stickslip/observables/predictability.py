@@ -78,7 +78,7 @@ class Predictability(NamesAttributes):
         return f"{grown}; predictable up to {when}, beyond it only statistics are"
 
 
-class Run(Protocol):
+class PredictedRun(Protocol):
     """A run, as far as its predictability is concerned: its history, and the relative tolerance with which it was computed."""
 
     @property
@@ -93,7 +93,7 @@ class Run(Protocol):
 
 
 @for_users
-def predictability(run: Run) -> Predictability:
+def predictability(run: PredictedRun) -> Predictability:
     """Return how far disturbances have grown along a run of a slab without contact mass, under a law of slip rate only.
 
     Raises InputError for any other problem: there, slip, inertia or a state variable decide how a disturbance grows.

@@ -181,7 +181,7 @@ def _around_middle(c: Floats) -> Disc:
     return Disc.of(middle[:, :1], radius + rounding)
 
 
-class Motion(NamedTuple):
+class MotionOnDiscs(NamedTuple):
     """The motion in some steps, seen in the direction of slip: coefficients in xi, a row for each step, or discs of values."""
 
     slip: Any  # m: as the law counts it
@@ -190,13 +190,13 @@ class Motion(NamedTuple):
     thrust: Any  # Pa or N: the force of inertia
     states: list[Any]  # units of the states
 
-    def on(self, places: Callable[[Floats], Disc]) -> Motion:
+    def on(self, places: Callable[[Floats], Disc]) -> MotionOnDiscs:
         """Return the discs of values that `places` makes of each polynomial."""
         states = [places(state) for state in self.states]
-        return Motion(places(self.slip), places(self.rate), places(self.load), places(self.thrust), states)
+        return MotionOnDiscs(places(self.slip), places(self.rate), places(self.load), places(self.thrust), states)
 
     @classmethod
-    def of(cls, history: History, n: Places) -> Motion:
+    def of(cls, history: History, n: Places) -> MotionOnDiscs:
         """Return the polynomials of pieces n of a history."""
         store, problem = history.store, history.problem
         way = store.mode[n, None].astype(float)
@@ -222,7 +222,7 @@ def _bounds(history: History, n: Places) -> Floats:
     piece = history.store.law_piece[n]
     for i in np.unique(piece).tolist():
         own = np.flatnonzero(piece == i)
-        motion, unsure = Motion.of(history, n[own]), _unsure_duration(history, n[own])
+        motion, unsure = MotionOnDiscs.of(history, n[own]), _unsure_duration(history, n[own])
         there, around = motion.on(_at_points), motion.on(_around_middle)
         values = _with_duration(_lacking(history.problem, i, there), there.thrust, unsure)
         everywhere = largest(_lacking(history.problem, i, around)) + unsure * largest(around.thrust)
@@ -248,7 +248,7 @@ def _with_duration(lacking: Disc, thrust: Disc, unsure: Floats) -> Disc:
     return lacking._replace(centre=lacking.centre + np.clip(np.nan_to_num(better), -unsure, unsure) * thrust.centre)
 
 
-def _lacking(problem: Problem, piece: int, motion: Motion) -> Disc:
+def _lacking(problem: Problem, piece: int, motion: MotionOnDiscs) -> Disc:
     """Return g = Z v + S mu + m dv/dt - load (Pa or N) where the motion is in discs, by the formula of a piece of the law."""
     law, damping, (slip, rate, load, thrust, states) = problem.friction, problem.body.damping, motion
     variables: dict[Expression, Disc] = dict(zip(VARIABLES, (slip, rate, *states), strict=False))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import stickslip as ss
 from stickslip.paper.cases import REFERENCE, Runs
-from stickslip.paper.claims import CLAIMS, STATEMENTS, Verdict
+from stickslip.paper.claims import CLAIMS, STATEMENTS, ClaimVerdict
 
 if TYPE_CHECKING:
     from stickslip.paper.plates import Plate
@@ -33,7 +33,7 @@ def make(out: Path | str, progress: Callable[[str], object] | None = None, *, rt
     for plate in PLATES:
         say(f"figure {plate.number} of {len(PLATES)}: {plate.title}")
         images[plate.number] = _make_figure(folder / f"figure{plate.number}", runs, plate)
-    verdicts: list[Verdict] = []
+    verdicts: list[ClaimVerdict] = []
     for number, measure in CLAIMS.items():
         say(f"claim {number} of {len(CLAIMS)}: {STATEMENTS[number]}")
         verdicts.append(measure(runs))

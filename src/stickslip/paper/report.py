@@ -9,7 +9,7 @@ import pandas as pd
 
 import stickslip as ss
 from stickslip.paper.cases import REFERENCE, Runs
-from stickslip.paper.claims import Outcome, Verdict
+from stickslip.paper.claims import ClaimVerdict, Outcome
 from stickslip.paper.planar import ANSWER, BASIS, table
 from stickslip.paper.plates import PLATES
 from stickslip.paper.tables import cases_table, constants
@@ -19,7 +19,7 @@ MARKS = {Outcome.PRINTED: "✓", Outcome.READING: "◐", Outcome.QUALIFIED: "≈
 """A sign for each outcome, so that colour alone need not tell them apart."""
 
 
-def report(runs: Runs, images: Mapping[int, bytes], verdicts: Sequence[Verdict]) -> str:
+def report(runs: Runs, images: Mapping[int, bytes], verdicts: Sequence[ClaimVerdict]) -> str:
     """Return the page as HTML, from the figures (SVG by number) and the verdicts; runs that are missing are made."""
     counts, cases = Counter(v.outcome for v in verdicts), cases_table(runs)
     return rendered(

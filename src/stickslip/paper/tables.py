@@ -17,13 +17,13 @@ from stickslip.foundation.constants import YEAR
 from stickslip.friction import HyperbolicRate, SinusoidalSlip
 from stickslip.observables.event_table import EVENT_COLUMNS
 from stickslip.paper.cases import READINGS, Runs, problem, typed
-from stickslip.paper.claims import Verdict
+from stickslip.paper.claims import ClaimVerdict
 from stickslip.paper.planar import STORED
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.tables import SHOCK_COLUMNS
 
 
-def all_tables(runs: Runs, verdicts: Sequence[Verdict]) -> dict[str, pd.DataFrame]:
+def all_tables(runs: Runs, verdicts: Sequence[ClaimVerdict]) -> dict[str, pd.DataFrame]:
     """Return every table by the name of its file, without the suffix."""
     return {
         "cases": cases_table(runs),
@@ -64,7 +64,7 @@ def _stacked(runs: Runs, table: str, units: Mapping[str, str]) -> pd.DataFrame:
     return whole.rename(columns={name: f"{name} [{unit}]" for name, unit in shown.items()})
 
 
-def claims_table(verdicts: Sequence[Verdict]) -> pd.DataFrame:
+def claims_table(verdicts: Sequence[ClaimVerdict]) -> pd.DataFrame:
     """Return a table with a row for each measured number, after its claim and verdict."""
     rows = [
         (v.number, v.claim, str(v.outcome), v.reading, measured.label, measured.value, measured.unit)

@@ -60,7 +60,7 @@ class Nodes(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Contact:
+class ContactOfNodes:
     """The formulas of a law at all nodes, without its numbers: laws that differ in numbers only are compiled once."""
 
     trees: tuple[Expression, ...]
@@ -72,7 +72,7 @@ class Contact:
     counts: str
 
     @classmethod
-    def of(cls, law: FrictionLaw) -> Contact:
+    def of(cls, law: FrictionLaw) -> ContactOfNodes:
         """Return the formulas of a law."""
         of_rate = law.depends_on_rate or bool(law.states)
         return cls(law.trees(), law.state_trees(), law.knot_variable, of_rate, law.memory, law.counts)

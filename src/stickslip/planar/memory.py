@@ -58,7 +58,7 @@ def horizon(round_trips: int) -> int:
     return 1 << (round_trips - 1).bit_length()
 
 
-class Recurrence(NamedTuple):
+class MemoryRecurrence(NamedTuple):
     """How the memory of each wavenumber is advanced by one step: a row for each exponential, then the axes of wavenumbers.
 
     With M the memory at the end of a step without the slip at that end, F = Re sum of M + now U there, and then
@@ -70,7 +70,7 @@ class Recurrence(NamedTuple):
     now: Floats
 
 
-def recurrence(frequencies: Floats, impedance: float, step: float, duration: float) -> Recurrence:
+def recurrence(frequencies: Floats, impedance: float, step: float, duration: float) -> MemoryRecurrence:
     """Return the recurrence of the memory for slip that is linear in time in each `step` (s), for w = |k| c (rad/s) of any shape.
 
     The memory is used for a `duration` (s).
@@ -81,11 +81,11 @@ def recurrence(frequencies: Floats, impedance: float, step: float, duration: flo
     strength = -impedance * frequencies**2 * step * weights[(slice(None),) + (None,) * frequencies.ndim]
     begin, end = strength * (phi1 - phi2), strength * phi2  # what slip at the beginning and at the end of a step adds
     decay = np.exp(rates)
-    return Recurrence(decay, decay * end + begin, end.real.sum(axis=0))
+    return MemoryRecurrence(decay, decay * end + begin, end.real.sum(axis=0))
 
 
 def advanced(memory: Any, decay: Any, gain: Any, slip: Any) -> tuple[Any, Any]:
-    """Return the memory after a step (see `Recurrence`), and the sum of its real parts, for arrays of numpy or JAX.
+    """Return the memory after a step (see `MemoryRecurrence`), and the sum of its real parts, for arrays of numpy or JAX.
 
     As complex numbers the product is compiled into one loop in place; apart, real and imaginary parts need two loops and a copy.
     The sum is written as one of slices, because JAX's reduction over the first axis is ten times as slow on a processor.

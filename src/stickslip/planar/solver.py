@@ -26,11 +26,11 @@ from numpy.typing import NDArray
 from stickslip.foundation.arrays import Floats
 from stickslip.planar.driving import locked_load
 from stickslip.planar.echo import Echo, echo_of, echo_weights, kernel_spectra, silent
-from stickslip.planar.friction import Contact, Nodes
+from stickslip.planar.friction import ContactOfNodes, Nodes
 from stickslip.planar.layout import Layout, whole
 from stickslip.planar.memory import horizon, recurrence
 from stickslip.planar.slab import PlanarSlab
-from stickslip.planar.step import Constants, Motion, Step, Waves
+from stickslip.planar.step import Constants, PlanarMotion, PlanarStep, PlanarWaves
 
 ALIKE = PartitionSpec()
 """How an array is spread that every device holds."""
@@ -39,8 +39,8 @@ ALIKE = PartitionSpec()
 class Spread(NamedTuple):
     """How the arrays of a run are spread over devices."""
 
-    motion: Motion
-    waves: Waves
+    motion: PlanarMotion
+    waves: PlanarWaves
     echo: Echo
     constants: Constants
     spectra: PartitionSpec
@@ -53,8 +53,8 @@ class Spread(NamedTuple):
         k, paths, histories = (layout.along_k(rank + extra) for extra in (1, 2, 3))
         nodes = Nodes(y, y, more, dict.fromkeys(parameters, more), y, ALIKE)
         return cls(
-            motion=Motion(y, y, y, y, more, y, y),
-            waves=Waves(paths, k, k, k, k, paths, paths),
+            motion=PlanarMotion(y, y, y, y, more, y, y),
+            waves=PlanarWaves(paths, k, k, k, k, paths, paths),
             echo=Echo(histories, paths, paths, ALIKE, k),
             constants=Constants(nodes, y, paths, paths, layout.along_k(rank), ALIKE),
             spectra=histories,
@@ -77,7 +77,7 @@ MOST_FORMS = 16
 
 
 @lru_cache(maxsize=MOST_FORMS)
-def functions_of(contact: Contact, layout: Layout, parameters: tuple[str, ...]) -> Compiled:
+def functions_of(contact: ContactOfNodes, layout: Layout, parameters: tuple[str, ...]) -> Compiled:
     """Return the functions of runs with these formulas, this number of nodes and these names of parameters.
 
     JAX keeps what it has compiled of functions that are gone, so all is forgotten when there are too many forms. A run that goes on
@@ -86,10 +86,10 @@ def functions_of(contact: Contact, layout: Layout, parameters: tuple[str, ...]) 
     if functions_of.cache_info().currsize >= MOST_FORMS:
         functions_of.cache_clear()
         jax.clear_caches()
-    step, spread = Step(contact, layout), Spread.of(layout, parameters)
+    step, spread = PlanarStep(contact, layout), Spread.of(layout, parameters)
 
-    def march(motion: Motion, waves: Waves, constants: Constants, loading: Any, between: Any) -> Any:
-        def one(number: Any, now: tuple[Motion, Waves]) -> tuple[Motion, Waves]:
+    def march(motion: PlanarMotion, waves: PlanarWaves, constants: Constants, loading: Any, between: Any) -> Any:
+        def one(number: Any, now: tuple[PlanarMotion, PlanarWaves]) -> tuple[PlanarMotion, PlanarWaves]:
             return step.taken(now, constants, loading[number + 1], number + 1)
 
         return jax.lax.fori_loop(between[0], between[1], one, (motion, waves))
@@ -116,8 +116,8 @@ class PlanarSolver:
     duration: float
     steps_per_round_trip: int | None = None
     devices: int | None = None
-    motion: Motion = field(init=False)
-    waves: Waves = field(init=False)
+    motion: PlanarMotion = field(init=False)
+    waves: PlanarWaves = field(init=False)
     echo: Echo = field(init=False)
     trip: int = field(init=False, default=0)
     """Number of whole round trips that have passed."""
@@ -131,7 +131,7 @@ class PlanarSolver:
         self.trips = self.slab.round_trips(self.duration)
         self.layout, parameters = Layout(self.slab.shape, self.devices), tuple(self.slab.values.numbers[0])
         self.spread = Spread.of(self.layout, parameters)
-        self.functions = functions_of(Contact.of(self.slab.values.law), self.layout, parameters)
+        self.functions = functions_of(ContactOfNodes.of(self.slab.values.law), self.layout, parameters)
         with in_double_precision():
             self._begin()
 
@@ -173,9 +173,9 @@ class PlanarSolver:
         path = np.zeros((self.steps + 1, *amplitudes))
         memory = np.zeros((law_of_waves.decay.shape[0], *amplitudes), complex)
         self.motion = self._put(
-            Motion(values.slip, none, values.load, values.law_slip, values.states, none, none), self.spread.motion
+            PlanarMotion(values.slip, none, values.load, values.law_slip, values.states, none, none), self.spread.motion
         )
-        self.waves = self._put(Waves(memory, *(path[0],) * 4, path, path), self.spread.waves)
+        self.waves = self._put(PlanarWaves(memory, *(path[0],) * 4, path, path), self.spread.waves)
         self.echo = self._put(silent(self.trips - 1, self.steps, amplitudes), self.spread.echo)
         self.spectra = layout.put(self._spectra(frequencies), self.spread.spectra)
         self._open_round_trip()
@@ -222,10 +222,10 @@ class PlanarSolver:
     def _open_round_trip(self) -> None:
         self.motion, self.waves = self.functions.open(self.motion, self.waves, self.constants, self.loading[self.trip])
 
-    def now(self) -> Motion:
+    def now(self) -> PlanarMotion:
         """Return the motion at the present moment as numpy arrays."""
         with in_double_precision():
-            return Motion(*(whole(one) for one in self.motion))
+            return PlanarMotion(*(whole(one) for one in self.motion))
 
     # ---- stop, and continue ------------------------------------------------------------------------------------------------------
 
@@ -261,13 +261,13 @@ class PlanarSolver:
             path = np.zeros((self.steps + 1, *self.waves.now.shape))
             path[: step + 1] = filled(sent(trip))
             put = {name: self.layout.put(value, getattr(where, name)) for name, value in (kept | {"sent": path}).items()}
-            self.waves = Waves(arriving=arriving, **put)
-            self.motion = self._put(Motion(*(state[f"motion_{name}"] for name in Motion._fields)), self.spread.motion)
+            self.waves = PlanarWaves(arriving=arriving, **put)
+            self.motion = self._put(PlanarMotion(*(state[f"motion_{name}"] for name in PlanarMotion._fields)), self.spread.motion)
             self.trip, self.step = trip, step
 
 
-KEPT = tuple(name for name in Waves._fields if name not in ("arriving", "sent"))
-"""Fields of `Waves` that the state of a run holds."""
+KEPT = tuple(name for name in PlanarWaves._fields if name not in ("arriving", "sent"))
+"""Fields of `PlanarWaves` that the state of a run holds."""
 
 
 @contextmanager

@@ -8,12 +8,12 @@ from typing import Any, NamedTuple
 import jax
 import jax.numpy as jnp
 
-from stickslip.planar.friction import Contact, Nodes
+from stickslip.planar.friction import ContactOfNodes, Nodes
 from stickslip.planar.layout import Layout
 from stickslip.planar.memory import advanced
 
 
-class Motion(NamedTuple):
+class PlanarMotion(NamedTuple):
     """The contact at one moment, as arrays over the nodes."""
 
     slip: Any
@@ -31,12 +31,12 @@ class Motion(NamedTuple):
     residual: Any
     """Largest |Z v + tau - load| so far, as a share of the load: how well the contact equation has been solved."""
 
-    def at(self, nodes: tuple[slice, ...]) -> Motion:
+    def at(self, nodes: tuple[slice, ...]) -> PlanarMotion:
         """Return the motion of some of the nodes."""
-        return Motion(*(one[(..., *nodes)] for one in self))
+        return PlanarMotion(*(one[(..., *nodes)] for one in self))
 
 
-class Waves(NamedTuple):
+class PlanarWaves(NamedTuple):
     """What waves do, as amplitudes over the wavenumbers: the last axes are 2 (real and imaginary part) and the wavenumbers."""
 
     memory: Any
@@ -68,13 +68,15 @@ class Constants(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Step:
+class PlanarStep:
     """A step of a contact whose fields and wavenumbers are spread as a layout says: what is compiled, without numbers."""
 
-    contact: Contact
+    contact: ContactOfNodes
     layout: Layout
 
-    def opened(self, motion: Motion, waves: Waves, constants: Constants, loading: Any) -> tuple[Motion, Waves]:
+    def opened(
+        self, motion: PlanarMotion, waves: PlanarWaves, constants: Constants, loading: Any
+    ) -> tuple[PlanarMotion, PlanarWaves]:
         """Return motion and waves just after a round trip has begun, when its echo has arrived."""
         load = constants.initial_load + loading[0] + self.layout.field(waves.now + waves.arriving[0])
         rate = self.contact.rate(constants.nodes, load, motion.seen, motion.states, motion.rate)
@@ -83,7 +85,9 @@ class Step:
         waves = waves._replace(rate=self.layout.amplitudes(rate))
         return motion, waves._replace(sent=waves.sent.at[0].set(_leaving(waves, constants, waves.arriving[0])))
 
-    def taken(self, now: tuple[Motion, Waves], constants: Constants, loading: Any, step: Any) -> tuple[Motion, Waves]:
+    def taken(
+        self, now: tuple[PlanarMotion, PlanarWaves], constants: Constants, loading: Any, step: Any
+    ) -> tuple[PlanarMotion, PlanarWaves]:
         """Return motion and waves after the step with a number in its round trip: a predictor, then a corrector."""
         motion, waves = now
         arriving = jax.lax.dynamic_index_in_dim(waves.arriving, step, keepdims=False)
@@ -95,7 +99,9 @@ class Step:
         sent = jax.lax.dynamic_update_index_in_dim(waves.sent, _leaving(waves, constants, arriving), step, 0)
         return found, waves._replace(sent=sent)
 
-    def _moved(self, now: tuple[Motion, Waves], guess: tuple[Motion, Any], constants: Constants, loads: Any) -> Any:
+    def _moved(
+        self, now: tuple[PlanarMotion, PlanarWaves], guess: tuple[PlanarMotion, Any], constants: Constants, loads: Any
+    ) -> Any:
         """Return the motion after a step, and the waves with slip and F there, from a guess of that motion.
 
         The amplitudes of the slip rate of the guess belong to it. Those of slip follow without a Fourier transform of their own.
@@ -114,9 +120,9 @@ class Step:
         if self.contact.memory == "since-arrest":
             seen = jnp.where(rate == 0.0, 0.0, seen)
         heat = motion.heat + 0.5 * length * (motion.traction * motion.rate + traction * rate)
-        return Motion(slip, rate, traction, seen, states, heat, _residual(motion, constants, load, (rate, traction))), waves
+        return PlanarMotion(slip, rate, traction, seen, states, heat, _residual(motion, constants, load, (rate, traction))), waves
 
-    def _counted(self, motion: Motion, mean: Any, guess: Motion, constants: Constants) -> tuple[Any, Any]:
+    def _counted(self, motion: PlanarMotion, mean: Any, guess: PlanarMotion, constants: Constants) -> tuple[Any, Any]:
         """Return slip as the law counts it, and the states, after a step at a mean slip rate."""
         path = jnp.abs(mean) if self.contact.counts == "path" else mean
         seen = motion.seen + constants.length * path
@@ -127,12 +133,12 @@ class Step:
         return seen, self.contact.advanced_states(constants.nodes, middle, (motion.states, about), constants.length)
 
 
-def _residual(motion: Motion, constants: Constants, load: Any, found: tuple[Any, Any]) -> Any:
-    """Return `Motion.residual` after a step that ends in this load, and in a slip rate and traction that were found."""
+def _residual(motion: PlanarMotion, constants: Constants, load: Any, found: tuple[Any, Any]) -> Any:
+    """Return `PlanarMotion.residual` after a step that ends in this load, and in a slip rate and traction that were found."""
     rate, traction = found
     missed = jnp.abs((constants.nodes.impedance * rate + traction) / load - 1.0)
     return jnp.maximum(motion.residual, jnp.where(rate == 0.0, 0.0, missed))
 
 
-def _leaving(waves: Waves, constants: Constants, arriving: Any) -> Any:
+def _leaving(waves: PlanarWaves, constants: Constants, arriving: Any) -> Any:
     return 2.0 * constants.nodes.impedance * waves.rate - 2.0 * waves.now - arriving

@@ -16,10 +16,10 @@ from stickslip.foundation.errors import InputError, full_name
 from stickslip.foundation.other_values import with_values
 from stickslip.foundation.quantities import (
     Choice,
+    LawField,
     NamedNumbers,
-    Part,
+    NumberSeries,
     Quantity,
-    Series,
     fields_of,
     in_units,
     quantities_of,
@@ -39,7 +39,7 @@ STRESSES = ("far_stress", "far_stress_rate")
 P = TypeVar("P", bound=ProblemFields)
 
 
-class Entry(NamedTuple):
+class ProblemEntry(NamedTuple):
     """An entry of a problem: its name, its declaration, and its value (None if it is not given)."""
 
     name: str
@@ -118,30 +118,30 @@ class Parameters(Mapping[str, Parameter[P]], Generic[P]):
         return "\n".join(f"{one.name} = {brief(one.value, one.unit)}" for one in self._found.values())
 
 
-def entries_of(problem: ProblemFields) -> Iterator[Entry]:
+def entries_of(problem: ProblemFields) -> Iterator[ProblemEntry]:
     """Yield every entry of a problem that can have another value, given or not: numbers, and words such as those of a law."""
     yield from _entries_in(problem.friction, "friction")
     yield from _entries_in(problem.body, "body")
     for name in LOADING:
         declared, value = quantities_of(type(problem))[name], getattr(problem, name)
         varies = isinstance(value, LoadingHistory)
-        yield Entry(f"loading.{name}", declared, None if varies else value)
+        yield ProblemEntry(f"loading.{name}", declared, None if varies else value)
         if varies:
             yield from _entries_in(value, f"loading.{name}", {VARYING: declared.unit})
     yield from _of_start(problem)
 
 
-def _of_start(problem: ProblemFields) -> Iterator[Entry]:
+def _of_start(problem: ProblemFields) -> Iterator[ProblemEntry]:
     """Yield the entries of the start. An initial load replaces an initial excess, and an excess a load."""
     declared = quantities_of(type(problem))
-    yield Entry("initial.slip", declared["initial_slip"], problem.initial_slip)
+    yield ProblemEntry("initial.slip", declared["initial_slip"], problem.initial_slip)
     for name in ("load", "excess"):
         one = replace(declared[f"initial_{name}"], unit=problem.load_unit)
-        yield Entry(f"initial.{name}", one, getattr(problem, f"initial_{name}"))
+        yield ProblemEntry(f"initial.{name}", one, getattr(problem, f"initial_{name}"))
     given = dict(zip(STATE_NAMES, problem.given_states, strict=False))
     for name, state in zip(STATE_NAMES, problem.friction.states, strict=False):
-        yield Entry(f"initial.{name}", Quantity(state.unit, state.meaning), given.get(name))
-    yield Entry("initial.rate", declared["initial_rate"], problem.initial_rate)
+        yield ProblemEntry(f"initial.{name}", Quantity(state.unit, state.meaning), given.get(name))
+    yield ProblemEntry("initial.rate", declared["initial_rate"], problem.initial_rate)
 
 
 def put_many(problem: P, values: Mapping[str, Any], make: Callable[..., Any] = replace) -> P:
@@ -194,25 +194,25 @@ def _scaled(value: Any, factor: float) -> Any:
     fields = {}
     for name, (declared, _) in fields_of(type(value)).items():
         one = getattr(value, name)
-        if isinstance(declared, Series) and declared.item.unit == VARYING:
+        if isinstance(declared, NumberSeries) and declared.item.unit == VARYING:
             fields[name] = tuple(factor * x for x in one)
         elif isinstance(declared, Quantity) and declared.unit == VARYING:
             fields[name] = factor * one
     return replace(value, **fields)  # type: ignore[type-var] # every history is a dataclass
 
 
-def _entries_in(owner: Any, place: str, units: Mapping[str, str] | None = None) -> Iterator[Entry]:
+def _entries_in(owner: Any, place: str, units: Mapping[str, str] | None = None) -> Iterator[ProblemEntry]:
     """Yield the entries of a body, a law or a loading history; `units` are as for `in_units`."""
     for name, (given, _) in fields_of(type(owner)).items():
         declared, value = in_units(given, units or {}), getattr(owner, name)
         if isinstance(declared, Quantity | Choice):
-            yield Entry(f"{place}.{name}", declared, value)
-        elif isinstance(declared, Series) and value:
+            yield ProblemEntry(f"{place}.{name}", declared, value)
+        elif isinstance(declared, NumberSeries) and value:
             for i, one in enumerate(value):
-                yield Entry(f"{place}.{name}[{i}]", declared.item, one)
+                yield ProblemEntry(f"{place}.{name}[{i}]", declared.item, one)
         elif isinstance(declared, NamedNumbers):
             for one in value:
                 number = Quantity(one.unit or "1", "parameter of the formula")
-                yield Entry(f"{place}.{declared.key}.{one.name}", number, one.value, one.unit)
-        elif isinstance(declared, Part):
+                yield ProblemEntry(f"{place}.{declared.key}.{one.name}", number, one.value, one.unit)
+        elif isinstance(declared, LawField):
             yield from _entries_in(value, f"{place}.{name}")

@@ -189,7 +189,7 @@ def follow(run: ExactRun, rows: Rows | RowsInMemory) -> Catalogue:
 
 
 @dataclass(frozen=True)
-class Told:
+class OutputSoFar:
     """The output of a run at some moment: the size (bytes) of its growing file, and its stream of events."""
 
     size: int
@@ -206,7 +206,7 @@ class EventRows:
 
     run: ExactRun
     rows: Rows | RowsInMemory
-    told: Told | None = None
+    told: OutputSoFar | None = None
     residual: float | None = None
     who = "catalogue"
     wants_events = True
@@ -264,9 +264,9 @@ class EventRows:
 
     def _remember(self) -> None:
         if self.run.before_end is None:
-            self.told = Told(self.rows.size, replace(self.run.stream))
+            self.told = OutputSoFar(self.rows.size, replace(self.run.stream))
 
-    def _about(self, told: Told, rows: Rows) -> dict[str, Any]:
+    def _about(self, told: OutputSoFar, rows: Rows) -> dict[str, Any]:
         stream = told.stream
         return {
             CATALOGUE: FORMAT,

@@ -29,7 +29,7 @@ from stickslip.trajectory.status import INTERRUPTED, UNSTABLE
 if TYPE_CHECKING:
     from stickslip.io.planar_store import PlanarStore
     from stickslip.planar.solver import PlanarSolver
-    from stickslip.planar.step import Motion
+    from stickslip.planar.step import PlanarMotion
 
 FRAMES = 100
 """Frames in a two-way travel time, by default."""
@@ -242,11 +242,11 @@ class PlanarRun:
             self.keep(motion)
         return Stop.FINISHED if is_over else Stop.FULL if is_full else Stop.NONE
 
-    def keep(self, motion: Motion) -> None:
+    def keep(self, motion: PlanarMotion) -> None:
         """Keep the present motion as a frame."""
         self.fastest = self.frames.add(self.solver.time, motion.at(self.here))
 
-    def _fault(self, motion: Motion) -> int | None:
+    def _fault(self, motion: PlanarMotion) -> int | None:
         """Return the code that ends the run at a motion that is no solution, or None."""
         if not all(np.isfinite(one).all() for one in motion):
             return Stop.FAILED

@@ -26,7 +26,7 @@ GRID = (*_DECLARED, "replicas")
 """Fields that a contact shares with `PlanarSlab`."""
 
 
-class Points(NamedTuple):
+class PointsAlong(NamedTuple):
     """Values (SI) at places along y (m): straight lines between them, constant outside, a step where a place stands twice."""
 
     y: tuple[float, ...]
@@ -70,7 +70,7 @@ class Patch:
         return np.asarray(1.0 - found if self.outside else found, float)
 
 
-Profile = Points | tuple[Any, ...]
+Profile = PointsAlong | tuple[Any, ...]
 """What varies: points along y, or values at the nodes: (nodes,) numbers, on a plane (nodes,) tuples of (width_nodes,) numbers."""
 
 
@@ -124,7 +124,7 @@ class Contact:
 
         def scaled(given: Any) -> Any:
             if isinstance(given, tuple):
-                return given._replace(values=scaled(given.values)) if isinstance(given, Points) else tuple(map(scaled, given))
+                return given._replace(values=scaled(given.values)) if isinstance(given, PointsAlong) else tuple(map(scaled, given))
             return factor * given
 
         along = tuple((name, scaled(one) if name in PRESSED else one) for name, one in self.along)
@@ -146,7 +146,7 @@ class Contact:
     def at(self, name: str, elsewhere: float, *where: Floats) -> NDArray[Any]:
         """Return what varies at places y, or y and z (m), of all nodes; `elsewhere` is its value (SI) where nothing is given."""
         given, shape = dict(self.along).get(name, elsewhere), np.shape(where[0])
-        if isinstance(given, Points):
+        if isinstance(given, PointsAlong):
             found = given.at(where[0])
         elif isinstance(given, tuple):
             found = _array(name, given, shape)

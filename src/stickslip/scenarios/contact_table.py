@@ -12,7 +12,7 @@ from stickslip.foundation.errors import InputError, full_name
 from stickslip.foundation.quantities import LARGEST_SERIES, Choice, Quantity
 from stickslip.planar.nodes import varying
 from stickslip.problem.problem import Problem
-from stickslip.scenarios.contact import GRID, LOCKED, Contact, Patch, Points, Profile
+from stickslip.scenarios.contact import GRID, LOCKED, Contact, Patch, PointsAlong, Profile
 from stickslip.scenarios.schema import without_owner
 
 PLACES = {axis: Quantity("m", f"interval of {axis}, 0 in the middle of the contact") for axis in ("y", "z")}
@@ -26,7 +26,7 @@ OF_POINTS = ("y", "values")
 
 def read_contact(table: Mapping[str, Any], problem: Problem, file: str) -> Contact:
     """Return the contact that a table [contact], whose keys are checked, describes for a problem. Raises InputError."""
-    reader = _Reader(file, {name: declared for name, (declared, _) in varying(problem).items()} | {LOCKED: None})
+    reader = _ContactReader(file, {name: declared for name, (declared, _) in varying(problem).items()} | {LOCKED: None})
     grid = {name: value for name, value in table.items() if name not in ("along", "patches")}
     along, is_plane = reader.names(table["along"], "[contact.along]", {}), table["width"] is not None
     patches = [reader.patch(one, f"[contact.patches[{i}]]", is_plane) for i, one in enumerate(table["patches"])]
@@ -38,7 +38,7 @@ def read_contact(table: Mapping[str, Any], problem: Problem, file: str) -> Conta
 
 
 @dataclass(frozen=True)
-class _Reader:
+class _ContactReader:
     """The name of the file for messages, and what may vary: each name with its declaration, None for what is true or false."""
 
     file: str
@@ -72,7 +72,7 @@ class _Reader:
         y = tuple(PLACES["y"].check(self.file, f"{place}.y[{i}]", one) for i, one in enumerate(y))
         if any(one > following for one, following in pairwise(y)) or any(y[i] == y[i + 2] for i in range(len(y) - 2)):
             raise self.fault(f"{place}.y must ascend, where a step is the same place twice")
-        return Points(y, tuple(self.value(name, one, f"{place}.values[{i}]") for i, one in enumerate(values)))
+        return PointsAlong(y, tuple(self.value(name, one, f"{place}.values[{i}]") for i, one in enumerate(values)))
 
     def value(self, name: str, value: Any, place: str, depth: int = 0) -> Any:
         """Return a value in SI; a list of them, the nodes along z, as a tuple."""
@@ -128,7 +128,7 @@ def _flat(table: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any
 def contact_table(contact: Contact) -> dict[str, Any]:
     """Return a contact as the table [contact], in SI and to the last digit."""
     table = {name: getattr(contact, name) for name in (*GRID, "frames") if getattr(contact, name) is not None}
-    along = {name: given._asdict() if isinstance(given, Points) else given for name, given in contact.along}
+    along = {name: given._asdict() if isinstance(given, PointsAlong) else given for name, given in contact.along}
     patches = []
     for patch in contact.patches:
         own = {name: getattr(patch, name) for name, default in PATCH.items() if getattr(patch, name) != default}

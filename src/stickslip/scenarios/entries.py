@@ -16,11 +16,11 @@ from stickslip.foundation.quantities import (
     LARGEST_SERIES,
     Choice,
     Field,
+    LawField,
     Named,
     NamedNumbers,
-    Part,
+    NumberSeries,
     Quantity,
-    Series,
     Text,
     fields_of,
 )
@@ -82,14 +82,14 @@ def read_entry(value: Any, entry: Field, place: DocumentPlace, law: Callable[[di
     file = place.source.file
     if isinstance(entry, Quantity):
         return entry.check(file, str(place), value)
-    if isinstance(entry, Series):
+    if isinstance(entry, NumberSeries):
         if not isinstance(value, list):
             unit = entry.item.label
             raise InputError(f"{file}: {place} must be a list of numbers in {unit} or of texts with units, got {shown(value)}")
         return tuple(entry.item.check(file, f"{place}[{i}]", one) for i, one in enumerate(value))
     if isinstance(entry, NamedNumbers):
         return _named(value, place)
-    if isinstance(entry, Part):
+    if isinstance(entry, LawField):
         if not isinstance(value, dict):
             raise InputError(f"{file}: [{place.inner}] must be a table, got {shown(value)}")
         return law(value, place.source, place.inner)
@@ -112,7 +112,7 @@ def describe(entry: Field) -> str:
     """Return the meaning, the unit and the range of a field as text for users."""
     if isinstance(entry, Quantity):
         return entry.described
-    if isinstance(entry, Series):
+    if isinstance(entry, NumberSeries):
         return f"{entry.item.described}, a list" + (", ascending" if entry.ascending else "")
     if isinstance(entry, Choice):
         return f"{entry.meaning}: {' or '.join(entry.allowed)}"
@@ -139,7 +139,7 @@ def to_table(owner: Any) -> dict[str, Any]:
 def _written(value: Any, entry: Field) -> Any:
     if isinstance(entry, NamedNumbers):
         return {one.name: f"{one.value!r} {one.unit}" if one.unit else one.value for one in value}
-    return to_table(value) if isinstance(entry, Part) else value
+    return to_table(value) if isinstance(entry, LawField) else value
 
 
 LARGEST_DATA_FILE = 5_000_000

@@ -15,7 +15,7 @@ from stickslip.contact.sliding import SteadySlidings
 from stickslip.contact.steady import proven_slidings
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
 from stickslip.engine_input.limits import MOST_PIECES, PATIENCE, automatic_length, creep_tolerance, leaps_over, lumps_by_itself
-from stickslip.foundation.quantities import Choice, NamedNumbers, Part, Quantity, Series, Text, fields_of, in_units
+from stickslip.foundation.quantities import Choice, LawField, NamedNumbers, NumberSeries, Quantity, Text, fields_of, in_units
 from stickslip.foundation.show import brief
 from stickslip.friction import FrictionLaw, RateAndState, SinusoidalSlip
 from stickslip.friction.contract import STATE_NAMES
@@ -134,13 +134,13 @@ def _of_law(law: FrictionLaw | LoadingHistory, prefix: str = "", varying: str = 
             continue
         if isinstance(declared, Quantity) and value is not None:
             facts.append(Fact(place, value, declared.unit, declared.meaning))
-        elif isinstance(declared, Series) and value:
+        elif isinstance(declared, NumberSeries) and value:
             unit = "" if declared.item.unit == "1" else f" {declared.item.unit}"
             ends = min(value), max(value)
             facts.append(Fact(place, f"{len(value)} points", "", f"{declared.meaning}, from {ends[0]:g} to {ends[1]:g}{unit}"))
         elif isinstance(declared, NamedNumbers):
             facts += [Fact(f"{place}.{one.name}", one.value, one.unit or "1", "") for one in value]
-        elif isinstance(declared, Part):
+        elif isinstance(declared, LawField):
             facts += [Fact(place, value.kind, "", declared.meaning), *_of_law(value, f"{place}.")]
         elif isinstance(declared, Text | Choice):
             facts.append(Fact(place, value, "", declared.meaning))

@@ -12,7 +12,7 @@ from stickslip.foundation.quantities import quantities_of
 from stickslip.foundation.show import brief
 from stickslip.planar.nodes import varying
 from stickslip.planar.slab import ENOUGH_NODES, PlanarSlab
-from stickslip.scenarios.contact import LOCKED, Contact, Patch, Points
+from stickslip.scenarios.contact import LOCKED, Contact, Patch, PointsAlong
 from stickslip.scenarios.examine import LARGE_STRAIN, Examination, Fact, examine
 from stickslip.scenarios.scenario import Scenario, doubts
 from stickslip.scenarios.stability import loading_rate
@@ -44,9 +44,9 @@ def _given(contact: Contact, slab: PlanarSlab) -> Iterator[Fact]:
     yield Fact("replicas", "yes" if contact.replicas else "no", "", "the contact repeats itself, or is alone")
     units = {name: declared.unit for name, (declared, _) in varying(slab.problem).items()} | {LOCKED: ""}
     for name, given in contact.along:
-        values = np.asarray(given.values if isinstance(given, Points) else given, float)
+        values = np.asarray(given.values if isinstance(given, PointsAlong) else given, float)
         ends = f"from {brief(values.min(), units[name])} to {brief(values.max(), units[name])}"
-        yield Fact(f"along.{name}", f"{values.size} {'points' if isinstance(given, Points) else 'values'}", "", ends)
+        yield Fact(f"along.{name}", f"{values.size} {'points' if isinstance(given, PointsAlong) else 'values'}", "", ends)
     for i, patch in enumerate(contact.patches):
         shown = [f"{name} = {brief(one, units[name]) if name != LOCKED else str(one).lower()}" for name, one in patch.values]
         yield Fact(f"patches[{i}]", ", ".join(shown), "", _place(patch))

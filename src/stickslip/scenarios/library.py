@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from stickslip.foundation.errors import InputError, nearest
 
 
-class Entry(NamedTuple):
+class BundledEntry(NamedTuple):
     """What a bundled scenario says about itself: its title, and one sentence on what it shows."""
 
     title: str
@@ -39,9 +39,9 @@ def _documents() -> dict[str, dict[str, Any]]:
     return {name: tomllib.loads(text(name)) for name in names()}
 
 
-def entries() -> dict[str, Entry]:
+def entries() -> dict[str, BundledEntry]:
     """Return what each bundled scenario says about itself, by name."""
-    return {name: Entry(document["title"], document["description"]) for name, document in _documents().items()}
+    return {name: BundledEntry(document["title"], document["description"]) for name, document in _documents().items()}
 
 
 def in_1d() -> list[str]:

@@ -15,7 +15,7 @@ from stickslip.bodies import BODIES
 from stickslip.foundation.arguments import check_type, check_whole, shown
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import Field as Declared
-from stickslip.foundation.quantities import Part, Quantity, fields_of, in_units
+from stickslip.foundation.quantities import LawField, Quantity, fields_of, in_units
 from stickslip.friction import LAWS
 from stickslip.friction.contract import STATE_NAMES, StateVariable
 from stickslip.loading import HISTORIES, VARYING
@@ -143,7 +143,7 @@ def _read_entry(declared: Declared, value: Any, place: DocumentPlace) -> Any:
 def _law_in(raw: dict[str, Any], source: Source, table: str) -> Any:
     """Return the law in a table such as [friction.slip]. Raises InputError for a law that is made of laws itself."""
     kind = kind_of(table, raw, source.file)
-    if any(isinstance(entry, Part) for entry, _ in fields_of(kind).values()):
+    if any(isinstance(entry, LawField) for entry, _ in fields_of(kind).values()):
         found = f"[{table}] kind {shown(raw['kind'])}"
         raise InputError(f"{source.file}: {found} is itself made of laws and cannot be part of another law")
     return read_part(table, raw, source)

@@ -10,7 +10,7 @@ from types import MappingProxyType
 from typing import Any
 
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.foundation.quantities import NamedNumbers, Part, fields_of
+from stickslip.foundation.quantities import LawField, NamedNumbers, fields_of
 from stickslip.foundation.show import clean
 from stickslip.friction import LAWS, FrictionLaw
 from stickslip.friction.contract import STATE_NAMES, StateVariable, states_in
@@ -161,7 +161,7 @@ def _table(table: str, kind: type, example: dict[str, Any], states: tuple[StateV
         value = example.get(name)
         if table == "loading" and isinstance(value, dict):
             inner += ["", f"# {describe(entry)}, as it varies in time", *_table(f"{table}.{name}", HISTORIES[value["kind"]], value)]
-        elif isinstance(entry, Part) and value:
+        elif isinstance(entry, LawField) and value:
             inner += ["", *_table(f"{table}.{name}", LAWS[value["kind"]], value)]
         elif isinstance(entry, NamedNumbers):
             inner += ["", f"# {describe(entry)}", f"[{table}.{name}]"]

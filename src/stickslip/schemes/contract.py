@@ -96,17 +96,17 @@ class Meeting(NamedTuple):
     """Increase of the slip with the slip rate of this step, s; 0 if the scheme knows the slip beforehand."""
 
 
-class Answer(NamedTuple):
+class Met(NamedTuple):
     """The slip rate (m/s) and the traction (Pa) that solve the contact equation of one step."""
 
     rate: float
     traction: float
 
 
-class Contact(Protocol):
+class SchemeContact(Protocol):
     """The contact, as a scheme sees it."""
 
-    def meet(self, meeting: Meeting, before: float) -> Answer:
+    def meet(self, meeting: Meeting, before: float) -> Met:
         """Solve the contact equation of a step; `before` is the slip rate (m/s) of the step before."""
 
 
@@ -153,10 +153,10 @@ class Sample(NamedTuple):
 class Motion(Protocol):
     """A body in motion on a grid under one scheme."""
 
-    def first(self, contact: Contact) -> Sample:
+    def first(self, contact: SchemeContact) -> Sample:
         """Return the state just after t = 0."""
 
-    def advance(self, contact: Contact) -> Sample:
+    def advance(self, contact: SchemeContact) -> Sample:
         """Move by one step of time, and return the state at its end."""
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
-from stickslip.schemes.contract import Contact, Energies, Grid, Meeting, Sample, strain_energy
+from stickslip.schemes.contract import Energies, Grid, Meeting, Sample, SchemeContact, strain_energy
 
 
 class CentralDifferences:
@@ -89,17 +89,17 @@ class LeapFrog:
         self.rate[-1] = ((inertia - 0.5 * drag) * last + forces[-1] + push) / (inertia + 0.5 * drag)
         return float(push - 0.5 * drag * (last + self.rate[-1]))
 
-    def first(self, contact: Contact) -> Sample:
+    def first(self, contact: SchemeContact) -> Sample:
         """Return the state just after t = 0: half a step from the velocities at t = 0."""
         return self._kick(contact, 0.5 * self.grid.dt)
 
-    def advance(self, contact: Contact) -> Sample:
+    def advance(self, contact: SchemeContact) -> Sample:
         """Move the displacements by one step, and the velocities from half a step before to half a step after it."""
         self.displacement += self.grid.dt * self.rate
         self.step += 1
         return self._kick(contact, self.grid.dt)
 
-    def _kick(self, contact: Contact, step: float) -> Sample:
+    def _kick(self, contact: SchemeContact, step: float) -> Sample:
         grid, before, forces = self.grid, self.rate.copy(), self._forces()
         push = self._kick_interior(forces, step)
         start = step < grid.dt  # then velocities are known at the step itself, not half a step before
@@ -138,14 +138,14 @@ class MasslessContact(LeapFrog):
         self.before: Floats = self.displacement.copy()
         self.excess = 0.0
 
-    def first(self, contact: Contact) -> Sample:
+    def first(self, contact: SchemeContact) -> Sample:
         """Return the state at t = 0, at which nothing has moved."""
         grid, last = self.grid, float(self.rate[-1])
         push = self._kick_interior(self._forces(), 0.5 * grid.dt)
         self.driver += 0.5 * grid.dt * push * 0.5 * (last + float(self.rate[-1]))
         return Sample(0.0, 0.0, 0.0, grid.stress, self.energies)
 
-    def advance(self, contact: Contact) -> Sample:
+    def advance(self, contact: SchemeContact) -> Sample:
         """Move all nodes but the contact's by one step, put the contact in balance with them, and kick."""
         grid, node, last = self.grid, float(self.displacement[0]), float(self.rate[-1])
         earlier, self.before = float(self.before[0]), self.displacement.copy()
@@ -169,12 +169,12 @@ class Characteristics:
 
     name, title, order, courant, largest_courant = "characteristics", "method of characteristics", 2.0, 1.0, 1.0
 
-    def begin(self, grid: Grid) -> Waves:
+    def begin(self, grid: Grid) -> WavesOnGrid:
         """Return the slab at t = 0."""
-        return Waves(grid)
+        return WavesOnGrid(grid)
 
 
-class Waves:
+class WavesOnGrid:
     """The waves in the slab: `to_contact` holds Z v + sigma at the nodes, `to_driver` Z v - sigma; stresses minus the first one."""
 
     def __init__(self, grid: Grid) -> None:
@@ -184,11 +184,11 @@ class Waves:
         self.slip, self.rate, self.excess, self.driven = 0.0, 0.0, 0.0, 0.0
         self.driver, self.friction = 0.0, 0.0
 
-    def first(self, contact: Contact) -> Sample:
+    def first(self, contact: SchemeContact) -> Sample:
         """Return the state just after t = 0."""
         return self._meet(contact, 0.0)
 
-    def advance(self, contact: Contact) -> Sample:
+    def advance(self, contact: SchemeContact) -> Sample:
         """Move each wave by one cell, and meet the driver and the contact."""
         grid, self.step = self.grid, self.step + 1
         rate_before, power_before = self._driver()
@@ -211,7 +211,7 @@ class Waves:
         rate = (incoming + outgoing) / (2.0 * self.grid.impedance)
         return rate, 0.5 * (incoming - outgoing) * rate
 
-    def _meet(self, contact: Contact, step: float) -> Sample:
+    def _meet(self, contact: SchemeContact, step: float) -> Sample:
         grid = self.grid
         load, half = grid.stress + float(self.to_contact[0]), 0.5 * step
         slip = grid.slip + self.slip + half * self.rate

@@ -14,7 +14,7 @@ from scipy.sparse import csc_matrix, diags_array
 from scipy.sparse.linalg import splu, spsolve
 
 from stickslip.foundation.arrays import Floats
-from stickslip.schemes.contract import Contact, Energies, Grid, Meeting, Sample, strain_energy
+from stickslip.schemes.contract import Energies, Grid, Meeting, Sample, SchemeContact, strain_energy
 
 
 class Elements(ABC):
@@ -70,7 +70,7 @@ class Elements(ABC):
         """Return the traction of the contact at the last step minus the uniform stress at t = 0, Pa."""
         return self.traction - self.grid.stress
 
-    def first(self, contact: Contact) -> Sample:
+    def first(self, contact: SchemeContact) -> Sample:
         """Return the state just after t = 0: the traction of sudden slip, before any node has moved."""
         grid = self.grid
         self.contact_rate, self.traction = contact.meet(Meeting(grid.stress, grid.impedance, grid.slip), 0.0)
@@ -92,7 +92,7 @@ class Elements(ABC):
     def base(self) -> float:
         """Return the displacement of the contact node at the end of the step if its velocity is 0 there, m."""
 
-    def advance(self, contact: Contact) -> Sample:
+    def advance(self, contact: SchemeContact) -> Sample:
         """Move by one step of time."""
         grid = self.grid
         right, per_rate = self.predict()

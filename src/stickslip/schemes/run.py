@@ -18,7 +18,7 @@ from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.problem.problem import Problem
-from stickslip.schemes.contract import Answer, Grid, Meeting, Sample, Scheme, Series
+from stickslip.schemes.contract import Grid, Meeting, Met, Sample, Scheme, Series
 from stickslip.schemes.explicit import CentralDifferences, Characteristics, MassRedistribution, Regularised
 from stickslip.schemes.implicit import Newmark, Theta
 from stickslip.schemes.sbp import SummationByParts
@@ -95,7 +95,7 @@ class GridContact:
         self._bottom = float(law.range()[0])
         self._yields = problem.excess == 0.0 and (problem.first_pull_rate > 0.0 or problem.far_stress_rate > 0.0)
 
-    def meet(self, meeting: Meeting, before: float) -> Answer:
+    def meet(self, meeting: Meeting, before: float) -> Met:
         """Solve the contact equation of a step; `before` is the slip rate (m/s) of the step before."""
         strength = self.normal * float(self.law.static_coefficient(self._seen(meeting.slip)))
         margin = -ROUNDING if self._yields else ROUNDING  # a load at the strength that is about to rise begins slip at once
@@ -105,7 +105,7 @@ class GridContact:
         rate = way * self._root(meeting, way, max(way * before, 0.0), holds)
         slip = meeting.slip + meeting.slip_per_rate * rate
         self._law_slip, self._slip = self._seen(slip), slip
-        return Answer(rate, meeting.load - meeting.impedance * rate)
+        return Met(rate, meeting.load - meeting.impedance * rate)
 
     def _seen(self, slip: Any) -> Any:
         """Return the slip that the law sees (m): the path so far, if it counts the path."""

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.sparse import csr_array, lil_array
 
 from stickslip.foundation.arrays import Floats
-from stickslip.schemes.contract import Contact, Energies, Grid, Meeting, Sample
+from stickslip.schemes.contract import Energies, Grid, Meeting, Sample, SchemeContact
 
 NORMS = {
     2: (1 / 2,),
@@ -108,11 +108,11 @@ class Weak:
         self.state = np.concatenate([grid.start_rates, np.zeros(grid.cells + 1), np.zeros(5)])
         self.contact_rate = 0.0
 
-    def first(self, contact: Contact) -> Sample:
+    def first(self, contact: SchemeContact) -> Sample:
         """Return the state just after t = 0."""
         return self._sample(contact)
 
-    def advance(self, contact: Contact) -> Sample:
+    def advance(self, contact: SchemeContact) -> Sample:
         """Move by one step of time."""
         start, stage = self.state, self.state
         time = self.step * self.grid.dt
@@ -126,13 +126,13 @@ class Weak:
         self.step += 1
         return self._sample(contact)
 
-    def _meet(self, state: Floats, contact: Contact) -> tuple[float, float]:
+    def _meet(self, state: Floats, contact: SchemeContact) -> tuple[float, float]:
         """Return slip rate and traction of the contact."""
         grid = self.grid
         load = grid.stress + grid.impedance * float(state[0]) + float(state[grid.cells + 1])
         return contact.meet(Meeting(load, grid.impedance, grid.slip + float(state[self.nodes])), self.contact_rate)
 
-    def _slope(self, state: Floats, time: float, contact: Contact) -> Floats:
+    def _slope(self, state: Floats, time: float, contact: SchemeContact) -> Floats:
         """Return the rate of change of the state."""
         grid, nodes = self.grid, self.grid.cells + 1
         Z, rho, G = grid.impedance, grid.density, grid.shear_modulus
@@ -151,7 +151,7 @@ class Weak:
         works = [driven * (Z * driven - wave), slip_rate * (traction - grid.stress), (at_contact**2 + at_driver**2) / (4.0 * Z)]
         return np.concatenate([accelerations, stressing, [slip_rate, driven, *works]])
 
-    def _sample(self, contact: Contact) -> Sample:
+    def _sample(self, contact: SchemeContact) -> Sample:
         self.contact_rate, traction = self._meet(self.state, contact)
         waves = self.state[: self.nodes]
         slip, driven, driver, friction, penalised = self.state[self.nodes :].tolist()

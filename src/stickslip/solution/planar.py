@@ -29,12 +29,12 @@ if TYPE_CHECKING:
 
     from stickslip.foundation.place import Place
     from stickslip.planar.solver import PlanarSolver
-    from stickslip.planar.step import Motion
+    from stickslip.planar.step import PlanarMotion
 
 FIELDS = {"slip": "m", "slip_rate": "m s-1", "traction": "Pa", "heat": "J m-2"}
 """Unit of each field of a frame."""
 MOTION = {"slip": "slip", "slip_rate": "rate", "traction": "traction", "heat": "heat"}
-"""Name in the solver's `Motion` of each field of a frame."""
+"""Name in the solver's `PlanarMotion` of each field of a frame."""
 LARGEST_MISS = 0.1
 """Miss of the energy balance, as a share of the heat, from which a run is not called resolved."""
 FEWEST_STEPS, QUICK = 100.0, 2e8
@@ -292,7 +292,7 @@ class Frames:
     residual: float = 0.0
     """See `PlanarSolution`."""
 
-    def add(self, time: float, motion: Motion) -> float:
+    def add(self, time: float, motion: PlanarMotion) -> float:
         """Keep the motion at a time (s), and return the largest slip rate in it (m/s)."""
         self.times.append(time)
         for name, own in MOTION.items():

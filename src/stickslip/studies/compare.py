@@ -49,7 +49,7 @@ COLUMNS = {
 """Columns of the table, each with its unit and meaning; the unit "load" stands for the one in the column `load_unit`."""
 
 
-class Source(NamedTuple):
+class RunSource(NamedTuple):
     """A run to compare or to export: its name, and a function that runs or reads it, with a callback for its progress.
 
     The function raises KeyboardInterrupt if Ctrl-C ends the run.
@@ -61,7 +61,7 @@ class Source(NamedTuple):
 
 def read_source(
     source: str | Path | Scenario | Solution, duration: float | None = None, rtol: float | None = None, who: str = "compare"
-) -> Source:
+) -> RunSource:
     """Return the run described by a bundled scenario's name, a scenario file, a solution file (.nc), a scenario or a solution.
 
     `duration` (s) and `rtol` replace those of a scenario; `who` begins messages. Raises InputError if `source` is none of these,
@@ -71,13 +71,13 @@ def read_source(
     if (computed or Path(str(source)).suffix == ".nc") and not (duration is None and rtol is None):
         raise InputError(f"{'a solution' if computed else source}: has been run: leave out duration and rtol")
     if isinstance(source, Solution):
-        return Source("run", lambda _: source)
+        return RunSource("run", lambda _: source)
     if Path(str(source)).suffix == ".nc":
         solution = read_solution(Path(str(source)))
-        return Source(Path(str(source)).stem, lambda _: solution)
+        return RunSource(Path(str(source)).stem, lambda _: solution)
     scenario = all_slips_alike(who, source if isinstance(source, Scenario) else load_scenario(source))
     changed = replace(scenario, duration=duration or scenario.duration, rtol=rtol or scenario.rtol)
-    return Source(scenario.name, lambda progress: uninterrupted(simulate(changed, progress=progress)))
+    return RunSource(scenario.name, lambda progress: uninterrupted(simulate(changed, progress=progress)))
 
 
 @dataclass(frozen=True, eq=False, repr=False)

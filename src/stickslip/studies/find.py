@@ -159,7 +159,7 @@ def find(
         raise InputError(f"find: {parameter.name} is no number that could be halved")
     ends = [None if end is None else parameter.declared.check("find", parameter.name, end) for end in (low, high)]
     with telling(progress, "find") as tell:
-        search = _Search(scenario, parameter, what, lasts, tell)
+        search = _EdgeSearch(scenario, parameter, what, lasts, tell)
         return search.edge(*search.ends(*ends), within)
 
 
@@ -176,7 +176,7 @@ def from_rest(problem: Problem, found: SteadySlidings, tell: TextProgress = lamb
     body, fall = problem.body, problem.strength - min(abs(one.traction) for one in found.slidings)
     lasts = CYCLES * (body.round_trip_time + max(fall, 0.0) / (body.stiffness * critical))
     scenario = Scenario(problem, lasts)
-    search = _Search(scenario, find_parameter(scenario, "pull_rate", "steady"), "sticking", lasts, tell, MOST_PIECES)
+    search = _EdgeSearch(scenario, find_parameter(scenario, "pull_rate", "steady"), "sticking", lasts, tell, MOST_PIECES)
     sticks, slides = None, None
     try:
         rate = critical * (1.0 + FROM_REST_WITHIN)
@@ -194,7 +194,7 @@ def from_rest(problem: Problem, found: SteadySlidings, tell: TextProgress = lamb
 
 
 @dataclass(frozen=True)
-class _Search:
+class _EdgeSearch:
     """A search for an edge along one parameter of a scenario; `seen` collects the runs."""
 
     scenario: Scenario

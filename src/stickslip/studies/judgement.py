@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.show import brief
-from stickslip.studies.scheme_measures import Measured
+from stickslip.studies.scheme_measures import MeasuredSeries
 from stickslip.studies.verdict import UNTOLD, RulePaths
 
 TOLERANCE = 0.05
@@ -36,7 +36,7 @@ CONVENTIONS: dict[str, tuple[str, Callable[[Floats, Floats], Floats]]] = {
 class Judgement:
     """A series beside the exact solution under the problem's own selection rule, and the largest share by which it may be off."""
 
-    measured: Measured
+    measured: MeasuredSeries
     paths: RulePaths
     tolerance: float = TOLERANCE
 

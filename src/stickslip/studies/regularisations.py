@@ -30,7 +30,7 @@ INSIDE = np.linspace(0.0, 1.0, 5)[:-1]
 
 
 @dataclass(frozen=True)
-class Difference:
+class SlipDifference:
     """A difference in slip between two runs (m): mean and largest magnitude over time, and signed value at the end."""
 
     mean: float
@@ -38,12 +38,12 @@ class Difference:
     end: float
 
 
-def difference(one: Solution, other: Solution, until: float) -> Difference:
+def difference(one: Solution, other: Solution, until: float) -> SlipDifference:
     """Return the slip of `one` minus the slip of `other`, from t = 0 to `until` (s)."""
     time = np.unique(np.concatenate([np.linspace(0.0, until, UNIFORM), _inside(one, 0.0, until), _inside(other, 0.0, until)]))
     gap = one.slip(time) - other.slip(time)
     mean = float(np.trapezoid(np.abs(gap), time)) / until
-    return Difference(mean, float(np.abs(gap).max()), float(gap[-1]))
+    return SlipDifference(mean, float(np.abs(gap).max()), float(gap[-1]))
 
 
 def _inside(solution: Solution, start: float, end: float) -> Floats:

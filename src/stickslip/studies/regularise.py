@@ -23,13 +23,13 @@ from stickslip.foundation.arguments import for_users
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.foundation.quantities import Quantity, Series
+from stickslip.foundation.quantities import NumberSeries, Quantity
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import names, unknown
 from stickslip.run.simulate import simulate
 from stickslip.scenarios.source import read_duration_and_problem
 from stickslip.solution.solution import Solution
-from stickslip.studies.regularisations import Difference, check_massless, difference, kind_of, passage, regularised
+from stickslip.studies.regularisations import SlipDifference, check_massless, difference, kind_of, passage, regularised
 from stickslip.studies.study import MAX_PIECES, RunsCompared, TextProgress, telling, uninterrupted
 from stickslip.studies.verdict import Errors, Verdict, groups, judge, local_orders, order_of
 
@@ -45,7 +45,7 @@ FIRST_JUMPS = 12
 """Largest number of jumps that are timed."""
 
 
-SIZES = Series(Quantity("s", "time in which the slip rate settles", above=0), least=3)
+SIZES = NumberSeries(Quantity("s", "time in which the slip rate settles", above=0), least=3)
 """Sizes of regularisations."""
 
 
@@ -87,7 +87,7 @@ class Regularisation(RunsCompared):
         return found
 
     @cached_property
-    def differences(self) -> dict[tuple[str, ...], list[Difference]]:
+    def differences(self) -> dict[tuple[str, ...], list[SlipDifference]]:
         """The differences in slip (m) of each run from the exact solution of each group of rules."""
         return {group: [difference(run, self.exact[group[0]], self.until) for run in self.runs] for group in self.groups}
 

@@ -79,7 +79,7 @@ def arrest_in(time: Floats, rate: Floats, threshold: float) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class Measured:
+class MeasuredSeries:
     """A series beside an exact solution, up to a time (s) that both cover."""
 
     series: Series

@@ -28,7 +28,7 @@ from stickslip.schemes.contract import Scheme, Series
 from stickslip.schemes.run import FEWEST_CELLS, LARGEST_CELLS, check_runs, run_scheme, scheme_of
 from stickslip.solution.solution import Solution
 from stickslip.studies.judgement import TOLERANCE, Judgement
-from stickslip.studies.scheme_measures import COLUMNS, Measured
+from stickslip.studies.scheme_measures import COLUMNS, MeasuredSeries
 from stickslip.studies.scheme_shocks import SHOCK_COLUMNS
 from stickslip.studies.study import Study, TextProgress, telling
 from stickslip.studies.verdict import NONE, UNTOLD, RulePaths, exact_runs
@@ -72,9 +72,9 @@ class Schemes(Study):
         return RulePaths(self.exact, self.until)
 
     @cached_property
-    def measured(self) -> tuple[Measured, ...]:
+    def measured(self) -> tuple[MeasuredSeries, ...]:
         """Each series beside the exact solution under the problem's own rule."""
-        return tuple(Measured(one, self.own, self.until) for one in self.series)
+        return tuple(MeasuredSeries(one, self.own, self.until) for one in self.series)
 
     @cached_property
     def judgements(self) -> tuple[Judgement, ...]:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.memory.pointers import record_at
-from stickslip.engine.memory.records import Record
+from stickslip.engine.memory.records import MemoryRecord
 from stickslip.engine.series.polynomial import MOST_CROSSINGS, evaluate
 from stickslip.engine.state.layout import Floats, HistoryPiece, Integers
 from stickslip.engine.state.workspace import pieces_in
@@ -27,7 +27,7 @@ NOT_YET = -1
 """Marks an event whose aftermath is not known within the history."""
 
 
-class EventTurns(Record):
+class EventTurns(MemoryRecord):
     """Hold which of the points of |slip rate| belong to an event."""
 
     begin: int  # its first point

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from stickslip.engine.compile.kernels import inlined, kernel
 from stickslip.engine.memory.pointers import record_at
-from stickslip.engine.memory.records import Record, floats_inside
+from stickslip.engine.memory.records import MemoryRecord, floats_inside
 from stickslip.engine.series.polynomial import MOST_CROSSINGS, bound_below, crossings, evaluate, total
 from stickslip.engine.state.layout import TERMS, Floats, HistoryPiece, Integers
 from stickslip.engine.state.workspace import pieces_in
@@ -24,7 +24,7 @@ FULL = -1
 """Number of points if there is no room for all of them."""
 
 
-class Turn(Record):
+class Turn(MemoryRecord):
     """Hold a point along |slip rate|: where it begins, ends, turns, or crosses a threshold."""
 
     piece: int  # piece of the history
@@ -33,14 +33,14 @@ class Turn(Record):
     kind: int  # +1 if the rate rises above the threshold there, -1 if it falls to it, 0 above it
 
 
-class Known(Record):
+class Known(MemoryRecord):
     """Hold what is known of a piece of the history, because lanes of a batch have made it."""
 
     way: int  # +1 or -1 if |slip rate| is proven to rise or to fall in it, from the piece before on; else 0
     grown: float  # m: slip in it, or NaN
 
 
-class Spare(Record):
+class Spare(MemoryRecord):
     """Hold room for the polynomials of one piece."""
 
     rate: Floats = floats_inside(TERMS)  # m/s: |slip rate|

@@ -29,7 +29,7 @@ OCTAVE, STEPS = 2**52, 16
 returns to halving the bits."""
 
 
-class Resistance(NamedTuple):
+class MemberResistance(NamedTuple):
     """Hold what the resistance g(s) = Z s + S mu(s) of one member is calculated from."""
 
     address: int  # of the formula's compiled `value`
@@ -52,7 +52,7 @@ class Resistances(NamedTuple):
     fastest: Floats
 
 
-class Found(NamedTuple):
+class FoundBranches(NamedTuple):
     """Hold what is found for each member."""
 
     table: Floats  # (members, largest number of branches, Branch.total)
@@ -61,21 +61,21 @@ class Found(NamedTuple):
 
 
 @kernel
-def slope_at(g: Resistance, rate: float) -> float:
+def slope_at(g: MemberResistance, rate: float) -> float:
     """Return g'(s), in Pa s/m, at a slip rate (m/s) and the reference slip."""
     call_value(g.address, g.constants, 0.0, rate, g.out)
     return g.damping + g.normal * g.out[1]
 
 
 @kernel
-def excess_at(g: Resistance, rate: float) -> float:
+def excess_at(g: MemberResistance, rate: float) -> float:
     """Return g(s) minus the static strength (Pa) at a slip rate (m/s)."""
     call_value(g.address, g.constants, 0.0, rate, g.out)
     return g.damping * rate + g.normal * g.out[0] + g.start
 
 
 @kernel
-def turn_between(g: Resistance, low: float, high: float, at_low: float, at_high: float) -> float:
+def turn_between(g: MemberResistance, low: float, high: float, at_low: float, at_high: float) -> float:
     """Return the slip rate between `low` and `high` at which g' changes sign: the last or the first one at which g still rises.
 
     at_low and at_high are g' at the two ends. The bits of the rates are halved until these differ by less than a factor of two.
@@ -109,7 +109,7 @@ def share_kept(value: float, last: float) -> float:
 
 
 @kernel
-def turns_once(g: Resistance, slowest: float, fastest: float, ends: Floats) -> int:
+def turns_once(g: MemberResistance, slowest: float, fastest: float, ends: Floats) -> int:
     """Write the ends of the branches (m/s) into `ends`, if the slope of g is monotone; return their number or NEVER_RISES.
 
     slowest and fastest are those of `Resistances`.
@@ -134,7 +134,7 @@ def turns_once(g: Resistance, slowest: float, fastest: float, ends: Floats) -> i
 
 
 @kernel
-def search_branches(of: Resistances, ends: Floats, work: Floats, found: Found) -> None:
+def search_branches(of: Resistances, ends: Floats, work: Floats, found: FoundBranches) -> None:
     """Find the branches of each member's resistance and what follows from them.
 
     `ends` holds the ends of the branches (m/s) of each member, whose number is in `found`; without members mu is convex or concave,
@@ -145,7 +145,7 @@ def search_branches(of: Resistances, ends: Floats, work: Floats, found: Found) -
     out, size = floats(work.ctypes.data), of.constants.shape[1] * of.constants.shape[2] if len(of.constants) > 1 else 0
     for n in range(len(found.table)):
         c = ahead(floats(of.constants.ctypes.data), n * size)
-        g = Resistance(of.address, c, of.damping[n], of.normal[n], of.start[n], out)
+        g = MemberResistance(of.address, c, of.damping[n], of.normal[n], of.start[n], out)
         if len(ends) == 0:
             found.branches[n] = turns_once(g, of.slowest[n], of.fastest[n], own)
         count, found.irregular[n] = found.branches[n], 0.0

@@ -12,13 +12,13 @@ from stickslip.engine.compile.kernels import inlined
 from stickslip.engine.contact.contact_equation import constants_of
 from stickslip.engine.contact_step.certificate import RATIOS, SHRUNK, SHRUNK_SLOPE
 from stickslip.engine.memory.pointers import all_lanes, one_lane
-from stickslip.engine.memory.records import Record, floats_inside, inside
+from stickslip.engine.memory.records import MemoryRecord, floats_inside, inside
 from stickslip.engine.series.polynomial import powers_of
 from stickslip.engine.state.layout import TERMS, Ball, Floats, HistoryPiece, LawValue, SeriesInput, State
 from stickslip.engine.state.workspace import Run
 
 
-class Block(Record):
+class LaneBlock(MemoryRecord):
     """Hold the numbers of runs in lanes, and those of the step that they take."""
 
     state: State = inside(State)
@@ -59,14 +59,14 @@ class Block(Record):
     constants: Floats = floats_inside(0)  # constants of the law, as many as it has
 
 
-block_in_all_lanes: Any = all_lanes(Block)
+block_in_all_lanes: Any = all_lanes(LaneBlock)
 """Function for compiled code that sees the block at an address in all lanes at once."""
-block_in_one_lane: Any = one_lane(Block)
+block_in_one_lane: Any = one_lane(LaneBlock)
 """Function for compiled code that sees the block at an address in lane 0."""
 
 
 @inlined
-def put_in(run: Run, own: Block) -> None:
+def put_in(run: Run, own: LaneBlock) -> None:
     """Copy a run, which has met a piece of load, into its lane of the block."""
     state, to, piece = run.state, own.state, run.counts.piece
     to.xi, to.target, to.speed, to.bend = state.xi, state.target, state.speed, state.bend
@@ -89,14 +89,14 @@ def put_in(run: Run, own: Block) -> None:
 
 
 @inlined
-def note_disc(run: Run, own: Block) -> None:
+def note_disc(run: Run, own: LaneBlock) -> None:
     """Copy what the number of a run's disc stands for into its lane of the block."""
     own.ratio = RATIOS[run.counts.disc]
     own.shrunk = SHRUNK_SLOPE[run.counts.disc] if run.counts.has_inertia == 1 else SHRUNK[run.counts.disc]
 
 
 @inlined
-def take_out(run: Run, own: Block) -> None:
+def take_out(run: Run, own: LaneBlock) -> None:
     """Copy what steps in lanes have changed back into the run."""
     state, now = run.state, own.state
     state.xi, state.slip_now, state.law_slip, state.rate_now = now.xi, now.slip_now, now.law_slip, now.rate_now
@@ -105,7 +105,7 @@ def take_out(run: Run, own: Block) -> None:
 
 
 @inlined
-def lend_step(run: Run, own: Block) -> None:
+def lend_step(run: Run, own: LaneBlock) -> None:
     """Copy the input of the step at hand, and its series, into the scratch space of the run, where the engine looks for them."""
     run.k.chi, run.k.speed, run.k.bend, run.k.slip = own.k.chi, own.k.speed, own.k.bend, own.k.slip
     run.k.offset, run.k.rate, run.k.free, run.k.force = own.k.offset, own.k.rate, own.k.free, own.k.force
@@ -115,7 +115,7 @@ def lend_step(run: Run, own: Block) -> None:
 
 
 @inlined
-def lend_rate(run: Run, own: Block) -> Floats:
+def lend_rate(run: Run, own: LaneBlock) -> Floats:
     """Copy the slip rate over the step at hand, and the powers of its length, to the run; return where the rate is."""
     lend_step(run, own)
     for n in range(TERMS):

@@ -13,7 +13,7 @@ from enum import IntEnum
 from typing import NamedTuple
 
 from stickslip.batch.kernels.lane_block import (
-    Block,
+    LaneBlock,
     block_in_all_lanes,
     block_in_one_lane,
     lend_rate,
@@ -68,7 +68,7 @@ ROW = HistoryPiece.total
 """Number of places of a piece of the history."""
 FIRST_FLOAT = HistoryPiece.places["phase_from"].first
 """First place of a piece of the history that is a float, as all that follow."""
-HISTORY, TARGETS, NOWHERE = Run.places["history"].first, Block.places["targets"].first, Block.places["nowhere"].first
+HISTORY, TARGETS, NOWHERE = Run.places["history"].first, LaneBlock.places["targets"].first, LaneBlock.places["nowhere"].first
 """Places of these fields."""
 ALL_LANES = 2**WIDTH - 1
 """A bit for each lane."""
@@ -97,7 +97,7 @@ class Side(NamedTuple):
     inspects: bool  # True if pieces are to be inspected for that
 
 
-class Step(NamedTuple):
+class LaneStep(NamedTuple):
     """A step that some lanes take together."""
 
     table: Integers  # memory of the runs in the lanes
@@ -143,7 +143,7 @@ def step_under(formula: Integers, side: Side) -> None:
             moves, is_block, degree = run.counts.has_inertia == 1, run.counts.is_block == 1, max(degree, run.counts.degree)
             targets[lane] = table[lane * RUN_SIZE + HISTORY] + 8 * ROW * run.counts.length
             lane_0[lane].disc, waits[lane], taking = run.counts.disc, Waits.SLIPPING, taking | 1 << lane
-    choose_length(formula, Step(table, block, taking, moves, degree))
+    choose_length(formula, LaneStep(table, block, taking, moves, degree))
     reached = settle(rows)
     calculate(rows, degree)
     sound = check_end(rows, formula[2], moves, degree)
@@ -173,7 +173,7 @@ def step_under(formula: Integers, side: Side) -> None:
 
 
 @inlined
-def choose_length(formula: Integers, step: Step) -> None:
+def choose_length(formula: Integers, step: LaneStep) -> None:
     """Expand the series in all lanes, and find the lengths that the error allows and that can be proven, as `usable`."""
     table, block, taking, moves, degree = step
     rows, lane_0 = block_in_all_lanes(block), block_in_one_lane(block)
@@ -203,7 +203,7 @@ def choose_length(formula: Integers, step: Step) -> None:
 
 
 @inlined
-def begin(rows: Block, degree: int) -> None:
+def begin(rows: LaneBlock, degree: int) -> None:
     """Calculate the input of the series in all lanes, as `taylor_step.prepare_series` does.
 
     `degree` is the largest of the loads' degrees, here and below.
@@ -226,7 +226,7 @@ def begin(rows: Block, degree: int) -> None:
 
 
 @inlined
-def prove(rows: Block, radii: int, moves: bool, degree: int) -> None:
+def prove(rows: LaneBlock, radii: int, moves: bool, degree: int) -> None:
     """Calculate in all lanes what a step may miss, as `certificate.share_on_disc` does; with inertia if the contact `moves`."""
     powers = rows.disc_powers
     powers_of(rows.ratio * rows.length, powers)
@@ -246,7 +246,7 @@ def prove(rows: Block, radii: int, moves: bool, degree: int) -> None:
 
 
 @kernel
-def prove_alone(run: Run, own: Block) -> None:
+def prove_alone(run: Run, own: LaneBlock) -> None:
     """Find a length that can be proven for the step in a run's lane, and the force that it ignores at its start."""
     lend_step(run, own)
     length = min(own.usable, own.limit)
@@ -259,7 +259,7 @@ def prove_alone(run: Run, own: Block) -> None:
 
 
 @inlined
-def settle(rows: Block) -> int:
+def settle(rows: LaneBlock) -> int:
     """Choose the lengths of proven steps, as `taylor_step.settle_length` does; return the lanes that reach their target."""
     rows.last_step = duration_of(rows.k, rows.usable)
     reached = rows.usable >= rows.limit
@@ -269,7 +269,7 @@ def settle(rows: Block) -> int:
 
 
 @inlined
-def calculate(rows: Block, degree: int) -> None:
+def calculate(rows: LaneBlock, degree: int) -> None:
     """Calculate slip rate and load over the step, slip in it, and the slip rate at its end.
 
     The calculations are those of `step_events.stretch` and `keep_step.keep_step`.
@@ -284,7 +284,7 @@ def calculate(rows: Block, degree: int) -> None:
 
 
 @inlined
-def check_end(rows: Block, values: int, moves: bool, degree: int) -> int:
+def check_end(rows: LaneBlock, values: int, moves: bool, degree: int) -> int:
     """Return the lanes whose step is sound: slip rate and friction stay above zero, and rounding hides nothing at the end.
 
     The end is put into the contact equation, as `certificate.measure_end` does.
@@ -305,7 +305,7 @@ def check_end(rows: Block, values: int, moves: bool, degree: int) -> int:
 
 
 @inlined
-def move(rows: Block, reached: int, is_block: bool) -> None:
+def move(rows: LaneBlock, reached: int, is_block: bool) -> None:
     """Calculate what the step leaves in the history, as `keep_step.move` and `pieces.record` do."""
     state, k, row, length = rows.state, rows.k, rows.row, rows.length
     rows.to = chosen(reached, state.target, state.xi + length * rows.unit)
@@ -331,7 +331,7 @@ def phase_in(state: State, xi: float) -> float:
 
 
 @inlined
-def store(rows: Block, targets: Integers) -> None:
+def store(rows: LaneBlock, targets: Integers) -> None:
     """Write what the step leaves in the history there, but for whole numbers, where something else is left for `append`."""
     places = rows_of(rows.row)
     for first in range(ROW - WIDTH, FIRST_FLOAT - WIDTH, -WIDTH):
@@ -339,7 +339,7 @@ def store(rows: Block, targets: Integers) -> None:
 
 
 @inlined
-def is_simple(run: Run, own: Block) -> bool:
+def is_simple(run: Run, own: LaneBlock) -> bool:
     """Return True if a sound step in a run's lane may be kept: it takes time, is proven and meets no knot of the law."""
     if run.counts.breach != 0 or not own.row.phase_to > own.row.phase_from:
         return False
@@ -349,7 +349,7 @@ def is_simple(run: Run, own: Block) -> bool:
 
 
 @inlined
-def keep(rows: Block, kept: int) -> None:
+def keep(rows: LaneBlock, kept: int) -> None:
     """Move to the end of the step in the lanes that keep it."""
     state, signed = rows.state, rows.direction * rows.grown
     state.xi = chosen(kept, rows.to, state.xi)
@@ -363,7 +363,7 @@ def keep(rows: Block, kept: int) -> None:
 
 
 @inlined
-def inspect(rows: Block) -> tuple[int, int]:
+def inspect(rows: LaneBlock) -> tuple[int, int]:
     """Return the lanes in which the slip rate is proven to rise throughout the step, and those in which it is proven to fall.
 
     Calculates the slip in the step from what it leaves in the history, as `reduction.grown` does.
@@ -380,7 +380,7 @@ def inspect(rows: Block) -> tuple[int, int]:
 
 
 @inlined
-def append(run: Run, own: Block, first: bool) -> int:
+def append(run: Run, own: LaneBlock, first: bool) -> int:
     """Count the step in a run's lane, and write its whole numbers into the history; return what the lane waits for then.
 
     `first` is True if it is the first on its piece of load, and may be the first of a slip.

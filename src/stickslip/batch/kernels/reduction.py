@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import friction_of
 from stickslip.engine.memory.pointers import numbers_of, record_at
-from stickslip.engine.memory.records import Record
+from stickslip.engine.memory.records import MemoryRecord
 from stickslip.engine.series.polynomial import evaluate, integral
 from stickslip.engine.state.layout import Floats, HistoryPiece, Integers, Stop
 from stickslip.engine.state.workspace import Run, pieces_in
@@ -22,7 +22,7 @@ from stickslip.trajectory.slip_events import LAST_THIRD, EventTurns, rest_of, ri
 from stickslip.trajectory.turning_points import Known, Turn, starts_from_rest
 
 
-class Reduced(Record):
+class Reduced(MemoryRecord):
     """Hold the numbers that are kept of each run, in SI units; NaN where a run has none."""
 
     events: float
@@ -56,7 +56,7 @@ OF_EVENTS = frozenset({"events", "pulses", *COLUMNS[FIRST_OF_EVENTS : LAST_OF_EV
 """Columns for which slip events must be found."""
 
 
-class Found(NamedTuple):
+class FoundEventsInMemory(NamedTuple):
     """Hold the slip events of a run, as pointers: the points of its slip rate, which of them each event has, and their number."""
 
     turns: Turn
@@ -236,7 +236,7 @@ def friction_after(run: Run, piece: int, xi: float) -> float:
 
 
 @kernel
-def fold_events(run: Run, found: Found, out: Reduced) -> None:
+def fold_events(run: Run, found: FoundEventsInMemory, out: Reduced) -> None:
     """Write the numbers that describe all slip events, and their recurrence, into `out`; columns without a value become NaN."""
     (turns, events, count, _), history, round_trip_time = found, run.history, run.params.round_trip_time
     out.events, out.pulses = count, 0.0
@@ -256,7 +256,7 @@ def fold_events(run: Run, found: Found, out: Reduced) -> None:
 
 
 @kernel
-def fold_recurrence(history: HistoryPiece, round_trip_time: float, found: Found, out: Reduced) -> None:
+def fold_recurrence(history: HistoryPiece, round_trip_time: float, found: FoundEventsInMemory, out: Reduced) -> None:
     """Write the mean (s) and the coefficient of variation of the times between starts of events into `out`.
 
     The latter is the sample standard deviation over the mean; it stays NaN for two events, which have one recurrence time.
@@ -275,7 +275,7 @@ def fold_recurrence(history: HistoryPiece, round_trip_time: float, found: Found,
 
 
 @kernel
-def fold_first(run: Run, found: Found, excess: float, out: Reduced) -> None:
+def fold_first(run: Run, found: FoundEventsInMemory, excess: float, out: Reduced) -> None:
     """Write the numbers that describe the first event into `out`, as in `tables.event_columns`, except its static drop.
 
     excess is the initial load minus the static strength (Pa or N).

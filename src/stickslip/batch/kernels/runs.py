@@ -16,8 +16,17 @@ from numba import carray, types
 from numba.extending import intrinsic
 
 from stickslip.batch.kernels.lanes import Side, Waits, step_side_by_side
-from stickslip.batch.kernels.reduction import COLUMNS, Found, Reduced, fold_events, fold_first, fold_whole, reached, reduced_at
-from stickslip.batch.kernels.tables import Setups, Stage
+from stickslip.batch.kernels.reduction import (
+    COLUMNS,
+    FoundEventsInMemory,
+    Reduced,
+    fold_events,
+    fold_first,
+    fold_whole,
+    reached,
+    reduced_at,
+)
+from stickslip.batch.kernels.tables import LaneStage, Setups
 from stickslip.batch.kernels.workspace import Workspace
 from stickslip.engine.compile.kernels import address_of, inlined, kernel
 from stickslip.engine.loop import run_until
@@ -145,20 +154,20 @@ def run_group(group: Group, base: Integers, stride: Integers, work: Workspace) -
     lanes = len(work.stage)  # no constant: no copy for each
     side = Side(first.table, first.waits, integers(group.setups.jets.ctypes.data), work.block[0], first.known, group.wants_events)
     for n in range(lanes):
-        if nth(first, n).stage[0] != Stage.FREE:
+        if nth(first, n).stage[0] != LaneStage.FREE:
             point_at(nth(first, n), members, first.member[n])
     while True:
         waiting = 0
         for n in range(lanes):
             lane = nth(first, n)
-            if lane.stage[0] == Stage.UNDER_WAY and (lane.waits[0] == Waits.NONE or lane.waits[0] == Waits.ALONE):
+            if lane.stage[0] == LaneStage.UNDER_WAY and (lane.waits[0] == Waits.NONE or lane.waits[0] == Waits.ALONE):
                 advance_member(members, lane)
             while lane.waits[0] == Waits.NONE:
-                if lane.stage[0] == Stage.UNDER_WAY:
+                if lane.stage[0] == LaneStage.UNDER_WAY:
                     return n
-                if lane.stage[0] == Stage.AT_END and members.wants_events and not fold_events_of(lane, members):
+                if lane.stage[0] == LaneStage.AT_END and members.wants_events and not fold_events_of(lane, members):
                     return n
-                if lane.stage[0] == Stage.AT_END:
+                if lane.stage[0] == LaneStage.AT_END:
                     fold_run(lane, members)
                 if not start_next(lane, members):
                     break
@@ -261,7 +270,7 @@ def advance_member(members: Members, lane: Lane) -> None:
     lane.waits[0] = Waits.FRESH if code == Stop.SLIPS else Waits.NONE
     asks = code == Stop.SLIPS or code == Stop.FULL or code == Stop.PAUSED or code == Stop.NEED_PART
     if not asks and code != Stop.NONE:
-        lane.stage[0] = Stage.AT_END
+        lane.stage[0] = LaneStage.AT_END
 
 
 @kernel
@@ -274,7 +283,7 @@ def start_next(lane: Lane, members: Members) -> bool:
             continue
         point_at(lane, members, n)
         start_member(borrow(lane.table), members, n)
-        lane.stage[0], lane.member[0] = Stage.UNDER_WAY, n
+        lane.stage[0], lane.member[0] = LaneStage.UNDER_WAY, n
         advance_member(members, lane)
         return True
     return False
@@ -294,7 +303,7 @@ def fold_run(lane: Lane, members: Members) -> None:
         fold_whole(run.history, run.counts.length, run.params.round_trip_time, end, out)
         if members.codes[n] not in (Stop.FINISHED, Stop.LOCKED):
             out.sticking = math.nan
-    lane.stage[0] = Stage.FREE
+    lane.stage[0] = LaneStage.FREE
 
 
 @kernel
@@ -307,7 +316,7 @@ def fold_events_of(lane: Lane, members: Members) -> bool:
     turns = find_turns(search, (0, run.counts.length), members.threshold[n], run.counts.sticks == 1)
     if turns == FULL:
         return False
-    found = Found(members.turns, members.events, group_turns(members.turns, turns, members.events), lane.known)
+    found = FoundEventsInMemory(members.turns, members.events, group_turns(members.turns, turns, members.events), lane.known)
     fold_events(run, found, out)
     if found.number > 0:
         fold_first(run, found, members.excess[n], out)

@@ -32,7 +32,7 @@ class Setups(NamedTuple):
     excess: Floats  # (members,): initial load minus static strength, Pa or N
 
 
-class Stage(IntEnum):
+class LaneStage(IntEnum):
     """Say what a lane is doing."""
 
     FREE = 0

@@ -7,9 +7,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stickslip.batch.kernels.lane_block import Block
+from stickslip.batch.kernels.lane_block import LaneBlock
 from stickslip.batch.kernels.lanes import Waits
-from stickslip.batch.kernels.tables import Setups, Stage
+from stickslip.batch.kernels.tables import LaneStage, Setups
 from stickslip.engine.memory.simd import WIDTH
 from stickslip.engine.on_demand import lend_parts_of_batch
 from stickslip.engine.state import layout as at
@@ -52,7 +52,7 @@ class Workspace(NamedTuple):
 
     def ready_for(self, constants: int) -> Workspace:
         """Free all lanes and begin with the first member of a group, whose law has the given number of constants."""
-        self.stage[:], self.waits[:], self.upcoming[:] = Stage.FREE, Waits.NONE, 0
+        self.stage[:], self.waits[:], self.upcoming[:] = LaneStage.FREE, Waits.NONE, 0
         numbers, block = new_block(constants)
         return self._replace(numbers=numbers, block=block)
 
@@ -92,7 +92,7 @@ def apart(*shape: int, dtype: type = float) -> Any:
 
 def new_block(constants: int) -> tuple[Floats, Integers]:
     """Return `Workspace.numbers` and `Workspace.block` for a law with the given number of constants."""
-    numbers = apart(WIDTH * (Block.total + constants))
+    numbers = apart(WIDTH * (LaneBlock.total + constants))
     return numbers, np.array([numbers.ctypes.data])
 
 

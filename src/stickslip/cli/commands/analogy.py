@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from stickslip.cli.options import SCENARIO, Changes, Dpi, FigureFile, Size, axes_of, complete_scenario, option, table_of
-from stickslip.cli.output.files import Look, Target, announce, check_targets, drawing, write_files
+from stickslip.cli.output.files import FigureLook, Target, announce, check_targets, drawing, write_files
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def analogy(
     from stickslip.cli.output.studies import show_analogy
     from stickslip.cli.overrides import load_with
 
-    look = Look(dpi, size)
+    look = FigureLook(dpi, size)
     check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))
     look.check(figure)
     typed = AXES if map_axes is None and scenario == BUNDLED else map_axes or []

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from stickslip.cli.options import Dpi, FigureFile, Size, option
-from stickslip.cli.output.files import Look, Target, announce, check_targets, drawing, write_files
+from stickslip.cli.output.files import FigureLook, Target, announce, check_targets, drawing, write_files
 from stickslip.foundation.errors import InputError, nearest
 
 ACTIONS = ("list", "get", "judge")
@@ -62,7 +62,7 @@ def benchmark(
 
         announce(*write_benchmark(what, folder or Path()))
         return
-    look = Look(dpi, size)
+    look = FigureLook(dpi, size)
     check_targets(Target("--out", out, (".csv", ".nc")), Target("--figure", figure))
     look.check(figure)
     if not _judge(Path(what), name, tolerance, (out, figure, look)):
@@ -76,7 +76,7 @@ def _list() -> None:
     print_numbers(console(), ("name", "asks for"), [[name, one.asks] for name, one in BENCHMARKS.items()], text=2)
 
 
-def _judge(file: Path, name: str | None, tolerance: float, results: tuple[Path | None, Path | None, Look]) -> bool:
+def _judge(file: Path, name: str | None, tolerance: float, results: tuple[Path | None, Path | None, FigureLook]) -> bool:
     """Judge a series, show and write what comes out, and return True if it passes."""
     from stickslip.cli.output.studies import show_schemes, tables_of
     from stickslip.run.progress import progress_line

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from stickslip.cli.options import Changes, Dpi, ScenarioName, Size, axes_of, option
-from stickslip.cli.output.files import Look, Target, announce, check_targets, drawing, write_files
+from stickslip.cli.output.files import FigureLook, Target, announce, check_targets, drawing, write_files
 from stickslip.cli.output.show import print_words, say, titled
 from stickslip.foundation.errors import InputError, InputWarning
 from stickslip.foundation.show import brief, clean, with_unit
@@ -66,7 +66,7 @@ def check(
     from stickslip.cli.overrides import load
     from stickslip.scenarios.examine import examine
 
-    look = Look(dpi, size)
+    look = FigureLook(dpi, size)
     check_targets(Target("--figure", figure), Target("--steady-figure", steady_figure))
     look.check(figure, steady_figure)
     with warnings.catch_warnings():

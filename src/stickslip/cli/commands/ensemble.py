@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from stickslip.cli.options import SIZE_HELP, Changes, Dpi, Duration, FigureFile, Rtol, ScenarioName, option
-from stickslip.cli.output.files import Look, Target, announce, check_targets, drawing, write_files
+from stickslip.cli.output.files import FigureLook, Target, announce, check_targets, drawing, write_files
 
 if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario
@@ -54,7 +54,7 @@ def ensemble(
     from stickslip.cli.output.studies import show_ensemble
     from stickslip.cli.overrides import load_with
 
-    look = Look(dpi, figure_size)
+    look = FigureLook(dpi, figure_size)
     check_targets(Target("--out", out, (".csv", ".nc")), Target("--figure", figure))
     look.check(figure)
     chosen = load_with("ensemble", scenario, changes, duration=duration, events=events, rtol=rtol)

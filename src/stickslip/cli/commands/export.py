@@ -11,7 +11,7 @@ from stickslip.cli.options import Duration, complete_source, option
 from stickslip.cli.output.files import announce, check_target
 
 if TYPE_CHECKING:
-    from stickslip.studies.compare import Source
+    from stickslip.studies.compare import RunSource
 
 RUN = "A TOML file, a bundled name, a file of `run --out` (.nc), or - for a scenario from standard input."
 COMPONENTS = "All eight columns of the three-dimensional benchmarks."
@@ -53,7 +53,7 @@ def export(
         raise typer.Exit(1)
 
 
-def _source(run: str, duration: str | None) -> Source:
+def _source(run: str, duration: str | None) -> RunSource:
     from stickslip.cli.overrides import STDIN, load, read
     from stickslip.scenarios.schema import read_duration
     from stickslip.studies.compare import read_source

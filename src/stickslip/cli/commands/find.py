@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from stickslip.cli.options import Changes, Dpi, FigureFile, ScenarioName, Size, option, table_of
-from stickslip.cli.output.files import Look, Target, announce, check_targets, drawing, write_files
+from stickslip.cli.output.files import FigureLook, Target, announce, check_targets, drawing, write_files
 from stickslip.cli.output.show import print_sentences, titled
 from stickslip.foundation.errors import InputError
 
@@ -50,7 +50,7 @@ def find(
     from stickslip.scenarios.entries import typed_number
     from stickslip.studies.find import find as study
 
-    look = Look(dpi, size)
+    look = FigureLook(dpi, size)
     check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))
     look.check(figure)
     name, given, ends = along.partition("=")

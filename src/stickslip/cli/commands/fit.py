@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from stickslip.cli.options import Changes, Dpi, FigureFile, Size, complete_fitted, complete_table, complete_template, option
-from stickslip.cli.output.files import Look, Target, announce, check_targets, drawing, write_files
+from stickslip.cli.output.files import FigureLook, Target, announce, check_targets, drawing, write_files
 from stickslip.cli.output.show import console, print_sentences, print_words, say
 from stickslip.foundation.errors import InputError, InputWarning
 from stickslip.foundation.show import clean
@@ -72,7 +72,7 @@ def fit(
     from stickslip.cli.overrides import typed_values
     from stickslip.friction import Points
 
-    look = Look(dpi, size)
+    look = FigureLook(dpi, size)
     check_targets(Target("--out", out, (".toml",)), Target("--figure", figure))
     look.check(figure)
     _check_options(law, smooth, monotone, along, {"--fix": fix, "--start": start})

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from stickslip.cli.options import ACCURACY, RESULTS, TABLES, Changes, Dpi, FigureFile, ScenarioName, Size, complete_table, option
-from stickslip.cli.output.files import Look, Target, announce, check_folder, check_targets, drawing, write_files
+from stickslip.cli.output.files import FigureLook, Target, announce, check_folder, check_targets, drawing, write_files
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
@@ -99,7 +99,7 @@ def infer(
     from stickslip.cli.output.studies import show_inference, show_ranking
     from stickslip.cli.overrides import load
 
-    look = Look(dpi, size)
+    look = FigureLook(dpi, size)
     targets = Target("--out", out, (".nc", ".csv")), Target("--scenario-out", scenario_out, (".toml",))
     check_targets(*targets, Target("--figure", figure))
     if report is not None:

@@ -19,7 +19,7 @@ from stickslip.cli.options import (
     option,
     table_of,
 )
-from stickslip.cli.output.files import Look, Target, announce, check_targets, drawing, write_files
+from stickslip.cli.output.files import FigureLook, Target, announce, check_targets, drawing, write_files
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ def regularise(
     from stickslip.cli.output.studies import show_regularisation
     from stickslip.cli.overrides import load_with
 
-    look = Look(dpi, size)
+    look = FigureLook(dpi, size)
     check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))
     look.check(figure)
     chosen = load_with("regularise", scenario, changes, duration=duration, rtol=rtol)

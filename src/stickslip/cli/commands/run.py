@@ -27,7 +27,7 @@ from stickslip.cli.options import (
     complete_scenario,
     option,
 )
-from stickslip.cli.output.files import Look, announce
+from stickslip.cli.output.files import FigureLook, announce
 
 if TYPE_CHECKING:
     from stickslip.trajectory.status import Status
@@ -104,7 +104,7 @@ def run(
     from stickslip.cli.output.pictures import Pictures
     from stickslip.cli.output.summary import show_catalogue, show_solution
 
-    drawn = Pictures(figure, path, catalogue_figure, energy_figure, friction_figure, space_time, animation, Look(dpi, size))
+    drawn = Pictures(figure, path, catalogue_figure, energy_figure, friction_figure, space_time, animation, FigureLook(dpi, size))
     replaced = {"duration": duration, "events": events, "rtol": rtol, "creep_rtol": creep_rtol}
     replaced |= {"shortest_event": shortest_event, "selection": selection}
     request = Request(

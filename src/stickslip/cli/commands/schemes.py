@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from stickslip.cli.options import Changes, Dpi, Duration, FigureFile, Rtol, ScenarioName, Size, option
-from stickslip.cli.output.files import Look, Target, announce, check_targets, drawing, write_files
+from stickslip.cli.output.files import FigureLook, Target, announce, check_targets, drawing, write_files
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def schemes(
     from stickslip.cli.output.studies import show_schemes, tables_of
     from stickslip.cli.overrides import load_with
 
-    look = Look(dpi, size)
+    look = FigureLook(dpi, size)
     check_targets(Target("--out", out, (".csv", ".nc")), Target("--figure", figure))  # the file of shocks goes beside it
     look.check(figure)
     chosen = load_with("schemes", scenario, changes, duration=duration, rtol=rtol)

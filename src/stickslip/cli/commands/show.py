@@ -24,7 +24,7 @@ from stickslip.cli.options import (
     complete_quantity,
     complete_result,
 )
-from stickslip.cli.output.files import Look, announce, check_targets, drawing
+from stickslip.cli.output.files import FigureLook, announce, check_targets, drawing
 from stickslip.cli.output.pictures import Pictures
 from stickslip.cli.output.show import console, say
 from stickslip.foundation.errors import InputError
@@ -75,7 +75,7 @@ def show(
 
     Exit code: 0 done, 2 unusable input.
     """
-    look = Look(dpi, size)
+    look = FigureLook(dpi, size)
     pictures = Pictures(figure, path, catalogue_figure, energy_figure, friction_figure, space_time, animation, look)
     check_targets(*pictures.targets())
     pictures.check()

@@ -21,7 +21,7 @@ from stickslip.cli.options import (
     complete_vary,
     option,
 )
-from stickslip.cli.output.files import Look, announce, drawing
+from stickslip.cli.output.files import FigureLook, announce, drawing
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
@@ -103,7 +103,7 @@ def sweep(
     from stickslip.sweeps.execution.plan import make_plan
 
     _check_files(vary, table, out, figure)
-    look = Look(dpi, size)
+    look = FigureLook(dpi, size)
     look.check(figure)
     chosen = load(scenario, "sweep", changes)
     plan = make_plan(
@@ -190,7 +190,7 @@ def _found(plan: Plan, out: Path | None, resources: dict[str, Any]) -> tuple[xr.
     return found, last[0] if last else None
 
 
-def _draw(dataset: xr.Dataset, quantity: str, figure: Path, look: Look) -> None:
+def _draw(dataset: xr.Dataset, quantity: str, figure: Path, look: FigureLook) -> None:
     from stickslip.figures.sweeps.sweep import plot_sweep
 
     drawing(partial(plot_sweep, dataset, quantity), look)(figure)

@@ -28,7 +28,7 @@ PICTURES = (".png", ".pdf", ".svg")
 
 
 @dataclass(frozen=True)
-class Look:
+class FigureLook:
     """What a user typed on the look of figures: dots per inch and size."""
 
     dpi: float | None = None
@@ -135,7 +135,7 @@ def write_files(*targets: tuple[Path | None, Callable[[Path], object]]) -> list[
     return [path for path, _ in wanted]
 
 
-def drawing(draw: Callable[..., object], look: Look) -> Callable[[Path], Path]:
+def drawing(draw: Callable[..., object], look: FigureLook) -> Callable[[Path], Path]:
     """Return a function that lets `draw` draw in a new figure of this look, and writes the figure to a file."""
 
     def write(path: Path) -> Path:

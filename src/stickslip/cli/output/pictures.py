@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from stickslip.cli.output.files import PICTURES, Look, Target, drawing, write_files
+from stickslip.cli.output.files import PICTURES, FigureLook, Target, drawing, write_files
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ class Pictures:
     friction_figure: Path | None
     space_time: Path | None
     animation: Path | None
-    look: Look
+    look: FigureLook
 
     @property
     def wanted(self) -> dict[str, Path]:

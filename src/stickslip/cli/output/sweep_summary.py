@@ -122,7 +122,7 @@ def _show_reasons(reasons: list[str]) -> None:
 
 
 @dataclass(frozen=True)
-class Change:
+class ChangeAlongKey:
     """The changes of a quantity along one key: the number of pairs of neighbours that differ, and the values that enclose them.
 
     All `pairs` pairs lie between the values `low` and `high` of the key (SI, or words).
@@ -143,7 +143,7 @@ def cases(dataset: xr.Dataset, name: str) -> dict[float, int]:
     return dict(zip(found.tolist(), count.tolist(), strict=True))
 
 
-def changes(dataset: xr.Dataset, name: str) -> list[Change]:
+def changes(dataset: xr.Dataset, name: str) -> list[ChangeAlongKey]:
     """Return the changes of a quantity along each key of a grid. A missing value (NaN) counts as no change."""
     values, found = dataset[name], []
     for axis, key in enumerate(values.dims):
@@ -155,7 +155,7 @@ def changes(dataset: xr.Dataset, name: str) -> list[Change]:
         if at.size:
             places = dataset[key].to_numpy()
             low, high = places[at[0] : at[0] + 1].tolist()[0], places[at[-1] + 1 :].tolist()[0]
-            found.append(Change(str(key), int(differ.sum()), low, high))
+            found.append(ChangeAlongKey(str(key), int(differ.sum()), low, high))
     return found
 
 
@@ -184,7 +184,7 @@ def _show_changes(dataset: xr.Dataset, *, is_grid: bool) -> None:
         say(screen, f"{name}: {counts}" + (f"; changes {along}" if along else ""))
 
 
-def _told(change: Change, dataset: xr.Dataset) -> str:
+def _told(change: ChangeAlongKey, dataset: xr.Dataset) -> str:
     unit = str(dataset[change.key].attrs.get("units", ""))
     ends = (end if isinstance(end, str) else with_unit(end, unit) for end in (change.low, change.high))
     return f"along {change.key} between {' and '.join(ends)}"

@@ -10,7 +10,7 @@ from stickslip.engine.memory.addresses import ahead, call_state_value, call_valu
 from stickslip.engine.memory.pointers import numbers_of
 from stickslip.engine.series.polynomial import NONE, evaluate, first_descent, restrict, restrict_low
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Branch, Cause, Floats, Incoming, Stop
+from stickslip.engine.state.layout import BranchRow, Cause, Floats, Incoming, Stop
 from stickslip.engine.state.workspace import Run
 
 TIE = 1e-13
@@ -195,7 +195,7 @@ def needs_branches(run: Run) -> bool:
 
 
 @kernel
-def is_taken(branch: Branch, load: float) -> bool:
+def is_taken(branch: BranchRow, load: float) -> bool:
     """Return True if the rule ever takes the branch, and keeps it at this load (Pa, minus the reference) or at a higher one."""
     return branch.keep_from <= branch.keep_to and load <= branch.keep_to
 

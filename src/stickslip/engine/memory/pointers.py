@@ -17,7 +17,7 @@ from numba.extending import intrinsic, lower_builtin, lower_getattr_generic, low
 
 from stickslip.engine.compile.numba_privates import AbstractTemplate, AttributeTemplate, infer_getattr, infer_global, signature
 from stickslip.engine.compile.uncompiled import UNCOMPILED, Pointer
-from stickslip.engine.memory.records import FLOATS, INTEGERS, Record, Slot
+from stickslip.engine.memory.records import FLOATS, INTEGERS, MemoryRecord, Slot
 from stickslip.engine.memory.simd import LANES, POINTER, WHOLE, WIDTH
 
 
@@ -29,7 +29,7 @@ LANE_ROW = LaneRow("LaneRow")
 
 
 @dataclass(frozen=True)
-class View:
+class RecordView:
     """A way to see a record: the types of its floats and its rows of floats, and the distance of its places in memory."""
 
     name: str
@@ -38,14 +38,14 @@ class View:
     stride: int
 
 
-PLAIN = View("pointer to", types.float64, FLOATS, 1)
-ALL_LANES, ONE_LANE = View("all lanes of", LANES, POINTER, WIDTH), View("one lane of", types.float64, LANE_ROW, WIDTH)
+PLAIN = RecordView("pointer to", types.float64, FLOATS, 1)
+ALL_LANES, ONE_LANE = RecordView("all lanes of", LANES, POINTER, WIDTH), RecordView("one lane of", types.float64, LANE_ROW, WIDTH)
 
 
 class RecordPointer(types.Type):  # type: ignore[misc]
     """The type of a record in compiled code: a pointer to its first place, and how the record is seen."""
 
-    def __init__(self, record: type[Record], view: View = PLAIN) -> None:
+    def __init__(self, record: type[MemoryRecord], view: RecordView = PLAIN) -> None:
         self.record, self.view = record, view
         super().__init__(name=f"{view.name} {record.__module__}.{record.__name__}")
 
@@ -174,7 +174,7 @@ rows_of = seen_as(POINTER)
 """A record in all lanes, or an address (bytes, a multiple of 64), as a row of lanes."""
 
 
-def record_at(record: type[Record]) -> Any:
+def record_at(record: type[MemoryRecord]) -> Any:
     """Return a function with which kernels turn memory (an array, or a pointer to it) or a record into the first record there."""
     if not UNCOMPILED:
         return seen_as(RecordPointer(record))
@@ -183,19 +183,19 @@ def record_at(record: type[Record]) -> Any:
     )
 
 
-def all_lanes(record: type[Record]) -> Any:
+def all_lanes(record: type[MemoryRecord]) -> Any:
     """Return a function for compiled code that sees the memory at an address as a record in all lanes."""
     return seen_as(RecordPointer(record, ALL_LANES))
 
 
-def one_lane(record: type[Record]) -> Any:
+def one_lane(record: type[MemoryRecord]) -> Any:
     """Return a function for compiled code that sees the memory at an address as a record in lane 0."""
     return seen_as(RecordPointer(record, ONE_LANE))
 
 
 if UNCOMPILED:
 
-    def numbers_of(record: Record) -> Pointer:
+    def numbers_of(record: MemoryRecord) -> Pointer:
         """Return a pointer to the numbers of a record."""
         return Pointer(record.numbers)
 

@@ -54,17 +54,17 @@ def floats_inside(size: int) -> Any:
     return _Wanted(FLOATS, size, True)
 
 
-def records_at(record: type[Record]) -> Any:
+def records_at(record: type[MemoryRecord]) -> Any:
     """Declare a field that holds the address of records, one after the other: `run.history[n].phase_from`."""
     return _Wanted(record, 1, False)
 
 
-def inside(record: type[Record], size: int | None = None) -> Any:
+def inside(record: type[MemoryRecord], size: int | None = None) -> Any:
     """Declare a record that lies in this one and takes `size` places, by default as many as it has."""
     return _Wanted(record, record.total if size is None else size, True)
 
 
-class Record:
+class MemoryRecord:
     """The base class of all records. Fields are annotations; a float or an integer needs nothing else.
 
     The memory of a record that has only floats is an array of floats. Any other record lies in an array of 64-bit integers, which
@@ -128,20 +128,20 @@ class _Number:
     def __init__(self, place: int) -> None:
         self.place = place
 
-    def __get__(self, record: Record | None, owner: type[Record]) -> Any:
+    def __get__(self, record: MemoryRecord | None, owner: type[MemoryRecord]) -> Any:
         return self if record is None else record.numbers[self.place]
 
-    def __set__(self, record: Record, value: Any) -> None:
+    def __set__(self, record: MemoryRecord, value: Any) -> None:
         record.numbers[self.place] = value
 
 
 class _FloatAmongIntegers(_Number):
     """Python's access to a float in a record whose memory is an array of integers."""
 
-    def __get__(self, record: Record | None, owner: type[Record]) -> Any:
+    def __get__(self, record: MemoryRecord | None, owner: type[MemoryRecord]) -> Any:
         return self if record is None else record.numbers[self.place].view(np.float64)
 
-    def __set__(self, record: Record, value: Any) -> None:
+    def __set__(self, record: MemoryRecord, value: Any) -> None:
         record.numbers[self.place] = np.asarray(value, np.float64).view(np.int64)[()]
 
 
@@ -151,7 +151,7 @@ class _Inside:
     def __init__(self, place: Slot, name: str) -> None:
         self.place, self.name = place, name
 
-    def __get__(self, record: Record | None, owner: type[Record]) -> Any:
+    def __get__(self, record: MemoryRecord | None, owner: type[MemoryRecord]) -> Any:
         if record is None:
             return self
         begin, end = self.place.first, self.place.first + self.place.size
@@ -174,16 +174,16 @@ class _Address:
 
     def __init__(self, place: Slot) -> None:
         self.place = place.first
-        self.record: type[Record] | None = place.kind if isinstance(place.kind, type) else None
+        self.record: type[MemoryRecord] | None = place.kind if isinstance(place.kind, type) else None
         self.kind = self.record.memory_type if self.record else np.float64 if place.kind is FLOATS else np.int64
 
-    def __get__(self, record: Record | None, owner: type[Record]) -> Any:
+    def __get__(self, record: MemoryRecord | None, owner: type[MemoryRecord]) -> Any:
         if record is None:
             return self
         pointer = pointer_at(record.numbers[self.place], self.kind)
         return self.record(pointer) if self.record else pointer
 
-    def __set__(self, record: Record, pointer: Pointer) -> None:
+    def __set__(self, record: MemoryRecord, pointer: Pointer) -> None:
         record.numbers[self.place] = pointer.address
 
 

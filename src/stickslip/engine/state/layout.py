@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.engine.formula_code.taylor_series import ORDER
-from stickslip.engine.memory.records import Record, floats_inside
+from stickslip.engine.memory.records import MemoryRecord, floats_inside
 from stickslip.friction.formula import expression
 
 Floats = NDArray[np.float64]
@@ -27,7 +27,7 @@ STATES = len(expression.STATES)
 """Largest number of states of a law (1); there is room for as many everywhere."""
 
 
-class Params(Record):
+class Params(MemoryRecord):
     """Hold the numbers of a problem, in SI. They are constant during a run, except `stick_to` under a law of slip and slip rate."""
 
     round_trip_time: (
@@ -60,7 +60,7 @@ class Params(Record):
     state_scale: Floats = floats_inside(STATES)  # units of the states: below these sizes, errors are not relative to the state
 
 
-class State(Record):
+class State(MemoryRecord):
     """Hold the place and motion of the contact, and the piece of load that it meets."""
 
     xi: float  # 1: place in the present piece of load, from 0 to 1
@@ -96,7 +96,7 @@ SAVED = State.places["taken"].first
 """Number of leading fields of `State` that are set aside with the piece of load while a side piece next to a fold replaces it."""
 
 
-class Counts(Record):
+class Counts(MemoryRecord):
     """Hold the part of the state that is whole numbers: places in the history, flags, codes."""
 
     trip: int  # present round trip, from 0
@@ -156,7 +156,7 @@ class Counts(Record):
     degree: int  # degree of the present piece of load: its coefficients beyond are zero
 
 
-class SeriesInput(Record):
+class SeriesInput(MemoryRecord):
     """Hold the input of a law's compiled series (`taylor_series`); generated code reads it by number, k[0], k[1], ..."""
 
     damping: float  # k[0], Pa s/m or N s/m: as in `Params`
@@ -173,7 +173,7 @@ class SeriesInput(Record):
     force: float  # k[11], Pa or N: the net force where `free` is 0, which is the step from static to sliding friction; else 0
 
 
-class Ball(Record):
+class Ball(MemoryRecord):
     """Hold the input and output of a law's compiled radii (`balls`); generated code reads it by number, k[0], k[1], ..."""
 
     slip: float  # k[0], m: radius of the disc in which the law slip varies
@@ -303,7 +303,7 @@ class Stop(IntEnum):
 # ---- records in tables ------------------------------------------------------------------------------------------------------
 
 
-class LawPiece(Record):
+class LawPiece(MemoryRecord):
     """Hold one piece of the friction law: the functions of its formula, its reference slip, and the knot at its end."""
 
     value_at: int  # address of `value`; 0 for a law with a state, which has the next but one instead
@@ -316,7 +316,7 @@ class LawPiece(Record):
     knot: float  # m (minus the initial slip of the law) or m/s: end of the piece; inf for the last one
 
 
-class Branch(Record):
+class BranchRow(MemoryRecord):
     """Hold one branch of the contact equation: slip rates between which g(v) = Z v + S mu rises, and the loads that keep it.
 
     Loads are in Pa, minus the reference strength. The rule never takes a branch with keep_from > keep_to.
@@ -330,7 +330,7 @@ class Branch(Record):
     excess_to: float  # Pa: g at rate_to
 
 
-class FirstLoad(Record):
+class FirstLoad(MemoryRecord):
     """Hold one piece of the load of the first round trip, which is linear; the last record only holds the end, in `phase`."""
 
     phase: float  # s: phase at which the piece begins
@@ -339,7 +339,7 @@ class FirstLoad(Record):
     jump: float  # 1 if the load jumps there, else 0
 
 
-class LoadingSegment(Record):
+class LoadingSegment(MemoryRecord):
     """Hold one straight segment of a loading that varies: the inflow of a slab (Pa), the growth of a block's load (N/s)."""
 
     trip: float  # round trip in which the segment arrives at the contact
@@ -349,7 +349,7 @@ class LoadingSegment(Record):
     jump: float  # 1 if the inflow jumps there, else 0
 
 
-class HistoryPiece(Record):
+class HistoryPiece(MemoryRecord):
     """Hold one piece of the history: a step of the contact, with load and slip rate as polynomials in xi on [0, 1]."""
 
     trip: int  # whole round trips before the piece
@@ -371,7 +371,7 @@ class HistoryPiece(Record):
     rate: Floats = floats_inside(TERMS)  # m/s, with its sign
 
 
-class EchoNode(Record):
+class EchoNode(MemoryRecord):
     """Hold a node of the trees of echoes (`waves.echo_queue`): node n belongs to piece n of the history."""
 
     left: int  # child whose pieces begin before this one, or -1
@@ -388,7 +388,7 @@ class EchoNode(Record):
 # ---- scratch space ----------------------------------------------------------------------------------------------------------
 
 
-class LawValue(Record):
+class LawValue(MemoryRecord):
     """Hold what a law's formula returns: the friction coefficient and, for a law with states, their rates of change."""
 
     mu: float  # 1: friction coefficient minus that at the reference of the piece of the law
@@ -401,7 +401,7 @@ class LawValue(Record):
     change_by_state: Floats = floats_inside(STATES * STATES)  # a row for each state: with respect to each state
 
 
-class Friction(Record):
+class Friction(MemoryRecord):
     """Hold friction at the contact, as `contact_equation.friction_at` writes it."""
 
     stress: float  # Pa or N: S times `coefficient`
@@ -410,7 +410,7 @@ class Friction(Record):
     coefficient: float  # 1: friction coefficient minus the static one at the start of the run
 
 
-class Between(Record):
+class Between(MemoryRecord):
     """Hold the polynomials of an implicit step at one place between its points; derivatives are with respect to that place."""
 
     rate: float  # m/s

@@ -13,12 +13,12 @@ import numpy as np
 
 from stickslip.engine.compile.uncompiled import UNCOMPILED, lend_memory
 from stickslip.engine.memory.pointers import record_at
-from stickslip.engine.memory.records import Record, floats_at, floats_inside, inside, records_at
+from stickslip.engine.memory.records import MemoryRecord, floats_at, floats_inside, inside, records_at
 from stickslip.engine.state.layout import (
     STATES,
     TERMS,
     Ball,
-    Branch,
+    BranchRow,
     Counts,
     EchoNode,
     FirstLoad,
@@ -40,12 +40,12 @@ MATRIX_ROWS = 40
 """Rows of TERMS numbers (1) that the matrix and the right-hand side of the equations of an implicit step fill."""
 
 
-class Run(Record):
+class Run(MemoryRecord):
     """Hold one run: the addresses and lengths of the problem's tables and of the history, the state, and scratch space."""
 
     law: LawPiece = records_at(LawPiece)  # the tables of `Setup`
     constants: Floats = floats_at()
-    branch_table: Branch = records_at(Branch)
+    branch_table: BranchRow = records_at(BranchRow)
     first_load: FirstLoad = records_at(FirstLoad)
     loading: LoadingSegment = records_at(LoadingSegment)
     history: HistoryPiece = records_at(HistoryPiece)  # the tables of the history (`Store`)
@@ -110,7 +110,7 @@ WORK_ROWS = (RUN_SIZE - SCRATCH) // TERMS
 
 borrow: Any = record_at(Run)
 """Function for compiled code that returns the run in memory that `lend` has filled."""
-branches_in: Any = record_at(Branch)
+branches_in: Any = record_at(BranchRow)
 """Function for compiled code that returns the first record of a table of branches."""
 pieces_in: Any = record_at(HistoryPiece)
 """Function for compiled code that returns the first piece of a history's table."""

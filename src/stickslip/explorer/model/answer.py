@@ -65,7 +65,7 @@ class ContactPicture:
     path_load: Floats
 
 
-class State(NamedTuple):
+class StateCurve(NamedTuple):
     """One state of friction over time: what it means, its unit, and its values (SI)."""
 
     meaning: str
@@ -74,7 +74,7 @@ class State(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Motion:
+class BodyCurves:
     """Slip (m), slip rate (m/s), traction and load (Pa, for a block N) of one body against time (s).
 
     All arrays have one length. A shock has two points at one time, the limit from the left first.
@@ -91,7 +91,7 @@ class Motion:
     load_unit: Literal["Pa", "N"]
     normal_load: float = 1.0
     """Normal stress (Pa) or force (N) of this body: traction over it can be compared between slab and block."""
-    states: tuple[State, ...] = ()
+    states: tuple[StateCurve, ...] = ()
     """The states of friction, at the same times."""
 
 
@@ -162,7 +162,7 @@ class Answer:
     sentence: str
     law: LawPicture
     contact: ContactPicture | None
-    motions: tuple[Motion, ...]
+    motions: tuple[BodyCurves, ...]
     slab: SlabPicture | None
     energy: EnergyPicture
     marks: tuple[Mark, ...]

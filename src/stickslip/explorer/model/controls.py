@@ -8,10 +8,10 @@ from dataclasses import MISSING, dataclass, fields, replace
 from typing import Any, Literal
 
 from stickslip.bodies import BODIES
-from stickslip.explorer.model.ranges import Range, range_of
+from stickslip.explorer.model.ranges import SliderRange, range_of
 from stickslip.explorer.model.setting import Setting
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import Choice, Field, NamedNumbers, Part, Quantity, Series, Text, fields_of
+from stickslip.foundation.quantities import Choice, Field, LawField, NamedNumbers, NumberSeries, Quantity, Text, fields_of
 from stickslip.foundation.show import brief
 from stickslip.foundation.units import split_quantity, to_si
 from stickslip.friction import LAWS
@@ -49,7 +49,7 @@ EMPTY = {
     "contact.frames": f"{FRAMES}",
 }
 """What an empty field of a number stands for that has neither a default nor need be given."""
-PARTLESS = tuple(kind for kind, law in LAWS.items() if not any(isinstance(entry, Part) for entry, _ in fields_of(law).values()))
+PARTLESS = tuple(kind for kind, law in LAWS.items() if not any(isinstance(entry, LawField) for entry, _ in fields_of(law).values()))
 """Kinds of laws that may be a part of another law."""
 
 
@@ -70,7 +70,7 @@ class Control:
     value: float | str | tuple[float, ...] | None
     unit: str = ""
     size: float = 1.0
-    slider: Range | None = None
+    slider: SliderRange | None = None
     choices: tuple[str, ...] = ()
     empty: str = ""
     rare: bool = False
@@ -115,7 +115,7 @@ class Control:
         return int(number) if is_whole else number
 
     def _number(self, text: str) -> float | str:
-        declared = self.declared.item if isinstance(self.declared, Series) else self.declared
+        declared = self.declared.item if isinstance(self.declared, NumberSeries) else self.declared
         given = typed_number(text)
         entry = self._with_unit(given) if isinstance(given, float) and math.isfinite(given) else given
         if isinstance(declared, Quantity):
@@ -127,7 +127,7 @@ class Control:
 
 
 @dataclass(frozen=True)
-class Group:
+class ControlGroup:
     """The controls of one table of the document, such as "friction" or "friction.slip".
 
     `kind` is the kind of body, law, loading or start, "" for a table without one, and `kinds` those that can be chosen: see
@@ -141,7 +141,7 @@ class Group:
     controls: tuple[Control, ...]
 
 
-def controls_of(setting: Setting) -> tuple[Group, ...]:
+def controls_of(setting: Setting) -> tuple[ControlGroup, ...]:
     """Return the controls of a setting, table by table. Raises InputError if its document is not a scenario."""
     return tuple(_Tables(setting).groups())
 
@@ -154,7 +154,7 @@ class _Tables:
         began = Setting.bundled(setting.name) if setting.name in library.names() else setting
         self.began: Callable[[str], Any] = began.value
 
-    def groups(self) -> Iterator[Group]:
+    def groups(self) -> Iterator[ControlGroup]:
         if self.setting.is_fault:
             yield from self.of_fault()
             return
@@ -167,7 +167,7 @@ class _Tables:
             kinds = (CONSTANT, *HISTORIES)
             yield self.of("loading.pull_rate", HISTORIES[pull["kind"]], kinds, "Pull rate that varies")
         else:
-            others = Group("loading", others.title, CONSTANT, (CONSTANT, *HISTORIES), others.controls)
+            others = ControlGroup("loading", others.title, CONSTANT, (CONSTANT, *HISTORIES), others.controls)
         if others.controls:
             yield others
         far = self.setting.value("loading.far_stress")
@@ -179,17 +179,17 @@ class _Tables:
         yield replace(self.of("initial", type(body), (), states=law.states), kind=start, kinds=kinds)
         yield self.of_run()
 
-    def of_fault(self) -> Iterator[Group]:
+    def of_fault(self) -> Iterator[ControlGroup]:
         """Yield the tables of a fault: its patches first, then those of the problem that each node has; kinds stay as they are."""
         body, law = type(self.problem.body), self.problem.friction
         found: dict[str, list[Control]] = {}
         for one in parameter_paths(self.setting.scenario()):
             if one.name.startswith(CONTACT) and "width" not in one.name:
                 found.setdefault(one.name.rpartition("].")[0], []).append(self.of_contact(one))
-        grid = Group(CONTACT, "Contact", "", (), tuple(found.pop("", ())))
+        grid = ControlGroup(CONTACT, "Contact", "", (), tuple(found.pop("", ())))
         for table, controls in found.items():
             number = int(table.rpartition("[")[2]) + 1
-            yield Group(f"{table}]", f"Patch {number}", "", (), tuple(controls))
+            yield ControlGroup(f"{table}]", f"Patch {number}", "", (), tuple(controls))
         yield grid
         yield from (replace(group, kind="", kinds=()) for group in self.of_law("friction", ()))
         own = self.of("body", body, ())
@@ -212,15 +212,17 @@ class _Tables:
         control = self.number(one.name, label, one.declared, DEFAULTS_OF_CONTACT.get(inside), rare)
         return replace(control, kind="whole") if one.name in WHOLE else control
 
-    def of_law(self, table: str, kinds: tuple[str, ...]) -> Iterator[Group]:
+    def of_law(self, table: str, kinds: tuple[str, ...]) -> Iterator[ControlGroup]:
         content = self.setting.value(table)
         kind = kind_of(table, content, self.setting.name)
         yield self.of(table, kind, kinds, "" if table == "friction" else f"Friction: {table.partition('.')[2]}")
         for name, (entry, _) in entries_in(table, kind).items():
-            if isinstance(entry, Part):
+            if isinstance(entry, LawField):
                 yield from self.of_law(f"{table}.{name}", PARTLESS)
 
-    def of(self, table: str, kind: type, kinds: tuple[str, ...], title: str = "", states: tuple[StateVariable, ...] = ()) -> Group:
+    def of(
+        self, table: str, kind: type, kinds: tuple[str, ...], title: str = "", states: tuple[StateVariable, ...] = ()
+    ) -> ControlGroup:
         controls: list[Control] = []
         for name, (entry, default) in entries_in(table, kind, states).items():
             if not self.applies(f"{table}.{name}"):
@@ -228,19 +230,19 @@ class _Tables:
             if isinstance(entry, NamedNumbers):
                 given = self.setting.value(f"{table}.{name}") or {}
                 controls += [self.named(f"{table}.{name}.{one}", one) for one in given]
-            elif not isinstance(entry, Part):
+            elif not isinstance(entry, LawField):
                 controls.append(self.control(f"{table}.{name}", entry, default))
         own = getattr(kind, "kind", "") if kinds or "." in table else ""
-        return Group(table, title or TITLES[table.partition(".")[0]], own, kinds, tuple(controls))
+        return ControlGroup(table, title or TITLES[table.partition(".")[0]], own, kinds, tuple(controls))
 
-    def of_run(self) -> Group:
+    def of_run(self) -> ControlGroup:
         numbers = self.of("run", type(self.problem.body), ())
         rule = self.setting.value("run.selection") or SELECTION_RULES[0]
         meaning = "which slip rate the contact takes where several solve the contact equation"
         rules = Control("run.selection", "selection rule", meaning, "choice", rule, choices=names())
         most = self.setting.value("run.events")
         events = Control("run.events", "slip events", "the run ends after so many", "whole", most, empty="no limit", rare=True)
-        return Group("run", numbers.title, "", (), (*numbers.controls[:1], rules, *numbers.controls[1:], events))
+        return ControlGroup("run", numbers.title, "", (), (*numbers.controls[:1], rules, *numbers.controls[1:], events))
 
     @property
     def starts_steadily(self) -> bool:
@@ -267,7 +269,7 @@ class _Tables:
             return Control(path, label, entry.meaning, "choice", value or default, choices=entry.allowed, rare=rare, declared=entry)
         if isinstance(entry, Text):
             return Control(path, label, entry.meaning, "text", value or "", declared=entry)
-        if isinstance(entry, Series):
+        if isinstance(entry, NumberSeries):
             empty = "" if default is MISSING else "none"
             unit, size = unit_of(next((one for one in value or () if isinstance(one, str)), None), 0.0, entry.item.unit)
             points = None if value is None else tuple(entry.item.check(label, "it", one) for one in value)
@@ -302,7 +304,7 @@ class _Tables:
         slider = self._slider(path, one.declared, one.value, MISSING)
         return Control(path, name, "number of the formula", "number", one.value, unit, size, slider, declared=one.declared)
 
-    def _slider(self, path: str, entry: Quantity, value: float | None, default: Any) -> Range | None:
+    def _slider(self, path: str, entry: Quantity, value: float | None, default: Any) -> SliderRange | None:
         """Return the range of a slider, which follows from the value with which the scenario began and not from the present one."""
         anchor = self.began(path)
         try:

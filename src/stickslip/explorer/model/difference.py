@@ -48,7 +48,7 @@ MOST_NAMED = 6
 
 
 @dataclass(frozen=True)
-class Change:
+class ChangedEntry:
     """An entry of the document that differs: its path, and what it was and is, "" where there is none."""
 
     path: str
@@ -83,7 +83,7 @@ class Moved:
 class Difference:
     """All changes from one run to another, and all key numbers that moved."""
 
-    changes: tuple[Change, ...]
+    changes: tuple[ChangedEntry, ...]
     moved: tuple[Moved, ...]
 
     @property
@@ -106,11 +106,11 @@ def difference(before: tuple[Setting, Answer | FaultAnswer], after: tuple[Settin
     return Difference(_changes(old, new), _moved(old_answer.numbers, new_answer.numbers))
 
 
-def _changes(old: Setting, new: Setting) -> tuple[Change, ...]:
+def _changes(old: Setting, new: Setting) -> tuple[ChangedEntry, ...]:
     """Return the changes; "1 s/m" and 1.0 are the same."""
     was, now = (inner_leaves_of(tomllib.loads(one.scenario().to_toml())) for one in (old, new))
     paths = [path for path in dict.fromkeys((*was, *now)) if path not in TEXTS and was.get(path) != now.get(path)]
-    return tuple(Change(path, _shown(old, path, was), _shown(new, path, now)) for path in paths)
+    return tuple(ChangedEntry(path, _shown(old, path, was), _shown(new, path, now)) for path in paths)
 
 
 def _shown(setting: Setting, path: str, in_si: dict[str, Any]) -> str:

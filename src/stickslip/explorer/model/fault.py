@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stickslip.explorer.model.answer import EnergyPicture, KeyNumber, Mark, Motion
+from stickslip.explorer.model.answer import BodyCurves, EnergyPicture, KeyNumber, Mark
 from stickslip.explorer.model.words import short
 from stickslip.foundation.errors import InputError
 from stickslip.run.options import options_of
@@ -33,7 +33,7 @@ class FaultAnswer:
     scenario: Scenario
     run: PlanarSolution
     sentence: str
-    motions: tuple[Motion, ...]
+    motions: tuple[BodyCurves, ...]
     energy: EnergyPicture | None
     marks: tuple[Mark, ...]
     numbers: tuple[KeyNumber, ...]
@@ -69,10 +69,10 @@ def solve_fault(scenario: Scenario, told: Told) -> FaultAnswer:
     )
 
 
-def _in_the_middle(run: PlanarSolution) -> Motion:
+def _in_the_middle(run: PlanarSolution) -> BodyCurves:
     slip, rate, traction = (one[:, run.slab.nodes // 2] for one in (run.slip, run.slip_rate, run.traction))
     load = traction + run.slab.body.impedance * rate
-    return Motion("slab", "in the middle", run.times, slip, rate, traction, load, "Pa", run.slab.body.normal_stress)
+    return BodyCurves("slab", "in the middle", run.times, slip, rate, traction, load, "Pa", run.slab.body.normal_stress)
 
 
 def _energy(run: PlanarSolution) -> EnergyPicture | None:

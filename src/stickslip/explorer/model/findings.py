@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from stickslip.contact.uniqueness import Uniqueness
-from stickslip.explorer.model.answer import KeyNumber, Mark, MarkKind, Motion
+from stickslip.explorer.model.answer import BodyCurves, KeyNumber, Mark, MarkKind
 from stickslip.explorer.model.words import several, short
 from stickslip.observables.energy.pulses import PULSE_COLUMNS
 from stickslip.observables.rule_influence import RuleInfluence
@@ -23,7 +23,7 @@ MOST_EVENTS = 500
 
 
 @dataclass(frozen=True)
-class Found:
+class Findings:
     """What was found in a run, as the solution gives it: slip events, shocks and, if there are few events, their pulses."""
 
     solution: Solution
@@ -32,7 +32,7 @@ class Found:
     pulses: pd.DataFrame
 
     @classmethod
-    def of(cls, solution: Solution) -> Found:
+    def of(cls, solution: Solution) -> Findings:
         """Look for events, shocks and pulses."""
         few = len(solution.events) <= MOST_EVENTS
         pulses = solution.pulses() if few else pd.DataFrame(columns=list(PULSE_COLUMNS), dtype=float)
@@ -61,13 +61,13 @@ KINDS: dict[str, MarkKind] = {"fold": "fold", "echo": "echo"}
 """Kinds of the marks of shocks by their cause, if it is not "jump"."""
 
 
-def marks_of(found: Found, motion: Motion) -> tuple[Mark, ...]:
+def marks_of(found: Findings, motion: BodyCurves) -> tuple[Mark, ...]:
     """Return the marks of a run in order of time."""
     marks = [*_events(found), *_pulses(found, motion), *_jumps(found)]
     return tuple(sorted(marks, key=lambda mark: mark.time))
 
 
-def _events(found: Found) -> list[Mark]:
+def _events(found: Findings) -> list[Mark]:
     marks = []
     for _, event in found.events.nlargest(MOST_MARKS // 4, "slip").iterrows():
         marks.append(Mark(float(event.start), "start", f"a slip event begins at {short(event.start, 's')}"))
@@ -77,7 +77,7 @@ def _events(found: Found) -> list[Mark]:
     return marks
 
 
-def _pulses(found: Found, motion: Motion) -> list[Mark]:
+def _pulses(found: Findings, motion: BodyCurves) -> list[Mark]:
     """Return a mark for each pulse, where its slip rate is largest on the curve."""
     marks = []
     for _, pulse in found.pulses.nlargest(MOST_MARKS // 4, "slip").iterrows():
@@ -89,7 +89,7 @@ def _pulses(found: Found, motion: Motion) -> list[Mark]:
     return marks
 
 
-def _jumps(found: Found) -> list[Mark]:
+def _jumps(found: Findings) -> list[Mark]:
     shocks = found.shocks.assign(size=(found.shocks.rate_after - found.shocks.rate_before).abs())
     marks = []
     for _, shock in shocks.nlargest(MOST_MARKS // 4, "size").iterrows():
@@ -99,7 +99,7 @@ def _jumps(found: Found) -> list[Mark]:
     return marks
 
 
-def key_numbers(found: Found, contact: Uniqueness, motion: Motion) -> tuple[KeyNumber, ...]:
+def key_numbers(found: Findings, contact: Uniqueness, motion: BodyCurves) -> tuple[KeyNumber, ...]:
     """Return the numbers of a run; NaN for one that it does not have, such as the arrest of a contact that never slips."""
     event, unit = found.largest, motion.load_unit
     of_event = {} if event is None else event.to_dict()
@@ -142,7 +142,7 @@ CAUSES = {
 """How a jump came about, by the cause that the table of shocks gives."""
 
 
-def sentence(found: Found, contact: Uniqueness, influence: RuleInfluence) -> str:
+def sentence(found: Findings, contact: Uniqueness, influence: RuleInfluence) -> str:
     """Return the sentence on a run; its parts end with full stops."""
     parts = (_regime(found.solution.problem, contact, influence), _motion(found), _jumped(found), _rule(influence))
     return " ".join(f"{part[0].upper()}{part[1:]}." for part in parts if part)
@@ -177,7 +177,7 @@ def _against_critical(problem: Problem, contact: Uniqueness) -> str:
     return f"; {word} is {'above' if ratio > 1.0 else 'below'} {limit} by {abs(ratio - 1.0):.2g} of it"
 
 
-def _motion(found: Found) -> str:
+def _motion(found: Findings) -> str:
     """Return what moved: slip, pulses and arrest of the largest event."""
     event, span = found.largest, found.solution.history.span
     if event is None:
@@ -192,7 +192,7 @@ def _motion(found: Found) -> str:
     return f"{text}, {'arrested at ' + short(event.end, 's') if number == 1 else 'lasting ' + short(event.duration, 's')}"
 
 
-def _jumped(found: Found) -> str:
+def _jumped(found: Findings) -> str:
     """Return how the slip rate jumps: every jump of a few, the largest of many."""
     shocks = found.shocks
     if found.solution.problem.body.has_inertia:  # which has been said

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.contact.uniqueness import Uniqueness
-from stickslip.explorer.model.answer import ContactPicture, CurveName, EnergyPicture, LawPicture, Motion, SlabPicture
-from stickslip.explorer.model.sampled_waves import SampledWaves, Shown
+from stickslip.explorer.model.answer import BodyCurves, ContactPicture, CurveName, EnergyPicture, LawPicture, SlabPicture
+from stickslip.explorer.model.sampled_waves import SampledWaves, ShownInterval
 from stickslip.foundation.arrays import Floats
 from stickslip.friction import FrictionLaw, LaggedFriction
 from stickslip.friction.contract import one_argument
@@ -36,7 +36,7 @@ PATH, INSIDE, CELLS = 20_000, 8, 500
 `CELLS` times `CELLS` cells of the picture, one after the other, it keeps the first and the last."""
 
 
-def law_picture(solution: Solution, motion: Motion) -> LawPicture:
+def law_picture(solution: Solution, motion: BodyCurves) -> LawPicture:
     """Return the friction law of a run as a curve."""
     law = solution.problem.friction
     if law.depends_on_slip and not law.depends_on_rate:
@@ -136,7 +136,7 @@ BEYOND = 1.15
 """The curve reaches this far beyond the fastest slip rate of the run, and of the jumps of the rule."""
 
 
-def contact_picture(contact: Uniqueness, motion: Motion) -> ContactPicture | None:
+def contact_picture(contact: Uniqueness, motion: BodyCurves) -> ContactPicture | None:
     """Return the contact equation and the run's path on it; None if the slip rate is a state and follows from no such equation."""
     g = contact.resistance
     if g is None:
@@ -166,7 +166,7 @@ def contact_picture(contact: Uniqueness, motion: Motion) -> ContactPicture | Non
     )
 
 
-def _path(motion: Motion) -> tuple[Floats, Floats, Floats]:
+def _path(motion: BodyCurves) -> tuple[Floats, Floats, Floats]:
     """Return time, slip rate and load of a run, with NaN for rate and load where the slip rate jumps."""
     jumps: NDArray[np.intp] = np.flatnonzero((np.diff(motion.time) == 0.0) & (np.diff(motion.slip_rate) != 0.0)) + 1
     return (
@@ -219,7 +219,7 @@ SLAB_PLACES = 240
 """Number of places in the slab at which the product of its two waves is added up."""
 
 
-def energy_picture(shown: Shown, waves: SampledWaves | None) -> EnergyPicture:
+def energy_picture(shown: ShownInterval, waves: SampledWaves | None) -> EnergyPicture:
     """Return the parts of the energy; none where the waves in a slab are not known because the run leaped over creep."""
     body = shown.readings.problem.body
     time = np.linspace(shown.start, shown.end, SLAB_TIMES if body.has_waves else BLOCK_TIMES)
@@ -234,7 +234,7 @@ def energy_picture(shown: Shown, waves: SampledWaves | None) -> EnergyPicture:
     return EnergyPicture(time + shown.begin, drawn | {"total": total}, body.energy_unit)
 
 
-def _of_block(shown: Shown, time: Floats) -> dict[str, Floats]:
+def _of_block(shown: ShownInterval, time: Floats) -> dict[str, Floats]:
     history = shown.readings.history
     return energies(history, history.find(time, "right"), _nodes(history))
 

@@ -26,23 +26,23 @@ COEFFICIENTS = 1.5
 """Smallest end of the slider of a friction coefficient."""
 
 
-class Range(NamedTuple):
+class SliderRange(NamedTuple):
     """The ends of a slider (SI), and whether it is logarithmic."""
 
     low: float
     high: float
     log: bool = False
 
-    def holding(self, value: float | None) -> Range:
+    def holding(self, value: float | None) -> SliderRange:
         """Return the range with ends of two digits, widened to hold a value."""
         low, high = (float(f"{end:.2g}") for end in (self.low, self.high))
         if value is not None and math.isfinite(value) and (value > 0.0 or not self.log):
             low = low if value > low or math.isclose(value, low) else value
             high = high if value < high or math.isclose(value, high) else value
-        return Range(low, high, self.log)
+        return SliderRange(low, high, self.log)
 
 
-def range_of(path: str, declared: Quantity, anchor: float | None, problem: Problem) -> Range | None:
+def range_of(path: str, declared: Quantity, anchor: float | None, problem: Problem) -> SliderRange | None:
     """Return the range of a slider for the number at a path such as "body.density", or None if a slider makes no sense.
 
     It follows from `anchor`, the value (SI) with which the scenario began, and not from the slider.
@@ -50,11 +50,11 @@ def range_of(path: str, declared: Quantity, anchor: float | None, problem: Probl
     if path in ("run.rtol", "run.creep_rtol", "run.shortest_event", "body.p_wave_speed") or anchor is None:
         return None
     if declared.whole:
-        return Range(1.0, float(LARGEST_WHOLE))
+        return SliderRange(1.0, float(LARGEST_WHOLE))
     if path in COUNTS:
-        return Range(*COUNTS[path])
+        return SliderRange(*COUNTS[path])
     if path.endswith(("y[0]", "y[1]")):
-        return Range(-2.0 * abs(anchor), 2.0 * abs(anchor))
+        return SliderRange(-2.0 * abs(anchor), 2.0 * abs(anchor))
     special = _special(path.rpartition("].")[2], anchor, problem)  # of a patch: as that of all nodes
     if special is not None:
         return special
@@ -62,35 +62,39 @@ def range_of(path: str, declared: Quantity, anchor: float | None, problem: Probl
         return None
     if declared.unit == "1":
         high = max(COEFFICIENTS, 1.5 * anchor) if anchor >= LARGE_COEFFICIENT else REACH * anchor or LARGE_COEFFICIENT
-        return Range(0.0 if declared.above is None else NEARLY * high, high)
+        return SliderRange(0.0 if declared.above is None else NEARLY * high, high)
     if anchor > 0.0 and (declared.at_least != 0.0 or declared.unit in INVERSE_RATES):
         factor = SPECIAL_WIDE.get(path, WIDE)
-        return Range(anchor / factor, anchor * factor, log=True)
+        return SliderRange(anchor / factor, anchor * factor, log=True)
     if anchor == 0.0:
         return None
-    return Range(min(0.0, REACH * anchor), max(0.0, REACH * anchor))
+    return SliderRange(min(0.0, REACH * anchor), max(0.0, REACH * anchor))
 
 
-def _special(path: str, anchor: float, problem: Problem) -> Range | None:
+def _special(path: str, anchor: float, problem: Problem) -> SliderRange | None:
     """Return the range of a number that may be zero or infinite, and whose size follows from others of the problem."""
     body = problem.body
     size = problem.strength or 0.8 * problem.normal
     if path == "initial.load":
-        return Range(min(0.0, 1.5 * anchor), max(1.3 * size, 1.2 * anchor))
+        return SliderRange(min(0.0, 1.5 * anchor), max(1.3 * size, 1.2 * anchor))
     if path == "initial.excess":
         reach = 5.0 * abs(anchor) or 0.2 * size
-        return Range(-reach, reach)
+        return SliderRange(-reach, reach)
     if path == "initial.slip":
         reach = max(2.0 * abs(anchor), slip_scale(problem))
-        return Range(-reach if anchor < 0.0 else 0.0, reach)
+        return SliderRange(-reach if anchor < 0.0 else 0.0, reach)
     if path == "body.driver_impedance":
-        return Range(0.0, max(5.0 * body.impedance, 1.5 * anchor if math.isfinite(anchor) else 0.0))
+        return SliderRange(0.0, max(5.0 * body.impedance, 1.5 * anchor if math.isfinite(anchor) else 0.0))
     if path == "body.contact_mass":
-        return Range(0.0, max(0.1 * body.impedance * body.round_trip_time, REACH * anchor))
+        return SliderRange(0.0, max(0.1 * body.impedance * body.round_trip_time, REACH * anchor))
     if path == "body.damping":
-        return Range(0.0, max(2.0 * body.impedance, REACH * anchor))
+        return SliderRange(0.0, max(2.0 * body.impedance, REACH * anchor))
     if path == "loading.pull_rate" and anchor <= 0.0:
-        return Range(REACH * anchor, -REACH * anchor) if anchor < 0.0 else Range(0.0, 1e-3 * problem.normal / body.impedance)
+        return (
+            SliderRange(REACH * anchor, -REACH * anchor)
+            if anchor < 0.0
+            else SliderRange(0.0, 1e-3 * problem.normal / body.impedance)
+        )
     return None
 
 

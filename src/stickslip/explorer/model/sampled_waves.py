@@ -21,7 +21,7 @@ from stickslip.solution.solution import Solution
 from stickslip.solution.window import Window
 
 
-class Shown(NamedTuple):
+class ShownInterval(NamedTuple):
     """An interval of a run from `start` to `end` (s), in the time of `readings`, which counts from `begin` (s after the start)."""
 
     readings: Readings
@@ -30,7 +30,7 @@ class Shown(NamedTuple):
     begin: float
 
     @classmethod
-    def of(cls, solution: Solution) -> Shown:
+    def of(cls, solution: Solution) -> ShownInterval:
         """Return the interval to show of a run."""
         readings, start, end = choose_interval(solution, None, None)
         epoch = readings.history.epoch
@@ -94,7 +94,7 @@ class SampledWaves:
     where it arrives there. Raises InputError if the waves are not known because the run leaped over creep.
     """
 
-    def __init__(self, shown: Shown) -> None:
+    def __init__(self, shown: ShownInterval) -> None:
         self.shown = shown
         self.history, self.body = shown.readings.history, slab_of(shown.readings.problem)
         self.waves, self.radiation = Waves(self.history, self.body), Radiation(self.history, self.body)

@@ -10,10 +10,10 @@ from typing import Any
 
 from stickslip.bodies import ElasticSlab
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
-from stickslip.explorer.model.answer import Answer, Backdrop, Motion, State
-from stickslip.explorer.model.findings import Found, key_numbers, marks_of, sentence
+from stickslip.explorer.model.answer import Answer, Backdrop, BodyCurves, StateCurve
+from stickslip.explorer.model.findings import Findings, key_numbers, marks_of, sentence
 from stickslip.explorer.model.pictures import contact_picture, energy_picture, law_picture, slab_picture
-from stickslip.explorer.model.sampled_waves import SampledWaves, Shown
+from stickslip.explorer.model.sampled_waves import SampledWaves, ShownInterval
 from stickslip.foundation.errors import InputError
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.problem.problem import Problem
@@ -124,9 +124,9 @@ def answer_of(
 ) -> Answer:
     """Return what is shown of finished runs; `told` learns what is worked out next, and may raise to end that."""
     told("the run is finished; looking for slip events and pulses")
-    found = Found.of(solution)
+    found = Findings.of(solution)
     told("the run is finished; drawing its curves")
-    own, influence, shown = motion(solution), solution.rule_influence, Shown.of(solution)
+    own, influence, shown = motion(solution), solution.rule_influence, ShownInterval.of(solution)
     beside = _beside(companion)
     told("the run is finished; working out the inside of the body")
     waves = _waves(shown)
@@ -151,7 +151,7 @@ def answer_of(
     )
 
 
-def _waves(shown: Shown) -> SampledWaves | None:
+def _waves(shown: ShownInterval) -> SampledWaves | None:
     """Return the waves in the slab; None for a block, and where they are not known because the run leaped over creep."""
     if not shown.readings.problem.body.has_waves:
         return None
@@ -161,7 +161,7 @@ def _waves(shown: Shown) -> SampledWaves | None:
         return None
 
 
-def _beside(companion: Solution | None) -> tuple[Motion, ...]:
+def _beside(companion: Solution | None) -> tuple[BodyCurves, ...]:
     if companion is None:
         return ()
     return (motion(companion, "slab" if companion.problem.body.has_waves else "equivalent block"),)
@@ -178,13 +178,13 @@ EVEN_TIMES = 400
 """Number of evenly spaced times; the breaks of a run, and times between them, are added, so that there are some thousands."""
 
 
-def motion(solution: Solution, name: str = "") -> Motion:
+def motion(solution: Solution, name: str = "") -> BodyCurves:
     """Return the motion of one body; `name` is what the legend calls it, by default "slab" or "block"."""
     has_waves = solution.problem.body.has_waves
     known = solution.problem.friction.states
     names: tuple[Any, ...] = ("slip", "slip_rate", "traction", "load", *STATE_NAMES[: len(known)])
     time, (slip, rate, traction, load, *states) = solution.curves_together(names, points=EVEN_TIMES)
-    return Motion(
+    return BodyCurves(
         body="slab" if has_waves else "block",
         name=name or ("slab" if has_waves else "block"),
         time=time,
@@ -194,5 +194,5 @@ def motion(solution: Solution, name: str = "") -> Motion:
         load=load,
         load_unit="Pa" if has_waves else "N",
         normal_load=solution.problem.normal,
-        states=tuple(State(one.meaning, one.unit, values) for one, values in zip(known, states, strict=True)),
+        states=tuple(StateCurve(one.meaning, one.unit, values) for one, values in zip(known, states, strict=True)),
     )

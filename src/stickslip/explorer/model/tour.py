@@ -18,7 +18,7 @@ Panel = Literal["law", "contact", "shape", "slip", "rate", "traction", "field", 
 
 
 @dataclass(frozen=True)
-class Step:
+class TourStep:
     """One step of the tour: what is seen and why, in 40 to 80 words; a sentence that follows "Look at"; and something to try.
 
     It shows a bundled scenario with `changes`, entries by their path (None leaves an entry away), a panel to look at with the
@@ -45,7 +45,7 @@ class Step:
 
 
 TOUR = (
-    Step(
+    TourStep(
         "Two systems",
         "A block on a spring and an elastic slab slide under the same friction law, which weakens with slip rate. The "
         "block has mass: its slip rate rises smoothly to 3.511 m/s and returns to zero at 2.226 s, after 2.061 m. The "
@@ -58,7 +58,7 @@ TOUR = (
         strip_range("body.stiffness", 1e13, 4e14, log=True),
         "fig6-block-reconstructed",
     ),
-    Step(
+    TourStep(
         "A law of slip",
         "Here friction depends on how far the contact has slipped: it goes up and down as a sine. The contact starts 1 cm"
         " beyond a maximum, where friction falls with slip. Friction falls faster than the slab unloads, so the slip "
@@ -72,7 +72,7 @@ TOUR = (
         "fig5-slab-u0-1e-2",
         {"initial.excess": None, "initial.load": 1.5e8},
     ),
-    Step(
+    TourStep(
         "Pulses",
         "With ten times as many waves of friction in each metre the slab slips in pulses. Each pulse carries it from one "
         "maximum of friction to the next, 0.1257 m. Beside a maximum the contact almost stands still, until friction "
@@ -85,7 +85,7 @@ TOUR = (
         strip_range("body.thickness", 1e3, 2.2e4),
         "fig5-slab-reconstructed",
     ),
-    Step(
+    TourStep(
         "A law of slip rate",
         "Now friction falls with slip rate. But a slab that slips at the rate v sends out waves, which take the stress Z "
         "v. What balances the load is the sum of both, g(v). With alpha = 0.1 s/m that sum rises everywhere: each load "
@@ -99,7 +99,7 @@ TOUR = (
         "fig4-loop",
         {"friction.alpha": 0.1},
     ),
-    Step(
+    TourStep(
         "Folds",
         "With alpha = 1 s/m friction falls so fast that g(v) falls too, up to 1.259 m/s, and rises from there. Where the "
         "curve turns is a fold. Loads between 64.47 and 80 MPa now have three slip rates: at 70 MPa the contact may be "
@@ -112,7 +112,7 @@ TOUR = (
         strip_range("friction.alpha", 0.05, 2.0),
         "fig4-loop",
     ),
-    Step(
+    TourStep(
         "The jump",
         "The load is exactly the static strength, 80 MPa, and the slowest pull is enough: there is no slip rate close to "
         "zero to which the contact could go. It jumps to the only other solution, v = S (static - dynamic) / Z - 1 / "
@@ -125,7 +125,7 @@ TOUR = (
         strip_range("body.normal_stress", 1e7, 2e8),
         "fig6-slab",
     ),
-    Step(
+    TourStep(
         "The critical alpha",
         "Jumps begin where friction weakens faster than Z v grows: above alpha_c = Z / (S (static - dynamic)) = 0.196 "
         "s/m. Here alpha is a millionth of a s/m above it. The jump is still there, but tiny: to 2.603e-05 m/s at first, "
@@ -138,7 +138,7 @@ TOUR = (
         strip_range("friction.alpha", 0.15, 0.25),
         "fig7-slab-critical",
     ),
-    Step(
+    TourStep(
         "Hysteresis",
         "The load rises and falls once. The rule of perfect delay says that the contact stays as it is for as long as it "
         "can. So it sticks up to 80 MPa and jumps to slip at 2.243 s. On the way back it slips down to 64.47 MPa, the "
@@ -153,7 +153,7 @@ TOUR = (
 )
 """The steps of the tour, in the order of the paper."""
 TOUR_OF_A_FAULT = (
-    Step(
+    TourStep(
         "A nucleus",
         "The contact of a slab is a line here, 40 km long, and each of its nodes slides under the same law: friction falls with "
         "slip, from 0.7 to 0.5 over 40 cm. Only in a nucleus of 8 km is the load above the strength. Slip begins there at once and "
@@ -165,7 +165,7 @@ TOUR_OF_A_FAULT = (
         None,
         "planar-patch",
     ),
-    Step(
+    TourStep(
         "The echo",
         "Slip sends waves into the slab, and the driver, 10 km away, sends them back. After one two-way travel time, 5.714 s, the "
         "first of them arrives and takes load off the contact: slip is over soon after. In one dimension the echo arrests "
@@ -177,7 +177,7 @@ TOUR_OF_A_FAULT = (
         None,
         "planar-patch",
     ),
-    Step(
+    TourStep(
         "A weaker fault",
         "With dynamic friction of 0.45 in place of 0.5 more stress is released, and each place slips faster and further. The "
         "fronts are faster, too: they come close to the speed of the waves, 3.5 km/s, which they cannot pass. The barriers stop "
@@ -194,6 +194,6 @@ TOUR_OF_A_FAULT = (
 """The steps of the tour on the page of a fault in 2D."""
 
 
-def tour_of(setting: Setting) -> tuple[Step, ...]:
+def tour_of(setting: Setting) -> tuple[TourStep, ...]:
     """Return the tour of a page on which a setting is shown."""
     return TOUR_OF_A_FAULT if setting.is_fault else TOUR

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
-from stickslip.explorer.model.controls import Control, Group, controls_of
+from stickslip.explorer.model.controls import Control, ControlGroup, controls_of
 from stickslip.explorer.model.exchange import with_kind
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.page.components import ControlRows
@@ -124,7 +124,7 @@ class Controls:
         self._explorer.change(setting)
 
 
-def changed(setting: Setting, controls: Iterable[Group], entered: dict[str, Any]) -> Setting:
+def changed(setting: Setting, controls: Iterable[ControlGroup], entered: dict[str, Any]) -> Setting:
     """Return a setting with what was entered in one row: a number of its slider, the text of its field, or a choice.
 
     Raises InputError, in one line, for an entry that cannot be read.
@@ -144,7 +144,7 @@ def changed(setting: Setting, controls: Iterable[Group], entered: dict[str, Any]
     return setting.with_value(path, control.read(str(value)))
 
 
-def groups_of(setting: Setting, controls: Iterable[Group]) -> tuple[list[dict[str, Any]], dict[str, Row]]:
+def groups_of(setting: Setting, controls: Iterable[ControlGroup]) -> tuple[list[dict[str, Any]], dict[str, Row]]:
     """Return groups of rows for a setting, and what the rows hold, as the script of the controls takes them.
 
     What a row holds is apart, because a slider that moves changes nothing else. The first row is the choice of the scenario.
@@ -163,7 +163,7 @@ def _scenarios(setting: Setting) -> dict[str, Any]:
     return {"title": "Scenario", "rows": [_whole(row)]}
 
 
-def rows_of(group: Group) -> list[Row]:
+def rows_of(group: ControlGroup) -> list[Row]:
     """Return the rows of one table: its kind, if it can be chosen, and its entries."""
     rows = []
     if group.kinds:

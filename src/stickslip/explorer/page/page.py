@@ -28,7 +28,7 @@ FIELDS = (("velocity", "velocity"), ("displacement", "displacement"), ("stress",
 FIRST_WORDS = "All pictures show one run, in which a slab or a block slips against friction. First move a slider: they all follow."
 
 
-class Layout(NamedTuple):
+class PageLayout(NamedTuple):
     """The panels of a page: titles by name, rows, and plots; what the map can show; and the first words in the bar."""
 
     titles: Mapping[str, str]
@@ -121,8 +121,8 @@ HEIGHTS = {
 """Heights (px) of the panels, with their headings."""
 ROWS = (("law", "contact", "shape"), (("slip", "rate", "state", "residual", "traction"), ("field", "energy")))
 """The rows of panels: names side by side, and within the second row names below each other."""
-OF_ONE_PLACE = Layout(TITLES, ROWS, plots, FIELDS, FIRST_WORDS)
-OF_A_FAULT = Layout(
+OF_ONE_PLACE = PageLayout(TITLES, ROWS, plots, FIELDS, FIRST_WORDS)
+OF_A_FAULT = PageLayout(
     fault.TITLES,
     (("profile_rate", "profile_slip"), (("slip", "rate", "traction"), ROWS[1][1])),
     fault.plots,
@@ -132,7 +132,7 @@ OF_A_FAULT = Layout(
 )
 
 
-def layout_of(explorer: Explorer) -> Layout:
+def layout_of(explorer: Explorer) -> PageLayout:
     """Return the panels of the page of an explorer: those of a fault, or of a contact that is a single place."""
     return OF_A_FAULT if explorer.setting.is_fault else OF_ONE_PLACE
 

@@ -27,7 +27,7 @@ from stickslip.explorer.model.strip import (
 from stickslip.explorer.page.components import Markup, asset, paint
 from stickslip.explorer.page.explorer import Explorer
 from stickslip.explorer.page.stage import Stage
-from stickslip.explorer.page.view import Key, View, axis_label, heading, limits
+from stickslip.explorer.page.view import LegendKey, View, axis_label, heading, limits
 from stickslip.figures.style import SPELLED, unit_of
 from stickslip.foundation.axis import Axis
 from stickslip.foundation.errors import InputError
@@ -74,7 +74,7 @@ def view_of_strip(strip: Strip, shown_in: tuple[str, float] | None = None) -> Vi
         values = view.columns["strip"][name] = strip.results[name] / scale
         view.limits[f"strip_{name}_y"] = limits(values, 0.0, floor=0.0)
         view.titles[f"strip_{name}"] = axis_label(NAMES[name], "", SPELLED.get(shown, shown))
-    view.keys[f"strip_{SHOWN[0]}"] = (Key("irregular", "unstable", "area"),) if strip.results["irregular"].any() else ()
+    view.keys[f"strip_{SHOWN[0]}"] = (LegendKey("irregular", "unstable", "area"),) if strip.results["irregular"].any() else ()
     view.labels = {f"axis:strip_x@strip_{name}": axis_label(strip.parameter, "", unit) for name in SHOWN}
     view.columns["strip_bands"] = dict(zip(("x0", "x1"), _bands(x, strip.results["irregular"]), strict=True))
     view.facts["strip"] = {"size": size, "log": strip.log}

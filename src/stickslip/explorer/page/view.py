@@ -16,7 +16,7 @@ Columns = dict[str, Any]
 LineStyle = Literal["line", "dash", "dot", "area", "ring", "scale"]
 
 
-class Key(NamedTuple):
+class LegendKey(NamedTuple):
     """One entry of a panel's legend: its text, the role of its colour, and how it is drawn."""
 
     text: str
@@ -38,7 +38,7 @@ class View:
     limits: dict[str, tuple[float, float]] = field(default_factory=dict)
     labels: dict[str, str] = field(default_factory=dict)
     titles: dict[str, str] = field(default_factory=dict)
-    keys: dict[str, tuple[Key, ...]] = field(default_factory=dict)
+    keys: dict[str, tuple[LegendKey, ...]] = field(default_factory=dict)
     hidden: set[str] = field(default_factory=set)
     fastest: float = 0.0
     facts: dict[str, Any] = field(default_factory=dict)
@@ -125,7 +125,7 @@ def plain(found: Mapping[str, Any]) -> dict[str, Any]:
     return {name: [None if x != x else x for x in np.asarray(values, float).tolist()] for name, values in found.items()}
 
 
-def heading(title: str, keys: Sequence[Key]) -> str:
+def heading(title: str, keys: Sequence[LegendKey]) -> str:
     """Return the heading of a panel as HTML."""
     entries = "".join(
         f'<li><span class="sample {key.style}" style="--role: var(--{key.role})" aria-hidden="true"></span>{escape(key.text)}</li>'

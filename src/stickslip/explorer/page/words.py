@@ -13,12 +13,12 @@ from panel.custom import JSComponent
 from stickslip.explorer.model.answer import Answer
 from stickslip.explorer.model.difference import difference
 from stickslip.explorer.model.fault import FaultAnswer
-from stickslip.explorer.model.tour import TOUR, Step, tour_of
+from stickslip.explorer.model.tour import TOUR, TourStep, tour_of
 from stickslip.explorer.page.components import Markup, asset
 from stickslip.explorer.page.explorer import Explorer
 
 
-def told_steps(steps: tuple[Step, ...] = TOUR) -> list[dict[str, str]]:
+def told_steps(steps: tuple[TourStep, ...] = TOUR) -> list[dict[str, str]]:
     """Return what the card shows of each step, as plain texts."""
     return [{name: getattr(step, name) for name in ("title", "text", "look", "question", "panel")} for step in steps]
 

@@ -19,7 +19,7 @@ import numpy as np
 from stickslip.explorer.model.answer import Answer
 from stickslip.explorer.model.solve import solve
 from stickslip.explorer.model.strip import setting_at, strip_of
-from stickslip.explorer.model.tour import TOUR, Step
+from stickslip.explorer.model.tour import TOUR, TourStep
 from stickslip.explorer.page.components import asset, look, player_script, style_sheet
 from stickslip.explorer.page.page import TITLES
 from stickslip.explorer.page.panels import plots, view_of
@@ -154,7 +154,7 @@ def check_folder(folder: Path) -> None:
 # ---- the answers ------------------------------------------------------------------------------------------------------------
 
 
-def content_of(step: Step, places: int) -> dict[str, Any]:
+def content_of(step: TourStep, places: int) -> dict[str, Any]:
     """Return what the page needs of a step: its strip, and what the panels show at each place of it."""
     setting = step.setting
     assert step.strip is not None

@@ -17,7 +17,7 @@ from matplotlib.ticker import MaxNLocator
 
 from stickslip.figures.panels import add_legend, set_log_ticks
 from stickslip.figures.style import GREY, PALE, TWO
-from stickslip.figures.sweeps.varied import ROOM, Shown, folded
+from stickslip.figures.sweeps.varied import ROOM, ShownQuantity, folded
 from stickslip.foundation.arrays import Floats
 
 FEW = 10
@@ -66,7 +66,7 @@ def shades(count: int) -> list[str]:
     return [to_hex((WARM, COOL)[k % 2](k / (count - 1))) for k in range(count)]
 
 
-def colours_of(quantity: Shown) -> Colours:
+def colours_of(quantity: ShownQuantity) -> Colours:
     """Return colours, the same in all panels, for the numbers of a quantity."""
     known = quantity.known
     if quantity.is_flag:
@@ -105,14 +105,16 @@ def _steps(low: int, high: int) -> Colours:
     return Colours(cmap, BoundaryNorm(np.arange(low, high + 2) - 0.5, count), ())
 
 
-def prepare(axes: Axes, quantity: Shown) -> None:
+def prepare(axes: Axes, quantity: ShownQuantity) -> None:
     """Give the axes a hatched background if members failed: it shows wherever nothing is drawn over it."""
     axes.set_facecolor(FAILED if quantity.has(2) else "white")
     if quantity.has(2):
         axes.patch.set(hatch=HATCH, edgecolor=GREY, linewidth=0.0)
 
 
-def explain(panels: Sequence[Axes], colours: Colours, quantity: Shown, *more: Artist, own: bool = False, room: int = ROOM) -> None:
+def explain(
+    panels: Sequence[Axes], colours: Colours, quantity: ShownQuantity, *more: Artist, own: bool = False, room: int = ROOM
+) -> None:
     """Add the key or the scale with the name of the quantity, and entries for areas without a number and for `more` artists.
 
     `own` says that the axes are the user's: then the key stays inside them. `room` is the number of letters along the scale.
@@ -142,6 +144,6 @@ def _add_scale(panels: Sequence[Axes], colours: Colours, title: str, ends: Seque
     bar.ax.tick_params(which="both", labelsize=mpl.rcParams["ytick.labelsize"])
 
 
-def failed_area(quantity: Shown) -> list[Artist]:
+def failed_area(quantity: ShownQuantity) -> list[Artist]:
     """Return the key's entry for the background that `prepare` sets, or nothing if no member failed."""
     return [Patch(facecolor=FAILED, edgecolor=GREY, hatch=HATCH, linewidth=0.0, label="failed")] if quantity.has(2) else []

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from stickslip.figures.panels import add_legend, count_ticks, finish, set_log_ticks
 from stickslip.figures.sheet import one_panel
 from stickslip.figures.style import BLUE, GREY, LINE_COLOURS
-from stickslip.figures.sweeps.varied import Scaled, Shown, folded, names_of, scaled, shown
+from stickslip.figures.sweeps.varied import ScaledNumbers, ShownQuantity, folded, names_of, scaled, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.place import Place
 
@@ -72,7 +72,7 @@ def draw_curves(dataset: xr.Dataset, **place: Unpack[Place]) -> Any:
     return finish(axes, str(dataset.attrs.get("title", "")), **place)
 
 
-def _draw_curve(axes: Axes, across: Scaled, row: Floats, quantity: Shown, look: dict[str, Any]) -> bool:
+def _draw_curve(axes: Axes, across: ScaledNumbers, row: Floats, quantity: ShownQuantity, look: dict[str, Any]) -> bool:
     """Draw the members of one curve, and lines between neighbours that no jump divides. Return True if it jumps."""
     order = np.argsort(across.values)
     places, values = across.values[order], row[order]
@@ -112,7 +112,7 @@ def missing_marks(*panels: Axes) -> list[Line2D]:
     return [found[text] for _, text in MISSING.values() if text in found]
 
 
-def show_ordinate(axes: Axes, quantity: Shown) -> None:
+def show_ordinate(axes: Axes, quantity: ShownQuantity) -> None:
     """Set label, scale and ticks of the axis of the quantity."""
     if not quantity.known.size:
         axes.set_yticks([])

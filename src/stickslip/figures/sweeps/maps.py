@@ -20,7 +20,7 @@ from stickslip.figures.sheet import one_panel
 from stickslip.figures.style import BLUE, GREY, INK, PALE
 from stickslip.figures.sweeps.colours import Colours, colours_of, explain, failed_area, prepare
 from stickslip.figures.sweeps.curves import mark_missing, missing_marks, show_ordinate
-from stickslip.figures.sweeps.varied import LITTLE, ROOM, Names, Scaled, Shown, names_of, scaled, shown
+from stickslip.figures.sweeps.varied import LITTLE, ROOM, Names, ScaledNumbers, ShownQuantity, names_of, scaled, shown
 from stickslip.foundation.place import Place
 from stickslip.sweeps.results.layout import read_design
 
@@ -46,7 +46,7 @@ def draw_maps(dataset: xr.Dataset, **place: Unpack[Place]) -> Any:
 
 
 def _draw_all(
-    dataset: xr.Dataset, quantity: Shown, colours: Colours, third: xr.DataArray | None, draw_one: Draw, *, place: Place
+    dataset: xr.Dataset, quantity: ShownQuantity, colours: Colours, third: xr.DataArray | None, draw_one: Draw, *, place: Place
 ) -> Any:
     """Draw one map, or one for each of some values of a third key, and explain the colours."""
     title, marks = str(dataset.attrs.get("title", "")), failed_area(quantity)
@@ -84,7 +84,7 @@ def _side_by_side(names: Names, draw_one: Draw, place: Place) -> list[Axes]:
     return drawn
 
 
-def _draw_map(axes: Axes, dataset: xr.Dataset, quantity: Shown, colours: Colours, room: int) -> None:
+def _draw_map(axes: Axes, dataset: xr.Dataset, quantity: ShownQuantity, colours: Colours, room: int) -> None:
     """Draw one map of a grid, with members that have no such number in pale grey and those not run in white."""
     x, y = (replace(scaled(dataset[str(name)]), room=room) for name in quantity.values.dims)
     columns, rows = np.argsort(x.values), np.argsort(y.values)
@@ -125,7 +125,7 @@ def draw_members(dataset: xr.Dataset, **place: Unpack[Place]) -> Any:
     return figure
 
 
-def _draw_points(axes: Axes, quantity: Shown, x: Scaled, y: Scaled, *, own: bool) -> None:
+def _draw_points(axes: Axes, quantity: ShownQuantity, x: ScaledNumbers, y: ScaledNumbers, *, own: bool) -> None:
     colours, values, state = colours_of(quantity), quantity.values.values, quantity.state.values
     for which, colour, marker in ((1, PALE, "o"), (2, GREY, "x")):
         axes.scatter(x.values[state == which], y.values[state == which], s=SIZE, color=colour, marker=marker, rasterized=True)

@@ -27,7 +27,7 @@ CROWDED = 34
 
 
 @dataclass(frozen=True)
-class Scaled:
+class ScaledNumbers:
     """Numbers as they are drawn, in a unit of `size` SI units; words are placed at 0, 1, 2, ...
 
     `room` is the number of letters in a line of the label.
@@ -61,17 +61,17 @@ class Scaled:
                 axis.set_ticks(axis.get_ticklocs(), self.words, rotation=30, ha="right", rotation_mode="anchor")
 
 
-def scaled(variable: xr.DataArray) -> Scaled:
+def scaled(variable: xr.DataArray) -> ScaledNumbers:
     """Return a varied key in a readable unit, on a logarithmic axis if ":log" asked for it or its values are so spread."""
     name = parameter_name(str(variable.name), variable.attrs.get("long_name", ""))
     if not np.issubdtype(variable.dtype, np.number):
         given = [str(word) for word in variable.values.tolist()]
         words = tuple(dict.fromkeys(given if variable.name in variable.dims else sorted(given)))  # samples are in no order
-        return Scaled(np.array([words.index(word) for word in given], float), name, words=words)
+        return ScaledNumbers(np.array([words.index(word) for word in given], float), name, words=words)
     values = np.asarray(variable.values, float)
     log = bool(variable.attrs.get("log")) or is_logarithmic(values)
     unit, size = unit_of(variable.attrs.get("units", "1"), values, log=log)
-    return Scaled(values / size, axis_text(name, "", unit), size, log)
+    return ScaledNumbers(values / size, axis_text(name, "", unit), size, log)
 
 
 def folded(text: str, room: int = ROOM) -> str:
@@ -117,7 +117,7 @@ def names_of(variable: xr.DataArray) -> Names:
 
 
 @dataclass(frozen=True)
-class Shown:
+class ShownQuantity:
     """A quantity as it is drawn: its numbers (NaN if there is none), the state of each member, and a title with the unit."""
 
     values: xr.DataArray
@@ -147,16 +147,18 @@ class Shown:
         """Return True if some member is in this state."""
         return bool((self.state == state).any())
 
-    def at(self, **places: int) -> Shown:
+    def at(self, **places: int) -> ShownQuantity:
         """Return the quantity at these places of some of its keys."""
         return replace(self, values=self.values.isel(places), state=self.state.isel(places))
 
 
-def shown(dataset: xr.Dataset) -> Shown:
+def shown(dataset: xr.Dataset) -> ShownQuantity:
     """Return the quantity of a figure's dataset in a readable unit."""
     values = dataset[dataset.attrs["quantity"]]
     known = values.values[np.isfinite(values.values)]
     wide = bool(known.size and known.min() > 0.0 and known.max() > WIDE * known.min())
     unit, size = unit_of(values.attrs.get("units", "1"), known, log=wide)
     title = axis_text(values.attrs.get("long_name", str(values.name)), "", unit)
-    return Shown(values / size, dataset["state"], title, "flag_meanings" in values.attrs, tuple(values.attrs.get("ends", ())))
+    return ShownQuantity(
+        values / size, dataset["state"], title, "flag_meanings" in values.attrs, tuple(values.attrs.get("ends", ()))
+    )

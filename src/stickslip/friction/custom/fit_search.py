@@ -15,7 +15,7 @@ from stickslip.foundation.arguments import shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.other_values import with_values
-from stickslip.foundation.quantities import NamedNumbers, Part, Quantity, Series, fields_of
+from stickslip.foundation.quantities import LawField, NamedNumbers, NumberSeries, Quantity, fields_of
 from stickslip.friction.contract import states_in
 from stickslip.friction.custom.points import Points
 from stickslip.friction.law import FrictionLaw
@@ -78,9 +78,9 @@ def template(law: Any) -> FrictionLaw:
 def _example(law: type[FrictionLaw]) -> FrictionLaw:
     """Return a law with the values of its example. Raises InputError for a law that consists of parts or of points."""
     for declared, _ in fields_of(law).values():
-        if isinstance(declared, Part):
+        if isinstance(declared, LawField):
             raise InputError(f"fit: {law.kind} is made of laws: give it with its parts, or join two names by + or *")
-        if isinstance(declared, Series):
+        if isinstance(declared, NumberSeries):
             raise InputError(f"fit: {law.kind} is given by points: use smooth, or FromTable for exact interpolation")
         if isinstance(declared, NamedNumbers):
             raise InputError(f"fit: {law.kind} has parameters of your own: give the law itself, with values to begin with")
@@ -98,7 +98,7 @@ def leaves(law: FrictionLaw, inner: str = "", outer: str = "") -> dict[str, Leaf
             for one in value:
                 full = f"{outer}{declared.key}.{one.name}"
                 found[outer + one.name] = Leaf(inner + one.name, full, Quantity(one.unit or "1", ""), one.value)
-        elif isinstance(declared, Part):
+        elif isinstance(declared, LawField):
             found |= leaves(value, f"{inner}{name}_", f"{outer}{name}.")
     return found
 

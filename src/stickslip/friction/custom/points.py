@@ -17,7 +17,7 @@ from stickslip.foundation.columns import Table, read_mapping
 from stickslip.foundation.conversion import OptionalNumbers
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.headings import COLUMNS, missing
-from stickslip.foundation.quantities import Choice, Quantity, Series, declare
+from stickslip.foundation.quantities import Choice, NumberSeries, Quantity, declare
 from stickslip.foundation.text_columns import read_file, read_text
 from stickslip.friction.law import RemembersSlip
 from stickslip.friction.piecewise import PiecewiseLaw, note_percent
@@ -192,10 +192,12 @@ class FromTable(RemembersSlip, PiecewiseLaw):
     example: ClassVar = {"friction": [0.7, 0.62, 0.45, 0.4], "slip": [0.0, "0.1 m", "0.3 m", "1 m"]}
     columns: ClassVar = {"slip": "slip", "slip_rate": "rate", "friction": "friction"}
 
-    friction: Sequence[float] = declare(Series(Quantity("1", "friction coefficients at the points", at_least=0)))
-    slip: OptionalNumbers = declare(Series(Quantity("m", "slips of the points; give either slip or rate"), ascending=True), None)
+    friction: Sequence[float] = declare(NumberSeries(Quantity("1", "friction coefficients at the points", at_least=0)))
+    slip: OptionalNumbers = declare(
+        NumberSeries(Quantity("m", "slips of the points; give either slip or rate"), ascending=True), None
+    )
     rate: OptionalNumbers = declare(
-        Series(Quantity("m/s", "slip rates of the points; give either slip or rate", at_least=0), ascending=True), None
+        NumberSeries(Quantity("m/s", "slip rates of the points; give either slip or rate", at_least=0), ascending=True), None
     )
     counts: Literal["net", "path"] = declare(Choice("slip that a table of slip sees", ("path", "net")), "path")  # type: ignore[misc] # here a choice of the user
 

@@ -15,7 +15,7 @@ from typing_extensions import override
 
 from stickslip.foundation.conversion import Number
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import Part, declare, fields_of, quantities_of, quantity
+from stickslip.foundation.quantities import LawField, declare, fields_of, quantities_of, quantity
 from stickslip.friction.contract import Formula, StateVariable
 from stickslip.friction.formula.functions import arcsinh
 from stickslip.friction.law import FrictionLaw
@@ -35,7 +35,9 @@ class LawOfParts(FrictionLaw):
     @property
     def parts(self) -> dict[str, FrictionLaw]:
         """The parts by the name of their field."""
-        return {name: getattr(self, name) for name, (declared, _) in fields_of(type(self)).items() if isinstance(declared, Part)}
+        return {
+            name: getattr(self, name) for name, (declared, _) in fields_of(type(self)).items() if isinstance(declared, LawField)
+        }
 
     @override
     def check_start(self, slip: float) -> None:
@@ -80,8 +82,8 @@ class CompositeLaw(LawOfParts):
     has a state, and at most one of them has knots.
     """
 
-    slip: FrictionLaw = declare(Part("a law of slip"))
-    rate: FrictionLaw = declare(Part("a law of slip rate"))
+    slip: FrictionLaw = declare(LawField("a law of slip"))
+    rate: FrictionLaw = declare(LawField("a law of slip rate"))
 
     @staticmethod
     @abstractmethod
@@ -225,7 +227,7 @@ class LaggedFriction(LawOfParts):
     state = StateVariable("w", "m/s", "lagged slip rate")
     example: ClassVar = {"rate": {"kind": "hyperbolic-rate", "static": 0.8, "dynamic": 0.3, "alpha": "1 s/m"}, "time": "10 ms"}
 
-    rate: FrictionLaw = declare(Part("a law of slip rate"))
+    rate: FrictionLaw = declare(LawField("a law of slip rate"))
     time: Number = quantity("s", "time in which friction catches up with the slip rate", above=0)
     direct: float = quantity("1", "immediate increase of friction per factor e of slip rate", at_least=0, default=0.0)
     direct_rate: Number = quantity("m/s", "slip rate below which the direct effect fades", above=0, default=1e-6)

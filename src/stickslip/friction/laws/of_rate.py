@@ -10,7 +10,7 @@ from typing_extensions import override
 
 from stickslip.foundation.conversion import Number, Numbers
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import Quantity, Series, declare, quantity
+from stickslip.foundation.quantities import NumberSeries, Quantity, declare, quantity
 from stickslip.friction.formula.functions import exp, log
 from stickslip.friction.law import FrictionLaw, Stribeck
 from stickslip.friction.piecewise import PiecewiseLinearLaw
@@ -118,8 +118,8 @@ class PiecewiseLinearRate(PiecewiseLinearLaw):
     example: ClassVar = {"rates": [0.0, "1 cm/s", "1 m/s"], "coefficients": [0.6, 0.5, 0.3]}
     columns: ClassVar = {"slip_rate": "rates", "friction": "coefficients"}
 
-    rates: Numbers = declare(Series(Quantity("m/s", "slip rates of the points", at_least=0), ascending=True))
-    coefficients: Sequence[float] = declare(Series(Quantity("1", "friction coefficients at the points", at_least=0)))
+    rates: Numbers = declare(NumberSeries(Quantity("m/s", "slip rates of the points", at_least=0), ascending=True))
+    coefficients: Sequence[float] = declare(NumberSeries(Quantity("1", "friction coefficients at the points", at_least=0)))
 
     @property
     @override

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 from typing_extensions import override
 
 from stickslip.foundation.conversion import Number, Numbers
-from stickslip.foundation.quantities import Quantity, Series, declare, quantity
+from stickslip.foundation.quantities import NumberSeries, Quantity, declare, quantity
 from stickslip.friction.contract import Formula
 from stickslip.friction.formula.functions import exp, sin
 from stickslip.friction.law import RemembersSlip, SlipWeakening, hull
@@ -170,8 +170,8 @@ class PiecewiseLinearSlip(RemembersSlip, PiecewiseLinearLaw):
     example: ClassVar = {"slips": [0.0, "5 cm", "0.2 m", "0.5 m"], "coefficients": [0.55, 0.6, 0.45, 0.4]}
     columns: ClassVar = {"slip": "slips", "friction": "coefficients"}
 
-    slips: Numbers = declare(Series(Quantity("m", "slips of the points", at_least=0), ascending=True))
-    coefficients: Sequence[float] = declare(Series(Quantity("1", "friction coefficients at the points", at_least=0)))
+    slips: Numbers = declare(NumberSeries(Quantity("m", "slips of the points", at_least=0), ascending=True))
+    coefficients: Sequence[float] = declare(NumberSeries(Quantity("1", "friction coefficients at the points", at_least=0)))
 
     @property
     @override

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from stickslip.paper.cases import Runs
 from stickslip.paper.claims import inertia, rate_law, rules, slip_law  # noqa: F401  # importing them fills MEASUREMENTS
-from stickslip.paper.claims.verdict import MEASUREMENTS, Measured, Outcome, Verdict
+from stickslip.paper.claims.verdict import MEASUREMENTS, ClaimVerdict, MeasuredNumber, Outcome
 
 STATEMENTS = {number: statement for number, (statement, _) in sorted(MEASUREMENTS.items())}
 """The claims in our words, by number."""
 CLAIMS = {number: measure for number, (_, measure) in sorted(MEASUREMENTS.items())}
 """The function that measures each claim, by the number of the claim."""
 
-__all__ = ["CLAIMS", "STATEMENTS", "Measured", "Outcome", "Runs", "Verdict"]
+__all__ = ["CLAIMS", "STATEMENTS", "ClaimVerdict", "MeasuredNumber", "Outcome", "Runs"]

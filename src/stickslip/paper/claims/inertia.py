@@ -11,7 +11,7 @@ from stickslip.contact.roots import sign_change
 from stickslip.foundation.constants import YEAR
 from stickslip.friction import HyperbolicRate
 from stickslip.paper.cases import Runs, problem, typed
-from stickslip.paper.claims.verdict import Number, Verdict, claim, each, judge, verdict
+from stickslip.paper.claims.verdict import ClaimVerdict, Number, claim, each, judge, verdict
 from stickslip.problem.problem import Problem
 from stickslip.solution.solution import Solution
 
@@ -24,7 +24,7 @@ CONTACT_MASSES = (1e6, 1e5, 1e4)
 
 
 @claim(14, "The difference comes from the mass concentrated in the block.")
-def concentrated_mass(runs: Runs) -> Verdict:
+def concentrated_mass(runs: Runs) -> ClaimVerdict:
     """Measure how without mass the block's rise becomes a jump, and with mass on the slab's contact its jumps vanish."""
     case = problem("fig6-slab")
     slab = as_slab(case.body)
@@ -85,7 +85,7 @@ def _reaches(solution: Solution, rate: float, start: float, end: float) -> float
 
 
 @claim(15, "After its event the block stays put for a long period.")
-def block_stays_put(runs: Runs) -> Verdict:
+def block_stays_put(runs: Runs) -> ClaimVerdict:
     """Measure the rest of the block before its second event, and the time in which the spring regains the strength."""
     readings = {
         "slip law, as printed": "fig5-block-printed",

@@ -10,7 +10,7 @@ from stickslip.bodies import as_slab
 from stickslip.contact.uniqueness import uniqueness_of
 from stickslip.friction import Coulomb, HyperbolicRate
 from stickslip.paper.cases import Runs, problem, typed
-from stickslip.paper.claims.verdict import Number, Outcome, Verdict, claim, each, judge, verdict
+from stickslip.paper.claims.verdict import ClaimVerdict, Number, Outcome, claim, each, judge, verdict
 from stickslip.problem.problem import Problem
 from stickslip.solution.solution import Solution
 
@@ -23,7 +23,7 @@ LIKE_COULOMB = 0.9
 
 
 @claim(5, "Under the rate law with α = 1 the block's slip rate is continuous.")
-def block_is_continuous(runs: Runs) -> Verdict:
+def block_is_continuous(runs: Runs) -> ClaimVerdict:
     """Measure the number of the block's shocks, and the largest change of its slip rate within 1 µs."""
     solutions = {"as printed": runs.case("fig6-block-printed"), "K = G × 10³ m": runs.case("fig6-block-reconstructed")}
     shocks = {r: len(s.shocks) for r, s in solutions.items()}
@@ -50,7 +50,7 @@ def _largest_step(solution: Solution, step: float) -> float:
 
 
 @claim(6, "Under the rate law with α = 1 the slab's slip rate jumps.")
-def slab_jumps(runs: Runs) -> Verdict:
+def slab_jumps(runs: Runs) -> ClaimVerdict:
     """Measure the shocks of the slab with alpha = 1 s/m."""
     solution = runs.case("fig6-slab")
     units = {"time": "s", "rate_before": "m/s", "rate_after": "m/s", "traction_after": "Pa"}
@@ -68,7 +68,7 @@ def slab_jumps(runs: Runs) -> Verdict:
 
 
 @claim(13, "In the whole irregular regime shocks dominate the slab's motion, while the block's is smooth.")
-def irregular_regime(runs: Runs) -> Verdict:
+def irregular_regime(runs: Runs) -> ClaimVerdict:
     """Measure the share of all change of slip rate that happens in shocks, over alpha, and the shocks of the block."""
     slab, block = problem("fig6-slab"), problem("fig6-block-reconstructed")
     critical, duration = _critical(slab), 1.5 * slab.round_trip_time
@@ -109,7 +109,7 @@ def _critical(case: Problem) -> float:
 @claim(
     18, "At αc + 10⁻⁶ there are two shocks, at the beginning and at the end (with the reflected wave), at a very small slip rate."
 )
-def just_above_critical(runs: Runs) -> Verdict:
+def just_above_critical(runs: Runs) -> ClaimVerdict:
     """Measure the shocks of the slab at alpha_c + 1e-6 s/m, and the time until its next event."""
     case = problem("fig7-slab-critical")
     back = case.round_trip_time
@@ -135,7 +135,7 @@ def just_above_critical(runs: Runs) -> Verdict:
 
 
 @claim(19, "For α > 3 αc the slab behaves as with Coulomb's law.")
-def like_coulomb(runs: Runs) -> Verdict:
+def like_coulomb(runs: Runs) -> ClaimVerdict:
     """Measure the slip rate divided by that under Coulomb's law, at several alpha."""
     slab = problem("fig6-slab")
     law, back = typed(slab.friction, HyperbolicRate), slab.round_trip_time
@@ -161,7 +161,7 @@ def like_coulomb(runs: Runs) -> Verdict:
 
 
 @claim(20, "The load is β(t) = G(Vt + D0 − u0)/h up to t = h/c.")
-def load_before_the_echo(runs: Runs) -> Verdict:
+def load_before_the_echo(runs: Runs) -> ClaimVerdict:
     """Measure the computed load against the paper's formula, up to h/c, from there to 2h/c, and at 2h/c."""
     worst, beyond = {"to h/c": 0.0, "from h/c to 2h/c": 0.0}, {}
     for name in ("fig5-slab-reconstructed", "fig6-slab", "fig7-slab-critical"):

@@ -12,7 +12,7 @@ from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
 from stickslip.foundation.constants import YEAR
 from stickslip.friction import HyperbolicRate
 from stickslip.paper.cases import Runs, problem, typed
-from stickslip.paper.claims.verdict import Number, Verdict, claim, each, judge, verdict
+from stickslip.paper.claims.verdict import ClaimVerdict, Number, claim, each, judge, verdict
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SELECTION_RULES
 from stickslip.solution.solution import Solution
@@ -22,7 +22,7 @@ SO_FAR = "Known so far: four rules on the paper's cases; rules that follow from 
 
 
 @claim(7, "The critical value is αc = √(ρG)/(S(μS − μD)) = 0.196 s/m.")
-def critical_value(_: Runs) -> Verdict:
+def critical_value(_: Runs) -> ClaimVerdict:
     """Measure the critical alpha of the contact analysis against the formula, and the regime on both sides of it."""
     slab = problem("fig6-slab")
     law, body = typed(slab.friction, HyperbolicRate), as_slab(slab.body)
@@ -46,7 +46,7 @@ def critical_value(_: Runs) -> Verdict:
 
 
 @claim(8, "An irregular contact has three solutions between the folds, two at them, one elsewhere.")
-def three_solutions(_: Runs) -> Verdict:
+def three_solutions(_: Runs) -> ClaimVerdict:
     """Measure the number of admissible slip rates on a grid of loads that contains both folds."""
     contact = uniqueness_of(problem("fig6-slab"))
     lower, upper = fold_loads(contact)
@@ -80,7 +80,7 @@ def fold_loads(contact: Uniqueness) -> tuple[float, float]:
 
 
 @claim(9, "A regular contact has one solution for every load, and no fold.")
-def one_solution(_: Runs) -> Verdict:
+def one_solution(_: Runs) -> ClaimVerdict:
     """Measure the number of solutions on a grid of loads, under a regular rate law and under the slip law."""
     slab = problem("fig6-slab")
     half = 0.5 * (uniqueness_of(slab).critical_value or math.nan)
@@ -99,7 +99,7 @@ def one_solution(_: Runs) -> Verdict:
 
 
 @claim(11, "Whatever rule selects the solution, shocks occur.")
-def shocks_for_every_rule(runs: Runs) -> Verdict:
+def shocks_for_every_rule(runs: Runs) -> ClaimVerdict:
     """Measure the shocks of the slab with alpha = 1 s/m through its second event, under every rule."""
     tables = {rule: runs.case(f"second-event-{rule}").shocks for rule in SELECTION_RULES}
     numbers: list[Number] = []
@@ -114,7 +114,7 @@ def shocks_for_every_rule(runs: Runs) -> Verdict:
 
 
 @claim(12, "The rule of perfect delay is no simple energy criterion: Maxwell's rule gives another answer.")
-def not_an_energy_criterion(runs: Runs) -> Verdict:
+def not_an_energy_criterion(runs: Runs) -> ClaimVerdict:
     """Measure the time of the second event, and the load at which stick ends, under each rule."""
     solutions = {rule: runs.case(f"second-event-{rule}") for rule in SELECTION_RULES}
     waits = {rule: waiting_time(s) / YEAR for rule, s in solutions.items()}
@@ -149,7 +149,7 @@ def stick_ends(case: Problem) -> float:
 
 
 @claim(17, "Accelerating and decelerating paths differ (hysteresis).")
-def hysteresis(runs: Runs) -> Verdict:
+def hysteresis(runs: Runs) -> ClaimVerdict:
     """Measure the jumps of a run whose load rises and falls, and its slip rates at the same load on both ways."""
     solution = runs.case("fig4-loop")
     time, (load, rate) = solution.curves_together(("load", "slip_rate"))

@@ -9,7 +9,7 @@ import numpy as np
 
 from stickslip.friction import SinusoidalSlip
 from stickslip.paper.cases import Runs, problem, typed
-from stickslip.paper.claims.verdict import Number, Outcome, Verdict, claim, each, judge, verdict
+from stickslip.paper.claims.verdict import ClaimVerdict, Number, Outcome, claim, each, judge, verdict
 from stickslip.problem.problem import Problem
 from stickslip.solution.solution import Solution
 
@@ -22,7 +22,7 @@ READINGS = {"as printed": "fig5-slab-printed", "ω = 50 /m": "fig5-slab-reconstr
 
 
 @claim(1, "Under the slip law the block slips once, releases much of its stress, and stops.")
-def block_slips_once(runs: Runs) -> Verdict:
+def block_slips_once(runs: Runs) -> ClaimVerdict:
     """Measure the number of events, the share of the load that is released, and whether the block rests at the end."""
     names = {
         "as printed": "fig5-block-printed",
@@ -64,7 +64,7 @@ def _steepest(case: Problem) -> float:
 
 
 @claim(2, "Under the slip law the slab shows several pulses of slip.")
-def slab_pulses(runs: Runs) -> Verdict:
+def slab_pulses(runs: Runs) -> ClaimVerdict:
     """Measure the number of pulses in each reading."""
     cases = {
         "as printed": "fig5-slab-printed",
@@ -92,7 +92,7 @@ def slab_pulses(runs: Runs) -> Verdict:
 
 
 @claim(3, "The wave reflected at the driver arrests the slab completely.")
-def echo_arrests(runs: Runs) -> Verdict:
+def echo_arrests(runs: Runs) -> ClaimVerdict:
     """Measure the end of all slip compared with 2h/c, and the rest after it."""
     solutions = {reading: runs.case(name) for reading, name in READINGS.items()}
     back = solutions["as printed"].problem.round_trip_time
@@ -120,7 +120,7 @@ def _largest_after(solution: Solution, end: float) -> float:
 
 
 @claim(4, "The number of pulses depends only on the thickness and the wave speed.")
-def what_sets_the_pulses(runs: Runs) -> Verdict:
+def what_sets_the_pulses(runs: Runs) -> ClaimVerdict:
     """Measure the number of pulses at the same thickness and wave speed, for other initial loads and other wavenumbers."""
     start = problem("fig5-slab-reconstructed")
     body, omega = start.body, typed(start.friction, SinusoidalSlip).wavenumber
@@ -163,7 +163,7 @@ def pulse_period(case: Problem) -> float:
 
 
 @claim(10, "With the slip law the slab's problem is well-posed.")
-def well_posed(runs: Runs) -> Verdict:
+def well_posed(runs: Runs) -> ClaimVerdict:
     """Measure the change of slip at 2h/c per small change of the initial load, for two sizes of that change."""
     numbers: list[Number] = []
     holds = []
@@ -191,7 +191,7 @@ def _response(runs: Runs, case: Problem, share: float) -> float:
 
 
 @claim(16, "The initial data are close to instability.")
-def close_to_instability(_: Runs) -> Verdict:
+def close_to_instability(_: Runs) -> ClaimVerdict:
     """Measure the distance from the initial slip to the slip at which friction weakens as fast as the slab unloads."""
     cases = {reading: problem(name) for reading, name in READINGS.items()}
     missing = {r: unstable_from(case) - case.initial_slip for r, case in cases.items()}

@@ -24,7 +24,7 @@ class Outcome(StrEnum):
 
 
 @dataclass(frozen=True)
-class Measured:
+class MeasuredNumber:
     """A number that was measured, with its label and unit."""
 
     label: str
@@ -33,13 +33,13 @@ class Measured:
 
 
 @dataclass(frozen=True)
-class Verdict:
+class ClaimVerdict:
     """The outcome for one claim, with the reading in which it holds, an explanation and the measured numbers."""
 
     outcome: Outcome
     reading: str
     explanation: str
-    measured: tuple[Measured, ...]
+    measured: tuple[MeasuredNumber, ...]
     number: int = 0
     claim: str = ""
 
@@ -48,7 +48,7 @@ class Verdict:
         return next(m.value for m in self.measured if m.label == label)
 
 
-Measurement = Callable[[Runs], Verdict]
+Measurement = Callable[[Runs], ClaimVerdict]
 MEASUREMENTS: dict[int, tuple[str, Measurement]] = {}
 """Each claim in our words, and the function that measures it, by the number of the claim."""
 
@@ -58,7 +58,7 @@ def claim(number: int, statement: str) -> Callable[[Measurement], Measurement]:
 
     def register(measure: Measurement) -> Measurement:
         @wraps(measure)
-        def judged(runs: Runs) -> Verdict:
+        def judged(runs: Runs) -> ClaimVerdict:
             return replace(measure(runs), number=number, claim=statement)
 
         MEASUREMENTS[number] = statement, judged
@@ -79,6 +79,8 @@ def each(label: str, values: Mapping[str, Any], unit: str = "") -> list[Number]:
     return [(f"{label}, {key}", value, unit) for key, value in values.items()]
 
 
-def verdict(outcome: Outcome, reading: str, explanation: str, *measured: Number) -> Verdict:
+def verdict(outcome: Outcome, reading: str, explanation: str, *measured: Number) -> ClaimVerdict:
     """Return a verdict from measured numbers; the decorator `claim` adds the claim and its number."""
-    return Verdict(outcome, reading, explanation, tuple(Measured(label, float(value), unit) for label, value, unit in measured))
+    return ClaimVerdict(
+        outcome, reading, explanation, tuple(MeasuredNumber(label, float(value), unit) for label, value, unit in measured)
+    )

@@ -16,7 +16,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.solution.solution import Solution
 from stickslip.studies.inference.features import FEATURES, LEVELS, Samples, features_in
-from stickslip.studies.inference.memory import Block
+from stickslip.studies.inference.memory import ResidualBlock
 from stickslip.studies.inference.model import FAILED, JUMPING, LARGEST, Model, measured, unit_of
 from stickslip.studies.inference.part import Part
 from stickslip.studies.inference.record import Record
@@ -218,9 +218,9 @@ class FeatureModel(Model):
             return np.full(len(found), FAILED)
         return np.asarray(np.clip(np.linalg.solve(means.root, found - means.values), -LARGEST, LARGEST))
 
-    def blocks(self, part: int) -> list[tuple[str, Block]]:
+    def blocks(self, part: int) -> list[tuple[str, ResidualBlock]]:
         """Return the residual of each feature."""
-        return [(name, Block(slice(i, i + 1), np.zeros(1))) for i, name in enumerate(self.parts[part].observed)]
+        return [(name, ResidualBlock(slice(i, i + 1), np.zeros(1))) for i, name in enumerate(self.parts[part].observed)]
 
     @property
     def samples(self) -> int:

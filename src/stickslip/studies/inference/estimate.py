@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stickslip.foundation.arrays import Floats
-from stickslip.studies.inference.memory import Block, Memory, memory_of
+from stickslip.studies.inference.memory import Memory, ResidualBlock, memory_of
 from stickslip.studies.inference.model import Model
 from stickslip.studies.inference.noise import GAUSSIAN, cost_of
 from stickslip.studies.inference.search import (
@@ -135,32 +135,32 @@ def _noise(model: Model, searched: Floats, by: Floats, loss: str) -> Model:
     return model.with_(sizes=sizes, memory=memory)
 
 
-class Piece(NamedTuple):
+class QuantityPiece(NamedTuple):
     """What belongs to a quantity in all parts: residuals, rows of a matrix, weights of the samples, and blocks of neighbours."""
 
     name: str
     residual: Floats
     rows: Floats
     weight: Floats
-    blocks: list[Block]
+    blocks: list[ResidualBlock]
 
 
-def pieces_of(model: Model, residual: Floats, matrix: Floats) -> Iterator[Piece]:
+def pieces_of(model: Model, residual: Floats, matrix: Floats) -> Iterator[QuantityPiece]:
     """Yield the residuals of each quantity with the rows of a matrix that belong to them."""
     blocks_of = [model.blocks(i) for i in range(len(model.parts))]
     begins = np.append(0, np.cumsum([blocks[-1][1].rows.stop for blocks in blocks_of]))
     for name in model.sizes:
-        blocks, places, weights, count = list[Block](), list[Floats](), list[Floats](), 0
+        blocks, places, weights, count = list[ResidualBlock](), list[Floats](), list[Floats](), 0
         for i, part in enumerate(model.parts):
             for quantity, block in blocks_of[i]:
                 if quantity == name:
                     length = block.rows.stop - block.rows.start
                     places.append(begins[i] + np.arange(block.rows.start, block.rows.stop))
                     weights.append(model.weights(i)[np.isfinite(part.record.measured[name][:: model.every])])
-                    blocks.append(Block(slice(count, count + length), block.time))
+                    blocks.append(ResidualBlock(slice(count, count + length), block.time))
                     count += length
         rows = np.concatenate(places)
-        yield Piece(name, residual[rows], matrix[rows], np.concatenate(weights), blocks)
+        yield QuantityPiece(name, residual[rows], matrix[rows], np.concatenate(weights), blocks)
 
 
 def _widths(by: Floats) -> Floats:

@@ -23,7 +23,7 @@ from stickslip.studies.inference.free import Free
 from stickslip.studies.inference.memory import WHITE
 from stickslip.studies.inference.model import OF_NO_ZERO, Model, unit_of
 from stickslip.studies.inference.part import Part
-from stickslip.studies.inference.sampling import Walk
+from stickslip.studies.inference.sampling import PosteriorWalk
 from stickslip.studies.study import Study
 
 
@@ -42,7 +42,7 @@ class FittedRecord(Study):
     parts: tuple[Part, ...]
     about: tuple[str, ...]
     profiles: tuple[Profile, ...] = ()
-    walk: Walk | None = None
+    walk: PosteriorWalk | None = None
     windows: pd.DataFrame | None = None
     asked: Mapping[str, Any] = field(default_factory=dict)
 

@@ -31,7 +31,7 @@ from stickslip.studies.inference.part import Part, first_sizes, share_of, shorte
 from stickslip.studies.inference.record import Record
 from stickslip.studies.inference.resample import MOST_FITTED, resampled
 from stickslip.studies.inference.sampling import MOST_SAMPLES, sample
-from stickslip.studies.inference.search import COMPETES, Tell, Told
+from stickslip.studies.inference.search import COMPETES, SearchProgress, Tell
 from stickslip.studies.inference.setup import at_rests, evenly, hints_of, own_of, parts_of, scales_of, with_parts
 from stickslip.studies.inference.starting import with_starts
 from stickslip.studies.inference.windows import windows_of
@@ -284,7 +284,7 @@ def _model(problem: Problem, parts: list[Part], names: Sequence[str] | str, wish
 
 def _inferred(model: Model, whole: tuple[Part, ...], wishes: Wishes, notes: list[str], tell: Tell) -> Inference:
     """Return the result of all that was asked for; Ctrl-C leaves out what was not finished."""
-    tell = Told(tell)
+    tell = SearchProgress(tell)
     found = _estimated(model.with_(ran=tell.run), wishes, tell)
     sure, profiles, windows = unknown(found), list[Profile](), None
     walk, finished = None, found.finished

@@ -21,7 +21,7 @@ from stickslip.solution.accessors import report_of_study
 from stickslip.studies.inference.fitted_record import FittedRecord
 from stickslip.studies.inference.model import unit_of
 from stickslip.studies.inference.sampling import MOST_SAMPLES, sample
-from stickslip.studies.inference.search import Told
+from stickslip.studies.inference.search import SearchProgress
 from stickslip.studies.inference.words import notes_of
 from stickslip.studies.study import TextProgress, telling
 
@@ -47,7 +47,7 @@ class Inference(FittedRecord):
         if count <= len(self.walk.drawn):
             raise InputError(f"more: there are {len(self.walk.drawn)} samples already, got {count}")
         with telling(progress, "infer") as tell:
-            told = Told(tell)
+            told = SearchProgress(tell)
             found = replace(self.estimate, model=self.model.with_(ran=told.run))
             walk = sample(found, self.certainty, count, told, before=self.walk)
         return replace(self, walk=walk, estimate=replace(self.estimate, finished=not walk.stopped))

@@ -31,7 +31,7 @@ ACTIVE = 0.5
 """Share of all that determines the numbers which the active samples hold."""
 
 
-class Block(NamedTuple):
+class ResidualBlock(NamedTuple):
     """Residuals that follow each other in time: their indices among all, and their times (s)."""
 
     rows: slice
@@ -68,7 +68,7 @@ def independent(time: Floats, memory: Memory) -> float:
     return max(1.0, len(time) / (1.0 + share * 2.0 * rho / (1.0 - rho)))
 
 
-def memory_of(residual: Floats, slopes: Floats, blocks: Sequence[Block]) -> Memory:
+def memory_of(residual: Floats, slopes: Floats, blocks: Sequence[ResidualBlock]) -> Memory:
     """Return the memory of residuals by restricted maximum likelihood; white noise if that explains them as well.
 
     `slopes` are the derivatives of the residuals with respect to the parameters that were fitted, shape (n, p): what the fit took
@@ -106,7 +106,9 @@ def memory_of(residual: Floats, slopes: Floats, blocks: Sequence[Block]) -> Memo
     return Memory(time, size * math.sqrt(1.0 - share), size * math.sqrt(share * width))
 
 
-def _restricted(residual: Floats, slopes: Floats, blocks: Sequence[Block], time: float, share: float) -> tuple[float, float]:
+def _restricted(
+    residual: Floats, slopes: Floats, blocks: Sequence[ResidualBlock], time: float, share: float
+) -> tuple[float, float]:
     """Return twice the negative logarithm of the restricted likelihood, but for a constant, and the size of the noise.
 
     `slopes` have unit length and are at right angles, so that white noise has the criterion 2 (n - p) log(size). The noise is white
@@ -131,15 +133,17 @@ def _restricted(residual: Floats, slopes: Floats, blocks: Sequence[Block], time:
     return (n - p) * math.log(total / (n - p)) + log_det + float(np.linalg.slogdet(inner)[1]), math.sqrt(total / (n - p))
 
 
-def _means(residual: Floats, slopes: Floats, blocks: Sequence[Block], width: int) -> tuple[Floats, Floats, list[Block]]:
+def _means(
+    residual: Floats, slopes: Floats, blocks: Sequence[ResidualBlock], width: int
+) -> tuple[Floats, Floats, list[ResidualBlock]]:
     """Return means of residuals and of derivatives over so many neighbouring samples of one block, and their blocks."""
-    rests, by, found, count = [residual[:0]], [slopes[:0]], list[Block](), 0
+    rests, by, found, count = [residual[:0]], [slopes[:0]], list[ResidualBlock](), 0
     for rows, time in blocks:
         n = len(time) // width
         end = rows.start + n * width
         rests.append(residual[rows.start : end].reshape(n, width).mean(axis=1))
         by.append(slopes[rows.start : end].reshape(n, width, slopes.shape[1]).mean(axis=1))
-        found.append(Block(slice(count, count + n), time[: n * width].reshape(n, width).mean(axis=1)))
+        found.append(ResidualBlock(slice(count, count + n), time[: n * width].reshape(n, width).mean(axis=1)))
         count += n
     return np.concatenate(rests), np.concatenate(by), [one for one in found if len(one.time)]
 
@@ -158,7 +162,7 @@ def rms(residual: Floats, slopes: Floats) -> float:
     return math.sqrt(max(float(residual @ residual - along @ along), 0.0) / max(len(residual) - used.shape[1], 1))
 
 
-def spread_by(influence: Floats, memory: Memory, blocks: Sequence[Block]) -> Floats:
+def spread_by(influence: Floats, memory: Memory, blocks: Sequence[ResidualBlock]) -> Floats:
     """Return the covariance of numbers that noise with a memory makes, shape (p, p); `influence` of each sample has shape (n, p).
 
     That is influence.T C influence, with the covariance of the noise C, whose product is a recurrence along the samples.
@@ -176,7 +180,7 @@ def spread_by(influence: Floats, memory: Memory, blocks: Sequence[Block]) -> Flo
     return np.asarray(found)
 
 
-def spreads_of(influence: Floats, residual: Floats, blocks: Sequence[Block]) -> list[Floats]:
+def spreads_of(influence: Floats, residual: Floats, blocks: Sequence[ResidualBlock]) -> list[Floats]:
     """Return covariances of numbers, each of shape (p, p), from what is left itself, for sums over more and more samples.
 
     Where residuals are largest where they count most, these are larger than noise of one size makes them (White 1980, Econometrica
@@ -210,7 +214,7 @@ class Unevenness(NamedTuple):
 EVEN = Unevenness(1.0, 1.0)
 
 
-def unevenness(residual: Floats, slopes: Floats, memory: Memory, blocks: Sequence[Block]) -> Unevenness:
+def unevenness(residual: Floats, slopes: Floats, memory: Memory, blocks: Sequence[ResidualBlock]) -> Unevenness:
     """Return how uneven residuals are; `slopes` are their derivatives with respect to the numbers, shape (n, p).
 
     Noise does not know where the run changes; what the law, the loading or the machine cannot follow does.

@@ -15,7 +15,7 @@ from stickslip.problem.problem import Problem
 from stickslip.run.simulate import simulate
 from stickslip.solution.solution import Solution
 from stickslip.studies.inference.free import DELAY, LOAD, SERVO, STATE, TREND, Free
-from stickslip.studies.inference.memory import Block, Memory, independent
+from stickslip.studies.inference.memory import Memory, ResidualBlock, independent
 from stickslip.studies.inference.part import Part, approached, changed
 from stickslip.studies.inference.record import UNITS
 from stickslip.studies.inference.resample import RAMP, Jumps, jumps_in, spread, unsure
@@ -179,13 +179,13 @@ class Model:
                 pieces.append(np.clip(np.where(np.isfinite(rest), rest, FAILED), -LARGEST, LARGEST))
         return np.concatenate(pieces)
 
-    def blocks(self, part: int) -> list[tuple[str, Block]]:
+    def blocks(self, part: int) -> list[tuple[str, ResidualBlock]]:
         """Return the rows of each quantity among the residuals of a part, and their times."""
         found, begin = [], 0
         clock = self.parts[part].record.clock[:: self.every]
         for name in self.parts[part].observed:
             time = clock[np.isfinite(self.data(part, name)[:: self.every])]
-            found.append((name, Block(slice(begin, begin + len(time)), time)))
+            found.append((name, ResidualBlock(slice(begin, begin + len(time)), time)))
             begin += len(time)
         return found
 

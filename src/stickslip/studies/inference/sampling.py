@@ -28,7 +28,7 @@ FEW_TIMES = 20.0
 
 
 @dataclass(frozen=True, eq=False)
-class Walk:
+class PosteriorWalk:
     """The walk through the posterior distribution so far: what it kept, and from where it can go on."""
 
     chain: Floats
@@ -59,7 +59,9 @@ class Walk:
         return (stop, note) if self.stopped else (note,)
 
 
-def sample(found: Estimate, sure: Certainty, count: int, tell: Tell, *, seed: int = 0, before: Walk | None = None) -> Walk:
+def sample(
+    found: Estimate, sure: Certainty, count: int, tell: Tell, *, seed: int = 0, before: PosteriorWalk | None = None
+) -> PosteriorWalk:
     """Draw `count` samples of the searched numbers, or go on with the walk `before` until there are so many in all.
 
     Numbers on a bound may leave it, and those that are not determined are drawn within their limits. Ctrl-C ends the walk with the
@@ -96,7 +98,7 @@ def sample(found: Estimate, sure: Certainty, count: int, tell: Tell, *, seed: in
         posterior.stopped = True
     if posterior.stopped and before is None and done <= forget:
         raise KeyboardInterrupt
-    return Walk(np.concatenate([*kept, new[forget:done]]), state, count, posterior.stopped)
+    return PosteriorWalk(np.concatenate([*kept, new[forget:done]]), state, count, posterior.stopped)
 
 
 class _Posterior:

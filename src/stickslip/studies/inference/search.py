@@ -36,7 +36,7 @@ LIGHT = 2000
 
 
 @dataclass
-class Told:
+class SearchProgress:
     """The progress of a search: what it does, and the number of runs so far; a line of text after each."""
 
     tell: Callable[[str], Any]

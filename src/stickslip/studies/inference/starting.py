@@ -155,7 +155,7 @@ def _of_slab(problem: Problem, cycles: StickSlip, names: set[str]) -> Iterator[t
         yield "body.density", cycles.rise * thickness / speed**2
 
 
-class Plateau(NamedTuple):
+class RatePlateau(NamedTuple):
     """Friction at the end of a part of constant rate (m/s), and its samples: time (s) and friction."""
 
     rate: float
@@ -164,7 +164,7 @@ class Plateau(NamedTuple):
     samples: Floats
 
 
-def _plateaus(part: Part, friction: Floats) -> list[Plateau]:
+def _plateaus(part: Part, friction: Floats) -> list[RatePlateau]:
     """Return the plateaus of a part of a record, in their order; parts without rate, or with too few samples, are passed over."""
     known, clock = np.isfinite(friction), part.record.clock
     clock, friction = clock[known], friction[known]
@@ -175,7 +175,9 @@ def _plateaus(part: Part, friction: Floats) -> list[Plateau]:
         inside = slice(*np.searchsorted(clock, [begin, end]).tolist())
         time, values = clock[inside], friction[inside]
         if rate != 0.0 and len(time) >= LEAST:
-            found.append(Plateau(abs(rate), abs(float(np.median(values[-math.ceil(TAIL * len(values)) :]))), time, np.abs(values)))
+            found.append(
+                RatePlateau(abs(rate), abs(float(np.median(values[-math.ceil(TAIL * len(values)) :]))), time, np.abs(values))
+            )
     return found
 
 
@@ -202,7 +204,7 @@ def _of_steps(problem: Problem, part: Part, friction: Floats, names: set[str]) -
     yield "friction.reference", float(np.mean(levels - slope * logs))
 
 
-def _transients(plateaus: Sequence[Plateau], noise: float) -> tuple[float, float]:
+def _transients(plateaus: Sequence[RatePlateau], noise: float) -> tuple[float, float]:
     """Return the direct effect per factor e of rate, and the slip (m) over which it decays by a factor e; NaN if none is clear."""
     effects, distances = list[float](), list[float]()
     for before, after in pairwise(plateaus):

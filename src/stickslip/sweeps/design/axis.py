@@ -30,7 +30,7 @@ FORM = '"KEY=LOW..HIGH:POINTS", followed by ":log" for equal ratios, or "KEY=VAL
 
 
 @dataclass(frozen=True, eq=False)
-class Axis:
+class DesignAxis:
     """A parameter with its `values`, or with the `ends` (SI) between which samples are drawn.
 
     If `log` is True, samples are distributed evenly in the logarithm, and figures have a logarithmic axis.
@@ -42,7 +42,7 @@ class Axis:
     log: bool = False
 
     @classmethod
-    def of_values(cls, parameter: ParameterPath, values: Any, where: str) -> Axis:
+    def of_values(cls, parameter: ParameterPath, values: Any, where: str) -> DesignAxis:
         """Return the axis of an array, a list or a pint quantity array; it is logarithmic if the values are in equal ratios.
 
         Raises InputError, whose message begins with `where`.
@@ -55,7 +55,7 @@ class Axis:
         return cls(parameter, found, log=_in_equal_ratios(found))
 
     @classmethod
-    def of_range(cls, parameter: ParameterPath, ends: Sequence[Any], log: bool, where: str) -> Axis:
+    def of_range(cls, parameter: ParameterPath, ends: Sequence[Any], log: bool, where: str) -> DesignAxis:
         """Return the axis of samples between two ends. Raises InputError unless they are numbers in ascending order."""
         if isinstance(parameter.declared, Choice):
             words = ", ".join(parameter.declared.allowed)
@@ -125,7 +125,7 @@ def _in_equal_ratios(values: Values) -> bool:
 # ---- axes that are typed ----------------------------------------------------------------------------------------------------
 
 
-def typed_axes(scenario: Scenario, texts: Iterable[str], where: str) -> list[Axis]:
+def typed_axes(scenario: Scenario, texts: Iterable[str], where: str) -> list[DesignAxis]:
     """Return the axes that were typed, each in the FORM. Raises InputError, whose message begins with `where`."""
     return [_typed_axis(scenario, text, where) for text in texts]
 
@@ -138,7 +138,7 @@ def typed_value(parameter: ParameterPath, text: Any) -> Any:
         return text
 
 
-def _typed_axis(scenario: Scenario, text: str, where: str) -> Axis:
+def _typed_axis(scenario: Scenario, text: str, where: str) -> DesignAxis:
     name, equals, content = (part.strip() for part in text.partition("="))
     if not equals or not name or not content:
         raise InputError(f"{where} must be {FORM}, got {shown(text)}")
@@ -146,12 +146,12 @@ def _typed_axis(scenario: Scenario, text: str, where: str) -> Axis:
     found = TypedRange.of(content)
     values = [typed_value(parameter, one) for one in (found[:2] if found else content.split(","))]
     if found is None:
-        return Axis(parameter, read_values(parameter, values, where))
-    axis = Axis.of_range(parameter, values, found.log, where)
+        return DesignAxis(parameter, read_values(parameter, values, where))
+    axis = DesignAxis.of_range(parameter, values, found.log, where)
     return axis if found.points is None else _with_points(axis, found.points, where)
 
 
-def _with_points(axis: Axis, points: int, where: str) -> Axis:
+def _with_points(axis: DesignAxis, points: int, where: str) -> DesignAxis:
     """Return an axis with evenly spaced values, both ends included. Raises InputError for fewer than two, or too many."""
     check_size(axis.parameter, points, where)
     if points < 2:

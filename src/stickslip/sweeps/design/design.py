@@ -17,7 +17,7 @@ from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.scenarios.parameter_paths import ParameterPath, find_parameter
 from stickslip.scenarios.scenario import Scenario
-from stickslip.sweeps.design.axis import LARGEST_AXIS, Axis, Values, read_values, typed_value
+from stickslip.sweeps.design.axis import LARGEST_AXIS, DesignAxis, Values, read_values, typed_value
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -116,15 +116,15 @@ def read_design(
     return grid(axes, where)
 
 
-def axes_of(scenario: Scenario, vary: Any, where: str, *, sampled: bool = False) -> list[Axis]:
-    """Return the axes of a mapping from parameters to values (`Axis.of_values`); a list of axes is returned as it is.
+def axes_of(scenario: Scenario, vary: Any, where: str, *, sampled: bool = False) -> list[DesignAxis]:
+    """Return the axes of a mapping from parameters to values (`DesignAxis.of_values`); a list of axes is returned as it is.
 
     If `sampled`, a tuple (LOW, HIGH) or (LOW, HIGH, "log") stands for the ends between which samples are drawn. Raises
     InputError, whose message begins with `where`.
     """
     if isinstance(vary, Mapping):
         axes = [_axis(find_parameter(scenario, str(name), where), content, where, sampled) for name, content in vary.items()]
-    elif isinstance(vary, list) and all(isinstance(axis, Axis) for axis in vary):
+    elif isinstance(vary, list) and all(isinstance(axis, DesignAxis) for axis in vary):
         axes = vary
     else:
         got = " ".join(shown(vary.tolist() if isinstance(vary, np.ndarray) else vary).split())
@@ -135,13 +135,13 @@ def axes_of(scenario: Scenario, vary: Any, where: str, *, sampled: bool = False)
     return axes
 
 
-def _axis(parameter: ParameterPath, content: Any, where: str, sampled: bool) -> Axis:
+def _axis(parameter: ParameterPath, content: Any, where: str, sampled: bool) -> DesignAxis:
     if not isinstance(content, tuple):
-        return Axis.of_values(parameter, content, where)
+        return DesignAxis.of_values(parameter, content, where)
     if not sampled or len(content) < 2 or content[2:] not in ((), ("log",)):
         ends = '(LOW, HIGH) or (LOW, HIGH, "log")'
         raise InputError(f"{where}: {parameter.name} must be an array or a list: a tuple {ends} is for the designs random and lhs")
-    return Axis.of_range(parameter, content[:2], content[2:] == ("log",), where)
+    return DesignAxis.of_range(parameter, content[:2], content[2:] == ("log",), where)
 
 
 def _check_names(names: Sequence[str], where: str) -> None:
@@ -152,12 +152,12 @@ def _check_names(names: Sequence[str], where: str) -> None:
         raise InputError(f"{where}: initial.load and initial.excess exclude each other")
 
 
-def _design(kind: str, axes: Sequence[Axis], columns: Sequence[Values], seed: int | None = None) -> Design:
+def _design(kind: str, axes: Sequence[DesignAxis], columns: Sequence[Values], seed: int | None = None) -> Design:
     logs = frozenset(axis.parameter.name for axis in axes if axis.log)
     return Design(kind, tuple(axis.parameter for axis in axes), tuple(columns), seed, logs)
 
 
-def grid(axes: Sequence[Axis], where: str) -> Design:
+def grid(axes: Sequence[DesignAxis], where: str) -> Design:
     """Return the design of every combination of the axes.
 
     Raises InputError for an axis without points or with a repeated value, and for more than LARGEST_GRID members.
@@ -175,7 +175,7 @@ def grid(axes: Sequence[Axis], where: str) -> Design:
     return found
 
 
-def sampled(axes: Sequence[Axis], kind: str, members: int | None, seed: int, where: str) -> Design:
+def sampled(axes: Sequence[DesignAxis], kind: str, members: int | None, seed: int, where: str) -> Design:
     """Return a design of the given number of members, drawn between the ends of the axes.
 
     `kind` "random" draws members independently. "lhs" is a Latin hypercube: every axis is divided into as many equal intervals as

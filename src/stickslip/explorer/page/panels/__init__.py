@@ -11,7 +11,7 @@ from stickslip.explorer.page.panels.law import place, unit_along
 from stickslip.explorer.page.panels.motion import COLUMNS, DRAWN, columns_of
 from stickslip.explorer.page.panels.units import share_loads, units_of
 from stickslip.explorer.page.stage import Stage
-from stickslip.explorer.page.view import Columns, Key, Units, View, limits
+from stickslip.explorer.page.view import Columns, LegendKey, Units, View, limits
 
 NOTHING: dict[str, Columns] = {
     "pinned": {name: [] for name in COLUMNS},
@@ -19,7 +19,7 @@ NOTHING: dict[str, Columns] = {
     "pinned_contact": {"rate": [], "load": []},
 }
 """The sources without a pinned run."""
-KEY = Key("pinned", "pin")
+KEY = LegendKey("pinned", "pin")
 
 
 def add_pinned(view: View, kept: Answer | None, answer: Answer, units: Units) -> None:

@@ -10,14 +10,14 @@ from bokeh.models import Arrow, NormalHead
 from stickslip.explorer.model.answer import Answer, ContactPicture
 from stickslip.explorer.page.components import paint
 from stickslip.explorer.page.stage import Stage
-from stickslip.explorer.page.view import Columns, Key, Units, View, axis_label, limits
+from stickslip.explorer.page.view import Columns, LegendKey, Units, View, axis_label, limits
 
 TEXT = "Contact equation: load against slip rate, with stick, stable and unstable slip, folds, and the path of the run"
 KINDS = {1: "stable", -1: "unstable", 0: "continuum"}
 KEYS = {
-    "stable": Key("stable", "stable"),
-    "unstable": Key("unstable", "unstable", "dash"),
-    "continuum": Key("continuum", "continuum"),
+    "stable": LegendKey("stable", "stable"),
+    "unstable": LegendKey("unstable", "unstable", "dash"),
+    "continuum": LegendKey("continuum", "continuum"),
 }
 
 
@@ -39,9 +39,9 @@ def data_of(answer: Answer, units: Units) -> View:
     path = {"time": contact.path_time / units.time[1], "rate": contact.path_rate / metre, "load": contact.path_load / pascal}
     columns["path"] = path
     found = [kind for kind in KINDS.values() if np.isfinite(columns[kind]["load"]).any()]
-    keys = [Key("stick", "stick"), *(KEYS[kind] for kind in found), Key("path", "path")]
-    keys += [Key("fold", "ink", "ring")] if len(folds) else []
-    keys += [Key("jump", "muted", "dot")] if len(jumps) else []
+    keys = [LegendKey("stick", "stick"), *(KEYS[kind] for kind in found), LegendKey("path", "path")]
+    keys += [LegendKey("fold", "ink", "ring")] if len(folds) else []
+    keys += [LegendKey("jump", "muted", "dot")] if len(jumps) else []
     name = "force" if units.load[0].endswith("N") else "load"
     return View(
         columns=columns,

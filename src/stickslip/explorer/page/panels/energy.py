@@ -9,7 +9,7 @@ import numpy as np
 from stickslip.explorer.model.answer import Answer
 from stickslip.explorer.page.components import paint
 from stickslip.explorer.page.stage import NARROW, Stage
-from stickslip.explorer.page.view import Columns, Key, Units, View, axis_label, limits
+from stickslip.explorer.page.view import Columns, LegendKey, Units, View, axis_label, limits
 from stickslip.figures.style import unit_of
 
 TEXT = "Energy against time: elastic, kinetic, radiated, damped, and friction heat, stacked"
@@ -30,7 +30,7 @@ def data_of(answer: Answer, units: Units) -> View:
     total = energy.parts.get("total", top)
     unit, size = unit_of(energy.unit, total, top)
     columns = {name: values if name == "time" else values / size for name, values in edges.items()} | {"total": total / size}
-    keys = tuple(Key(NAMES.get(name, name), name, "area") for name in reversed(drawn))
+    keys = tuple(LegendKey(NAMES.get(name, name), name, "area") for name in reversed(drawn))
     if units.whole:
         span = answer.motions[0].time[[0, -1]] / units.time[1]
         ends, clock = (float(span[0]), float(span[1])), "time"
@@ -43,7 +43,7 @@ def data_of(answer: Answer, units: Units) -> View:
         labels={"axis:near@energy": axis_label(clock, "t" if units.whole else "", units.near[0])},
         titles={"energy": axis_label("Energy", "", unit)},
         facts={"near": {"size": units.near[1], "begin": units.begin, "whole": units.whole, "from": ends[0], "to": ends[1]}},
-        keys={"energy": (*keys, Key("total", "ink", "dash"))},
+        keys={"energy": (*keys, LegendKey("total", "ink", "dash"))},
     )
 
 

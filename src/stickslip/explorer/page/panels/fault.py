@@ -11,7 +11,7 @@ from stickslip.explorer.model.fault import FaultAnswer
 from stickslip.explorer.page.components import paint
 from stickslip.explorer.page.panels import energy, field, motion
 from stickslip.explorer.page.stage import NARROW, Stage
-from stickslip.explorer.page.view import Key, Units, View, axis_label, limits, single
+from stickslip.explorer.page.view import LegendKey, Units, View, axis_label, limits, single
 from stickslip.figures.style import nearly_flat, unit_of
 
 TITLES = {
@@ -59,7 +59,7 @@ def _motion(answer: FaultAnswer, kept: FaultAnswer | None, units: Units) -> View
     curves = motion.columns_of(answer.motions[0], units)
     beside = {name: [] for name in motion.COLUMNS} if kept is None else motion.columns_of(kept.motions[0], units)
     nothing: dict[str, Any] = {name: [] for name in motion.COLUMNS}
-    further = () if kept is None else (Key("pinned", "pin"),)
+    further = () if kept is None else (LegendKey("pinned", "pin"),)
     names = {"slip": ("slip",), "rate": ("rate_at",), "traction": ("traction", "load")}
     marks = [{"time": one.time / units.time[1], "kind": one.kind, "text": one.text} for one in answer.marks]
     clock = (float(curves["time"][0]), float(curves["time"][-1]))
@@ -76,7 +76,11 @@ def _motion(answer: FaultAnswer, kept: FaultAnswer | None, units: Units) -> View
             "rate": axis_label("Slip rate in the middle", "v", units.rate[0]),
             "traction": axis_label("Traction in the middle", "τ", units.stress[0]),
         },
-        keys={"slip": further, "rate": further, "traction": (Key("traction", "traction"), Key("load", "load", "dot"), *further)},
+        keys={
+            "slip": further,
+            "rate": further,
+            "traction": (LegendKey("traction", "traction"), LegendKey("load", "load", "dot"), *further),
+        },
         hidden={"axis:rate_powers"},
         facts={
             "time": {"unit": units.time[0], "size": units.time[1], "from": clock[0], "to": clock[1]},
@@ -124,7 +128,7 @@ def _map(answer: FaultAnswer, units: Units) -> View:
             "profile_rate": axis_label("Slip rate along the contact now", "v", units.rate[0]),
             "profile_slip": axis_label("Slip along the contact now", "u", units.slip[0]),
         },
-        keys={"field": (Key(f"slip rate {fields['velocity']['text']}", "signed", "scale"),)},
+        keys={"field": (LegendKey(f"slip rate {fields['velocity']['text']}", "signed", "scale"),)},
         facts={"fields": fields, "profile": True},
     )  # fmt: skip
 

@@ -12,7 +12,7 @@ import numpy as np
 from stickslip.explorer.model.answer import Answer
 from stickslip.explorer.page.components import paint
 from stickslip.explorer.page.stage import NARROW, Stage, signed_scale
-from stickslip.explorer.page.view import Columns, Key, Units, View, axis_label, single
+from stickslip.explorer.page.view import Columns, LegendKey, Units, View, axis_label, single
 from stickslip.figures.style import unit_of
 
 TEXT = "Velocity, displacement or stress in the slab: distance from the contact against time, with wave fronts"
@@ -51,7 +51,7 @@ def data_of(answer: Answer, units: Units) -> View:
         limits={"place": (0.0, float(place[-1]))},
         fastest=largest,
         titles={"field": axis_label("Slab:", "x", units.place[0])},
-        keys={"field": (Key(f"velocity {fields['velocity']['text']}", "signed", "scale"), Key("wave front", "front"))},
+        keys={"field": (LegendKey(f"velocity {fields['velocity']['text']}", "signed", "scale"), LegendKey("wave front", "front"))},
         facts={"fields": fields},
     )
 

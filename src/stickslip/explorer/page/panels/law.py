@@ -9,7 +9,7 @@ import numpy as np
 from stickslip.explorer.model.answer import Answer, LawPicture
 from stickslip.explorer.page.components import paint
 from stickslip.explorer.page.stage import Stage
-from stickslip.explorer.page.view import Columns, Key, Units, View, axis_label, limits
+from stickslip.explorer.page.view import Columns, LegendKey, Units, View, axis_label, limits
 from stickslip.figures.style import unit_of
 
 TEXT = "Friction law: friction coefficient against slip or slip rate"
@@ -33,7 +33,9 @@ def data_of(answer: Answer, units: Units) -> View:
         limits={"law_x": (least, most), "law_y": limits(law.coefficient, visited["y"])},
         labels={"axis:law_x@law": label, "axis:law_powers": label, "axis:law_y@law": "friction μ"},
         titles={"law": "Friction law at the slip of the start"} if depends_on_slip and law.along == "slip_rate" else {},
-        keys={"law": (Key(law.name, "ink"), Key("visited by the run" if law.path is None else "path of the run", "law"))},
+        keys={
+            "law": (LegendKey(law.name, "ink"), LegendKey("visited by the run" if law.path is None else "path of the run", "law"))
+        },
         hidden={"axis:law_x@law" if law.log else "axis:law_powers"},
     )
 

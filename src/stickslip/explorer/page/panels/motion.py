@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 from bokeh.models import Span
 
-from stickslip.explorer.model.answer import Answer, Motion
+from stickslip.explorer.model.answer import Answer, BodyCurves
 from stickslip.explorer.model.words import short
 from stickslip.explorer.page.components import paint
 from stickslip.explorer.page.panels.units import Curve, held, share_loads
 from stickslip.explorer.page.stage import NARROW, Stage
-from stickslip.explorer.page.view import Columns, Key, LineStyle, Units, View, axis_label, limits
+from stickslip.explorer.page.view import Columns, LegendKey, LineStyle, Units, View, axis_label, limits
 from stickslip.figures.runs.curves import after_start
 from stickslip.figures.style import CURVES, FORCES, unit_of
 
@@ -50,10 +50,10 @@ def data_of(answer: Answer, units: Units) -> View:
     force = main.load_unit == "N"
     name = FORCES["traction"] if force else CURVES["traction"][0]
     name = f"change of {name}" if units.offset else name
-    keys = {name: (Key(main.name, name), *_key(answer, name)) for name in CURVE_OF}
+    keys = {name: (LegendKey(main.name, name), *_key(answer, name)) for name in CURVE_OF}
     for name, key in _misfits(answer).items():
         keys[name] = (*keys[name], key)
-    keys["traction"] = (*keys["traction"], Key("spring force" if force else "load", "load", "dot"))
+    keys["traction"] = (*keys["traction"], LegendKey("spring force" if force else "load", "load", "dot"))
     time = columns["motion"]["time"]
     view = View(
         columns=columns,
@@ -89,7 +89,7 @@ def data_of(answer: Answer, units: Units) -> View:
     return view
 
 
-def _states(main: Motion, units: Units) -> View:
+def _states(main: BodyCurves, units: Units) -> View:
     """Return the states of friction, on a logarithmic axis if they change by orders of magnitude."""
     both = ("state", "second")
     if not main.states:
@@ -105,7 +105,7 @@ def _states(main: Motion, units: Units) -> View:
         columns={"states": columns},
         limits={"state": limits(*shown)},
         titles={"state": axis_label("State of friction", "", unit)},
-        keys={"state": tuple(Key(one.meaning, "law", style) for one, style in zip(main.states, styles, strict=False))},
+        keys={"state": tuple(LegendKey(one.meaning, "law", style) for one, style in zip(main.states, styles, strict=False))},
         hidden={"axis:state@state" if log else "axis:state_powers"},
     )
 
@@ -141,19 +141,19 @@ def _measured(answer: Answer, units: Units) -> Columns:
     }
 
 
-def _misfits(answer: Answer) -> dict[str, Key]:
+def _misfits(answer: Answer) -> dict[str, LegendKey]:
     """Return the entry of a record in the legend of each panel that shows it, with the misfit of the run."""
     found = answer.measured
     if found is None:
         return {}
     panels: dict[str, str] = {curve: name for name, curve in CURVE_OF.items()}
     return {
-        panels[curve]: Key(f"measured, misfit {short(one.value, one.unit)}", "path", "ring")
+        panels[curve]: LegendKey(f"measured, misfit {short(one.value, one.unit)}", "path", "ring")
         for curve, one in zip(found.curves, found.misfits, strict=True)
     }
 
 
-def _beside(main: Motion, other: Sequence[Motion], units: Units) -> Columns:
+def _beside(main: BodyCurves, other: Sequence[BodyCurves], units: Units) -> Columns:
     """Return the curves of the companion, if there is one; without loads that cannot share an axis with those of the body."""
     if not other:
         return {name: [] for name in COLUMNS}
@@ -169,19 +169,19 @@ def _rate_limits(answer: Answer, units: Units) -> tuple[float, float]:
     return limits(rate[settled], *(columns_of(body, units)["rate_at"] for body in others if not units.log))
 
 
-def _key(answer: Answer, name: str) -> tuple[Key, ...]:
+def _key(answer: Answer, name: str) -> tuple[LegendKey, ...]:
     """Return how the legend of a panel names the companion; one that leaves the axis is named with the end of its curve."""
     main, curve = answer.motions[0], CURVE_OF[name]
     others = [one for one in answer.motions[1:2] if name != "traction" or share_loads(main, one)]
     if not others or others[0] in held(answer, curve):
-        return tuple(Key(one.name, name, "dash") for one in others)
+        return tuple(LegendKey(one.name, name, "dash") for one in others)
     reach = getattr(others[0], curve)
     reach = reach[np.argmax(np.abs(reach))]
     unit, size = unit_of({"slip": "m", "rate": "m/s"}.get(name, main.load_unit), reach)
-    return (Key(f"{others[0].name}, to {reach / size:.3g} {unit}", name, "dash"),)
+    return (LegendKey(f"{others[0].name}, to {reach / size:.3g} {unit}", name, "dash"),)
 
 
-def columns_of(motion: Motion, units: Units) -> Columns:
+def columns_of(motion: BodyCurves, units: Units) -> Columns:
     """Return the curves of one body in the units shown."""
     rate = motion.slip_rate / units.rate[1]
     return {

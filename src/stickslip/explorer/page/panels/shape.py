@@ -13,7 +13,7 @@ from bokeh.core.properties import value
 from stickslip.explorer.model.answer import Answer
 from stickslip.explorer.page.components import FONT, paint
 from stickslip.explorer.page.stage import Stage
-from stickslip.explorer.page.view import Key, Units, View, axis_label, round_step
+from stickslip.explorer.page.view import LegendKey, Units, View, axis_label, round_step
 from stickslip.figures.style import unit_of
 
 TEXT = "Shape of the body at the time of the cursor: displacements, drawn many times larger"
@@ -29,7 +29,7 @@ def data_of(answer: Answer, units: Units) -> View:
     largest = float(np.abs(slab.displacement if slab is not None else slip - slip[0]).max()) or 1.0
     unit, size = unit_of("m", largest)
     scale, bar = REACH * WIDTH / largest * units.slip[1], round_step(largest / size)
-    keys = [Key("velocity of particles", "signed", "scale")] if slab is not None else []
+    keys = [LegendKey("velocity of particles", "signed", "scale")] if slab is not None else []
     height = (answer.slab.place[-1] + answer.slab.place[0]) / units.place[1] if answer.slab is not None else 1.0
     return View(
         limits={"shape_x": (0.0, WIDTH), "shape_y": (-0.16 * height, 1.17 * height)},

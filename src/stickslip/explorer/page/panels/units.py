@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from stickslip.explorer.model.answer import Answer, Motion
+from stickslip.explorer.model.answer import Answer, BodyCurves
 from stickslip.explorer.page.view import Units
 from stickslip.figures.style import nearly_flat, unit_of
 
@@ -45,18 +45,18 @@ def units_of(answer: Answer, kept: Answer | None = None) -> Units:
     )
 
 
-def share_loads(main: Motion, other: Motion) -> bool:
+def share_loads(main: BodyCurves, other: BodyCurves) -> bool:
     """Return True if loads of two bodies can share an axis: the block equivalent to a slab is that of 1 m², so its N are Pa."""
     return main.load_unit == other.load_unit or main.body == "slab"
 
 
-def held(answer: Answer, curve: Curve) -> tuple[Motion, ...]:
+def held(answer: Answer, curve: Curve) -> tuple[BodyCurves, ...]:
     """Return the bodies that an axis is made to hold: the body itself, and its companion unless that would make it look flat."""
     main, other = answer.motions[0], answer.motions[1:2]
     fits = all(extent(one, curve) <= REACH * extent(main, curve) for one in other)
     return (main, *other) if fits and (curve != "traction" or all(share_loads(main, one) for one in other)) else (main,)
 
 
-def extent(motion: Motion, curve: Curve) -> float:
+def extent(motion: BodyCurves, curve: Curve) -> float:
     """Return the range of a curve (SI)."""
     return float(np.ptp(getattr(motion, curve)))

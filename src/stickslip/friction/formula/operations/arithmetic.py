@@ -20,7 +20,7 @@ from stickslip.friction.formula.operations.enclosures import (
 from stickslip.friction.formula.operations.operation import (
     TINIEST,
     UNITS,
-    Balls,
+    BallsWriter,
     Change,
     Dimension,
     Levels,
@@ -28,7 +28,7 @@ from stickslip.friction.formula.operations.operation import (
     Radius,
     Recurrence,
     Scaled,
-    Series,
+    SeriesWriter,
     unit_text,
     without_zeros,
 )
@@ -62,7 +62,7 @@ def _subtracted(a: str | None, b: str | None) -> str:
     return f"{a or ''}{f' - {b}' if b else ''}"
 
 
-def _taken_apart(writer: Series, node: Expression, sign: str) -> dict[Expression, str] | None:
+def _taken_apart(writer: SeriesWriter, node: Expression, sign: str) -> dict[Expression, str] | None:
     left, right = (writer.parts(argument) for argument in node.arguments)
     if left.keys() & right.keys() or len(left) + len(right) > MOST_PARTS:
         return None
@@ -81,26 +81,26 @@ def _sub_order_zero(writer: Levels, node: Expression) -> dict[str, str]:
     return writer.level(node, _subtracted(writer.difference(a), writer.difference(b)), value)
 
 
-def _add_coefficient(writer: Series, node: Expression, k: int) -> str:
+def _add_coefficient(writer: SeriesWriter, node: Expression, k: int) -> str:
     return _added(*(writer.coefficient(argument, k) for argument in node.arguments)) or "0.0"
 
 
-def _sub_coefficient(writer: Series, node: Expression, k: int) -> str:
+def _sub_coefficient(writer: SeriesWriter, node: Expression, k: int) -> str:
     a, b = (writer.coefficient(argument, k) for argument in node.arguments)
     return _subtracted(a or "0.0", b)
 
 
-def _sum_radius(balls: Balls, node: Expression) -> str:
+def _sum_radius(balls: BallsWriter, node: Expression) -> str:
     return _added(*(balls.radius(argument) for argument in node.arguments))
 
 
-def _sum_least(balls: Balls, node: Expression, plain: str) -> str:
+def _sum_least(balls: BallsWriter, node: Expression, plain: str) -> str:
     """Write a lower bound of a sum that may have a term which is the larger one on the whole disc."""
     a, b = node.arguments
     return f"max({plain}, max({balls.least(a)} - {balls.most(b)}, {balls.least(b)} - {balls.most(a)}))"
 
 
-def _sum_logarithm(balls: Balls, node: Expression, plain: str) -> str:
+def _sum_logarithm(balls: BallsWriter, node: Expression, plain: str) -> str:
     a, b = node.arguments
     sides = [
         f"{balls.logarithm(large)} + 2.0 * log_radius({balls.least(large)}, {balls.most(small)})"
@@ -183,12 +183,12 @@ def _mul_derivative(writer: Levels, node: Expression, da: str | None, db: str | 
     return _added(da and f"{da} * {b0}", db and f"{a0} * {db}")
 
 
-def _mul_coefficient(writer: Series, node: Expression, k: int) -> str:
+def _mul_coefficient(writer: SeriesWriter, node: Expression, k: int) -> str:
     a, b = node.arguments
     return writer.products(a, b, k, range(k + 1))
 
 
-def _mul_parts(writer: Series, node: Expression) -> dict[Expression, str] | None:
+def _mul_parts(writer: SeriesWriter, node: Expression) -> dict[Expression, str] | None:
     a, b = node.arguments
     if writer.varies[a] and writer.varies[b]:
         return None
@@ -196,7 +196,7 @@ def _mul_parts(writer: Series, node: Expression) -> dict[Expression, str] | None
     return {part: f"{factor} * {writer.reference(constant)}" for part, factor in writer.parts(varying).items()}
 
 
-def _mul_radius(balls: Balls, node: Expression) -> str:
+def _mul_radius(balls: BallsWriter, node: Expression) -> str:
     a, b = node.arguments
     ra, rb = balls.radius(a), balls.radius(b)
     if a == b:
@@ -206,7 +206,7 @@ def _mul_radius(balls: Balls, node: Expression) -> str:
     return f"{balls.size(a)} * {rb}" if rb else f"{balls.size(b)} * {ra}"
 
 
-def _both_turned(balls: Balls, node: Expression, _: str) -> str:
+def _both_turned(balls: BallsWriter, node: Expression, _: str) -> str:
     return " + ".join(balls.logarithm(argument) for argument in node.arguments)
 
 
@@ -283,22 +283,22 @@ def _div_derivative(writer: Levels, node: Expression, da: str | None, db: str | 
     return f"({above}) / {writer.coefficient(node.arguments[1], 0)}"
 
 
-def _div_products(writer: Series, node: Expression, k: int) -> str:
+def _div_products(writer: SeriesWriter, node: Expression, k: int) -> str:
     return writer.products(node.arguments[1], node, k, range(1, k + 1))
 
 
-def _div_coefficient(writer: Series, node: Expression, k: int) -> str:
+def _div_coefficient(writer: SeriesWriter, node: Expression, k: int) -> str:
     return f"({writer.coefficient(node.arguments[0], k) or '0.0'} - ({_div_products(writer, node, k)})) * i{writer.index[node]}"
 
 
-def _div_parts(writer: Series, node: Expression) -> dict[Expression, str] | None:
+def _div_parts(writer: SeriesWriter, node: Expression) -> dict[Expression, str] | None:
     a, b = node.arguments
     if writer.varies[b]:
         return None
     return {part: f"{factor} / {writer.reference(b)}" for part, factor in writer.parts(a).items()}
 
 
-def _div_radius(balls: Balls, node: Expression) -> str:
+def _div_radius(balls: BallsWriter, node: Expression) -> str:
     a, b = node.arguments
     ra, rb = balls.radius(a), balls.radius(b)
     if not rb:

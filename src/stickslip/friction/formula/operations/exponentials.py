@@ -13,14 +13,14 @@ from stickslip.friction.formula.operations.enclosures import LIBRARY, function, 
 from stickslip.friction.formula.operations.operation import (
     LARGEST_EXPONENT,
     TINIEST,
-    Balls,
+    BallsWriter,
     Change,
     Levels,
     Operation,
     Radius,
     Recurrence,
     Scaled,
-    Series,
+    SeriesWriter,
 )
 from stickslip.friction.formula.operations.sets import OF_FUNCTION, Disc, growing
 
@@ -94,13 +94,13 @@ def _exp_derivative(writer: Levels, node: Expression, da: str) -> str:
     return f"{value} * (o{writer.index[node]} * {da})" if writer.saturates(node) else f"{value} * {da}"
 
 
-def _exp_coefficient(writer: Series, node: Expression, k: int) -> str:
+def _exp_coefficient(writer: SeriesWriter, node: Expression, k: int) -> str:
     a = node.arguments[0]
     grows = f"o{writer.index[node]} * " if writer.saturates(node) else ""
     return f"{grows}{writer.coefficient(a, k) or '0.0'} * {writer.coefficient(node, 0)}{writer.weighted(a, node, k)}"
 
 
-def _exp_radius(balls: Balls, node: Expression) -> str:
+def _exp_radius(balls: BallsWriter, node: Expression) -> str:
     """Write the radius of an exp; 0 for one that is a constant, if its argument stays large along the step."""
     a = node.arguments[0]
     radius = f"exp_radius({balls.centre(a)}, {balls.centre(node)}, {balls.radius(a)})"
@@ -109,7 +109,7 @@ def _exp_radius(balls: Balls, node: Expression) -> str:
     return f"min({radius}, 1e308 * max({below(LARGEST_EXPONENT, balls.centre(a))}, {below(STAYS_LARGE, balls.least(a))}))"
 
 
-def _exp_least(balls: Balls, node: Expression, _: str) -> str:
+def _exp_least(balls: BallsWriter, node: Expression, _: str) -> str:
     a = node.arguments[0]
     return f"max(1.0 / exp_above({balls.radius(a)} - {balls.centre(a)}), {TINIEST!r})"
 

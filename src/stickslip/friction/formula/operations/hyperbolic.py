@@ -11,7 +11,7 @@ import numpy as np
 from stickslip.foundation.arrays import Floats
 from stickslip.friction.formula.expression import Expression, nodes_of
 from stickslip.friction.formula.operations.enclosures import LIBRARY, function, multiply, negative, outward, square
-from stickslip.friction.formula.operations.operation import Change, Levels, Operation, Radius, Recurrence, Series
+from stickslip.friction.formula.operations.operation import Change, Levels, Operation, Radius, Recurrence, SeriesWriter
 from stickslip.friction.formula.operations.sets import OF_FUNCTION, Disc, growing
 
 
@@ -89,7 +89,7 @@ def _tanh_derivative(writer: Levels, node: Expression, da: str) -> str:
     return f"(1.0 - {value} * {value}) * {da}"
 
 
-def _tanh_coefficient(writer: Series, node: Expression, k: int) -> str:
+def _tanh_coefficient(writer: SeriesWriter, node: Expression, k: int) -> str:
     a, square = node.arguments[0], node * node
     slope = f"(1.0 - {writer.coefficient(square, 0)})"
     return f"{writer.coefficient(a, k) or '0.0'} * {slope} - (0.0{writer.weighted(a, square, k)})"
@@ -157,7 +157,7 @@ def _arcsinh_derivative(writer: Levels, node: Expression, da: str) -> str:
     return f"{da} / (sqrt(1.0 + {a0} * {a0}) if abs({a0}) < 1e150 else abs({a0}))"
 
 
-def _arcsinh_coefficient(writer: Series, node: Expression, k: int) -> str:
+def _arcsinh_coefficient(writer: SeriesWriter, node: Expression, k: int) -> str:
     ak = writer.coefficient(node.arguments[0], k) or "0.0"
     return f"({ak} - (0.0{writer.weighted(node, root_of(node), k)})) * i{writer.index[node]}"
 

@@ -9,7 +9,7 @@ import numpy as np
 from stickslip.foundation.arrays import Floats
 from stickslip.friction.formula.expression import Expression
 from stickslip.friction.formula.operations.enclosures import ONE_STEP, function, of_positive, outward, square
-from stickslip.friction.formula.operations.operation import Levels, Operation, Radius, Recurrence, Series
+from stickslip.friction.formula.operations.operation import Levels, Operation, Radius, Recurrence, SeriesWriter
 from stickslip.friction.formula.operations.sets import OF_FUNCTION, Disc, growing
 
 
@@ -26,7 +26,7 @@ def _slopes(a: Floats) -> tuple[Floats, Floats]:
     return inverse, -0.5 * square(inverse)[::-1]
 
 
-def _coefficient(writer: Series, node: Expression, k: int) -> str:
+def _coefficient(writer: SeriesWriter, node: Expression, k: int) -> str:
     a = node.arguments[0]
     return f"({writer.coefficient(a, k) or '0.0'} - (0.0{writer.weighted(node, a, k)})) * i{writer.index[node]}"
 

@@ -76,7 +76,7 @@ class Levels(Protocol):
         """Return True for an exp that counts as a constant where it is huge."""
 
 
-class Series(Levels, Protocol):
+class SeriesWriter(Levels, Protocol):
     """What writes the Taylor series of a formula's nodes: sums that several operations share."""
 
     def products(self, a: Expression, b: Expression, k: int, orders: range) -> str:
@@ -95,7 +95,7 @@ class Series(Levels, Protocol):
         """Return the nodes of which a node is a linear combination, but for a constant, with their factors as texts."""
 
 
-class Balls(Protocol):
+class BallsWriter(Protocol):
     """What writes the radii of a formula's nodes on discs of complex numbers."""
 
     @property
@@ -128,20 +128,20 @@ class Balls(Protocol):
 class Scaled:
     """A series that is known before that of a node, from which it differs by a factor."""
 
-    where: Callable[[Series, Expression], bool]
+    where: Callable[[SeriesWriter, Expression], bool]
     """True for nodes that have it."""
-    total: Callable[[Series, Expression, int], str]
+    total: Callable[[SeriesWriter, Expression, int], str]
     """Its k-th coefficient."""
-    factor: Callable[[Series, Expression, int], str]
+    factor: Callable[[SeriesWriter, Expression, int], str]
 
 
 @dataclass(frozen=True)
 class Recurrence:
     """The Taylor series of an operation's result, order by order."""
 
-    coefficient: Callable[[Series, Expression, int], str]
+    coefficient: Callable[[SeriesWriter, Expression, int], str]
     """The k-th coefficient of the node (k > 0), from those already known."""
-    divisor: Callable[[Series, Expression], str] | None = None
+    divisor: Callable[[SeriesWriter, Expression], str] | None = None
     """What it would divide by at each order, if anything: it multiplies with the reciprocal i{i}."""
     weights_of_argument: bool = False
     """True if it takes the weights w of its argument."""
@@ -162,10 +162,10 @@ class Radius:
     The last two rules are asked where values vary by orders of magnitude, and are given what follows from size and radius alone.
     """
 
-    radius: Callable[[Balls, Expression], str]
-    least: Callable[[Balls, Expression, str], str] | None = None
+    radius: Callable[[BallsWriter, Expression], str]
+    least: Callable[[BallsWriter, Expression, str], str] | None = None
     """A lower bound of the magnitude."""
-    logarithm: Callable[[Balls, Expression, str], str] | None = None
+    logarithm: Callable[[BallsWriter, Expression, str], str] | None = None
     """An upper bound of |log(value / centre)|."""
 
 
@@ -227,7 +227,7 @@ class Operation:
     """Its name in Python's math, where it is another one."""
     companions: Callable[[Expression], Sequence[Expression]] = lambda node: (node,)
     """The node and those that its rules need beside it, such as cos for sin, in order of computation."""
-    parts: Callable[[Series, Expression], dict[Expression, str] | None] = lambda writer, node: None
+    parts: Callable[[SeriesWriter, Expression], dict[Expression, str] | None] = lambda writer, node: None
     """The nodes of which a node is a linear combination, but for a constant, with their factors as texts; None if it is none."""
     linear: tuple[tuple[int, ...], ...] = ()
     """Places of arguments in which it is linear together, where the others do not vary."""

@@ -14,14 +14,14 @@ from stickslip.foundation.errors import InputError
 from stickslip.friction.formula.expression import RATE, Expression, depends_on
 from stickslip.friction.formula.operations.enclosures import LIBRARY, ONE_STEP, chain, function, multiply, of_positive, outward
 from stickslip.friction.formula.operations.operation import (
-    Balls,
+    BallsWriter,
     Change,
     Dimension,
     Levels,
     Operation,
     Radius,
     Recurrence,
-    Series,
+    SeriesWriter,
     oldest_first,
     sum_of,
     unit_text,
@@ -111,7 +111,7 @@ def _pow_derivative(writer: Levels, node: Expression, da: str, _: str | None) ->
     return f"{writer.reference(b)} * {writer.coefficient(node, 0)} / {writer.coefficient(a, 0)} * {da}"
 
 
-def _pow_coefficient(writer: Series, node: Expression, k: int) -> str:
+def _pow_coefficient(writer: SeriesWriter, node: Expression, k: int) -> str:
     a, exponent = node.arguments[0], writer.reference(node.arguments[1])
     terms = [
         f"({k - i}.0 * {exponent} - {i}.0) * {x} * {writer.coefficient(node, i)}"
@@ -121,15 +121,15 @@ def _pow_coefficient(writer: Series, node: Expression, k: int) -> str:
     return f"({sum_of(terms)}) * ({1.0 / k!r} * i{writer.index[node]})"
 
 
-def _power_radius(balls: Balls, node: Expression, exponent: str) -> str:
+def _power_radius(balls: BallsWriter, node: Expression, exponent: str) -> str:
     return f"power_radius({balls.size(node)}, {exponent}, {balls.logarithm(node.arguments[0])})"
 
 
-def _turned(balls: Balls, node: Expression, exponent: str) -> str:
+def _turned(balls: BallsWriter, node: Expression, exponent: str) -> str:
     return f"{exponent} * {balls.logarithm(node.arguments[0])}"
 
 
-def _exponent_size(balls: Balls, node: Expression) -> str:
+def _exponent_size(balls: BallsWriter, node: Expression) -> str:
     return f"abs({balls.centre(node.arguments[1])})"
 
 
@@ -183,7 +183,7 @@ def _sqrt_order_zero(writer: Levels, node: Expression) -> dict[str, str]:
     return writer.level(node, f"{writer.difference(a)} / (sqrt({now}) + {writer.reference(node)})", f"sqrt({now})")
 
 
-def _sqrt_coefficient(writer: Series, node: Expression, k: int) -> str:
+def _sqrt_coefficient(writer: SeriesWriter, node: Expression, k: int) -> str:
     ak = writer.coefficient(node.arguments[0], k) or "0.0"
     return f"({ak} - ({writer.products(node, node, k, range(1, k))})) * i{writer.index[node]}"
 

@@ -10,7 +10,16 @@ import numpy as np
 from stickslip.foundation.arrays import Floats
 from stickslip.friction.formula.expression import Expression
 from stickslip.friction.formula.operations.enclosures import LIBRARY, chain, negative, outward
-from stickslip.friction.formula.operations.operation import Balls, Change, Levels, Operation, Radius, Recurrence, Scaled, Series
+from stickslip.friction.formula.operations.operation import (
+    BallsWriter,
+    Change,
+    Levels,
+    Operation,
+    Radius,
+    Recurrence,
+    Scaled,
+    SeriesWriter,
+)
 from stickslip.friction.formula.operations.sets import OF_FUNCTION, Disc
 
 
@@ -83,7 +92,7 @@ def _order_zero(writer: Levels, node: Expression, is_sine: bool) -> dict[str, st
     return turned | writer.level(node, step)
 
 
-def _radius(balls: Balls, node: Expression, is_sine: bool) -> str:
+def _radius(balls: BallsWriter, node: Expression, is_sine: bool) -> str:
     sine, cosine = (balls.size(one) for one in both(node))
     own, other = (sine, cosine) if is_sine else (cosine, sine)
     return f"sine_radius({own}, {other}, {balls.radius(node.arguments[0])})"
@@ -97,7 +106,7 @@ def _scaled(partner: int, minus: str) -> Scaled:
     )
 
 
-def _grown(writer: Series, node: Expression, partner: int, k: int) -> str:
+def _grown(writer: SeriesWriter, node: Expression, partner: int, k: int) -> str:
     """Write the k-th coefficient of a function whose derivative is its partner."""
     a, other = node.arguments[0], both(node)[partner]
     return f"{writer.coefficient(a, k) or '0.0'} * {writer.coefficient(other, 0)}{writer.weighted(a, other, k)}"
