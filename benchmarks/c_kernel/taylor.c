@@ -19,7 +19,7 @@ typedef struct {
     const Params *params;
     const double *c;
     const LawPiece *law;
-    const Branch *branch;
+    const BranchRow *branch;
     const FirstLoad *first_load;
     State *state;
     Counts *count;
