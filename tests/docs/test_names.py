@@ -28,12 +28,14 @@ MAY_COME = {"contact_damping"}
 
 def parsed(file: Path) -> tuple[set[str], list[str]]:
     """Return the words of the code of a file, and its docstrings, those below constants and fields included."""
-    tree, texts = ast.parse(file.read_text(encoding="utf-8")), []
-    for node in ast.walk(tree):
+    lines, texts = file.read_text(encoding="utf-8").splitlines(), []
+    for node in ast.walk(ast.parse("\n".join(lines))):
         if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str):
             texts.append(node.value.value)
-            node.value.value = ""
-    return set(NAME.findall(ast.unparse(tree))) | set(file.parts) | {file.stem}, texts
+            for n in range(node.lineno - 1, node.end_lineno or node.lineno):
+                lines[n] = ""
+    code = (line.partition("  # ")[0] for line in lines)  # a comment does not vouch for a name either
+    return set(NAME.findall("\n".join(code))) | set(file.parts) | {file.stem}, texts
 
 
 @cache

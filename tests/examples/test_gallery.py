@@ -146,7 +146,7 @@ def triggered_by_a_wave(names: Names) -> None:
 @check
 def map_of_pulses(names: Names) -> None:
     assert (int(names["found"].pulses.min()), int(names["found"].pulses.max())) == (2, 12)
-    assert ((names["product"] > names["critical"]) == (names["regimes"].irregular == 1)).all()
+    assert ((names["product"] > 9.8e6 / (0.8 - 0.3)) == (names["regimes"].irregular == 1)).all()
 
 
 @check
