@@ -102,7 +102,7 @@ def towards(run: Run, load: float, direction: int) -> float:
 
 @kernel
 def load_ahead(run: Run, unit: float) -> None:
-    """Write the series of the load from the present place, in units of `unit` (in xi), into run.local.
+    """Write the series of the load from the present place into run.local, in powers of the distance divided by `unit` (in xi).
 
     run.load_along_slip receives the same series as seen in the direction of slip.
     """

@@ -1,4 +1,4 @@
-"""The far end of a slab, as the contact sees it: what the driver sends back of a wave. The engine asks nowhere else.
+"""The far end of a slab, as the contact sees it: what the driver sends back of a wave. Kernels ask nowhere else.
 
 The segment of the loading that holds when a wave comes back has been entered (`counts.segment`) before it is asked for. A block has
 no far end: nothing comes back.
