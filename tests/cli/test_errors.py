@@ -182,7 +182,7 @@ CASES = [
     (["ensemble", "fig6-slab", "--duration", "1 kg"], "ensemble: --duration must be a number in s or a text with a unit"),
     (["ensemble", "fig6-slab", "--events", "0"], "ensemble: --events must be"),
     (["ensemble", "fig6-slab", "--rtol", "1"], "ensemble: --rtol must be at most 0.01, got 1"),
-    (["ensemble", "fig6-slab", "--out", "a.txt"], "--out a.txt: the name must end in .csv or .nc"),
+    (["ensemble", "fig6-slab", "--out", "a.txt"], "--out a.txt: the name must end in .csv"),
     (["ensemble", "fig6-slab", "--figure", "no/a.png"], "--figure no/a.png: there is no folder no"),
 ]
 
@@ -216,7 +216,7 @@ FOREIGN = b"# stick-slip tests, not made by stickslip\ntime,force\n0,1\n"
         (["run", "fig6-slab", "--catalogue"], "data.nc"),
         (["run", "fig6-slab", "--out"], "data.nc"),
         (["compare", "fig6-slab", "fig6-slab", "--out"], "data.csv"),
-        (["ensemble", "fig6-slab", "--members", "2", "--out"], "data.nc"),
+        (["ensemble", "fig6-slab", "--members", "2", "--out"], "data.csv"),
         (["regularise", "fig4-loop", "--out"], "data.csv"),
         (["schemes", "fig4-loop", "--nx", "20", "--out"], "data.csv"),
         (["analogy", "fig6-slab", "--map", "alpha=1..2:2", "--map", "thickness=1..2:2", "--out"], "data.csv"),

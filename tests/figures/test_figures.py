@@ -19,7 +19,8 @@ from stickslip.contact.regime_map import regime_map
 from stickslip.figures.contact import admissible, regimes, resistance, systems
 from stickslip.figures.runs import comparison
 from stickslip.figures.runs.run import draw
-from stickslip.figures.studies import ensemble, regularise
+from stickslip.figures.studies import regularise
+from stickslip.figures.style import BLUE
 from stickslip.figures.style import INK, STYLE, image
 from stickslip.foundation.axis import Axis
 from tests.figures.legible import BLOCK, BLOCK_PROBLEM, LAW, SLAB, SLAB_PROBLEM, has_unit, labels, size_of
@@ -261,29 +262,21 @@ def test_an_ensemble_draws_what_members_share_and_how_they_separate() -> None:
     study = ss.studies.ensemble(
         ss.Problem(SLAB, LAW, pull_rate=0.1, initial_excess=1.0), 700 * SLAB.two_way_time, members=3, size=1e-4
     )
-    data = ensemble.data(study)
-    assert data.sizes["event"] == sum(len(table) for table in study.catalogues)
-    assert int((data.same.values * (data.of_member.values > 0)).sum()) == int(study.table.members.sum())
-    figure = ensemble.draw(data)
-    lines, growth, slips, _ = sorted(figure.axes, key=lambda axes: axes.get_title(loc="left"))
+    figure = study.plot()
+    lines, growth = figure.axes
+    blue = [line for line in lines.lines if line.get_color() == BLUE]
+    assert [len(line.get_xdata()) for line in blue] == [len(study.table), *study.has.sum(axis=1)]
+    assert sum(len(line.get_xdata()) for line in lines.lines if line.get_marker() == "|") == sum(map(len, study.catalogues))
     assert growth.get_yscale() == "log"
     measured = next(line for line in growth.lines if line.get_label() == "measured")
     assert list(measured.get_ydata()) == [1.0, *study.growth.growth]
-    assert len(slips.lines) == 4
     assert lines.get_xlim() == growth.get_xlim()
     for axes in figure.axes:
         assert axes.get_title(loc="left")
-        assert axes.get_xlabel()
         assert axes.has_data()
     key = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert {"(b) measured, median", "(b) measured, least to most", "(b) predicted", "(c) member 0", "(c) others"} <= set(key)
-
-
-def test_an_ensemble_without_events_has_no_panels_for_them() -> None:
-    study = ss.studies.ensemble(ss.Problem(SLAB, LAW, pull_rate=0.0, initial_excess=-1e6), 100.0, members=2)
-    figure = ensemble.draw(ensemble.data(study))
-    assert [axes.get_title(loc="left")[:3] for axes in figure.axes] == ["(a)", "(b)"]
-    assert not any("(c)" in text.get_text() or "(d)" in text.get_text() for text in figure.legends[0].get_texts())
+    assert {"(b) measured, median", "(b) measured, least to most", "(b) running maximum of the prediction"} <= set(key)
+    assert ("events not shared" in key) == (study.table.members.min() < 3)
 
 
 def test_an_ensemble_at_rest_or_of_one_event_can_be_drawn() -> None:

@@ -29,7 +29,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 from stickslip.run.simulate import simulate
 from stickslip.scenarios.source import read_duration_and_problem
-from stickslip.studies.study import Study, TextProgress, telling, uninterrupted
+from stickslip.studies.study import StudyWithDataset, TextProgress, telling, uninterrupted
 
 if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario
@@ -47,7 +47,7 @@ REFUSED, NO_EVENT = "refused", "no slip event"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Analogy(Study):
+class Analogy(StudyWithDataset):
     """The result of `analogy`: the runs of slab and block over two parameters of a problem, x and y.
 
     The `table` has one row for each point, x varying fastest. Columns: the two parameters (SI); weakening_slip = -S (dmu/du) h/G at

@@ -24,7 +24,7 @@ from stickslip.run.simulate import simulate
 from stickslip.scenarios import Scenario, load_scenario
 from stickslip.scenarios.source import all_slips_alike
 from stickslip.solution.solution import Solution
-from stickslip.studies.study import Study, TextProgress, telling, uninterrupted
+from stickslip.studies.study import StudyWithDataset, TextProgress, telling, uninterrupted
 from stickslip.trajectory.slip_events import SlipEvents, default_event_rate
 
 COLUMNS = {
@@ -81,7 +81,7 @@ def read_source(
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Comparison(Study):
+class Comparison(StudyWithDataset):
     """The result of `compare`: finished runs by name, and the `event` that the figure shows of each, in time since its start.
 
     The event is a row of `Solution.events`; None shows whole runs. Raises InputError if there are fewer than two runs, or if a run

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,8 +15,6 @@ from stickslip.foundation.arguments import for_users
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import YEAR
 from stickslip.foundation.conversion import WithUnit
-from stickslip.foundation.netcdf_file import write
-from stickslip.io.netcdf import origin
 from stickslip.observables.predictability import LOST, Predictability, is_followed, predictability
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_event_rate
@@ -25,10 +22,12 @@ from stickslip.run.options import RunOptions
 from stickslip.run.simulate import simulate
 from stickslip.scenarios.source import read_duration_and_problem
 from stickslip.solution.solution import Solution
-from stickslip.studies.separation import Separation, disturbed, drawn, is_lossy, separation, shared_events, slope, statistics_spread
+from stickslip.studies.separation import Separation, disturbed, drawn, is_lossy, separation, shared_events, slope
 from stickslip.studies.study import MAX_PIECES, RunsCompared, TextProgress, telling, uninterrupted
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from stickslip.scenarios.scenario import Scenario
 
 
@@ -92,10 +91,9 @@ class Ensemble(RunsCompared):
     def table(self) -> pd.DataFrame:
         """A table with one row for each event of the undisturbed run.
 
-        Columns: start, recurrence (s) and slip (m) of the event; members, the number of members that still have it; start_spread,
-        recurrence_spread (s) and slip_spread (m), the root mean square difference of these members from the undisturbed run;
-        amplification, the predicted one. A member has an event if it has all earlier ones and starts this one at the same time, to
-        within a tenth of the time from the undisturbed event to the nearer of its two neighbours.
+        Columns: start, recurrence (s) and slip (m) of the event; members, the number of members that still have it; amplification,
+        the predicted one. A member has an event if it has all earlier ones and starts this one at the same time, to within a tenth
+        of the time from the undisturbed event to the nearer of its two neighbours.
         """
         return self._shared[0]
 
@@ -166,19 +164,6 @@ class Ensemble(RunsCompared):
         small = self.growth[self.growth.small & (self.growth.predicted < largest)]
         return slope(small.time.to_numpy(), small.predicted.to_numpy())
 
-    @cached_property
-    def statistics(self) -> pd.DataFrame:
-        """The statistics of the undisturbed run, and how far the members differ.
-
-        There is one row each for recurrence (s), slip (m) and peak_rate (m/s). Columns: count, mean and variation of the
-        undisturbed run (see `studies.catalogue_statistics`); mean_members, variation_members and mean_deviation,
-        variation_deviation, the mean and standard deviation over the members of their own mean and variation; chance, deviation /
-        sqrt(count), the standard deviation of the mean of as many independent events. Statistics are stable if mean_deviation is no
-        larger than chance.
-        """
-        own, *others = self.catalogues
-        return statistics_spread(own, others)
-
     @property
     def text(self) -> str:
         """Summarise how many events the members share."""
@@ -194,20 +179,15 @@ class Ensemble(RunsCompared):
 
     @property
     def growth_text(self) -> str:
-        """Summarise the measured and the predicted growth of a disturbance."""
+        """The measured exponent of the growth, and the predicted one with the predicted horizon."""
         if math.isnan(self.exponent):
             return "growth not measured: the loads are too soon too far apart, or not more than rounding"
-        largest = float(self.growth.growth[self.growth.small].iloc[-1])
-        measured = f"a disturbance is multiplied by {largest:.3g}, exponent {self.exponent:.3g} 1/s"
+        measured = f"exponent {self.exponent:.3g} 1/s"
         if self.prediction is None:
             return f"{measured} (no prediction for this problem)"
         horizon = self.prediction.horizon
         lost = f"horizon {_time(horizon)}" if math.isfinite(horizon) else "no horizon in this time"
         return f"{measured}; predicted {self.predicted_exponent:.3g} 1/s, {lost}"
-
-    def to_netcdf(self, path: str | Path) -> Path:
-        """Write all data of the figure with their provenance, and return the path. Raises InputError if that fails."""
-        return write(self.to_dataset().assign_attrs({**origin(self.reference), "title": "stickslip ensemble"}), Path(path))
 
     def _lines(self) -> tuple[str, ...]:
         about = f"{len(self.runs)} members, initial load disturbed by up to {self.size:g} of the strength"

@@ -22,7 +22,7 @@ from stickslip.scenarios.parameter_paths import ParameterPath, find_parameter
 from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.source import read_source
 from stickslip.solution.solution import Solution
-from stickslip.studies.study import Study, TextProgress, telling, uninterrupted
+from stickslip.studies.study import StudyWithDataset, TextProgress, telling, uninterrupted
 from stickslip.trajectory.slip_events import share_sticking
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ What = str | Callable[[Solution], Any]
 
 
 @dataclass(frozen=True, repr=False)
-class Edge(Study):
+class Edge(StudyWithDataset):
     """The result of `find`: the last bracket, between whose ends what was looked for changes."""
 
     parameter: str

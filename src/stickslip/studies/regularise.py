@@ -30,7 +30,7 @@ from stickslip.run.simulate import simulate
 from stickslip.scenarios.source import read_duration_and_problem
 from stickslip.solution.solution import Solution
 from stickslip.studies.regularisations import SlipDifference, check_massless, difference, kind_of, passage, regularised
-from stickslip.studies.study import MAX_PIECES, RunsCompared, TextProgress, telling, uninterrupted
+from stickslip.studies.study import MAX_PIECES, RunsCompared, StudyWithDataset, TextProgress, telling, uninterrupted
 from stickslip.studies.verdict import Errors, Verdict, groups, judge, local_orders, order_of
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ SIZES = NumberSeries(Quantity("s", "time in which the slip rate settles", above=
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Regularisation(RunsCompared):
+class Regularisation(RunsCompared, StudyWithDataset):
     """The result of `regularise`, which compares all runs from t = 0 to `until` (s).
 
     `problem` has no regularisation, and `exact` holds its run under each selection rule. `runs` are regularised, one for each of

@@ -30,7 +30,7 @@ from stickslip.solution.solution import Solution
 from stickslip.studies.judgement import TOLERANCE, Judgement
 from stickslip.studies.scheme_measures import COLUMNS, MeasuredSeries
 from stickslip.studies.scheme_shocks import SHOCK_COLUMNS
-from stickslip.studies.study import Study, TextProgress, telling
+from stickslip.studies.study import StudyWithDataset, TextProgress, telling
 from stickslip.studies.verdict import NONE, UNTOLD, RulePaths, exact_runs
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ FEWEST, FALLING, NEGLIGIBLE = 3, 0.75, 0.02
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Schemes(Study):
+class Schemes(StudyWithDataset):
     """The result of `schemes` and `judge_series`: the exact run under each selection rule, and the series that were finished.
 
     `interrupted` is True if Ctrl-C ended the study before all meshes were done. `tolerance` is the largest share by which a series

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.observables.event_table import catalogue_statistics
 from stickslip.observables.predictability import LOST
 from stickslip.problem.problem import Problem, resistance_slope, written_out
 from stickslip.solution.solution import Solution
@@ -77,10 +76,6 @@ NOISE_SHARE = 16.0 * float(np.finfo(float).eps)
 """Share of the largest load (as a difference from the strength) below which separations are rounding noise."""
 SAME_SHARE = 0.1
 """Largest difference in start of two equal events, as a share of the time to the nearer of the neighbouring events."""
-SPREADS = ("start", "slip", "recurrence")
-"""Columns of a catalogue whose spread over the members is given."""
-DESCRIBED = ("recurrence", "slip", "peak_rate")
-"""Columns of a catalogue whose statistics are compared."""
 
 
 class Separation(NamedTuple):
@@ -144,9 +139,6 @@ def shared_events(
     known = (reference.start.to_numpy(float) + allowed <= until) | np.all(has, axis=0)
     table = reference[["start", "recurrence", "slip"]].copy()
     table["members"] = has.sum(axis=0)
-    for name in SPREADS:
-        gaps = late if name == "start" else np.array([_gaps(reference[name], member[name]) for member in members])
-        table[f"{name}_spread"] = _root_mean_square(np.where(has, gaps, np.nan))
     table["amplification"] = reference.amplification
     return table[known], has[:, known]
 
@@ -170,25 +162,3 @@ def _gaps(reference: pd.Series, member: pd.Series) -> Floats:
     count = min(len(reference), len(member))
     found[:count] = member.to_numpy(float)[:count] - reference.to_numpy(float)[:count]
     return found
-
-
-def _root_mean_square(values: Floats) -> Floats:
-    """Return the root mean square of the finite values over the first axis; NaN if there are none."""
-    count = np.isfinite(values).sum(axis=0)
-    with np.errstate(invalid="ignore"):
-        return np.asarray(np.sqrt(np.nansum(values**2, axis=0) / count))
-
-
-def statistics_spread(reference: pd.DataFrame, members: Sequence[pd.DataFrame]) -> pd.DataFrame:
-    """Return how far the statistics of the members differ (see `Ensemble.statistics`)."""
-    own = catalogue_statistics(reference)
-    others = [catalogue_statistics(member) for member in members]
-    rows = {}
-    for name in DESCRIBED:
-        row = {"count": float(own["count"][name])}
-        for what in ("mean", "variation"):
-            values = pd.Series([one[what][name] for one in others]).dropna()
-            row |= {what: own[what][name], f"{what}_members": values.mean(), f"{what}_deviation": values.std()}
-        row["chance"] = own.deviation[name] / np.sqrt(own["count"][name]) if own["count"][name] else np.nan
-        rows[name] = row
-    return pd.DataFrame.from_dict(rows, orient="index").astype({"count": int})

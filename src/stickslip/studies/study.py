@@ -61,17 +61,17 @@ class Study(NamesAttributes):
     def _about(self) -> Iterable[str]:
         return ()
 
-    def to_dataset(self) -> xr.Dataset:
-        """Return what `plot` draws, in SI units."""
-        return self._figure().data(self)  # type: ignore[no-any-return]
-
     def plot(self, **place: Unpack[Place]) -> Figure:
         """Plot the result; the panels are described with each study in the documentation.
 
         The keywords `figure`, `size` and `dpi` say where to draw, and how large, as for `solution.plot()`.
         """
-        figure: Figure = self._figure().draw(self.to_dataset(), **place)
+        figure: Figure = self._figure().draw(self._drawn(), **place)
         return known_to_pyplot(figure, place)
+
+    def _drawn(self) -> Any:
+        """Return what the figure is drawn from: the result, or its dataset."""
+        return self
 
     def _figure(self) -> Any:
         return figure_of_study(self)
@@ -90,6 +90,17 @@ class Study(NamesAttributes):
         lines = "".join(f"<div>{escape(line)}</div>" for line in self._lines() if line)
         table = self._shown_table().to_html(max_rows=MOST_ROWS, float_format="{:.6g}".format)
         return f"<div><b>stickslip {type(self).__name__}</b>{lines}{table}</div>"
+
+
+class StudyWithDataset(Study):
+    """The result of a study whose figure is drawn from a dataset, which `to_dataset` gives."""
+
+    def to_dataset(self) -> xr.Dataset:
+        """Return what `plot` draws, in SI units."""
+        return self._figure().data(self)  # type: ignore[no-any-return]
+
+    def _drawn(self) -> Any:
+        return self.to_dataset()
 
 
 class RunsCompared(Study):

@@ -1,4 +1,4 @@
-"""`stickslip ensemble`: find how far a run and its statistics can be trusted."""
+"""`stickslip ensemble`: find how far single events of a run can be trusted."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from stickslip.cli.options import SIZE_HELP, Changes, Dpi, Duration, FigureFile, Rtol, ScenarioName, option
+from stickslip.cli.options import SIZE_HELP, Changes, Dpi, Duration, FigureFile, Rtol, ScenarioName, option, table_of
 from stickslip.cli.output.files import FigureLook, Target, announce, check_targets, drawing, write_files
 
 if TYPE_CHECKING:
@@ -28,19 +28,18 @@ def ensemble(
     events: Annotated[int | None, option("Stop each run after this number of slip events.")] = None,
     seed: Annotated[int, typer.Option(help=SEED)] = 0,
     rtol: Rtol = None,
-    out: Annotated[Path | None, option("Save the table of events (.csv), or all that is drawn (.nc).", "--out", "-o")] = None,
+    out: Annotated[Path | None, table_of("event")] = None,
     figure: FigureFile = None,
     dpi: Dpi = None,
     figure_size: Annotated[str | None, option(SIZE_HELP, "--figure-size")] = None,
 ) -> None:
-    r"""Find how far single events and statistics can be trusted: repeat a run with tiny disturbances of the initial load.
+    r"""Find how far single events can be trusted: repeat a run with tiny disturbances of the initial load.
 
     A slab whose friction falls with slip rate amplifies its own echoes, so that
     two runs which differ by rounding diverge. Each member begins with a load
     that is larger or smaller by `size`/2 to `size` of the static strength. The
-    command shows the first event at which members differ, the measured and the
-    predicted growth rate of the disturbance, and how far the statistics of the
-    members are apart.
+    command shows the first event at which members differ, and the measured and
+    the predicted growth rate of the disturbance.
 
     \b
       stickslip ensemble fig6-slab --duration "30000 years" --events 65 -f a.png
@@ -55,13 +54,12 @@ def ensemble(
     from stickslip.cli.overrides import load_with
 
     look = FigureLook(dpi, figure_size)
-    check_targets(Target("--out", out, (".csv", ".nc")), Target("--figure", figure))
+    check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))
     look.check(figure)
     chosen = load_with("ensemble", scenario, changes, duration=duration, events=events, rtol=rtol)
     study = _study(chosen, members, size, seed)
     show_ensemble(chosen, study)
-    save = study.to_netcdf if out is not None and out.suffix.lower() == ".nc" else study.to_csv
-    announce(*write_files((out, save), (figure, drawing(study.plot, look))))
+    announce(*write_files((out, study.to_csv), (figure, drawing(study.plot, look))))
     if len(study.runs) < study.wanted:
         raise KeyboardInterrupt
     raise typer.Exit(0 if study.ok else 1)

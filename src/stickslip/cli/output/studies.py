@@ -78,33 +78,19 @@ def show_ensemble(scenario: Scenario, study: Ensemble) -> None:
     say(screen, f"{len(study.runs)} members, {about}\n")
     if len(study.table):
         _show_events(screen, study)
-        _show_statistics(screen, study)
     print_sentences(screen, study.note, study.stopped, study.text, study.growth_text)
 
 
 def _show_events(screen: Console, study: Ensemble) -> None:
     lost = study.first_lost or 0
     first = max(0, min(lost - FIRST // 2, len(study.table) - FIRST))
-    headings = ("\nevent", "start\ns", "\nmembers", "spread of\nstart s", "spread of\nslip m", "\namplification")
+    headings = ("event", "start\ns", "members", "amplification")
     rows = []
     for i, row in enumerate(study.table.iloc[first : first + FIRST].to_dict("records"), first + 1):
-        numbers = (number(float(row[name]), 3) for name in ("start_spread", "slip_spread", "amplification"))
-        rows.append([str(i), number(float(row["start"]), 10), f"{row['members']} of {len(study.runs)}", *numbers])
+        shared = f"{row['members']} of {len(study.runs)}"
+        rows.append([str(i), number(float(row["start"]), 10), shared, number(float(row["amplification"]), 3)])
     say(screen, f"{len(study.table)} slip events" + (f", of them {first + 1} to {first + len(rows)}" if first else ""))
     print_numbers(screen, headings, rows)
-
-
-def _show_statistics(screen: Console, study: Ensemble) -> None:
-    units = {"recurrence": "s", "slip": "m", "peak_rate": "m/s"}
-    headings: tuple[str, ...] = ("mean,\nundisturbed", "mean over\nmembers", "their\ndeviation", "by\nchance")
-    headings = ("\nstatistics", *headings, "variation,\nundisturbed", "over\nmembers", "their\ndeviation")
-    columns = ("mean", "mean_members", "mean_deviation", "chance", "variation", "variation_members", "variation_deviation")
-    rows = []
-    for name, row in study.statistics.iterrows():
-        values = (number(float(row[column]), 4) for column in columns)
-        rows.append([f"{name} ({units[str(name)]})".replace("_", " "), *values])
-    print_numbers(screen, headings, rows, text=1)
-    screen.print()
 
 
 def show_regularisation(scenario: Scenario, study: Regularisation) -> None:

@@ -24,11 +24,11 @@ from stickslip.studies.inference.memory import WHITE
 from stickslip.studies.inference.model import OF_NO_ZERO, Model, unit_of
 from stickslip.studies.inference.part import Part
 from stickslip.studies.inference.sampling import PosteriorWalk
-from stickslip.studies.study import Study
+from stickslip.studies.study import StudyWithDataset
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class FittedRecord(Study):
+class FittedRecord(StudyWithDataset):
     """The best fit to a record with its model, and what the record determines.
 
     `parts` are the parts of the record, with what was left out of the fit; `about` says what was done with it, one sentence each.
