@@ -193,14 +193,16 @@ NAMES = ["characteristics", "theta", "backward-euler", "newmark", "hht"]
 
 def test_the_figure_has_errors_of_all_schemes_and_curves_of_four() -> None:
     study = ss.studies.schemes("fig4-loop", scheme=NAMES, cells=[20, 40])
-    dataset = figure.data(study)
-    drawn = figure.draw(dataset)
+    drawn = study.plot()
     errors, slip, rate = drawn.axes
     assert [len(line.get_xdata()) for line in errors.lines] == [2] * 5
-    assert dataset.attrs["runs"] == [f"{name}, 40 cells" for name in NAMES[:4]]
-    assert len(dataset.attrs["rules"]) == len(study.paths.groups()) == 4
+    texts = [one.text for one in figure.curves(study)]
+    assert texts[:4] == [f"{name}, 40 cells" for name in NAMES[:4]]
+    assert len(texts) - 4 == len(study.paths.groups()) == 4
+    assert texts[-1].startswith(f"exact, {study.problem.rule}")
     assert [len(panel.lines) for panel in (slip, rate)] == [9, 9]  # four schemes, four rules, zero
-    assert dataset.scheme0_error.values.tolist() == study.table.slip_error[:2].tolist()
+    factor = study.table.slip_error[0] / errors.lines[0].get_ydata()[0]
+    assert (factor * errors.lines[0].get_ydata()).tolist() == pytest.approx(study.table.slip_error[:2].tolist(), rel=1e-12, abs=0.0)
 
 
 mpl.use("Agg")

@@ -20,8 +20,7 @@ from stickslip.figures.contact import admissible, regimes, resistance, systems
 from stickslip.figures.runs import comparison
 from stickslip.figures.runs.run import draw
 from stickslip.figures.studies import regularise
-from stickslip.figures.style import BLUE
-from stickslip.figures.style import INK, STYLE, image
+from stickslip.figures.style import BLUE, INK, STYLE, image
 from stickslip.foundation.axis import Axis
 from tests.figures.legible import BLOCK, BLOCK_PROBLEM, LAW, SLAB, SLAB_PROBLEM, has_unit, labels, size_of
 

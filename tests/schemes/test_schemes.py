@@ -146,10 +146,6 @@ def test_files_keep_every_number(tmp_path: Path) -> None:
 
     table = pd.read_csv(study.to_csv(tmp_path / "a.csv"), comment="#")
     assert table.slip_error.tolist() == study.table.slip_error.tolist()
-    import xarray as xr
-
-    with xr.open_dataset(study.to_netcdf(tmp_path / "a.nc")) as found:
-        assert found.slip_error.values.tolist() == study.table.slip_error.tolist()
 
 
 def test_interrupted_studies_keep_the_rows_that_were_finished() -> None:

@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
-from stickslip.figures.studies.compare import data
+from stickslip.figures.studies.compare import drawn
 from stickslip.paper.claims import CLAIMS, Outcome, Runs
 from stickslip.studies.compare import COLUMNS, Comparison, compare, distinct
 
@@ -34,8 +34,7 @@ def test_drops_of_coulomb_friction_are_those_of_the_closed_form() -> None:
         row = table.loc[name]
         assert row.dynamic_drop == pytest.approx(0.5 * normal, rel=1e-6, abs=0.0)
         assert row.static_drop == pytest.approx(1.0 * normal, rel=1e-6, abs=0.0)
-        assert row.traction_drop == pytest.approx(1.0 * normal, rel=1e-6, abs=0.0)
-    assert list(table.slip_rate) == ["jumps", "smooth"]
+    assert (table.shocks["slab"] > 0, table.shocks["block"]) == (True, 0)
     assert list(table.load_unit) == ["Pa", "N"]
 
 
@@ -44,7 +43,7 @@ def test_smooth_and_jumping_are_what_the_paper_says(fig6: Comparison) -> None:
     runs = Runs()
     for row, claim in zip(fig6.table.itertuples(), (5, 6), strict=True):
         assert CLAIMS[claim](runs).outcome is Outcome.PRINTED
-        assert row.slip_rate == ("smooth" if claim == 5 else "jumps")
+        assert (row.shocks == 0) == (claim == 5)
         assert row.shocks == len(runs.case(str(row.name)).shocks)
 
 
@@ -114,11 +113,12 @@ def test_bad_comparisons_are_refused(fig6: Comparison) -> None:
 
 
 def test_the_figure_shows_friction_where_units_differ(fig6: Comparison) -> None:
-    dataset = data(fig6)
-    assert dataset.run0_traction.attrs["units"] == "1"
-    assert float(dataset.run0_traction[0]) == pytest.approx(0.8, rel=1e-12, abs=0.0)
-    assert float(dataset.run1_traction.min()) == pytest.approx(-0.399999969 / 100, rel=1e-4, abs=0.0)
-    assert float(dataset.run0_slip_time.max()) == float(dataset.run1_slip_time.max()) == 6.0  # the end of the block's run
+    found = drawn(fig6)
+    assert found.mixed
+    (_, block), (_, slab) = found.lines["traction"]
+    assert float(block[0]) == pytest.approx(0.8, rel=1e-12, abs=0.0)
+    assert float(slab.min()) == pytest.approx(-0.399999969 / 100, rel=1e-4, abs=0.0)
+    assert [float(time.max()) for time, _ in found.lines["slip"]] == [6.0, 6.0]  # the end of the block's run
     figure = fig6.plot()
     assert [axes.get_ylabel() for axes in figure.axes] == ["slip $u-u_0$ (m)", "slip rate $v$ (m/s)", r"friction $\tau/S$"]
     assert [text.get_text() for text in figure.legends[0].get_texts()] == list(FIG6)
@@ -126,11 +126,12 @@ def test_the_figure_shows_friction_where_units_differ(fig6: Comparison) -> None:
 
 def test_runs_of_very_different_lengths_share_no_seconds() -> None:
     runs = {"short": ss.simulate("fig6-slab"), "long": ss.simulate("second-event-maxwell")}
-    dataset = data(Comparison(runs))
-    assert dataset.attrs["shares"] == 1
-    assert float(dataset.run1_slip_time.max()) == 1.0
-    assert dataset.attrs["spans"] == ["7.143 s", "480 years"]
-    assert "share of each run's own" in Comparison(runs).plot().axes[-1].get_xlabel()
+    found = drawn(Comparison(runs))
+    assert found.shares
+    assert float(found.lines["slip"][1][0].max()) == 1.0
+    figure = Comparison(runs).plot()
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["short (7.143 s)", "long (480 years)"]
+    assert "share of each run's own" in figure.axes[-1].get_xlabel()
 
 
 def test_runs_of_different_size_share_an_axis_in_one_unit() -> None:
@@ -155,21 +156,22 @@ def test_very_different_sizes_are_seen_on_a_logarithmic_axis() -> None:
 def test_runs_without_later_events_end_together() -> None:
     early, late = (ss.simulate("fig6-slab") for _ in range(2))
     short = ss.simulate(early.problem, 6.5)
-    dataset = data(Comparison({"short": short, "long": late}))
-    assert float(dataset.run0_slip_time.max()) == float(dataset.run1_slip_time.max()) == 6.5
-    dataset = data(Comparison({"cut": ss.simulate(early.problem, 3.0), "long": late}))
-    assert float(dataset.run0_slip_time.max()) == 3.0
-    assert float(dataset.run1_slip_time.max()) == pytest.approx(40.0 / 7.0, rel=1e-9, abs=0.0)
+    ends = [float(time.max()) for time, _ in drawn(Comparison({"short": short, "long": late})).lines["slip"]]
+    assert ends == [6.5, 6.5]
+    cut, whole = drawn(Comparison({"cut": ss.simulate(early.problem, 3.0), "long": late})).lines["slip"]
+    assert float(cut[0].max()) == 3.0
+    assert float(whole[0].max()) == pytest.approx(40.0 / 7.0, rel=1e-9, abs=0.0)
 
 
 def test_one_event_of_each_run_is_shown_in_local_time() -> None:
     runs = {rule: ss.simulate(f"second-event-{rule}") for rule in ("maxwell", "maximal")}
-    dataset = data(Comparison(runs, 1))
-    assert (dataset.attrs["shares"], dataset.attrs["local"]) == (0, 1)
+    found = drawn(Comparison(runs, 1))
+    assert not found.shares
+    assert "since each event began" in Comparison(runs, 1).plot().axes[-1].get_xlabel()
     longest = max(run.events.duration.iloc[1] for run in runs.values())
-    for k, run in enumerate(runs.values()):
-        event, time = run.events.iloc[1], dataset[f"run{k}_slip_time"].values
-        at_end = np.interp(event.duration, time, dataset[f"run{k}_slip"].values)
+    for run, (time, slip) in zip(runs.values(), found.lines["slip"], strict=True):
+        event = run.events.iloc[1]
+        at_end = np.interp(event.duration, time, slip)
         assert at_end == pytest.approx(event.slip, rel=1e-9, abs=0.0)
         assert (time.min(), time.max()) == pytest.approx((-0.1 * longest, 1.1 * longest), rel=1e-12, abs=0.0)
 

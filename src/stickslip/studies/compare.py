@@ -24,13 +24,11 @@ from stickslip.run.simulate import simulate
 from stickslip.scenarios import Scenario, load_scenario
 from stickslip.scenarios.source import all_slips_alike
 from stickslip.solution.solution import Solution
-from stickslip.studies.study import StudyWithDataset, TextProgress, telling, uninterrupted
+from stickslip.studies.study import Study, TextProgress, telling, uninterrupted
 from stickslip.trajectory.slip_events import SlipEvents, default_event_rate
 
 COLUMNS = {
     "name": ("", "scenario, file, or the name that was given"),
-    "body": ("", "the body that slides"),
-    "friction": ("", "friction law"),
     "rule": ("", "selection rule"),
     "regime": ("", "whether the contact equation has one solution (regular), several (irregular), or a continuum"),
     "events": ("", "slip events, see `Solution.events`"),
@@ -38,11 +36,9 @@ COLUMNS = {
     "slip": ("m", "slip of the largest event"),
     "peak_rate": ("m/s", "largest slip rate of the run"),
     "static_drop": ("load", "stiffness (G/h, or K) times the slip of the largest event"),
-    "traction_drop": ("load", "traction before the largest event minus traction at rest after it"),
     "dynamic_drop": ("load", "traction at rest before the largest event minus the smallest one while it slips"),
     "duration": ("s", "duration of the first event; NaN if it is not over"),
-    "shocks": ("", "jumps of the slip rate"),
-    "slip_rate": ("", "smooth, or jumps"),
+    "shocks": ("", "jumps of the slip rate; it is smooth if there are none"),
     "load_unit": ("", "unit of the drops: Pa (slab) or N (block)"),
     "status": ("", "what ended the run"),
 }
@@ -81,7 +77,7 @@ def read_source(
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Comparison(StudyWithDataset):
+class Comparison(Study):
     """The result of `compare`: finished runs by name, and the `event` that the figure shows of each, in time since its start.
 
     The event is a row of `Solution.events`; None shows whole runs. Raises InputError if there are fewer than two runs, or if a run
@@ -185,17 +181,14 @@ def distinct(names: Sequence[str]) -> list[str]:
 
 
 def _row(name: str, solution: Solution) -> dict[str, Any]:
-    problem, events, shocks = solution.problem, solution.events, len(solution.shocks)
+    problem, events = solution.problem, solution.events
     row = {
         "name": name,
-        "body": problem.body.kind,
-        "friction": problem.friction.kind,
         "rule": problem.rule,
         "regime": solution.rule_influence.regime,
         "events": len(events),
         "pulses": 0,
-        "shocks": shocks,
-        "slip_rate": "jumps" if shocks else "smooth",
+        "shocks": len(solution.shocks),
         "peak_rate": solution.catalogue(0.0).peak_rate.max(),
         "load_unit": problem.load_unit,
         "status": solution.status.name,
@@ -211,7 +204,6 @@ def _row(name: str, solution: Solution) -> dict[str, Any]:
         "pulses": int(largest.pulses),
         "slip": largest.slip,
         "static_drop": largest.static_drop,
-        "traction_drop": history.mode(found.begin)[n] * largest.traction_drop,
         "dynamic_drop": before[n] - smallest[n],
         "duration": events.duration.iloc[0],
     }

@@ -21,7 +21,6 @@ from stickslip.foundation.arguments import check_whole, for_users
 from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.netcdf_file import write
 from stickslip.problem.problem import Problem
 from stickslip.scenarios.source import read_duration_and_problem
 from stickslip.schemes.contract import Scheme, Series
@@ -30,7 +29,7 @@ from stickslip.solution.solution import Solution
 from stickslip.studies.judgement import TOLERANCE, Judgement
 from stickslip.studies.scheme_measures import COLUMNS, MeasuredSeries
 from stickslip.studies.scheme_shocks import SHOCK_COLUMNS
-from stickslip.studies.study import StudyWithDataset, TextProgress, telling
+from stickslip.studies.study import Study, TextProgress, telling
 from stickslip.studies.verdict import NONE, UNTOLD, RulePaths, exact_runs
 
 if TYPE_CHECKING:
@@ -43,7 +42,7 @@ FEWEST, FALLING, NEGLIGIBLE = 3, 0.75, 0.02
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Schemes(StudyWithDataset):
+class Schemes(Study):
     """The result of `schemes` and `judge_series`: the exact run under each selection rule, and the series that were finished.
 
     `interrupted` is True if Ctrl-C ended the study before all meshes were done. `tolerance` is the largest share by which a series
@@ -133,18 +132,6 @@ class Schemes(StudyWithDataset):
             return _depends(found)
         cells = int(rows.cells.iloc[first])
         return f"{last}, from {cells} cells on" if first and cells else last
-
-    def to_netcdf(self, path: str | Path) -> Path:
-        """Write the table and what `plot` draws as netCDF, and return the path."""
-        dataset = self.table.rename_axis("row").to_xarray()
-        shocks = self.shocks.add_prefix("shock_").rename_axis("shock").to_xarray().drop_vars(["shock"])
-        dataset = dataset.assign(shocks.data_vars)
-        for name, (unit, meaning) in SHOCK_COLUMNS.items():
-            dataset[f"shock_{name}"].attrs = {"long_name": meaning, "units": unit or "1"}
-        for name, (unit, meaning) in self.columns.items():
-            dataset[name].attrs = {"long_name": meaning, "units": unit or "1"}
-        drawn = self.to_dataset()
-        return write(dataset.merge(drawn.drop_vars(set(dataset.variables) & set(drawn.variables))), Path(path))
 
     def shocks_to_csv(self, path: str | Path) -> Path:
         """Write the table of shocks as CSV, with the meaning of its columns in comment lines (#), and return its path."""

@@ -21,7 +21,7 @@ def benchmark(
     *,
     name: Annotated[str | None, option("Judge: the problem; by default it has the name of the file.")] = None,
     folder: Annotated[Path | None, option("Get: where the files go (by default here).")] = None,
-    out: Annotated[Path | None, option("Judge: save the table (.csv, shocks in NAME-shocks.csv; .nc: all).", "--out", "-o")] = None,
+    out: Annotated[Path | None, option("Judge: save the table (.csv, and the shocks in NAME-shocks.csv).", "--out", "-o")] = None,
     tolerance: Annotated[float, option("Judge: the largest share by which a series that passes may be off.")] = 0.05,
     figure: FigureFile = None,
     dpi: Dpi = None,
@@ -63,7 +63,7 @@ def benchmark(
         announce(*write_benchmark(what, folder or Path()))
         return
     look = FigureLook(dpi, size)
-    check_targets(Target("--out", out, (".csv", ".nc")), Target("--figure", figure))
+    check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))
     look.check(figure)
     if not _judge(Path(what), name, tolerance, (out, figure, look)):
         raise typer.Exit(1)

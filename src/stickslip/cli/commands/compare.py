@@ -30,11 +30,11 @@ def compare(
 ) -> None:
     r"""Compare runs: one table, and one figure of slip, slip rate and traction against time.
 
-    The table gives for each run its body, law, selection rule and regime, the
-    number of slip events, the largest one with its stress drops, the duration
-    of the first one, and whether the slip rate is smooth or jumps. Slabs can
-    be compared with blocks: drops are then in Pa and N, and the figure shows
-    friction over the normal load. Runs of very different lengths are drawn
+    The table gives for each run its selection rule and regime, the number of
+    slip events, the largest one with its stress drops, the duration of the
+    first one, and the number of jumps of the slip rate. Slabs can be compared
+    with blocks: drops are then in Pa and N, and the figure shows friction over
+    the normal load. Runs of very different lengths are drawn
     over the share of their own time; late events are best seen with --event.
 
     \b

@@ -25,7 +25,7 @@ def schemes(
     search: Annotated[str | None, option(SEARCH)] = None,
     courant: Annotated[float | None, option("Courant number, in place of each scheme's own.")] = None,
     files: Annotated[list[Path] | None, option("Judge the series in a file instead; may be repeated.", "--series")] = None,
-    out: Annotated[Path | None, option("Save the table (.csv, shocks in NAME-shocks.csv; .nc: all).", "--out", "-o")] = None,
+    out: Annotated[Path | None, option("Save the table (.csv, and the shocks in NAME-shocks.csv).", "--out", "-o")] = None,
     figure: FigureFile = None,
     dpi: Dpi = None,
     size: Size = None,
@@ -52,7 +52,7 @@ def schemes(
     from stickslip.cli.overrides import load_with
 
     look = FigureLook(dpi, size)
-    check_targets(Target("--out", out, (".csv", ".nc")), Target("--figure", figure))  # the file of shocks goes beside it
+    check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))  # the file of shocks goes beside it
     look.check(figure)
     chosen = load_with("schemes", scenario, changes, duration=duration, rtol=rtol)
     if files:

@@ -34,18 +34,18 @@ _ARGUMENT = re.compile(
 def show_comparison(found: Comparison) -> None:
     """Print the settings and the results of each run on standard output."""
     screen, rows = console(), found.table.to_dict("records")
-    words = ("body", "friction", "rule", "regime", "status")
-    print_numbers(screen, ("", *words), [[clean(row["name"]), *(str(row[name]) for name in words)] for row in rows], text=6)
+    words = ("rule", "regime", "status")
+    print_numbers(screen, ("", *words), [[clean(row["name"]), *(str(row[name]) for name in words)] for row in rows], text=4)
     screen.print()
     headings = ("events", "largest\nslip\nm", "its\npulses", "peak\nrate\nm/s", "static\ndrop", "dynamic\ndrop", "first\nlasts\ns")
-    print_numbers(screen, ("", *headings, "shocks", "slip\nrate"), [_sizes(row) for row in rows], text=1)
+    print_numbers(screen, ("", *headings, "shocks"), [_sizes(row) for row in rows], text=1)
 
 
 def _sizes(row: Mapping[Hashable, Any]) -> list[str]:
     """Return the results of one run of a comparison as texts, its name first."""
     drops = (_drop(row[name], row["load_unit"]) for name in ("static_drop", "dynamic_drop"))
     sizes = number(row["slip"], 6), f"{row['pulses']:g}", number(row["peak_rate"], 6), *drops, number(row["duration"], 6)
-    return [clean(row["name"]), str(row["events"]), *sizes, str(row["shocks"]), row["slip_rate"]]
+    return [clean(row["name"]), str(row["events"]), *sizes, str(row["shocks"])]
 
 
 def _drop(value: float, unit: str) -> str:
@@ -162,9 +162,9 @@ def show_ranking(*found: Inference) -> None:
 
 
 def tables_of(study: Schemes, out: Path | None) -> list[tuple[Path | None, Callable[[Path], object]]]:
-    """Return the files of a study with what writes each: all in one for .nc; a table and a table of shocks beside it for .csv."""
-    if out is None or out.suffix.lower() == ".nc":
-        return [(out, study.to_netcdf)]
+    """Return the files of a study with what writes each: the table, and a table of shocks beside it."""
+    if out is None:
+        return []
     return [(out, study.to_csv), (out.with_name(f"{out.stem}-shocks{out.suffix}"), study.shocks_to_csv)]
 
 

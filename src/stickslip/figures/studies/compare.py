@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import TYPE_CHECKING, Any, NamedTuple, Unpack, cast
 
 import numpy as np
-import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from stickslip.figures.panels import add_legend, letter_panels, panels, set_log_ticks, zero_line
-from stickslip.figures.style import LINE_COLOURS, axis_text, curve_quantity, nearly_flat, quantity, styled, time_unit, unit_of
+from stickslip.figures.style import CURVES, FORCES, LINE_COLOURS, axis_text, nearly_flat, styled, time_unit, unit_of
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.place import Place
 from stickslip.solution.evaluation import Curve, Readings
 
@@ -30,7 +30,19 @@ ROWS = ("slip", "slip_rate", "traction")
 """Panels, from above."""
 
 
-def data(study: Comparison) -> xr.Dataset:
+class RunLines(NamedTuple):
+    """What is drawn of several runs: `span` (s) of each, and a line of each run in the panel of each row.
+
+    `shares` is True if times are divided by the time drawn, `mixed` if tractions are divided by the normal stress or force.
+    """
+
+    spans: dict[str, tuple[float, float]]
+    shares: bool
+    mixed: bool
+    lines: dict[str, list[tuple[Floats, Floats]]]
+
+
+def drawn(study: Comparison) -> RunLines:
     """Return the runs from their start to shortly after the last slip event of all, or one event of each in local time, in SI.
 
     All runs cover the same time, except those that end earlier. The comparison says which event is drawn, if any. Slip counts from
@@ -42,18 +54,8 @@ def data(study: Comparison) -> xr.Dataset:
     lengths = [end - start for start, end in spans.values()]
     shares = max(lengths) > APART * min(lengths)
     mixed = len({run.problem.load_unit for run in runs.values()}) > 1
-    contents: dict[str, xr.Variable] = {}
-    for k, name in enumerate(runs):
-        contents |= _run(f"run{k}", views[name], spans[name], shares=shares, mixed=mixed)
-    units = [(length, *time_unit(length)) for length in lengths]
-    attributes = {
-        "runs": list(runs),
-        "spans": [f"{length / size:.4g} {unit}{'s' if unit in ('year', 'day') else ''}" for length, unit, size in units],
-        "shares": int(shares),
-        "local": int(event is not None),
-        "sticks": int(any(run.problem.friction.sticks for run in runs.values())),
-    }
-    return xr.Dataset(contents, attrs=attributes)
+    lines = {row: [_line(views[name], row, spans[name], shares=shares, mixed=mixed) for name in runs] for row in ROWS}
+    return RunLines(spans, shares, mixed, lines)
 
 
 def _whole(runs: dict[str, Solution]) -> tuple[dict[str, Readings], dict[str, tuple[float, float]]]:
@@ -90,73 +92,76 @@ def _windows(runs: dict[str, Solution], event: int) -> tuple[dict[str, Readings]
     return dict(views), {name: view.shown for name, view in views.items()}
 
 
-def _run(key: str, view: Readings, span: tuple[float, float], *, shares: bool, mixed: bool) -> dict[str, xr.Variable]:
-    """Return the curves of one run and their times, with `key` as prefix of the variables."""
-    problem, contents = view.problem, {}
-    slip: Curve = "event_slip" if "event_slip" in view.curves else "slip"
-    for row, curve in zip(ROWS, (slip, "slip_rate", "traction"), strict=True):
-        along = f"{key}_{row}_time"
-        time, values = view.curve(curve, *span)
-        if row == "traction" and not problem.friction.sticks:
-            # Such a law has no friction at rest, where a run may start: that zero would set the scale.
-            values = np.where(values != 0.0, values, np.nan)
-        if row == "slip":
-            slipped = values if slip == "event_slip" else values - problem.initial_slip
-            contents[f"{key}_{row}"] = quantity(along, slipped, "slip", "u-u_0", "m")
-        elif row == "traction" and mixed:
-            contents[f"{key}_{row}"] = quantity(along, values / problem.normal, "friction", r"\tau/S", "1")
-        else:
-            contents[f"{key}_{row}"] = curve_quantity(along, values, row, problem.load_unit)
-        part = (time - span[0]) / (span[1] - span[0])
-        contents[along] = (
-            quantity(along, part, "share of the time drawn", "t", "1") if shares else curve_quantity(along, time, "time")
-        )
-    return contents
+def _line(view: Readings, row: str, span: tuple[float, float], *, shares: bool, mixed: bool) -> tuple[Floats, Floats]:
+    """Return times and values of a run's line in the panel of a row."""
+    problem = view.problem
+    curve: Curve = "event_slip" if row == "slip" and "event_slip" in view.curves else cast("Curve", row)
+    time, values = view.curve(curve, *span)
+    if curve == "slip":
+        values = values - problem.initial_slip
+    if row == "traction" and not problem.friction.sticks:
+        # Such a law has no friction at rest, where a run may start: that zero would set the scale.
+        values = np.where(values != 0.0, values, np.nan)
+    if row == "traction" and mixed:
+        values = values / problem.normal
+    return ((time - span[0]) / (span[1] - span[0]) if shares else time), values
 
 
 @styled
-def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
+def draw(study: Comparison, **place: Unpack[Place]) -> Figure:
     """Draw three panels with a line for each run; if the durations differ much, the legend gives them."""
     figure, grid = panels(len(ROWS), 1, (6.4, 6.2), place, sharex=True)
-    names, spans = (np.atleast_1d(dataset.attrs[key]).astype(str).tolist() for key in ("runs", "spans"))
-    shares = dataset.attrs["shares"]
-    times = [dataset[f"run{k}_slip_time"].values for k in range(len(names))]
-    unit, size = ("1", 1.0) if shares else time_unit(max(float(np.ptp(time)) for time in times))
+    found = drawn(study)
+    unit, size = ("1", 1.0) if found.shares else time_unit(max(float(np.ptp(time)) for time, _ in found.lines["slip"]))
     for axes, row in zip(grid[:, 0], ROWS, strict=True):
-        _draw_row(axes, dataset, row, size)
-    texts = [f"{name} ({span})" for name, span in zip(names, spans, strict=True)] if shares else names
-    marks = grid[0, 0].get_lines()[: len(names)]
-    for mark, text in zip(marks, texts, strict=True):
-        mark.set_label(text)
+        _draw_row(axes, study, found, row, size)
+    marks = grid[0, 0].get_lines()[: len(study.runs)]
+    for mark, (name, (start, end)) in zip(marks, found.spans.items(), strict=True):
+        mark.set_label(f"{name} ({_lasting(end - start)})" if found.shares else name)
     add_legend(grid[0, 0], marks)
     letter_panels(grid[:, 0])
-    since = " since each event began" if dataset.attrs["local"] else ""
-    grid[-1, 0].set_xlabel(f"time{since}" + (", as a share of each run's own (see legend)" if shares else f" $t$ ({unit})"))
+    since = "" if study.event is None else " since each event began"
+    grid[-1, 0].set_xlabel(f"time{since}" + (", as a share of each run's own (see legend)" if found.shares else f" $t$ ({unit})"))
     figure.align_ylabels()
     return figure
 
 
-def _draw_row(axes: Axes, dataset: xr.Dataset, row: str, size: float) -> None:
-    drawn = [dataset[f"run{k}_{row}"] for k in range(np.size(dataset.attrs["runs"]))]
-    about = drawn[0].attrs
-    flat = row == "traction" and nearly_flat(*(values.values[np.isfinite(values.values)] for values in drawn))
-    heights = [values.values - values.values[np.isfinite(values.values)][0] if flat else values.values for values in drawn]
+def _lasting(length: float) -> str:
+    unit, size = time_unit(length)
+    return f"{length / size:.4g} {unit}{'s' if unit in ('year', 'day') else ''}"
+
+
+def _meaning(study: Comparison, row: str, *, mixed: bool) -> tuple[str, str, str]:
+    """Return the name, the symbol and the SI unit of what the panel of a row shows."""
+    if row == "slip":
+        return "slip", "u-u_0", "m"
+    if row == "traction" and mixed:
+        return "friction", r"\tau/S", "1"
+    name, symbol, unit = CURVES[row]
+    of_block = row in FORCES and next(iter(study.runs.values())).problem.load_unit == "N"
+    return (FORCES[row], symbol, "N") if of_block else (name, symbol, unit)
+
+
+def _draw_row(axes: Axes, study: Comparison, found: RunLines, row: str, size: float) -> None:
+    lines, (name, symbol, units) = found.lines[row], _meaning(study, row, mixed=found.mixed)
+    flat = row == "traction" and nearly_flat(*(values[np.isfinite(values)] for _, values in lines))
+    heights = [values - values[np.isfinite(values)][0] if flat else values for _, values in lines]
     tops = [top for values in heights if (top := float(np.nanmax(np.abs(values)))) > 0.0]
     log = row != "traction" and len(tops) > 1 and max(tops) > FAR_APART * min(tops)
-    unit, scale = (about["units"], 1.0) if log else unit_of(about["units"], *heights)
-    for k, values in enumerate(heights):
+    unit, scale = (units, 1.0) if log else unit_of(units, *heights)
+    for k, ((time, _), values) in enumerate(zip(lines, heights, strict=True)):
         look = {"color": LINE_COLOURS[k % len(LINE_COLOURS)], "linestyle": DASHES[k // len(LINE_COLOURS) % len(DASHES)]}
         magnitudes = np.where(values != 0.0, np.abs(values), np.nan) if log else values / scale
         # Later lines are thinner, so that runs with the same curve all stay visible.
-        axes.plot(dataset[f"run{k}_{row}_time"].values / size, magnitudes, linewidth=max(2.0 - 0.3 * k, 1.0), **look)
-    symbol = f"|{about['symbol']}|" if log else about["symbol"]
+        axes.plot(time / size, magnitudes, linewidth=max(2.0 - 0.3 * k, 1.0), **look)
+    symbol = f"|{symbol}|" if log else symbol
     if log:
         # Two decades below the smaller run; rest has no place on the axis.
         axes.set(yscale="log", ylim=(1e-2 * min(tops), 3.0 * max(tops)))
         set_log_ticks(axes, "y")
-    elif row != "traction" or dataset.attrs["sticks"]:
+    elif row != "traction" or any(run.problem.friction.sticks for run in study.runs.values()):
         zero_line(axes)
     if flat:
-        axes.set_ylabel(f"change of {about['long_name']}\n" + axis_text(f"${symbol}$ from its start", "", unit))
+        axes.set_ylabel(f"change of {name}\n" + axis_text(f"${symbol}$ from its start", "", unit))
     else:
-        axes.set_ylabel(axis_text(about["long_name"], symbol, unit))
+        axes.set_ylabel(axis_text(name, symbol, unit))

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import TYPE_CHECKING, Any, NamedTuple, Unpack
 
 import numpy as np
-import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from stickslip.figures.panels import add_legend, letter_panels, set_log_ticks, set_title, zero_line
 from stickslip.figures.sheet import sheet
-from stickslip.figures.style import GREY, INK, LINE_COLOURS, curve_quantity, label, quantity, shown, styled, unit_shown
+from stickslip.figures.style import CURVES, GREY, INK, LINE_COLOURS, axis_text, curve_label, styled, unit_of
+from stickslip.foundation.arrays import Floats
 from stickslip.foundation.place import Place
 
 if TYPE_CHECKING:
@@ -26,102 +26,75 @@ STYLES = ("-", "--", ":", "-.")
 """Styles of the lines of schemes, and of the exact solutions of rules other than the problem's own."""
 
 
-def data(study: Schemes) -> xr.Dataset:
-    """Return errors (m) against the step (s) of each scheme, and the slip (m) and slip rate (m/s) on each scheme's finest mesh."""
-    table, contents = study.table, {}
-    names = list(dict.fromkeys(table.scheme))
-    for i, name in enumerate(names):
-        own = table[table.scheme == name]
-        dim = f"scheme{i}_step"
-        contents[dim] = quantity(dim, own.step, "step of time", r"\Delta t", "s")
-        contents[f"scheme{i}_error"] = quantity(dim, own.slip_error, "mean slip difference", r"\langle|\Delta u|\rangle", "m")
-    drawn = names[:MOST_CURVES]
-    finest = [min((one for one in study.series if one.name == name), key=lambda one: one.step) for name in drawn]
-    for i, one in enumerate(finest):
+class SchemeCurve(NamedTuple):
+    """A curve of slip and of slip rate against time, and how it looks."""
+
+    text: str
+    time: Floats
+    values: dict[str, Floats]
+    colour: str
+    style: str
+    width: float
+
+
+def curves(study: Schemes) -> list[SchemeCurve]:
+    """Return slip (m) and slip rate (m/s) on the finest mesh of each scheme, then the exact ones, which are drawn on top."""
+    drawn = []
+    for colour, name in zip(LINE_COLOURS, study.table.scheme.unique()[:MOST_CURVES], strict=False):
+        one = min((one for one in study.series if one.name == name), key=lambda one: one.step)
         kept = one.time <= study.until
-        contents |= _curves(f"run{i}", one.time[kept], one.slip[kept], one.rate[kept])
-    own_group = next(group for group in study.paths.groups() if study.problem.rule in group)
-    ordered = [own_group, *(group for group in study.paths.groups() if group != own_group)]
-    for i, group in enumerate(ordered):
+        values = {"slip": one.slip[kept], "slip_rate": one.rate[kept]}
+        drawn.append(SchemeCurve(f"{name}, {one.cells} cells" if one.cells else name, one.time[kept], values, colour, "-", 1.2))
+    groups = study.paths.groups()
+    own = next(group for group in groups if study.problem.rule in group)
+    exact = []
+    for i, group in enumerate([own, *(group for group in groups if group != own)]):
         run = study.exact[group[0]]
         time = np.unique(np.concatenate([np.linspace(0.0, study.until, POINTS), run.breaks[run.breaks <= study.until]]))
-        contents |= _curves(f"exact{i}", time, run.slip(time) - study.problem.initial_slip, run.slip_rate(time))
-    attributes = {
-        "schemes": names,
-        "runs": [f"{one.name}, {one.cells} cells" if one.cells else one.name for one in finest],
-        "rules": ["exact" if len(ordered) == 1 else f"exact, {', '.join(group)}" for group in ordered],
-        "title": "Numerical schemes beside the exact solution",
-    }
-    return xr.Dataset(contents, attrs=attributes)
-
-
-def _curves(name: str, time: Any, slip: Any, rate: Any) -> dict[str, xr.Variable]:
-    dim = f"{name}_time"
-    return {
-        dim: quantity(dim, time, "time", "t", "s"),
-        f"{name}_slip": curve_quantity(dim, slip, "slip"),
-        f"{name}_rate": curve_quantity(dim, rate, "slip_rate"),
-    }
+        values = {"slip": run.slip(time) - study.problem.initial_slip, "slip_rate": run.slip_rate(time)}
+        text = "exact" if len(groups) == 1 else f"exact, {', '.join(group)}"
+        exact.append(SchemeCurve(text, time, values, GREY if i else INK, STYLES[i % len(STYLES)], 1.0))
+    return [*drawn, *exact[::-1]]
 
 
 @styled
-def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
+def draw(study: Schemes, **place: Unpack[Place]) -> Figure:
     """Draw the errors on the left; on the right the slip, and below it the slip rate."""
     figure = sheet((7.4, 5.4), **place)
-    axes: Any = figure.subplot_mosaic([["errors", "slip"], ["errors", "rate"]], width_ratios=(1, 1.25))
-    marks = _draw_errors(axes["errors"], dataset)
-    for name in ("slip", "rate"):
-        _draw_curves(axes[name], dataset, name)
+    axes: Any = figure.subplot_mosaic([["errors", "slip"], ["errors", "slip_rate"]], width_ratios=(1, 1.25))
+    marks, drawn = _draw_errors(axes["errors"], study), curves(study)
+    for name in ("slip", "slip_rate"):
+        _draw_curves(axes[name], drawn, name)
     letter_panels(axes.values(), ["errors", "slip", "slip rate"])
-    figure.align_ylabels([axes["slip"], axes["rate"]])
-    add_legend(axes["errors"], [*marks, *_run_marks(dataset)])
-    set_title(figure, dataset.attrs["title"])
+    figure.align_ylabels([axes["slip"], axes["slip_rate"]])
+    for one in drawn:
+        look: Any = {"color": one.colour, "linestyle": one.style, "linewidth": one.width}
+        marks.append(Line2D([], [], label=f"(b, c) {one.text}", **look))
+    add_legend(axes["errors"], marks)
+    set_title(figure, "Numerical schemes beside the exact solution")
     return figure
 
 
-def _draw_errors(axes: Axes, dataset: xr.Dataset) -> list[Line2D]:
-    names = np.atleast_1d(dataset.attrs["schemes"]).tolist()
-    steps = [dataset[f"scheme{i}_step"] for i in range(len(names))]
-    errors = [dataset[f"scheme{i}_error"] for i in range(len(names))]
-    clock, length = unit_shown(*steps), unit_shown(*errors)
-    for i, name in enumerate(names):
-        values = shown(errors[i], length)
-        style = STYLES[i // len(LINE_COLOURS) % len(STYLES)]
-        colour = LINE_COLOURS[i % len(LINE_COLOURS)]
-        axes.plot(
-            shown(steps[i], clock), np.where(values > 0.0, values, np.nan), style, color=colour, marker="o", label=f"(a) {name}"
-        )
-    for line in axes.lines:
-        line.set_markersize(3.5)
-    axes.set(xscale="log", yscale="log", xlabel=label(steps[0], clock), ylabel=label(errors[0], length))
+def _draw_errors(axes: Axes, study: Schemes) -> list[Line2D]:
+    table = study.table
+    clock, length = unit_of("s", table.step), unit_of("m", table.slip_error)
+    for i, (name, own) in enumerate(table.groupby("scheme", sort=False)):
+        errors = np.where(own.slip_error > 0.0, own.slip_error / length[1], np.nan)
+        look: Any = {"color": LINE_COLOURS[i % len(LINE_COLOURS)], "linestyle": STYLES[i // len(LINE_COLOURS) % len(STYLES)]}
+        axes.plot(own.step / clock[1], errors, marker="o", markersize=3.5, label=f"(a) {name}", **look)
+    axes.set(xscale="log", yscale="log", xlabel=axis_text("step of time", r"\Delta t", clock[0]))
+    axes.set_ylabel(axis_text("mean slip difference", r"\langle|\Delta u|\rangle", length[0]))
     set_log_ticks(axes, "x")
     return [
         Line2D([], [], color=line.get_color(), linestyle=line.get_linestyle(), label=str(line.get_label())) for line in axes.lines
     ]
 
 
-def _draw_curves(axes: Axes, dataset: xr.Dataset, name: str) -> None:
-    runs = _styles(dataset)
-    times = [dataset[f"{run}_time"] for run, *_ in runs]
-    values = [dataset[f"{run}_{name}"] for run, *_ in runs]
-    clock, unit = unit_shown(*times), unit_shown(*values)
-    for (_, colour, style, width), time, value in zip(runs, times, values, strict=True):
-        axes.plot(shown(time, clock), shown(value, unit), style, color=colour, linewidth=width)
+def _draw_curves(axes: Axes, drawn: list[SchemeCurve], name: str) -> None:
+    clock = unit_of("s", *(one.time for one in drawn))
+    unit = unit_of(CURVES[name][2], *(one.values[name] for one in drawn))
+    for one in drawn:
+        heights = one.values[name] / unit[1]
+        axes.plot(one.time / clock[1], heights, one.style, color=one.colour, linewidth=one.width)
     zero_line(axes)
-    axes.set(xlabel=label(times[-1], clock), ylabel=label(values[-1], unit))
-
-
-def _styles(dataset: xr.Dataset) -> list[tuple[str, str, Any, float]]:
-    """Return the name, colour, line style and width of each curve; the exact ones come last and are drawn on top."""
-    runs = [(f"run{i}", LINE_COLOURS[i], "-", 1.2) for i in range(len(np.atleast_1d(dataset.attrs["runs"])))]
-    rules = len(np.atleast_1d(dataset.attrs["rules"]))
-    exact = [(f"exact{i}", GREY if i else INK, STYLES[i % len(STYLES)], 1.0) for i in range(rules)]
-    return [*runs, *exact[::-1]]
-
-
-def _run_marks(dataset: xr.Dataset) -> list[Line2D]:
-    runs, rules = (np.atleast_1d(dataset.attrs[name]).tolist() for name in ("runs", "rules"))
-    return [
-        Line2D([], [], color=colour, linestyle=style, linewidth=width, label=f"(b, c) {text}")
-        for (_, colour, style, width), text in zip(_styles(dataset), [*runs, *rules[::-1]], strict=True)
-    ]
+    axes.set(xlabel=curve_label("time", clock[0]), ylabel=curve_label(name, unit[0]))
