@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import shutil
+from contextlib import suppress
 from pathlib import Path
 
 import h5py
 import numpy as np
 
 from stickslip.foundation import netcdf_file
-from stickslip.sweeps.results.store import FOLDER, vouch_for
+from stickslip.sweeps.results.layout import FORMAT
 
 BLOCK = 512
 """Number of bytes that are overwritten or exchanged."""
@@ -87,7 +88,7 @@ def edit(path: Path, rng: np.random.Generator) -> str:
 
 
 def edit_metadata(path: Path, store: Path, rng: np.random.Generator) -> str:
-    """Give one entry of a file of metadata an odd value, or remove it, and write all checksums anew."""
+    """Give one entry of a file of metadata an odd value, or remove it, and write its checksum anew."""
     whole = json.loads(path.read_text(encoding="utf-8"))
     place, names = whole, []
     while True:
@@ -101,7 +102,9 @@ def edit_metadata(path: Path, store: Path, rng: np.random.Generator) -> str:
         del place[key]
     else:
         place[key] = ODD[int(rng.integers(len(ODD)))]
+    with suppress(KeyError, TypeError, AttributeError):
+        whole["attributes"]["digest"] = FORMAT.digest_of(whole["attributes"])
+        for name, known in whole["consolidated_metadata"]["metadata"].items():
+            (store / name / "zarr.json").write_text(json.dumps(known), encoding="utf-8")
     path.write_text(json.dumps(whole), encoding="utf-8")
-    for kept in (store / FOLDER).iterdir():
-        vouch_for(store, kept.name, [line.split(" ", 1)[1] for line in kept.read_text(encoding="utf-8").splitlines()[:-1]])
     return f"edit of {'.'.join(names)}"

@@ -89,7 +89,7 @@ ROOMS = {
     ),
     "solution": (("evaluation",), ("accessors",), ("planar", "window"), ("solution",), ("interval",)),
     "io": (
-        ("catalogue_rows", "sampling", "series", "soundness"),
+        ("catalogue_rows", "sampling", "series", "soundness", "zarr_store"),
         ("planar_layout", "scec"),
         ("netcdf", "planar_store"),
     ),

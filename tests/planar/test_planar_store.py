@@ -258,7 +258,7 @@ def edited(path: Path, **changes: Any) -> None:
     """Change attributes of a folder, and give it a checksum that fits: what only somebody who means it does."""
     group = zarr.open_group(path, mode="r+")
     group.attrs.update(changes)
-    group.attrs.update({"digest": planar_layout.digest_of(group.attrs)})
+    group.attrs.update({"digest": planar_layout.FORMAT.digest_of(group.attrs)})
     state = netcdf_file.read(path / "state.nc")
     netcdf_file.write(state.assign_attrs(digest=group.attrs["digest"]), path / "state.nc")
 

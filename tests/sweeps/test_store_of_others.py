@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
 import shutil
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +14,8 @@ import pytest
 
 import stickslip as ss
 from stickslip.cli.main import main
-from stickslip.sweeps.results.store import FOLDER, open_store, vouch_for
+from stickslip.sweeps.results.layout import FORMAT
+from stickslip.sweeps.results.store import open_store
 from stickslip.sweeps.sweep import SweepProgress
 from tests.sweeps.stores import VARY, files, sweep
 
@@ -38,9 +39,13 @@ def store(half: Path, tmp_path: Path) -> Path:
 
 
 def vouch_again(store: Path) -> None:
-    """Write every list of checksums anew."""
-    for kept in (store / FOLDER).iterdir():
-        vouch_for(store, kept.name, [line.split(" ", 1)[1] for line in kept.read_text().splitlines()[:-1]])
+    """Give the attributes a checksum that fits, and each array's own file what the gathered metadata say of it."""
+    with suppress(ValueError, RecursionError, KeyError, TypeError):
+        about = json.loads((store / "zarr.json").read_text())
+        about["attributes"]["digest"] = FORMAT.digest_of(about["attributes"])
+        (store / "zarr.json").write_text(json.dumps(about))
+        for name, known in about["consolidated_metadata"]["metadata"].items():
+            (store / name / "zarr.json").write_text(json.dumps(known))
 
 
 def refused(act: Callable[[], object], *words: str) -> None:
@@ -131,18 +136,11 @@ def test_a_unit_that_is_no_text_is_not_shown(store: Path, unit: Any, capsys: pyt
     shows(store, capsys)
 
 
-@pytest.mark.parametrize("lines", [b"\xff\xfe slip\n", b"abc\n", b"- a\x1b[31m\rb\n", b"- " + b"a" * 5000 + b"\n"])
-def test_a_list_of_checksums_that_is_none_is_refused_in_one_line(store: Path, lines: bytes) -> None:
-    content = lines + hashlib.sha256(lines).hexdigest().encode() + b"\n"
-    (store / FOLDER / "0").write_bytes(content)
-    refused(lambda: open_store(store), str(store))
-
-
 @pytest.mark.skipif(os.name != "posix", reason="needs pipes")
-def test_a_pipe_in_place_of_a_list_is_not_waited_for(store: Path) -> None:
-    (store / FOLDER / "0").unlink()
-    os.mkfifo(store / FOLDER / "0")
-    refused(lambda: open_store(store), f"{store / FOLDER / '0'}: not an ordinary file: remove it")
+def test_a_pipe_in_place_of_a_chunk_is_not_waited_for(store: Path) -> None:
+    (store / "slip" / "c.0.0").unlink()
+    os.mkfifo(store / "slip" / "c.0.0")
+    refused(lambda: open_store(store), f"{store}: slip/c.0.0: not an ordinary file: remove {store / 'status' / 'c.0.0'}")
 
 
 def test_a_folder_with_the_name_of_a_draft_is_left_alone(store: Path) -> None:
@@ -152,13 +150,16 @@ def test_a_folder_with_the_name_of_a_draft_is_left_alone(store: Path) -> None:
     assert (store / "x.partial" / "mine.partial").is_dir()
 
 
-@pytest.mark.parametrize("name", ["status/c.0.2", "slip/c.0.2"])
-def test_a_folder_with_the_name_of_a_chunk_is_named(half: Path, tmp_path: Path, name: str) -> None:
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [("status/c.0.2", "status/c.0.2: Is a directory: remove "), ("slip/c.0.2", "cannot be written: Is a directory")],
+)
+def test_a_folder_with_the_name_of_a_chunk_is_named(half: Path, tmp_path: Path, name: str, said: str) -> None:
     store = tmp_path / "other.zarr"
     shutil.copytree(half, store)
-    for file in (store / name.replace("slip", "status"), store / FOLDER / "2", store / name):
+    for file in (store / name.replace("slip", "status"), store / name):
         file.unlink(missing_ok=True)
     (store / name).mkdir()
     before = files(store)
-    refused(lambda: sweep(store), f"{store}", "cannot be written: Is a directory")
+    refused(lambda: sweep(store), f"{store}", said)
     assert before.items() <= files(store).items()

@@ -6,8 +6,6 @@ It holds the frames (`slip` and so on over time, y and z), the profiles of the c
 
 from __future__ import annotations
 
-import hashlib
-import json
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
@@ -23,10 +21,10 @@ import stickslip
 from stickslip.foundation import zarr_folder
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.atomic_write import read_bounded
 from stickslip.foundation.constants import PAPER
 from stickslip.foundation.errors import InputError, printable
 from stickslip.io.soundness import number, whole_number
+from stickslip.io.zarr_store import FolderFormat, check_layout
 from stickslip.planar.slab import COUNTS, MOST_NODES, PlanarSlab
 from stickslip.scenarios.contact import GRID, Contact
 from stickslip.scenarios.scenario import LARGEST_TEXT, Scenario, read_scenario
@@ -36,15 +34,13 @@ from stickslip.trajectory.status import STATUSES, UNDER_WAY, Status
 if TYPE_CHECKING:
     from stickslip.planar.solver import PlanarSolver
 
-FORMAT = 1
-"""Version of the layout; a folder with another version is refused."""
-KIND, SENT = "stickslip_planar", "waves/sent"
-"""Attribute with the version, and array of what the contact has sent."""
+SENT = "waves/sent"
+"""Array of what the contact has sent."""
 CHUNK = 4_000_000
 """Bytes of a chunk of frames or waves, unless a single one is larger."""
-WHAT = "the run of a planar slab"
-CHANGES = ("duration", "residual", "status", "status_message", "status_ok", "digest")
-"""Attributes that may change, and the checksum of the others."""
+CHANGES = ("duration", "residual", "status", "status_message", "status_ok")
+"""Attributes that may change."""
+FORMAT = FolderFormat("stickslip_planar", 1, CHANGES)
 
 
 def lay_out(place: Any, slab: PlanarSlab, about: Any) -> None:
@@ -55,7 +51,6 @@ def lay_out(place: Any, slab: PlanarSlab, about: Any) -> None:
     for name, given in slab.along.items():
         made[f"along.{name}"][...] = slab.at_nodes(name, given)
     made["barrier"][...] = slab.locked
-    zarr_folder.consolidate(place)
 
 
 def _arrays(place: Any, shape: tuple[int, ...], about: Any) -> zarr.Group:
@@ -93,20 +88,13 @@ def attributes(slab: PlanarSlab, scenario: Scenario, frames: int, run: PlanarSol
         "modes": list(run.sent(0).shape[1:]),
         "frames": frames,
         "steps_per_round_trip": run.steps,
-        KIND: FORMAT,
     }
-    return about | {"digest": digest_of(about), "duration": scenario.duration, "residual": 0.0} | in_attributes(STATUSES[UNDER_WAY])
+    return FORMAT.attributes(about) | {"duration": scenario.duration, "residual": 0.0} | in_attributes(STATUSES[UNDER_WAY])
 
 
 def in_attributes(status: Status) -> dict[str, Any]:
     """Return the attributes that say how a run ended."""
     return {"status": status.name, "status_message": status.message, "status_ok": int(status.ok)}
-
-
-def digest_of(about: Mapping[str, Any]) -> str:
-    """Return the checksum of the attributes that do not change."""
-    kept = {name: value for name, value in about.items() if name not in CHANGES}
-    return hashlib.sha256(json.dumps(kept, sort_keys=True).encode()).hexdigest()
 
 
 def _array(group: zarr.Group, name: str, axes: Mapping[str, int], rows: int = 0, **about: Any) -> zarr.Array[Any]:
@@ -129,11 +117,6 @@ def _array(group: zarr.Group, name: str, axes: Mapping[str, int], rows: int = 0,
 # ---- reading what somebody else may have written -----------------------------------------------------------------------------
 
 
-def reading(path: Path) -> Any:
-    """Turn every error in the `with` block, which reads the folder of a run, into an InputError with a message of one line."""
-    return zarr_folder.reading(path, WHAT)
-
-
 class StoredFields(Mapping[str, Floats]):
     """The fields of a run in a folder, each read when it is asked for."""
 
@@ -142,7 +125,7 @@ class StoredFields(Mapping[str, Floats]):
 
     @override
     def __getitem__(self, name: str) -> Floats:
-        with reading(self.path):
+        with FORMAT.reading(self.path):
             return finite_rows(self.group, name, slice(self.frames))
 
     @override
@@ -156,7 +139,7 @@ class StoredFields(Mapping[str, Floats]):
 
 def open_planar(path: Path) -> PlanarSolution:
     """Return the run in a folder; its fields are read when they are used. Raises InputError for anything but such a folder."""
-    with reading(path):
+    with FORMAT.reading(path):
         group = opened(path)
         steps = whole_number(group.attrs, "steps_per_round_trip", path, 1)
         slab, times = slab_in(group, path), finite_rows(group, "time")
@@ -174,7 +157,7 @@ def open_planar(path: Path) -> PlanarSolution:
 
 def scenario_in(path: Path) -> Scenario:
     """Return the scenario of the run in a folder. Raises InputError as `open_planar` does."""
-    with reading(path):
+    with FORMAT.reading(path):
         group = opened(path)
         about: Any = group.attrs
         found = replace(read_scenario(about["scenario"], str(path), path.stem), duration=about["duration"])
@@ -182,32 +165,18 @@ def scenario_in(path: Path) -> Scenario:
         return replace(found, contact=replace(contact, frames=about["frames"]))
 
 
-def is_planar(path: Path) -> bool:
-    """Return True if a folder says that it holds the run of a planar slab."""
-    try:
-        return KIND in json.loads(read_bounded(path / "zarr.json", LARGEST_TEXT))["attributes"]
-    except (InputError, OSError, ValueError, KeyError, TypeError, RecursionError):
-        return False
-
-
 def opened(path: Path, mode: Literal["r", "r+"] = "r", use_consolidated: bool | None = None) -> zarr.Group:
     """Return the group in a folder after checking its attributes. Raises InputError."""
     check_python(path)
-    if not (path / zarr_folder.METADATA).exists():
-        raise InputError(f"{path}: not {WHAT}: it is no folder of zarr")
-    group = zarr_folder.opened(path, mode, use_consolidated)
-    if group.attrs.get(KIND) != FORMAT:
-        found = "it is the store of a sweep" if "stickslip_sweep" in group.attrs else f"found {group.attrs.get(KIND, 'none')}"
-        raise InputError(f"{path}: not {WHAT} of this version of stickslip (format {FORMAT} expected, {found})")
-    if group.attrs.get("digest") != digest_of(group.attrs):
-        raise InputError(f"{path}: damaged: its attributes do not have their checksum")
-    return group
+    return FORMAT.opened(path, mode, use_consolidated)
 
 
 def check_python(path: Path) -> None:
     """Refuse a Python without assertions, by which zarr cannot read groups inside a group. Raises InputError."""
     if not __debug__:
-        raise InputError(f"{path}: zarr needs the assertions of Python for {WHAT}: unset PYTHONOPTIMIZE, or leave out python -O")
+        raise InputError(
+            f"{path}: zarr needs the assertions of Python for {FORMAT.what}: unset PYTHONOPTIMIZE, or leave out python -O"
+        )
 
 
 def slab_in(group: zarr.Group, path: Path) -> PlanarSlab:
@@ -217,26 +186,12 @@ def slab_in(group: zarr.Group, path: Path) -> PlanarSlab:
     counts = [grid[name] for name in COUNTS if grid.get(name) is not None]
     if not all(isinstance(count, int) and count > 0 for count in counts) or math.prod(counts) > MOST_NODES:
         raise InputError(f"its grid is {shown(grid)}")
-    _check_arrays(group, tuple(counts), about)
+    check_layout(_arrays(MemoryStore(), tuple(counts), about), group, (*FIELDS, "time", SENT))
     problem = read_scenario(about["scenario"], str(path)).problem
     along = {name: finite_rows(group, f"along.{name}") for name in about["along"]}
     slab = PlanarSlab(problem, **grid, along=along, barrier=finite_rows(group, "barrier") > 0.5)
     _check_rows(group, path, slab)
     return slab
-
-
-def _check_arrays(group: Any, shape: tuple[int, ...], about: Any) -> None:
-    """Refuse arrays of another form than those of a contact of this shape, but for the number of rows of those that grow."""
-    ours: Any = _arrays(MemoryStore(), shape, about)
-    for name in (*ours.array_keys(), SENT):
-        wanted, found = ours[name], group[name]
-        one, other = (
-            array.metadata.to_dict() | {"shape": array.shape[len(array.shape) - len(wanted.shape) + 1 :]}
-            for array in (wanted, found)
-        )
-        grows = name in (*FIELDS, "time", SENT)
-        if one != other or not (grows or wanted.shape == found.shape):
-            raise InputError(f"its array {name!r} has another form")
 
 
 def _check_rows(group: Any, path: Path, slab: PlanarSlab) -> None:

@@ -21,25 +21,23 @@ from typing_extensions import override
 from stickslip.engine.state.layout import Stop
 from stickslip.foundation import netcdf_file, zarr_folder
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.atomic_write import held, sync, write_atomically
+from stickslip.foundation.atomic_write import held, sync
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.netcdf_file import Variable
 from stickslip.io.planar_layout import (
     FORMAT,
-    KIND,
     SENT,
     attributes,
     check_python,
     finite_rows,
     in_attributes,
-    is_planar,
     lay_out,
     open_planar,
     opened,
-    reading,
     slab_in,
 )
 from stickslip.io.soundness import number, whole_number
+from stickslip.io.zarr_store import create
 from stickslip.planar.slab import PlanarSlab
 from stickslip.scenarios.scenario import Scenario
 from stickslip.solution.planar import FIELDS, Frames, PlanarSolution
@@ -92,7 +90,7 @@ class PlanarStore(Frames):
         with zarr_folder.writing(path, "choose another disk"), held(path, f"{path}: {BUSY}"):
             if path.exists():  # killed before its first checkpoint
                 shutil.rmtree(path)
-            write_atomically(path, lambda draft: lay_out(draft, slab, about), folder=True)
+            create(path, lambda draft: lay_out(draft, slab, about))
         with held(path, f"{path}: {BUSY}"):
             yield cls(slab, run.steps, path=path, duration=scenario.duration, frames=frames, digest=about["digest"])
 
@@ -102,7 +100,7 @@ class PlanarStore(Frames):
         """Open the folder of a run to continue it, locked against other processes. Raises InputError for anything else."""
         zarr_folder.check_folder(path)
         with held(path, f"{path}: {BUSY}"):
-            with reading(path):
+            with FORMAT.reading(path):
                 if _is_unbegun(path):
                     raise InputError(f"{path}: has no checkpoint yet: begin the run again with this name")
                 store = cls._opened(path)
@@ -111,7 +109,7 @@ class PlanarStore(Frames):
     @classmethod
     def _opened(cls, path: Path) -> Self:
         group, about = opened(path, use_consolidated=False), netcdf_file.read(path / STATE, "the state of a planar run").attrs
-        if about.get("digest") != group.attrs["digest"] or whole_number(about, KIND, path) != FORMAT:
+        if about.get("digest") != group.attrs["digest"] or whole_number(about, FORMAT.kind, path) != FORMAT.version:
             raise InputError(f"its {STATE} belongs to another run")
         if about["engine"] != _engine():
             raise InputError(
@@ -130,7 +128,7 @@ class PlanarStore(Frames):
 
     def restore(self, run: PlanarSolver) -> None:
         """Set a solver to the state in the folder. Raises InputError if it is damaged."""
-        with reading(self.path):
+        with FORMAT.reading(self.path):
             found, rows = netcdf_file.read(self.path / STATE), self.steps_per_round_trip + 1
             trip, step = divmod(self.sent - 1, rows)
             state = {str(name): one.to_numpy() for name, one in found.items()}
@@ -169,7 +167,7 @@ class PlanarStore(Frames):
         array = self._arrays[name]
         end, size = first + len(values), array.chunks[0]
         kept = "stickslip.resume continues from the last checkpoint when there is room"
-        with reading(self.path), zarr_folder.writing(self.path, kept):  # a chunk that is not full is read first
+        with FORMAT.reading(self.path), zarr_folder.writing(self.path, kept):  # a chunk that is not full is read first
             if end > array.shape[0]:
                 array.resize((end, *array.shape[1:]))
             array[first:end] = values
@@ -206,12 +204,16 @@ class PlanarStore(Frames):
             name: Variable(tuple(f"{name}_{n}" for n in range(one.ndim)), np.asarray(one)) for name, one in run.state().items()
         }
         own = ("written", "sent", "largest_slip", "fastest")
-        about = {name: getattr(self, name) for name in own} | {KIND: FORMAT, "engine": _engine(), "digest": self.digest}
+        about = {name: getattr(self, name) for name in own} | {
+            FORMAT.kind: FORMAT.version,
+            "engine": _engine(),
+            "digest": self.digest,
+        }
         netcdf_file.write_variables(state, about, self.path / STATE)
 
     def _show(self, code: int) -> None:
         """Let readers see what has been written, with the status that belongs to a code."""
-        with reading(self.path):
+        with FORMAT.reading(self.path):
             zarr_folder.consolidate(self.path)
             # the group that knows the arrays keeps what it knows of them: the file changes at once
             opened(self.path, "r+").attrs.update(
@@ -225,9 +227,9 @@ class PlanarStore(Frames):
 
 def _is_unbegun(path: Path) -> bool:
     """Return True for the folder of a run that was killed before its first checkpoint: it holds nothing that was calculated."""
-    if not is_planar(path) or (path / STATE).exists():
+    if not FORMAT.is_in(path) or (path / STATE).exists():
         return False
-    with reading(path):
+    with FORMAT.reading(path):
         group: Any = opened(path, use_consolidated=False)
         return not any(group[name].shape[0] for name in ("time", *FIELDS, SENT))
 

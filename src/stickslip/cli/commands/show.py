@@ -238,10 +238,10 @@ def stored(path: Path, quantity: str | None = None) -> Stored:
 
         return StoredContact(path, opened(path).attrs, open_planar(path), scenario_in(path))
     if path.is_dir():
-        from stickslip.sweeps.results.layout import reading
+        from stickslip.sweeps.results.layout import FORMAT
         from stickslip.sweeps.results.store import open_store
 
-        with reading(path):
+        with FORMAT.reading(path):
             dataset = open_store(path).load()
         return StoredSweep(path, dataset.attrs, dataset, quantity)
     suffix = path.suffix.lower()
@@ -255,9 +255,9 @@ def stored(path: Path, quantity: str | None = None) -> Stored:
 
 
 def _is_planar(path: Path) -> bool:
-    from stickslip.io.planar_layout import is_planar
+    from stickslip.io.planar_layout import FORMAT
 
-    return is_planar(path)
+    return FORMAT.is_in(path)
 
 
 def _netcdf(path: Path) -> Stored:

@@ -127,9 +127,9 @@ def sweep(
     with _losses():
         found, spent = _found(plan, out, resources)
     if out is not None:
-        from stickslip.sweeps.results.layout import reading
+        from stickslip.sweeps.results.layout import FORMAT
 
-        with reading(out):  # its chunks may have been damaged since they were written
+        with FORMAT.reading(out):  # its chunks may have been damaged since they were written
             found = found.load()
     if figure is not None:
         _draw(found, plan.work.names[0], figure, look)

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from contextlib import AbstractContextManager
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -25,13 +24,13 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import clean
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.io.netcdf import LONG_NAMES
+from stickslip.io.zarr_store import FolderFormat, check_layout
 from stickslip.sweeps.design.design import GRID, IN_WORDS
 from stickslip.sweeps.execution.chunk import MEANINGS, NOT_RUN, PREFIX, TIME
 from stickslip.sweeps.execution.plan import Plan
 from stickslip.trajectory.status import engine
 
-FORMAT = 1
-"""Version of the layout, stored in the attribute `stickslip_sweep`."""
+FORMAT = FolderFormat("stickslip_sweep", 2)
 STATUS, REASON = "status", "reason"
 """Names of the variables that say how a member ended, and why it failed."""
 NUMBERS, WORDS, CODES = "float64", "string", "int8"
@@ -39,7 +38,6 @@ NUMBERS, WORDS, CODES = "float64", "string", "int8"
 FILLS = {NUMBERS: np.nan, WORDS: "", CODES: NOT_RUN}
 """The value of an element that has not been written, by data type."""
 _SAME = {
-    "stickslip_sweep": "by another version of stickslip",
     "source": "by another version of stickslip",
     "engine": "by another version of stickslip",
     "scenario": "from another scenario",
@@ -116,7 +114,7 @@ def attributes(plan: Plan) -> dict[str, Any]:
     """Return the attributes of the store: everything that determines the results, and nothing else."""
     design, scenario = plan.design, plan.scenario
     about = {"design": design.kind, "keys": list(design.names), "chunk": list(plan.tile), "results": list(results(plan))}
-    return {
+    found = {
         "Conventions": "CF-1.11",
         "title": f"stickslip sweep: {type(scenario.problem.body).__name__}, {type(scenario.problem.friction).__name__}",
         "source": f"stickslip {stickslip.__version__}",
@@ -126,16 +124,11 @@ def attributes(plan: Plan) -> dict[str, Any]:
         "selection_rule": scenario.problem.rule,
         "rtol": scenario.rtol,
         "design": json.dumps(about if design.seed is None else about | {"seed": design.seed}),
-        "stickslip_sweep": FORMAT,
     }
+    return FORMAT.attributes(found)
 
 
 # ---- reading what somebody else may have written -----------------------------------------------------------------------------
-
-
-def reading(place: Any) -> AbstractContextManager[None]:
-    """Turn every error in the `with` block, which reads a store, into an InputError with a message of one line."""
-    return zarr_folder.reading(place, "the store of a sweep")
 
 
 def read_design(about: Mapping[str, Any]) -> tuple[str, list[str], tuple[int, ...]]:
@@ -185,32 +178,20 @@ def check_contents(found: xr.Dataset) -> None:
 # ---- continuing a store -------------------------------------------------------------------------------------------------------
 
 
-def as_begun(plan: Plan, path: Path) -> Plan:
+def as_begun(plan: Plan, path: Path, group: zarr.Group) -> Plan:
     """Return the plan with the chunk shape of an existing store. Raises InputError if the store does not belong to this plan."""
-    with reading(path):
-        group = zarr_folder.opened(path)
-        if "stickslip_sweep" not in group.attrs:
-            raise InputError(f"{path}: exists and is not the store of a sweep: choose another name")
-        ours = attributes(plan)
-        different = next((what for name, what in _SAME.items() if group.attrs.get(name) != ours[name]), None)
-        different = different or _design_differs(plan, group)
-        if different:
-            raise InputError(f"{path}: was made {different}: use the same settings as before, or choose another name")
-        begun = replace(plan, tile=read_design(group.attrs)[2])
-        _check_arrays(begun, group)
-        return begun
-
-
-def _check_arrays(plan: Plan, group: zarr.Group) -> None:
-    """Raise InputError unless the arrays of a store are those that the plan lays out, with all that is known of them."""
-    if len(plan.tile) != len(plan.design.shape):
+    ours = attributes(plan)
+    different = next((what for name, what in _SAME.items() if group.attrs.get(name) != ours[name]), None)
+    different = different or _design_differs(plan, group)
+    if different:
+        raise InputError(f"{path}: was made {different}: use the same settings as before, or choose another name")
+    begun = replace(plan, tile=read_design(group.attrs)[2])
+    if len(begun.tile) != len(plan.design.shape):
         raise InputError("the shape of its chunks is not that of its members")
     wanted = MemoryStore()
-    lay_out(plan, wanted)
-    ours, theirs = ({name: array.metadata.to_dict() for name, array in one.arrays()} for one in (zarr.open_group(wanted), group))
-    odd = next((name for name in ours if theirs.get(name) != ours[name]), None)
-    if odd is not None:
-        raise InputError(f"its variable {odd!r} is missing or has another form")
+    lay_out(begun, wanted)
+    check_layout(zarr.open_group(wanted), group)
+    return begun
 
 
 def _design_differs(plan: Plan, group: zarr.Group) -> str:
