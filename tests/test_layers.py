@@ -26,8 +26,9 @@ LAYERS = (
     ("solution",),
     ("io",),
     ("run",),
-    ("batch",),
-    ("studies", "sweeps"),
+    ("batch", "study"),
+    ("inference", "sweeps"),
+    ("studies",),
     ("figures",),
     ("reports",),
     ("explorer", "paper"),
@@ -101,7 +102,7 @@ ROOMS = {
         ("resume", "simulate"),
     ),
     "studies": (
-        ("regularisations", "separation", "study"),
+        ("regularisations", "separation"),
         ("analogy", "compare", "ensemble", "find", "inference", "verdict"),
         ("one_run", "regularise", "scheme_shocks"),
         ("scheme_measures",),
@@ -109,6 +110,7 @@ ROOMS = {
         ("schemes",),
         ("benchmarks",),
     ),
+    "inference": (("record",), ("fit",), ("certainty",), ("fitted_record",), ("inference",), ("infer",)),
     "trajectory": (("phase_index", "status", "turning_points"), ("history",), ("slip_events", "tables")),
     "contact": (
         ("roots", "sliding", "wave_modes", "wave_proof"),
@@ -156,7 +158,7 @@ LAZY_DOORS = {
     "solution/accessors.py",
     "solution/planar.py",
     "solution/solution.py",
-    "studies/inference/record.py",
+    "inference/record/record.py",
 }
 """Files that may import upwards inside functions.
 

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.studies.study import Study
+from stickslip.study import Study
 from tests.messages import places_twice
 
 SLAB = ss.ElasticSlab(density=2800, wave_speed=3500, thickness=1e4, normal_stress=1e8)

@@ -10,7 +10,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.cli.output.studies import as_options
-from tests.studies.laboratory import RateAndStateBlock, correlated, load_point
+from tests.inference.laboratory import RateAndStateBlock, correlated, load_point
 
 TIMES, RATES = [0.0, 60.0, 100.0], [1e-6, 1e-5, 1e-6]
 FREE = "a,b,distance,stiffness,reference"

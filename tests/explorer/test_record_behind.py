@@ -15,10 +15,10 @@ from stickslip.explorer.model.solve import solve
 from stickslip.explorer.model.strip import strip_range
 from stickslip.explorer.page.explorer import Explorer
 from stickslip.explorer.page.panels import view_of
+from stickslip.inference.record.record import Record
 from stickslip.scenarios.scenario import Scenario
-from stickslip.studies.inference.record import Record
 from tests.explorer.desk_at_once import DeskAtOnce
-from tests.studies.laboratory import RateAndStateBlock, load_point
+from tests.inference.laboratory import RateAndStateBlock, load_point
 
 SLAB = Setting.bundled("fig6-slab")
 

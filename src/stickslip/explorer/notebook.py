@@ -79,7 +79,7 @@ def explore(
         raise InputError("explore: a record is not drawn behind a fault: leave out record, or [contact]")
     if record is not None:
         from stickslip.explorer.model.answer import Backdrop
-        from stickslip.studies.inference.record import Record
+        from stickslip.inference.record.record import Record
 
         behind = Backdrop.of(Record.read(record), sensor, found.problem)
     return shown_in_notebook(found, behind)

@@ -12,10 +12,8 @@ import numpy as np
 import stickslip as ss
 from stickslip.figures.studies import inference as figures
 from stickslip.foundation.show import about_time, number, sentence
+from stickslip.inference.inference import Inference, minima_of, noise_of, ranking, record_of, warnings_of
 from stickslip.reports.page import DIGITS, picture, rendered, save_figure, save_text, superscript, with_unit
-from stickslip.studies.inference.infer import ranking
-from stickslip.studies.inference.inference import Inference
-from stickslip.studies.inference.words import minima_of, noise_of, record_of, warnings_of
 
 PAGE = "report.html"
 """Name of the page in the folder of a report."""

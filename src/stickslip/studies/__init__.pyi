@@ -3,9 +3,7 @@ from .benchmarks import judge_series
 from .compare import Comparison, compare
 from .ensemble import Ensemble, ensemble
 from .find import Edge, find
-from .inference.infer import infer, ranking
-from .inference.inference import Inference
-from .inference.record import Record
+from .inference import Inference, Record, infer, ranking
 from .one_run import catalogue_statistics, critical_value, predictability, steady
 from .regularise import Regularisation, regularise
 from .schemes import Schemes, schemes

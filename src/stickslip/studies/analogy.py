@@ -29,7 +29,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 from stickslip.run.simulate import simulate
 from stickslip.scenarios.source import read_duration_and_problem
-from stickslip.studies.study import StudyWithDataset, TextProgress, telling, uninterrupted
+from stickslip.study import StudyWithDataset, TextProgress, telling, uninterrupted
 
 if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario

@@ -32,8 +32,8 @@ from stickslip.schemes.run import check_suitable
 from stickslip.studies.judgement import TOLERANCE
 from stickslip.studies.scheme_shocks import check_length, check_units
 from stickslip.studies.schemes import Schemes
-from stickslip.studies.study import TextProgress, telling
 from stickslip.studies.verdict import exact_runs
+from stickslip.study import TextProgress, telling
 
 if TYPE_CHECKING:
     import xarray as xr

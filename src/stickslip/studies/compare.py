@@ -24,7 +24,7 @@ from stickslip.run.simulate import simulate
 from stickslip.scenarios import Scenario, load_scenario
 from stickslip.scenarios.source import all_slips_alike
 from stickslip.solution.solution import Solution
-from stickslip.studies.study import Study, TextProgress, telling, uninterrupted
+from stickslip.study import Study, TextProgress, telling, uninterrupted
 from stickslip.trajectory.slip_events import SlipEvents, default_event_rate
 
 COLUMNS = {

@@ -23,7 +23,7 @@ from stickslip.run.simulate import simulate
 from stickslip.scenarios.source import read_duration_and_problem
 from stickslip.solution.solution import Solution
 from stickslip.studies.separation import Separation, disturbed, drawn, is_lossy, separation, shared_events, slope
-from stickslip.studies.study import MAX_PIECES, RunsCompared, TextProgress, telling, uninterrupted
+from stickslip.study import MAX_PIECES, RunsCompared, TextProgress, telling, uninterrupted
 
 if TYPE_CHECKING:
     from pathlib import Path

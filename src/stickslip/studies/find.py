@@ -22,7 +22,7 @@ from stickslip.scenarios.parameter_paths import ParameterPath, find_parameter
 from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.source import read_source
 from stickslip.solution.solution import Solution
-from stickslip.studies.study import StudyWithDataset, TextProgress, telling, uninterrupted
+from stickslip.study import StudyWithDataset, TextProgress, telling, uninterrupted
 from stickslip.trajectory.slip_events import share_sticking
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from stickslip.problem.problem import Problem
 from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.source import read_source
 from stickslip.studies.find import from_rest as runs_from_rest
-from stickslip.studies.study import TextProgress, telling
+from stickslip.study import TextProgress, telling
 
 __all__ = ["catalogue_statistics", "critical_value", "predictability", "steady"]
 

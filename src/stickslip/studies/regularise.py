@@ -30,8 +30,8 @@ from stickslip.run.simulate import simulate
 from stickslip.scenarios.source import read_duration_and_problem
 from stickslip.solution.solution import Solution
 from stickslip.studies.regularisations import SlipDifference, check_massless, difference, kind_of, passage, regularised
-from stickslip.studies.study import MAX_PIECES, RunsCompared, StudyWithDataset, TextProgress, telling, uninterrupted
 from stickslip.studies.verdict import Errors, Verdict, groups, judge, local_orders, order_of
+from stickslip.study import MAX_PIECES, RunsCompared, StudyWithDataset, TextProgress, telling, uninterrupted
 
 if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario

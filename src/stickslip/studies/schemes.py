@@ -29,8 +29,8 @@ from stickslip.solution.solution import Solution
 from stickslip.studies.judgement import TOLERANCE, Judgement
 from stickslip.studies.scheme_measures import COLUMNS, MeasuredSeries
 from stickslip.studies.scheme_shocks import SHOCK_COLUMNS
-from stickslip.studies.study import Study, TextProgress, telling
 from stickslip.studies.verdict import NONE, UNTOLD, RulePaths, exact_runs
+from stickslip.study import Study, TextProgress, telling
 
 if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario

@@ -21,7 +21,7 @@ from stickslip.problem.problem import Problem
 from stickslip.run.simulate import simulate
 from stickslip.schemes.contract import Series
 from stickslip.solution.solution import Solution
-from stickslip.studies.study import TextProgress, uninterrupted
+from stickslip.study import TextProgress, uninterrupted
 
 CLEARLY = 0.25
 """A run is clearly nearer to a rule than to any other if its error is below this share of the distance to the nearest other."""

@@ -93,8 +93,8 @@ def _behind(record: Path, begin: str | None, end: str | None, sensor: str, probl
     """Return the record that is drawn behind all runs. Raises InputError."""
     from stickslip.explorer.model.answer import Backdrop
     from stickslip.foundation.quantities import Quantity
+    from stickslip.inference.record.record import Record
     from stickslip.scenarios.entries import typed_number
-    from stickslip.studies.inference.record import Record
 
     time = Quantity("s", "time of the record")
     ends = {"begin": begin, "end": end}

@@ -12,8 +12,8 @@ from stickslip.cli.output.files import FigureLook, Target, announce, check_folde
 from stickslip.foundation.errors import InputError
 
 if TYPE_CHECKING:
+    from stickslip.inference.inference import Inference
     from stickslip.scenarios.scenario import Scenario
-    from stickslip.studies.inference.inference import Inference
 
 FREE = 'The numbers to find, with commas: "a,b,body.stiffness".'
 BY = "What is fitted: samples, or features of slip events."
@@ -141,8 +141,8 @@ def infer(
 
 def _inferred(scenario: Any, data: list[str], free: str, options: dict[str, Any]) -> Inference:
     from stickslip.cli.output.studies import as_options
+    from stickslip.inference.infer import infer as study
     from stickslip.run.progress import progress_line
-    from stickslip.studies.inference.infer import infer as study
 
     with progress_line(f"{scenario.name}:") as report:
         try:
@@ -154,7 +154,7 @@ def _inferred(scenario: Any, data: list[str], free: str, options: dict[str, Any]
 def _free_of(name: str, scenario: Scenario, free: str) -> str:
     """Return those of the free numbers that another scenario has. Raises InputError if it has none."""
     from stickslip.foundation.errors import full_name
-    from stickslip.studies.inference.free import known_numbers
+    from stickslip.inference.fit.free import known_numbers
 
     known, found = known_numbers(scenario.problem, {}), []
     for one in free.split(","):

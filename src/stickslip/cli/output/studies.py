@@ -15,11 +15,11 @@ from stickslip.studies.regularisations import kind_of
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from stickslip.inference.inference import Inference
     from stickslip.scenarios.scenario import Scenario
     from stickslip.studies.analogy import Analogy
     from stickslip.studies.compare import Comparison
     from stickslip.studies.ensemble import Ensemble
-    from stickslip.studies.inference.inference import Inference
     from stickslip.studies.regularise import Regularisation
     from stickslip.studies.schemes import Schemes
 
@@ -150,7 +150,7 @@ def as_options(text: str) -> str:
 
 def show_ranking(*found: Inference) -> None:
     """Print a table of laws, the best prediction first."""
-    from stickslip.studies.inference.infer import ranking
+    from stickslip.inference.inference import ranking
 
     screen = console()
     say(screen, "\nerrors in units of the noise: of the part that was fitted, and of the part that was left out\n")

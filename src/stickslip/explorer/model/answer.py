@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from stickslip.explorer.model.words import short
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.inference.fit.model import OF_NO_ZERO, measured
+from stickslip.inference.fit.setup import SENSORS
+from stickslip.inference.record.record import SHEAR, UNITS, Record
+from stickslip.inference.record.resample import resampled
 from stickslip.problem.problem import Problem
 from stickslip.scenarios.scenario import Scenario
 from stickslip.solution.solution import Solution
-from stickslip.studies.inference.model import OF_NO_ZERO, measured
-from stickslip.studies.inference.record import SHEAR, UNITS, Record
-from stickslip.studies.inference.resample import resampled
-from stickslip.studies.inference.setup import SENSORS
 
 CurveName = Literal["law", "steady state", "law at the state of the start"]
 """What the curve of a friction law is, for its legend."""

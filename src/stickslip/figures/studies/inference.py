@@ -24,7 +24,7 @@ from stickslip.figures.style import BLUE, GREY, INK, SKY, VERMILLION, axis_text,
 from stickslip.foundation.place import Place
 
 if TYPE_CHECKING:
-    from stickslip.studies.inference.inference import Inference
+    from stickslip.inference.inference import Inference
 
 MANY, FEW = 200, 50
 """Number of points from which they are drawn small, and of events up to which they are drawn large."""

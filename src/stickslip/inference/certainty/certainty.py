@@ -1,0 +1,285 @@
+"""What a record determines of the free numbers: covariance, intervals, profiles of the likelihood, and words."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.foundation.arrays import Floats
+from stickslip.foundation.determined import UNSEEN as DETERMINED
+from stickslip.foundation.determined import covariance_of, sizes_and_correlation, undetermined
+from stickslip.foundation.show import brief
+from stickslip.inference.certainty.directions import IDLE, better_known, null_directions, told, without
+from stickslip.inference.fit.estimate import Estimate, pieces_of
+from stickslip.inference.fit.free import Free
+from stickslip.inference.fit.memory import WHITE, Unevenness, spread_by, spreads_of, unevenness
+from stickslip.inference.fit.model import FAILED, Model
+from stickslip.inference.fit.search import Tell
+from stickslip.inference.record.noise import cost_of, weights
+
+EXACT = 1e-10
+"""Relative tolerance of the runs from which derivatives at the best fit are taken."""
+UNSEEN = 3e-5
+"""Effect of a combination, as a share of the largest, that a profile does not follow: noise of differences is near 1e-6."""
+TOGETHER = 0.9
+"""Correlation of two numbers from which it is told if their sum, difference, product or ratio is known much better."""
+AT_BOUND = 1e-4
+"""Distance from a bound, in searched numbers, at which a number lies on it."""
+ROUGH = 0.1
+"""Difference of derivatives to one side from those to both, as a share, from which the fit is not smooth."""
+HALF, NORMAL = 0.975, 1.959963984540054
+"""Probability below the upper end of an interval of 95 %, and that end for a normal deviate."""
+FEWEST = 4.0
+"""Least number of independent samples, beyond the free numbers, that are assumed: so few make intervals 1.4 times as wide."""
+GAIN = 0.02
+"""Fall of twice the logarithm of the likelihood below which a place of a profile is found."""
+CHORDS, PLACES = 6, 10
+"""Largest number of steps with one matrix of derivatives, and of places of a profile on one side."""
+
+
+@dataclass(frozen=True)
+class Certainty:
+    """What a record determines of the searched numbers.
+
+    `covariance` is NaN for those that are not determined and 0 for those on a bound. `widths` are their standard uncertainties,
+    infinite where the record does not determine a number, 0 on a bound; `factor` times that is half the width of an interval of 95
+    %. `excess` is the factor by which each is larger than white noise of the same size would make it. `notes` are sentences on what
+    is not determined, `slopes` derivatives of the residuals with respect to the searched numbers, and `uneven` says of each
+    quantity how many times larger residuals are where the run depends most on its numbers.
+    """
+
+    covariance: Floats
+    widths: Floats
+    correlation: Floats
+    on_bound: NDArray[np.bool_]
+    notes: tuple[str, ...]
+    slopes: Floats
+    excess: Floats
+    uneven: Mapping[str, Unevenness] = field(default_factory=dict)
+    factor: float = NORMAL
+
+
+def unknown(found: Estimate) -> Certainty:
+    """Return that nothing is known of how sure the numbers are, as after Ctrl-C."""
+    count = len(found.searched)
+    nothing = np.full((count, count), np.nan)
+    no = np.zeros(count, bool)
+    return Certainty(nothing, np.full(count, np.inf), nothing, no, (), np.zeros((0, count)), np.ones(count))
+
+
+def certainty_of(found: Estimate) -> Certainty:
+    """Return what a record determines at a best fit, from the derivatives there and from what is left of the record.
+
+    Uncertainties are those that noise with the memory found gives to an estimate of least squares. If the residuals themselves say
+    more, as where a model that is a little wrong leaves most where it counts most, those count (a sandwich covariance).
+    """
+    x = found.searched
+    model = found.model.with_(rtol=min(EXACT, found.model.rtol)).fine(x)
+    slopes, smooth_notes = _slopes(model, x)
+    rest = model.residual(x)
+    count = np.sqrt(weights(rest, found.loss))
+    rest, slopes = rest * count, slopes * count[:, None]
+    low, high = model.limits
+    idle = np.linalg.norm(slopes, axis=0) < IDLE
+    on_bound = ~idle & ((x - low < AT_BOUND) | (high - x < AT_BOUND))
+    inner = np.flatnonzero(~on_bound & ~idle)
+    covariance, excess, uneven = np.zeros((len(x), len(x))), np.ones(len(x)), dict[str, Unevenness]()
+    moves = null_directions(model, x, slopes[:, inner], inner) if len(inner) else np.zeros((0, 0))
+    if len(inner):
+        seen = without(slopes[:, inner], moves)
+        plain = covariance_of(seen, 1.0)[0]
+        known = inner[np.isfinite(np.diag(plain))]
+        covariance[np.ix_(inner, inner)] = np.nan
+        covariance[np.ix_(known, known)], uneven = _covariance(model, rest, slopes[:, known], model.variance(x))
+        excess[known] = np.sqrt(np.diag(covariance)[known] / np.diag(plain)[np.isfinite(np.diag(plain))])
+    covariance[idle] = covariance[:, idle] = np.nan
+    covariance[on_bound] = covariance[:, on_bound] = 0.0
+    widths, correlation = sizes_and_correlation(covariance)
+    notes = [f"{model.free[i].label} has no influence on what is fitted: fix it" for i in np.flatnonzero(idle)]
+    values = model.values(x)
+    notes += [_bound_note(model.free[i], values[i], at_low=bool(x[i] - low[i] < AT_BOUND)) for i in np.flatnonzero(on_bound)]
+    notes += _words(model, np.array(values), (slopes, moves, covariance, correlation), inner, NORMAL)
+    notes += [text for i, text in smooth_notes.items() if i in inner]
+    return Certainty(covariance, widths, correlation, on_bound, tuple(notes), slopes, excess, uneven)
+
+
+def _covariance(model: Model, residual: Floats, slopes: Floats, variance: float) -> tuple[Floats, dict[str, Unevenness]]:
+    """Return the covariance of some searched numbers from what is left, and how uneven the residuals of each quantity are.
+
+    `slopes` are the derivatives of the residuals with respect to these numbers, all of which the record determines, and `variance`
+    is a factor on it, beside the size of the noise.
+    """
+    from scipy.stats import t as student
+
+    uneven = dict[str, Unevenness]()
+    sizes = np.linalg.norm(slopes, axis=0)
+    influence = (np.linalg.pinv(slopes / sizes, rcond=DETERMINED) / sizes[:, None]).T
+    factor = math.sqrt(variance) * float(student.ppf(HALF, max(model.independent - len(sizes), FEWEST))) / NORMAL
+    if model.of_means:
+        return np.asarray(factor**2 * influence.T @ influence), uneven
+    before = influence[model.samples :]
+    total, more = model.inflation * before.T @ before, np.zeros(len(sizes))
+    for name, rest, rows, weight, blocks in pieces_of(model, residual, np.hstack([influence, slopes])):
+        rest, shares, by = rest / weight, rows[:, : len(sizes)] * weight[:, None], rows[:, len(sizes) :] / weight[:, None]
+        memory = model.memory.get(name, WHITE)
+        noise, uneven[name] = spread_by(shares, memory, blocks), unevenness(rest, by, memory, blocks)
+        total = total + noise
+        if memory.time > 0.0 or uneven[name].found > 1.0:
+            seen = np.max([np.diag(one) for one in spreads_of(shares, rest, blocks)], axis=0)
+            more += np.maximum(seen - np.diag(noise), 0.0)
+    wider = factor * np.sqrt(1.0 + more / np.diag(total))
+    return np.asarray(total * np.outer(wider, wider)), uneven
+
+
+def _words(
+    model: Model, values: Floats, found: tuple[Floats, Floats, Floats, Floats], inner: NDArray[np.intp], factor: float
+) -> list[str]:
+    slopes, moves, covariance, correlation = found
+    slopes, correlation = slopes[:, inner], correlation[np.ix_(inner, inner)].copy()
+    labels, free = [model.free[i].label for i in inner], [model.free[i] for i in inner]
+    declared = list(model.problem.parameters)
+    order = sorted(range(len(inner)), key=lambda i: declared.index(free[i].name) if free[i].name in declared else len(declared))
+    words, open_sets = [], []
+    for numbers, text in told([labels[i] for i in order], moves[order], slopes[:, order], factor):
+        numbers = [order[i] for i in numbers]
+        if text and all(free[i].log for i in numbers):
+            words.append(text)
+        else:
+            open_sets.append([labels[i] for i in sorted(numbers)])
+    for i, j in np.argwhere(np.abs(np.triu(correlation, 1)) > TOGETHER).tolist():
+        alike = free[i].declared.unit == free[j].declared.unit and free[i].name.partition(".")[0] == free[j].name.partition(".")[0]
+        chosen = inner[[i, j]]
+        text = better_known(values[chosen], covariance[np.ix_(chosen, chosen)], (labels[i], labels[j]), alike=alike)
+        if text and free[i].log and free[j].log:
+            words.append(f"the record determines {text} ({labels[i]} and {labels[j]} have the correlation {correlation[i, j]:.4f})")
+            correlation[i, j] = 0.0
+    sizes = {one.label: one.width(values[k], math.sqrt(covariance[k, k])) for k, one in zip(inner, free, strict=True)}
+    texts = undetermined(dict(zip(labels, values[inner], strict=True)), sizes, correlation, open_sets)
+    return words + [
+        one.replace("the points do", "the record does").replace("the points determine", "the record determines") for one in texts
+    ]
+
+
+def _bound_note(free: Free, value: float, *, at_low: bool) -> str:
+    end = "lower" if at_low else "upper"
+    why = "its bounds" if free.bounded else "the range that is searched"
+    return f"{free.label} lies on the {end} end of {why}, {brief(value, free.declared.unit)}: no value inside fits better"
+
+
+def _slopes(model: Model, x: Floats) -> tuple[Floats, dict[int, str]]:
+    """Return the derivatives of the residuals, and a sentence for each number with which they do not change smoothly.
+
+    A sample that a jump of the run passes within the step of the differences has no derivative with respect to any number: its row
+    is 0, so that what such samples tell is left out of the curvature, and intervals are rather too wide.
+    """
+    if model.of_means:
+        return model.jacobian(x), {}
+    right, left = model.jacobian(x, sides=(1.0,)), model.jacobian(x, sides=(-1.0,))
+    right, left = np.where(right.any(axis=0), right, left), np.where(left.any(axis=0), left, right)  # a limit leaves one side only
+    size, apart = np.maximum(np.abs(right), np.abs(left)), np.abs(right - left)
+    seen = np.linalg.norm(right + left, axis=0) > 2.0 * IDLE  # what is left of another column is the noise of runs
+    rough = (apart > 0.5 * size) & (size > 1e-3 * np.max(size, axis=0, initial=0.0)) & seen
+    notes = {}
+    for i in range(len(x)):
+        total = float(np.linalg.norm(0.5 * (right[:, i] + left[:, i])))
+        if total > 0.0 and float(np.linalg.norm(apart[:, i])) > ROUGH * total:
+            notes[i] = (
+                f"the run does not change smoothly with {model.free[i].label}, as where a slip event passes a sample; "
+                "such samples are left out of its interval, which is rough: a profile tells more"
+            )
+    return np.where(rough.any(axis=1)[:, None], 0.0, 0.5 * (right + left)), notes
+
+
+@dataclass(frozen=True)
+class Profile:
+    """The likelihood along one number (SI, ascending), with all others fitted anew.
+
+    `rise` is twice the logarithm of the likelihood below that of the best fit, for as many independent samples as there are; `low`
+    and `high` are the ends of the interval of 95 %, infinite or a bound where the rise is never reached.
+    """
+
+    name: str
+    values: Floats
+    rise: Floats
+    low: float
+    high: float
+
+
+def profile_of(found: Estimate, sure: Certainty, column: int, tell: Tell) -> Profile:
+    """Return the profile of the likelihood along one free number."""
+    x, free = found.searched, found.model.free[column]
+    tell(f"profile of {free.label}")
+    least = found.cost(x)
+    width = float(sure.widths[column])
+    places: list[tuple[float, float]] = [(float(x[column]), 0.0)]
+    ends = []
+    for side in (-1.0, 1.0):
+        if not (np.isfinite(width) and width > 0.0):
+            ends.append(math.nan)
+            continue
+        ends.append(_end(found, sure, (column, side, least), places))
+    places.sort()
+    natural = [free.natural(end) if np.isfinite(end) else end for end in ends]
+    at = np.array([free.natural(one) for one, _ in places])
+    return Profile(free.label, at, np.array([rise for _, rise in places]), *natural)
+
+
+def _end(found: Estimate, sure: Certainty, what: tuple[int, float, float], places: list[tuple[float, float]]) -> float:
+    """Return the searched number on one side at which the likelihood has fallen to the end of the interval."""
+    column, side, least = what
+    model, best = found.model, found.searched
+    low, high = (end[column] for end in model.limits)
+    width, excess, wanted = float(sure.widths[column]), float(sure.excess[column]), sure.factor
+    inner, inner_root = 0.0, 0.0
+    outer, outer_root = math.inf, math.inf
+    distance = wanted * width
+    for _ in range(PLACES):
+        target = float(np.clip(best[column] + side * distance, low, high))
+        cost = _least_with(found, sure, column, target)
+        root = math.sqrt(max(cost - least, 0.0)) / excess
+        places.append((target, root**2))
+        reached = abs(target - best[column])
+        if abs(root - wanted) < 0.02 * wanted:
+            return target
+        if root < wanted:
+            if target in (low, high):
+                return target
+            inner, inner_root = reached, root
+        else:
+            outer, outer_root = reached, root
+        if math.isfinite(outer):
+            share = (wanted - inner_root) / (outer_root - inner_root) if outer_root < 1e3 * wanted else 0.5
+            distance = inner + min(max(share, 0.1), 0.9) * (outer - inner)
+        else:
+            distance = reached * min(max(wanted / max(root, 1e-6), 1.2), 3.0)
+    return float(best[column] + side * distance)
+
+
+def _least_with(found: Estimate, sure: Certainty, column: int, target: float) -> float:
+    """Return the least cost with one searched number fixed."""
+    model, best = found.model, found.searched
+    others = np.array([i for i in range(len(best)) if i != column and np.isfinite(sure.widths[i]) and not sure.on_bound[i]], int)
+    covariance, x = sure.covariance, best.copy()
+    x[others] += covariance[others, column] / covariance[column, column] * (target - best[column])
+    low, high = model.limits
+    x = np.clip(x, low, high)
+    x[column] = target
+    slopes, rest = sure.slopes, model.residual(x)
+    cost, renewed = cost_of(rest, found.loss), False
+    for _ in range(CHORDS if len(others) else 0):
+        trial = x.copy()
+        trial[others] -= np.linalg.lstsq(slopes[:, others], rest, rcond=UNSEEN)[0]
+        trial[others] = np.clip(trial[others], low[others], high[others])
+        trial_rest = model.residual(trial)
+        gain = cost - cost_of(trial_rest, found.loss)
+        if gain > 0.0:
+            x, rest, cost = trial, trial_rest, cost - gain
+        if gain <= GAIN:
+            if renewed or gain >= 0.0 or np.all(np.abs(rest) >= FAILED):
+                break
+            slopes, renewed = model.jacobian(x, sides=(1.0,)), True
+    return cost

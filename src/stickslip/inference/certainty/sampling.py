@@ -1,0 +1,147 @@
+"""Draw the free numbers from their posterior distribution, with emcee."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from stickslip.foundation.arrays import Floats
+from stickslip.foundation.errors import InputError
+from stickslip.inference.certainty.certainty import Certainty
+from stickslip.inference.fit.estimate import Estimate
+from stickslip.inference.fit.model import FAILED
+from stickslip.inference.fit.search import Tell
+from stickslip.inference.record.noise import cost_of
+
+MOST_SAMPLES = 1_000_000
+"""Largest number of posterior samples."""
+WALKERS = 4
+"""Number of walkers for each free number; there are 16 at least."""
+FORGET = 0.3
+"""Share of the steps, beyond those that are kept, that let the walkers forget where they began."""
+FEW_TIMES = 20.0
+"""Number of correlation times of the walkers below which samples are too few."""
+
+
+@dataclass(frozen=True, eq=False)
+class PosteriorWalk:
+    """The walk through the posterior distribution so far: what it kept, and from where it can go on."""
+
+    chain: Floats
+    """Places of the walkers after each step, shape (steps, walkers, free numbers), without the steps that they forget."""
+    state: Any
+    """Places, probabilities and random state after the last step, as emcee has them."""
+    asked: int
+    """Number of samples that were asked for."""
+    stopped: bool = False
+    """True if Ctrl-C ended it."""
+
+    @property
+    def drawn(self) -> Floats:
+        """The samples, shape (number of samples, free numbers)."""
+        return self.chain.reshape(-1, self.chain.shape[2])[: self.asked]
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Sentences on how good the samples are."""
+        from emcee.autocorr import function_1d
+
+        worst = max(_memory(self.chain[:, :, i], function_1d) for i in range(self.chain.shape[2]))
+        drawn = len(self.drawn)
+        note = f"{drawn} samples, about {drawn / max(worst, 1.0):.0f} of them independent"
+        if len(self.chain) < FEW_TIMES * worst:
+            note += "; the walkers need longer to forget each other: ask for more samples"
+        stop = f"sampling was stopped: {drawn} of {self.asked} samples were drawn; `more` goes on"
+        return (stop, note) if self.stopped else (note,)
+
+
+def sample(
+    found: Estimate, sure: Certainty, count: int, tell: Tell, *, seed: int = 0, before: PosteriorWalk | None = None
+) -> PosteriorWalk:
+    """Draw `count` samples of the searched numbers, or go on with the walk `before` until there are so many in all.
+
+    Numbers on a bound may leave it, and those that are not determined are drawn within their limits. Ctrl-C ends the walk with the
+    samples of the steps that are done; there are fewer then. Raises InputError if emcee is not installed, and KeyboardInterrupt if
+    Ctrl-C comes before the walkers have forgotten where they began.
+    """
+    try:
+        import emcee
+    except ImportError:
+        raise InputError("infer: samples need emcee: pip install 'stickslip[infer]'") from None
+    dimensions = len(found.searched)
+    walkers = max(16, WALKERS * dimensions)
+    walkers += walkers % 2
+    steps = -(-count // walkers)
+    forget = max(20, math.ceil(FORGET * steps)) if before is None else 0
+    posterior = _Posterior(found, float(np.max(sure.excess**2)))
+    sampler: Any = emcee.EnsembleSampler(walkers, dimensions, posterior)
+    if before is None:
+        begin, kept = _begun(found, sure, walkers, np.random.default_rng(seed)), []
+        sampler.random_state = np.random.RandomState(seed).get_state()
+    else:
+        begin, kept = before.state, [before.chain]
+    left, done, state = forget + steps - sum(map(len, kept)), 0, begin
+    new = np.empty((max(left, 0), walkers, dimensions))
+    try:
+        for moved in sampler.sample(begin, iterations=left) if left > 0 else ():
+            if posterior.stopped:  # in the middle of this step
+                break
+            state, new[done] = emcee.State(moved, copy=True), moved.coords
+            if done % 10 == 0:
+                tell(f"sampling: step {done + 1} of {left}, {walkers} runs each")
+            done += 1
+    except KeyboardInterrupt:  # between two runs
+        posterior.stopped = True
+    if posterior.stopped and before is None and done <= forget:
+        raise KeyboardInterrupt
+    return PosteriorWalk(np.concatenate([*kept, new[forget:done]]), state, count, posterior.stopped)
+
+
+class _Posterior:
+    """The logarithm of the posterior density; after Ctrl-C it is `stopped` and runs nothing more.
+
+    emcee would print an exception as a fault of this function. What is left of a record is not independent: its likelihood counts
+    as much less as the variances of the numbers are larger for it, by `tempered`.
+    """
+
+    def __init__(self, found: Estimate, tempered: float) -> None:
+        self._found, self._tempered, self.stopped = found, tempered, False
+
+    def __call__(self, x: Floats) -> float:
+        model, (low, high) = self._found.model, self._found.model.limits
+        try:
+            if self.stopped or np.any(x < low) or np.any(x > high):
+                return -math.inf
+            rest = model.residual(np.asarray(x, float))
+            return -math.inf if np.all(np.abs(rest) >= FAILED) else -0.5 * cost_of(rest, self._found.loss) / self._tempered
+        except KeyboardInterrupt:
+            self.stopped = True
+            return -math.inf
+
+
+def _memory(chain: Floats, correlation: Callable[[Floats], Floats]) -> float:
+    """Return the steps after which the walkers, shape (steps, walkers), are independent (Sokal's window, as in emcee)."""
+    mean = np.mean([correlation(chain[:, k]) for k in range(chain.shape[1])], axis=0)
+    times = 2.0 * np.cumsum(mean) - 1.0
+    inside = np.arange(len(times)) >= 5.0 * times
+    return max(1.0, float(times[int(np.argmax(inside))] if inside.any() else times[-1]))
+
+
+def _begun(found: Estimate, sure: Certainty, walkers: int, random: np.random.Generator) -> Floats:
+    """Return places of walkers, drawn from the normal distribution that the curvature gives, inside the limits."""
+    low, high = found.model.limits
+    width = np.where(np.isfinite(sure.widths), sure.widths, 0.1)
+    covariance = np.where(np.isfinite(sure.covariance), sure.covariance, 0.0)
+    known = np.sqrt(np.maximum(np.diag(covariance), 0.0)) > 0.0
+    drawn = found.searched + np.zeros((walkers, len(width)))
+    if known.any():
+        factor = np.linalg.cholesky(covariance[np.ix_(known, known)] + np.diag(1e-12 * width[known] ** 2))
+        drawn[:, known] += random.standard_normal((walkers, int(known.sum()))) @ factor.T
+    loose = ~known
+    drawn[:, loose] += np.maximum(width[loose], 1e-3) * np.abs(random.standard_normal((walkers, int(loose.sum()))))
+    room = 1e-9 * np.maximum(1.0, np.abs(found.searched))
+    return np.clip(drawn, low + room, high - room)

@@ -1,0 +1,312 @@
+"""Fit a record of many slip events by the means of their features, in place of sample by sample."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar, NamedTuple
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from stickslip.foundation.arrays import Floats
+from stickslip.foundation.errors import InputError, nearest
+from stickslip.inference.fit.memory import ResidualBlock
+from stickslip.inference.fit.model import FAILED, JUMPING, LARGEST, Model, measured, unit_of
+from stickslip.inference.fit.part import Part
+from stickslip.inference.record.features import FEATURES, LEVELS, Samples, features_in
+from stickslip.inference.record.record import Record
+from stickslip.solution.solution import Solution
+
+CYCLES = 6.0
+"""Length of a run in times between events of the record; its first events are passed over."""
+SETTLING = 2
+"""Number of events of a run after which its features count."""
+SPARE = 2
+"""Number of events beyond the number of features, of which the scatter of features and their correlation are estimated."""
+COARSE, FINE = 1000, 200
+"""Numbers of times at which a run is looked at as a whole, and between two times, besides the ends of its pieces."""
+COARSER = 1e-2
+"""Step of differences, in searched numbers: waves on their way shift features of a slab by a share of 1e-4 or so."""
+FEWEST = 4.0
+"""Number of samples in a fall from which its duration and peak rate can be told."""
+MISSED, ALLOWED = 4.0, 0.1
+"""Distance of a run from the mean of a feature that counts as a miss: in standard errors, with which a share of the scatter counts
+together, since of a thousand events the mean is known better than any law holds."""
+GAP = 0.1
+"""Length of a gap in a record, in the usual time between events, in which one may be hidden."""
+MEASURED = 3e-5
+"""Error with which features of a run and of a record without noise agree, as a share of their size."""
+
+
+class Means(NamedTuple):
+    """Means of features of a part (SI), the Cholesky factor of their covariance, and the number of independent parts behind it."""
+
+    values: Floats
+    root: Floats
+    degrees: int
+
+    @property
+    def errors(self) -> Floats:
+        """The standard errors of the means (SI)."""
+        return np.asarray(np.linalg.norm(self.root, axis=1))
+
+
+@dataclass(frozen=True, eq=False)
+class FeaturePart(Part):
+    """Features of the events of a part, at the times of the events; `whole` is the part itself, with all samples."""
+
+    whole: Part | None = None
+
+    @property
+    def samples(self) -> Part:
+        """The part itself."""
+        assert self.whole is not None
+        return self.whole
+
+    @cached_property
+    def duration(self) -> float:
+        """The length of a run (s): enough for several events."""
+        recurrence = self.record.measured["recurrence"]
+        begins = float(self.record.time[0] - self.samples.record.time[0])
+        return min(self.samples.duration, max(begins, 0.0) + CYCLES * float(np.median(recurrence)))
+
+    @property
+    def begins(self) -> float:
+        """The time of the record at which the run begins (s)."""
+        return self.samples.begins
+
+    def first_load(self, normal: float) -> tuple[float, float]:
+        """Return the load at the first sample and its standard error, as the part itself does."""
+        return self.samples.first_load(normal)
+
+    @cached_property
+    def means(self) -> Means:
+        """The means of the features that are fitted."""
+        return means_of(np.array([self.record.measured[name] for name in self.observed]))
+
+
+def means_of(features: Floats) -> Means:
+    """Return the means of features, shape (features, events), and the covariance of these means.
+
+    It holds if neighbouring events depend on each other. The covariance is the power of the features at low frequencies, in the
+    first cosines of a transform over all events (Lazarus, Lewis, Stock & Watson 2018, J. Bus. Econ. Stat. 36, 541). Their number
+    grows as the events to the power 2/3: the more events, the longer a memory is allowed for, as that of a static friction which
+    decides about the time before its event and the time after it.
+    """
+    from scipy.fft import dct
+
+    count, events = features.shape
+    means = features.mean(axis=1)
+    used = min(events - 1, max(count + 1, math.ceil(events ** (2.0 / 3.0))))
+    waves = dct(features - means[:, None], norm="ortho", axis=1)[:, 1 : used + 1]
+    covariance = waves @ waves.T / (used * events)
+    sizes = np.sqrt(np.diag(covariance) + (MEASURED * means) ** 2 + 1e-300)
+    correlation = covariance / np.outer(sizes, sizes)
+    least = 1.0 / used  # what is left of one feature, once the others are known, is not known better than this
+    correlation *= 1.0 - least
+    np.fill_diagonal(correlation, 1.0)
+    return Means(means, sizes[:, None] * np.linalg.cholesky(correlation), used)
+
+
+def by_features(parts: Sequence[Part], observe: Sequence[str] | str | None) -> tuple[list[Part], list[str]]:
+    """Return the features of parts, and sentences on them. Raises InputError if there are too few events."""
+    wanted = [one.strip() for one in observe.split(",")] if isinstance(observe, str) else observe
+    found, notes = list[Part](), list[str]()
+    for part in parts:
+        record, said = events_of(part)
+        names = _chosen(wanted, record)
+        if len(record) < len(names) + SPARE:
+            raise InputError(
+                f"{record.name}: {len(record)} whole slip events are too few for the scatter of {len(names)} features: "
+                "fit event by event, with parts='rests'"
+            )
+        found.append(FeaturePart(record, part.loading, tuple(names), part.sensor, part.start, part))
+        notes += [*said, f"{len(record)} slip events of {record.name}, each with its {', '.join(names)}"]
+    return found, notes
+
+
+def _chosen(wanted: Sequence[str] | None, record: Record) -> list[str]:
+    """Return the full names of features; by default all but the drop, the difference of two of them. Raises InputError."""
+    levels = dict(zip(LEVELS, record.measured, strict=False))
+    if wanted is None:
+        return [name for name in record.measured if name != levels["drop"]]
+    names = list(dict.fromkeys(levels.get(name, name) for name in wanted))
+    for name in names:
+        if name not in record.measured:
+            raise InputError(f"infer: observe: events have no {ascii(name)[:40]}; {nearest(str(name), record.measured)}")
+    if set(levels.values()) <= set(names):
+        raise InputError(f"infer: observe: {levels['drop']} is the difference of peak and rest: choose two of the three")
+    return names
+
+
+def events_of(part: Part) -> tuple[Record, list[str]]:
+    """Return the features of the events of a record at the times of these, and sentences on what was left out."""
+    record, shear = part.record, part.record.shear
+    if shear is None:
+        raise InputError(f"{record.name}: by='features' needs shear, whose drops are the slip events")
+    known = np.isfinite(record.measured[shear])
+    time = record.clock[known]
+    values = {name: one[known] for name, one in record.measured.items() if name in (shear, "slip", "slip_rate")}
+
+    def between(begin: float, end: float) -> Samples:
+        inside = slice(*np.searchsorted(time, [begin, end]).tolist())
+        return Samples(time[inside], {name: one[inside] for name, one in values.items()})
+
+    found = features_in(Samples(time, values), between, shear)
+    at = found.pop("time", np.zeros(0))
+    if not len(at):
+        raise InputError(
+            f"{record.name}: no two drops of {shear} stand out of its noise: there are no events with features; fit samples"
+        )
+    notes = []
+    lasting = found["duration"][np.isfinite(found["duration"])]
+    if not len(lasting) or float(np.median(lasting)) < FEWEST * float(np.median(np.diff(time))):
+        found = {name: one for name, one in found.items() if name not in ("duration", "peak_rate")}
+        notes.append("a fall lasts too few samples for its duration and its peak rate: they are not used")
+    whole = np.all([np.isfinite(one) for one in found.values()], axis=0)
+    hidden = _with_gap(time, at, found["recurrence"])
+    if hidden.any():
+        notes.append(f"slip events with a gap in the record before them are left out: {int(hidden.sum())}")
+    whole &= ~hidden
+    names = (*(f"{shear}_{level}" for level in LEVELS), *FEATURES)
+    found = {name: found[name][whole] for name in names if name in found}
+    return Record(record.time[0] + at[whole], found, name=record.name, notes=record.notes), notes
+
+
+def _with_gap(time: Floats, at: Floats, recurrence: Floats) -> NDArray[np.bool_]:
+    """Return True for events before which samples are missing for so long that another event may be hidden there."""
+    steps = np.append(np.diff(time), 0.0)
+    before, this = np.searchsorted(time, at - recurrence), np.searchsorted(time, at)
+    longest = [float(np.max(steps[max(first, 0) : last + 1], initial=0.0)) for first, last in zip(before - 1, this, strict=True)]
+    return np.array(longest) > max(GAP * float(np.median(recurrence)), 2.0 * float(np.median(steps)))
+
+
+@dataclass
+class FeatureModel(Model):
+    """Distances of the features of a run, which repeat, from the means of those of the record.
+
+    There is one residual for each feature of a part. They are in standard errors of the means, and what features have in common is
+    taken away.
+    """
+
+    of_means: ClassVar[bool] = True
+
+    def curves(self, run: Solution, searched: Floats, part: int, every: int = 1) -> dict[str, Floats]:
+        """Return the mean features of a run at each event, NaN if it has no events."""
+        found, count = self._found(run, part), len(self.parts[part].record.clock[::every])
+        return {name: np.full(count, value) for name, value in found.items()}
+
+    def _found(self, run: Solution, part: int) -> dict[str, float]:
+        this = self.part_of(part)
+        found = features_of_run(run, this)
+        return {name: found.get(name, math.nan) for name in this.observed}
+
+    def part_of(self, part: int) -> FeaturePart:
+        """Return a part, with its features."""
+        this = self.parts[part]
+        assert isinstance(this, FeaturePart)
+        return this
+
+    def _new_residual(self, searched: Floats, part: int) -> Floats:
+        run, means = self.solve(searched, part), self.part_of(part).means
+        found = np.full(len(means.values), math.nan) if run is None else np.array(list(self._found(run, part).values()))
+        if not np.isfinite(found).all():
+            return np.full(len(found), FAILED)
+        return np.asarray(np.clip(np.linalg.solve(means.root, found - means.values), -LARGEST, LARGEST))
+
+    def blocks(self, part: int) -> list[tuple[str, ResidualBlock]]:
+        """Return the residual of each feature."""
+        return [(name, ResidualBlock(slice(i, i + 1), np.zeros(1))) for i, name in enumerate(self.parts[part].observed)]
+
+    @property
+    def samples(self) -> int:
+        """The number of features of all events."""
+        return sum(len(part.observed) * len(part.record) for part in self.parts)
+
+    @property
+    def counted(self) -> str:
+        """What is fitted, as text."""
+        each = dict.fromkeys(name for part in self.parts for name in part.observed)
+        return f"{len(each)} features of {sum(len(part.record) for part in self.parts)} slip events"
+
+    @property
+    def independent(self) -> float:
+        """The number of independent samples: the scatter of features is known from so many."""
+        spare = max(self._spare, 0)
+        return float(sum(self.part_of(i).means.degrees for i in range(len(self.parts))) - spare + len(self.free))
+
+    @property
+    def _spare(self) -> int:
+        """The number of features beyond the number of free numbers."""
+        return sum(len(part.observed) for part in self.parts) - len(self.free)
+
+    def variance(self, searched: Floats) -> float:
+        """Return the factor on the covariance: what features that are more than the numbers leave, if that is more than scatter."""
+        if self._spare < 1:
+            return 1.0
+        rest = np.concatenate([self.part_residual(searched, i) for i in range(len(self.parts))])
+        return max(1.0, float(rest @ rest) / self._spare)
+
+    def fine(self, searched: Floats) -> Model:
+        """Return the model with steps of differences in which waves on their way do not show."""
+        return self.with_(step=COARSER)
+
+    def thinned(self, most: int) -> Model:
+        """Return the same model: events are few."""
+        return self.with_(step=COARSER)
+
+    def compared(self, searched: Floats) -> pd.DataFrame:
+        """Return the features of a run beside their means in the record, one row for each feature of a part.
+
+        Columns: part, feature, mean and its standard error, run (NaN without events), unit, and missed: True if they are farther
+        apart than their errors, and a share of the scatter, let expect.
+        """
+        rows = []
+        for i, part in enumerate(self.parts):
+            run, means = self.solve(searched, i), self.part_of(i).means
+            found = {} if run is None else self._found(run, i)
+            for name, mean, error in zip(part.observed, means.values.tolist(), means.errors.tolist(), strict=True):
+                value, scatter = found.get(name, math.nan), float(np.std(part.record.measured[name]))
+                missed = not abs(value - mean) <= MISSED * math.hypot(error, ALLOWED * scatter)
+                rows.append((i, name, mean, error, value, unit_of(name), missed))
+        return pd.DataFrame(rows, columns=["part", "feature", "mean", "error", "run", "unit", "missed"])
+
+
+def scatter_of(parts: Sequence[Part]) -> dict[str, float]:
+    """Return the standard deviation of each feature from event to event (SI)."""
+    found = {}
+    for name in dict.fromkeys(name for part in parts for name in part.observed):
+        of = [part.record.measured[name] for part in parts if name in part.observed]
+        least = MEASURED * max(float(np.max(np.abs(values))) for values in of)
+        found[name] = max(math.sqrt(float(np.mean([np.var(values, ddof=1) for values in of]))), least)
+    return found
+
+
+def features_of_run(run: Solution, part: FeaturePart) -> dict[str, float]:
+    """Return the mean features of the events of a run, but the first ones if there are enough; empty if it has fewer than two."""
+    shear = part.samples.record.shear
+    assert shear is not None
+    names = [shear, *(name for name, of in (("slip", "event_slip"), ("slip_rate", "peak_rate")) if of in part.observed)]
+
+    def between(begin: float, end: float, points: int = FINE) -> Samples:
+        breaks = run.breaks[(run.breaks > begin) & (run.breaks < end)]
+        time = np.concatenate([np.linspace(max(begin, 0.0), min(end, run.history.span[1]), points), breaks, breaks])
+        left = np.arange(len(time)) >= points + len(breaks)
+        values = {}
+        for name in names:
+            value = measured(run, name, part.sensor, time)
+            if name in JUMPING and len(breaks):
+                value[left] = measured(run, name, part.sensor, breaks, "left")
+            values[name] = value
+        order = np.lexsort((~left, time))
+        return Samples(time[order], {name: value[order] for name, value in values.items()})
+
+    found = features_in(between(0.0, run.history.span[1], COARSE), between, shear)
+    if not found:
+        return {}
+    settled = min(SETTLING, len(found["time"]) - 1)
+    return {name: float(np.mean(values[settled:])) for name, values in found.items() if name != "time"}

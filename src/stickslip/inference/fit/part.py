@@ -1,0 +1,210 @@
+"""A part of a record with a run of its own: how it is loaded and begins, its end that is left out, and other numbers in it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from stickslip.foundation.arrays import Floats
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.quantities import Quantity
+from stickslip.inference.record.noise import first_value, noise_of
+from stickslip.inference.record.record import Record
+from stickslip.loading import LoadingHistory, PiecewiseLinear, Steps
+from stickslip.problem.parameters import put_many
+from stickslip.problem.problem import Problem
+
+SMALLEST_NOISE = 1e-9
+"""Smallest noise, as a share of the range of a quantity: a record without noise has rounding."""
+
+
+CHANGES = 0.1
+"""Share of the range of the pull rate by which it changes at least where a change counts."""
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """A part of a record with its own run.
+
+    `loading` is the pull rate since the first sample, or None for the problem's own; `observed` are the quantities that are fitted.
+    `sensor` is "contact" if shear is measured there, "spring" for a load cell behind the spring of a block. The run begins
+    ("start") in "steady" sliding, as the "record" does, or as the "problem" says.
+    """
+
+    record: Record
+    loading: LoadingHistory | float | None
+    observed: tuple[str, ...]
+    sensor: str = "contact"
+    start: str = "problem"
+
+    @property
+    def duration(self) -> float:
+        """The length of the run (s)."""
+        return float(self.record.clock[-1])
+
+    @property
+    def begins(self) -> float:
+        """The time of the record at which the run begins (s)."""
+        return float(self.record.time[0])
+
+    @cached_property
+    def first(self) -> dict[str, tuple[float, float]]:
+        """The value of each measured quantity at the first sample, with its standard error (SI)."""
+        found = {}
+        for name, values in self.record.measured.items():
+            found[name] = first_value(self.record.clock, values, noise_of(values))
+        return found
+
+    def changes(self, problem: Problem) -> Floats:
+        """Return the times (s) at which the pull rate of a run begins to change by a tenth of its range or more."""
+        pull = problem.pull_rate if self.loading is None else self.loading
+        if not isinstance(pull, LoadingHistory):
+            return np.zeros(0)
+        segments = [one for one in pull.segments if one.start < self.duration]
+        ends = [*(one.start for one in segments[1:]), self.duration]
+        after = np.array([one.at(end) for one, end in zip(segments, ends, strict=True)])
+        jumped = np.array([one.value for one in segments]) - np.append(segments[0].value, after[:-1])
+        changed = np.abs(jumped) + np.abs(after - [one.value for one in segments])
+        least = CHANGES * float(np.ptp(np.append(after, [one.value for one in segments])))
+        return np.array([one.start for one, by in zip(segments, changed, strict=True) if by > least])
+
+    def weights(self, problem: Problem, exponent: float) -> Floats:
+        """Return the weight of each sample: (n/j)**exponent for the j-th of n samples after each change of the pull rate.
+
+        The mean squared weight is 1. Raises InputError if the pull rate does not change.
+        """
+        changes, clock = self.changes(problem), self.record.clock
+        if not len(changes):
+            raise InputError(f"{self.record.name}: the pull rate does not change: a weight of samples after a change needs one")
+        first = np.searchsorted(clock, changes)
+        since = np.arange(len(clock)) - first[np.maximum(np.searchsorted(changes, clock, side="right") - 1, 0)]
+        weight = np.where(since < 0, 1.0, (len(clock) / (np.maximum(since, 0) + 1.0)) ** exponent)
+        return np.asarray(weight * math.sqrt(len(weight) / float(weight @ weight)))
+
+    def begun(self, problem: Problem) -> Problem:
+        """Return a problem under the loading of this part, with the start that its data give. Raises InputError."""
+        rates: dict[str, Any] = {} if self.loading is None else {"pull_rate": self.loading}
+        if self.start == "steady":
+            return steady(problem, rates)
+        if self.start == "problem":
+            return replace(problem, **rates)
+        load, _ = self.first_load(problem.normal)
+        begun: dict[str, Any] = {"initial_load": load, "initial_excess": None}
+        if problem.friction.states and not problem.friction.sticks and problem.initial_state is None:
+            begun["initial_state"] = "steady"
+        return replace(problem, **rates, **begun)
+
+    def first_load(self, normal: float) -> tuple[float, float]:
+        """Return the load at the first sample and its standard error (Pa or N), for a normal load (Pa or N)."""
+        name = self.record.shear
+        if name is None:
+            raise InputError(
+                f"{self.record.name}: no shear is measured, so that the load at the start is not known: start='problem'"
+            )
+        value, error = self.first[name]
+        return (value * normal, error * normal) if name == "friction" else (value, error)
+
+
+def steady(problem: Problem, rates: Mapping[str, Any]) -> Problem:
+    """Return a problem that begins in steady sliding at its first pull rate. Raises InputError if it cannot."""
+    law, body = problem.friction, problem.body
+    none: dict[str, Any] = dict.fromkeys(
+        ("initial_load", "initial_excess", "initial_state", "initial_second_state", "initial_rate")
+    )
+    if not law.sticks and body.has_inertia:
+        return replace(problem, **rates, **none)
+    pull = rates.get("pull_rate", problem.pull_rate)
+    rate = pull.first if isinstance(pull, LoadingHistory) else pull
+    if not law.states or law.sticks or rate == 0.0 or not hasattr(law, "steady_coefficient"):
+        raise InputError(f"infer: {law.kind} does not slide steadily at the first pull rate of {rate:g} m/s: start='record'")
+    load = problem.normal * float(law.steady_coefficient(abs(rate))) + body.damping * abs(rate)
+    none |= {"initial_load": math.copysign(load, rate), "initial_state": "steady"}
+    return replace(problem, **rates, **none)
+
+
+SETTLED, POINTS = 1e-4, 32
+"""Share of a change of rate that is left when an exponential approach ends, and number of points on the way."""
+
+
+def approached(pull: LoadingHistory | float, time: float) -> LoadingHistory | float:
+    """Return a pull rate whose steps are approached as exp(-t/time): the servo of a machine has such a time (s).
+
+    The rate is linear between points that are closest where it changes fastest. Raises InputError if it is not one of steps.
+    """
+    if not isinstance(pull, LoadingHistory):
+        return pull
+    if not isinstance(pull, Steps):
+        raise InputError(f"infer: record.servo needs a pull rate that changes in steps, got a history of kind {pull.kind}")
+    left = np.linspace(1.0, math.sqrt(SETTLED), POINTS) ** 2
+    after = -np.log(left)
+    left[-1] = 0.0
+    after *= 1.0 / float(np.sum(0.5 * (left[1:] + left[:-1]) * np.diff(after)))  # the load point comes late by just that time
+    times, rates, rate = [0.0], [pull.values[0]], pull.values[0]
+    for at, wanted, end in zip(pull.times[1:], pull.values[1:], (*pull.times[2:], math.inf), strict=True):
+        inside = at + time * after < end
+        times += (at + time * after[inside]).tolist()
+        rates += (wanted + (rate - wanted) * left[inside]).tolist()
+        rate = wanted if math.isinf(end) else float(np.interp(end, at + time * after, wanted + (rate - wanted) * left))
+    return PiecewiseLinear(times, rates)
+
+
+def changed(problem: Problem, values: Mapping[str, float]) -> Problem:
+    """Return a problem with other numbers, by their full names; those of the record are passed over. Raises InputError."""
+    return put_many(problem, {name: value for name, value in values.items() if not name.startswith("record.")})
+
+
+def first_sizes(parts: Sequence[Part]) -> dict[str, float]:
+    """Return the noise of each observed quantity from sample to sample; 1 where all have a column of standard deviations."""
+    found: dict[str, float] = {}
+    for name in dict.fromkeys(name for part in parts for name in part.observed):
+        having = [part.record for part in parts if name in part.observed]
+        if all(name in record.deviations for record in having):
+            found[name] = 1.0
+            continue
+        widest = max(float(np.nanmax(r.measured[name]) - np.nanmin(r.measured[name])) for r in having)
+        largest = max(float(np.nanmax(np.abs(r.measured[name]))) for r in having)
+        least = SMALLEST_NOISE * max(widest, 1e-3 * largest, 1e-300)
+        found[name] = max(*(noise_of(r.measured[name]) for r in having), least)
+    return found
+
+
+LEFT_OUT = Quantity("s", "time at the end of the record that is left out", above=0.0)
+LEAST = 8
+"""Smallest number of samples that a part keeps."""
+
+
+def share_of(held_out: Any, parts: Sequence[Part]) -> float:
+    """Return the share of a record at its end that is left out, from a share or a time. Raises InputError."""
+    if held_out is None:
+        return 0.0
+    if isinstance(held_out, int | float) and not isinstance(held_out, bool):
+        if not 0.0 < held_out < 1.0:
+            raise InputError(f"infer: held_out must be a share between 0 and 1, or a time with a unit, got {held_out:g}")
+        return float(held_out)
+    seconds, whole = LEFT_OUT.check("infer", "held_out", held_out), sum(part.duration for part in parts)
+    if seconds >= whole:
+        raise InputError(f"infer: held_out of {seconds:g} s leaves nothing of a record of {whole:g} s")
+    return seconds / whole
+
+
+def shortened(parts: Sequence[Part], share: float) -> list[Part]:
+    """Return the parts that are fitted: of one record its first part, of several the whole ones that come first.
+
+    Parts that are left out as a whole follow nothing; a record in several parts keeps the first of them. Raises InputError if too
+    little is left.
+    """
+    if share == 0.0:
+        return list(parts)
+    if len(parts) > 1:
+        count = max(1, min(len(parts) - 1, round(len(parts) * (1.0 - share))))
+        return list(parts[:count])
+    (part,) = parts
+    record = part.record.part(None, float(part.record.time[0] + (1.0 - share) * part.duration))
+    if len(record) < LEAST:
+        raise InputError(f"infer: held_out leaves {len(record)} samples to be fitted")
+    return [replace(part, record=record)]

@@ -1,0 +1,242 @@
+"""Search for the numbers that fit a record best: least squares from several starts, and a search without derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from stickslip.foundation.arrays import Floats
+from stickslip.foundation.errors import InputError
+from stickslip.inference.fit.model import FAILED, Model
+from stickslip.inference.record.noise import OUTLYING, cost_of
+from stickslip.inference.record.resample import RAMP
+
+Tell = Callable[[str], Any]
+
+COMPETES = 20.0
+"""Difference of twice the logarithm of the likelihood below which another minimum competes with the best one."""
+SCREENED = 12
+"""Number of draws of which one start is kept."""
+FIRST = 8
+"""Number of steps after which starts are compared again."""
+FOLLOWED, HOPELESS = 3, 30.0
+"""Number of starts that are followed to their end, and the factor by which the sum of squares of one may be above the least."""
+FAR, FAR_SHARE = 5.0, 0.3
+"""Sizes of residuals from which a search goes on without derivatives, if both are exceeded: in the noise of neighbouring samples,
+and in the scatter of the record, which noise that remembers itself stays far below."""
+AVERAGED = (0.1, 0.02, 0.005, 0.0)
+"""Shares of the samples over which residuals are averaged in a search without derivatives, from coarse to fine."""
+GENERATIONS = 60
+"""Largest number of generations of such a search."""
+LIGHT = 2000
+"""Largest number of pieces of a run while starts are compared, unless the run of the first start needs more than a third of it."""
+
+
+@dataclass
+class SearchProgress:
+    """The progress of a search: what it does, and the number of runs so far; a line of text after each."""
+
+    tell: Callable[[str], Any]
+    phase: str = ""
+    runs: int = 0
+
+    def __call__(self, phase: str) -> None:
+        """Tell that something else is done now."""
+        self.phase = phase
+        self.tell(f"{phase}, {self.runs} runs so far" if self.runs else phase)
+
+    def run(self) -> None:
+        """Tell that a run is done."""
+        self.runs += 1
+        self.tell(f"{self.phase}, {self.runs} runs so far")
+
+
+@dataclass
+class Best:
+    """The best numbers so far, which are what Ctrl-C leaves."""
+
+    cost: float = np.inf
+    searched: Floats = field(default_factory=lambda: np.zeros(0))
+
+
+def solved(model: Model, start: Floats, loss: str, best: Best | None = None, *, thorough: bool = False, most: int = 40) -> Floats:
+    """Return the searched numbers of least squares that a search from a start finds; a thorough one takes central differences."""
+    from scipy.optimize import least_squares
+
+    low, high = model.limits
+    low, high = np.minimum(low, high - 1e-9), np.maximum(high, low + 1e-9)
+
+    def residual(x: Floats) -> Floats:
+        rest = model.residual(x)
+        cost = float(rest @ rest)
+        if best is not None and cost < best.cost:
+            best.cost, best.searched = cost, x.copy()
+        return rest
+
+    tolerance = 1e-9 if thorough else 1e-4
+    room = 1e-9 * np.maximum(1.0, np.abs(start))
+    inside = np.clip(start, np.minimum(low + room, high), np.maximum(high - room, low))
+    sides = (1.0, -1.0) if thorough else (1.0,)
+    found = least_squares(
+        residual,
+        inside,
+        lambda x: model.jacobian(x, sides=sides),
+        (low, high),
+        **{"x_scale": "jac", "loss": loss, "f_scale": OUTLYING, "max_nfev": most},
+        **{"ftol": tolerance, "xtol": 1e-2 * tolerance, "gtol": 1e-12},
+    )
+    return np.asarray(found.x)
+
+
+def is_rough(model: Model, x: Floats) -> bool:
+    """Return True if derivatives of residuals to one side differ from those to the other, as where a jump passes a sample."""
+    right, left = model.jacobian(x, sides=(1.0,)), model.jacobian(x, sides=(-1.0,))
+    size = np.linalg.norm(right + left, axis=0)
+    return bool((np.linalg.norm(right - left, axis=0) > 0.2 * size).any())
+
+
+def polished(model: Model, start: Floats, loss: str) -> Floats:
+    """Return where simplexes of falling size end that begin at a best fit: derivatives stop where a jump passes a sample."""
+    from scipy.optimize import minimize
+
+    low, high = model.limits
+    x = start
+    for size in (3e-3, 1e-3, 3e-4):
+        simplex = np.clip(x + np.vstack([np.zeros(len(x)), size * np.eye(len(x))]), low, high)
+        options = {"maxfev": 150 * len(x), "initial_simplex": simplex, "adaptive": True}
+        x = np.clip(minimize(lambda y: cost_of(model.residual(y), loss), x, method="Nelder-Mead", options=options).x, low, high)
+    return np.asarray(x)
+
+
+def light(model: Model) -> Model:
+    """Return the model with runs that end early if they need many more pieces than those where the search begins."""
+    needed = [len(run.history) for i in range(len(model.parts)) if (run := model.solve(model.begin, i)) is not None]
+    return model.with_(max_pieces=min(model.max_pieces, max(LIGHT, 3 * max(needed, default=model.max_pieces))))
+
+
+def searched_minima(model: Model, starts: int, loss: str, seed: int, *, tell: Tell, best: Best) -> list[tuple[float, Floats]]:
+    """Return the minima that searches from several starts reach, best first. Raises InputError if no run succeeds."""
+    first = [model.begin] if np.array_equal(model.begin, model.given) else [model.begin, model.given]
+    known = sorted(((cost, x) for x in first if np.isfinite(cost := _cost(model, x, loss))), key=lambda one: one[0])
+    screened = []
+    if known:
+        best.cost, best.searched = known[0]
+    if starts > 1 or not known:
+        drawn = _drawn(model, SCREENED * max(starts - 1, 2), seed)
+        for i, x in enumerate(drawn):
+            tell(f"start {i + 1} of {len(drawn)}")
+            screened.append((_cost(model, x, loss), x))
+    screened = sorted((one for one in screened if np.isfinite(one[0])), key=lambda one: one[0])
+    chosen = [*known, *screened][:starts] if starts == 1 else [*known, *screened[: max(starts - len(known), 1)]]
+    if not chosen:
+        _refuse(model)
+    minima = []
+    for i, (_, x) in enumerate(chosen):
+        tell(f"search {i + 1} of {len(chosen)}")
+        minima.append(_followed(model, x, loss, best, FIRST))
+    minima.sort(key=lambda one: one[0])
+    if starts > 1 and is_far(model, minima[0][0]):
+        minima.append(_followed(model, _by_evolution(model, seed, tell), loss, best, FIRST))
+        minima.sort(key=lambda one: one[0])
+    followed = [one for one in minima[:FOLLOWED] if one[0] < HOPELESS * minima[0][0] + COMPETES]
+    ends = []
+    for i, (_, x) in enumerate(followed):
+        tell(f"search {i + 1} of {len(followed)}, to its end")
+        ends.append(_followed(model, x, loss, best))
+    return sorted(ends, key=lambda one: one[0])
+
+
+def _followed(model: Model, x: Floats, loss: str, best: Best, most: int = 40) -> tuple[float, Floats]:
+    """Return where a search ends, after what is minimised there, or where it begins if jumps that are spread have led it away."""
+    end = solved(model, x, loss, best, most=most)
+    return min(((sharp_cost(model, one, loss), one) for one in (end, x)), key=lambda one: one[0])
+
+
+def sharp_cost(model: Model, x: Floats, loss: str) -> float:
+    """Return what is minimised if jumps of the run are as sharp as they are; those of the record may be some samples away."""
+    return _cost(model.with_(blur=RAMP).with_jumps(x), x, loss)
+
+
+def is_far(model: Model, cost: float) -> bool:
+    """Return True if what is minimised is so large that the run does not come near the record."""
+    return cost > max(FAR**2 * model.samples, FAR_SHARE**2 * model.scatter)
+
+
+def _by_evolution(model: Model, seed: int, tell: Tell) -> Floats:
+    """Return where a search without derivatives ends: differential evolution (Storn & Price 1997), then simplexes.
+
+    A slip event at another time than in the record tells derivatives nothing. Here residuals are averaged over some time, and count
+    by their logarithm, so that what follows well outweighs what does not follow at all.
+    """
+    from scipy.optimize import differential_evolution, minimize
+
+    low, high = model.limits
+    shared = [i for i, one in enumerate(model.free) if one.part is None] or list(range(len(model.free)))  # others are known nearly
+    begin = model.begin
+
+    def whole(x: Floats) -> Floats:
+        y = begin.copy()
+        y[shared] = x
+        return np.asarray(np.clip(y, low, high))
+
+    def robust(smoothed: Model) -> Callable[[Floats], float]:
+        return lambda x: float(np.log(cost_of(smoothed.residual(whole(np.asarray(x, float))), "cauchy")))
+
+    box = [(max(model.free[i].near[0], low[i]), min(model.free[i].near[1], high[i])) for i in shared]
+    box = [
+        (x - 1.0, x + 1.0) if last - first <= 0.0 else (first, last) for (first, last), x in zip(box, begin[shared], strict=True)
+    ]
+    count = iter(range(10**9))
+    found = differential_evolution(
+        robust(model.with_(smooth=AVERAGED[0])),
+        box,
+        callback=lambda *_, **__: tell(f"search without derivatives: generation {next(count) + 1} of {GENERATIONS} at most"),
+        **{"maxiter": GENERATIONS, "popsize": 8, "rng": seed, "polish": False, "tol": 1e-3},
+    )
+    x = whole(found.x)[shared]
+    for smooth in AVERAGED[1:]:
+        tell(f"search without derivatives: residuals averaged over {smooth:.1%} of the record")
+        simplex = np.clip(x + np.vstack([np.zeros(len(x)), 0.01 * np.eye(len(x))]), low[shared], high[shared])
+        options = {"maxfev": 100 * len(x), "initial_simplex": simplex}
+        x = np.asarray(minimize(robust(model.with_(smooth=smooth)), x, method="Nelder-Mead", options=options).x)
+    return whole(x)
+
+
+def _cost(model: Model, searched: Floats, loss: str) -> float:
+    """Return what is minimised, inf if a run fails."""
+    rest = model.residual(searched)
+    return np.inf if (np.abs(rest) >= FAILED).all() or np.all(np.abs(rest[: len(rest) or 1]) >= FAILED) else cost_of(rest, loss)
+
+
+def _drawn(model: Model, count: int, seed: int) -> list[Floats]:
+    """Return a Latin hypercube of searched numbers around where the search begins; numbers of single parts stay."""
+    from scipy.stats import qmc
+
+    begin, shared = model.begin, [i for i, one in enumerate(model.free) if one.part is None]
+    places = qmc.LatinHypercube(max(len(shared), 1), seed=seed).random(count)
+    drawn = []
+    for row in places:
+        x = begin.copy()
+        for place, i in zip(row, shared, strict=False):
+            low, high = model.free[i].near
+            x[i] = low + place * (high - low)
+        drawn.append(x)
+    return drawn
+
+
+def _refuse(model: Model) -> None:
+    """Raise InputError with the reason why the problem cannot be run at all."""
+    from stickslip.run.simulate import simulate
+
+    for i in range(len(model.parts)):
+        try:
+            problem = model.at(model.begin, i)
+        except InputError as error:
+            raise InputError(f"infer: the problem cannot begin: {str(error).removeprefix('Problem: ')}") from None
+        run = simulate(problem, model.parts[i].duration, model.rtol, max_pieces=model.max_pieces)
+        if not run.status.ok:
+            raise InputError(f"infer: no run reaches the end of the record: {run.status.message}; give other values or bounds")
+    raise InputError("infer: no run gives numbers that can be compared with the record: give other values or bounds")

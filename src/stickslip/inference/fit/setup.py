@@ -1,0 +1,206 @@
+"""Set up an inference: what of a record is fitted, in which parts, and how each of their runs begins."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from stickslip.foundation.arrays import Floats
+from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.show import brief
+from stickslip.friction.law import FrictionLaw
+from stickslip.inference.fit.free import DELAY, LOAD, SERVO, STATE, TREND, Free, Prior, known_numbers
+from stickslip.inference.fit.model import Model
+from stickslip.inference.fit.part import Part
+from stickslip.inference.record.features import arrests_in
+from stickslip.inference.record.loading import loading_of
+from stickslip.inference.record.record import HIGHEST, LOWEST, MEASURED, SHEAR, Record
+from stickslip.loading import LoadingHistory
+from stickslip.problem.problem import Problem
+
+STARTS = ("steady", "record", "problem")
+"""How a run may begin: in steady sliding at the first rate, with the load of the first samples, or as the problem says."""
+SENSORS = ("contact", "spring")
+"""Where shear is measured."""
+MANY_RATES = 40
+"""Number of rates from which a load point is doubted."""
+FAR = 100.0
+"""Factor between the pull rates of record and problem from which the units of the record are doubted."""
+LEAST = 8
+"""Smallest number of samples of a part."""
+LATER = 0.05
+"""Share of the samples between two slip events that a part still holds after its event: noise chooses the lowest sample."""
+
+
+def parts_of(
+    problem: Problem, records: Sequence[Record], observe: Any, start: str | None, sensor: str
+) -> tuple[list[Part], list[str]]:
+    """Return a part for each record, and sentences on what was done. Raises InputError for what does not go together."""
+    if sensor not in SENSORS:
+        raise InputError(f"infer: sensor {ascii(sensor)[:40]} is unknown; {nearest(str(sensor), SENSORS)}")
+    if sensor == "spring" and problem.body.has_waves:
+        raise InputError("infer: sensor 'spring' is the load cell behind the spring of a block: a slab has none")
+    if start is not None and start not in STARTS:
+        raise InputError(f"infer: start {ascii(start)[:40]} is unknown; {nearest(str(start), STARTS)}")
+    found, notes = [], []
+    for record in records:
+        loading = loading_of(record)
+        observed = _observed(record, observe, problem)
+        begins = start or ("steady" if problem.friction.states and not problem.friction.sticks else "record")
+        begins = "problem" if start is None and begins == "record" and record.shear is None else begins
+        if record.clock[-1] <= 0.0:
+            raise InputError(f"{record.name}: the record has no duration")
+        found.append(Part(record, None if loading is None else loading.rate, observed, sensor, begins))
+        before = f"{record.name}: " if len(records) > 1 else ""
+        said = [*record.notes, *(() if loading is None else (*loading.notes, *_doubts(problem, loading.rate)))]
+        if loading is None:
+            said.append("the record has no load point: the loading is that of the problem")
+        notes += [before + one for one in said]
+    return found, list(dict.fromkeys(notes))
+
+
+def _doubts(problem: Problem, rate: LoadingHistory | float) -> Iterator[str]:
+    """Yield sentences on a load point that moves as a machine hardly does."""
+    segments = np.array(rate.segments)[:, 1] if isinstance(rate, LoadingHistory) else np.array([rate])
+    if len(segments) > MANY_RATES:
+        cure = "if the column is slip, call it slip and give the load rate"
+        yield f"the rate of the load point changes in {len(segments) - 1} places, as slip does and a driven machine hardly: {cure}"
+    moving, assumed = np.abs(segments[segments != 0.0]), abs(problem.first_pull_rate)
+    usual = float(moving[0]) if len(moving) else 0.0
+    if assumed > 0.0 and usual > 0.0 and not assumed / FAR < usual < assumed * FAR:
+        speeds = f"{brief(usual, 'm/s', 3)}, and at {brief(assumed, 'm/s', 3)} in the problem"
+        yield f"the load point moves at {speeds}: are the units of time and load point in their headings?"
+
+
+def _check_force(record: Record, normal: float) -> None:
+    """Raise InputError if shear force is no friction under the normal force of the problem (N)."""
+    size = float(np.nanmedian(np.abs(record.measured["shear_force"]))) / normal
+    if not LOWEST < size < HIGHEST:
+        raise InputError(
+            f"{record.name}: shear_force is {size:.3g} times the problem's normal force of {brief(normal, 'N', 3)}, in the median: "
+            "is its unit in the heading, as shear_force (kN)?"
+        )
+
+
+def _observed(record: Record, observe: Any, problem: Problem) -> tuple[str, ...]:
+    """Return the names of the quantities that are fitted. Raises InputError."""
+    if isinstance(observe, str):
+        observe = [one.strip() for one in observe.split(",")]
+    names = list(observe) if observe else [record.shear] if record.shear else [one for one in MEASURED if one in record.measured]
+    names = ["shear_stress" if one in ("traction", "tau") else one for one in names]
+    for name in names:
+        if name not in record.measured:
+            raise InputError(f"infer: observe: the record has no {ascii(name)[:40]}; {nearest(str(name), record.measured)}")
+    for name in names:
+        if name in SHEAR and np.nanmin(record.measured[name]) == np.nanmax(record.measured[name]):
+            raise InputError(
+                f"{record.name}: {name} is the same number in all rows: its sensor was off, or another column is meant"
+            )
+    if "shear_stress" in names and not problem.body.has_waves:
+        cure = "give normal_stress beside it, so that it becomes friction, or the force as shear_force"
+        raise InputError(f"{record.name}: the loads of a block are forces (N), and shear_stress is in Pa: {cure}")
+    if "shear_force" in names and problem.body.has_waves:
+        raise InputError(f"{record.name}: the loads of a slab are stresses (Pa): divide shear_force by the area of the contact")
+    if "shear_force" in names:
+        _check_force(record, problem.normal)
+    if sum(name in SHEAR for name in names) > 1:
+        raise InputError(f"infer: observe: {' and '.join(one for one in names if one in SHEAR)} are one measurement: choose one")
+    return tuple(names)
+
+
+def hints_of(problem: Problem, part: Part) -> dict[str, float]:
+    """Return the load and the state with which the run of a part begins, as far as the problem can begin."""
+    try:
+        begun = part.begun(problem)
+    except InputError:
+        return {}
+    found = {LOAD: begun.load}
+    law, rate = begun.friction, begun.first_pull_rate
+    if law.states:
+        given = begun.given_states or np.ravel(_steady_state(law, rate)).tolist()
+        found |= {STATE: float(given[0])} if given else {}
+    return found
+
+
+def _steady_state(law: FrictionLaw, rate: float) -> Floats:
+    """Return the states of steady sliding at a rate (m/s), none if there are none."""
+    found = law.steady_state(abs(rate)) if rate else None
+    return np.zeros(0) if found is None else found
+
+
+def scales_of(part: Part, problem: Problem) -> dict[str, float]:
+    """Return the sizes (SI) of steps for free numbers that begin at 0."""
+    record = part.record
+    moved = record.measured.get("slip", record.load_point)
+    reach = float(np.nanmax(moved) - np.nanmin(moved)) if moved is not None else 0.0
+    if not reach > 0.0:
+        reach = abs(problem.first_pull_rate) * part.duration or 1.0
+    times = dict.fromkeys((DELAY, SERVO), 0.01 * part.duration)
+    return {**times, TREND: 0.1 / reach, "initial.slip": 0.1 * reach, "body.damping": 1.0}
+
+
+def at_rests(part: Part) -> list[Part]:
+    """Return the parts of a record between its rests: each begins soon after a slip event. Raises InputError without events."""
+    record, name = part.record, part.record.shear
+    if name is None:
+        raise InputError(f"{record.name}: parts='rests' needs shear, whose drops are the slip events")
+    arrests = arrests_in(record.measured[name])
+    if not len(arrests):
+        raise InputError(f"{record.name}: no drop of {name} stands out of its noise: leave parts='rests' out")
+    later = (LATER * np.diff(np.append(arrests, len(record)))).astype(int)
+    ends = [0, *(arrests + 1 + later).tolist(), len(record)]
+    cuts = [(first, last) for first, last in pairwise(ends) if last - first >= LEAST]
+    found = []
+    for first, last in cuts:
+        piece = record.part(float(record.time[first]), float(record.time[last - 1]))
+        loading = loading_of(piece) if part.loading is not None else None
+        found.append(replace(part, record=piece, loading=None if loading is None else loading.rate, start="record"))
+    return found
+
+
+def evenly(parts: Sequence[Part], most: int) -> list[Part]:
+    """Return so many parts at most, evenly spread over all."""
+    return [parts[i] for i in _spread(len(parts), most)]
+
+
+def _spread(count: int, most: int) -> list[int]:
+    return [int(i) for i in np.unique(np.linspace(0, count - 1, min(count, most)).round())]
+
+
+def with_parts(model: Model, most: int) -> Model:
+    """Return a model of some of its parts, evenly spread, with the free numbers that all share and those of these parts."""
+    kept = {part: i for i, part in enumerate(_spread(len(model.parts), most))}
+    free = [one if one.part is None else replace(one, part=kept[one.part]) for one in model.free if one.part in (None, *kept)]
+    return model.with_(parts=tuple(model.parts[part] for part in kept), free=tuple(free))
+
+
+def own_of(problem: Problem, parts: Sequence[Part], wanted: Iterable[str] | None) -> list[Free]:
+    """Return free numbers of one part each: the load at its start, known to the noise, and a state if the law has one."""
+    names = (
+        list(wanted)
+        if wanted is not None
+        else [LOAD, *([STATE] if problem.friction.states and not problem.friction.sticks else [])]
+    )
+    found = []
+    for i, part in enumerate(parts):
+        declared = known_numbers(problem, hints_of(problem, part))
+        for name in names:
+            if name not in (LOAD, STATE) or name not in declared:
+                raise InputError(f"infer: each: {ascii(name)[:40]} cannot differ from part to part; allowed: {LOAD}, {STATE}")
+            quantity, value = declared[name]
+            if name == LOAD:
+                load, error = part.first_load(problem.normal)
+                error = max(error, 1e-6 * abs(load), 1e-300)
+                wide = 50.0 * error
+                found.append(Free(LOAD, quantity, load, load - wide, load + wide, False, Prior("normal", load, error), i, error))
+            elif np.isfinite(value) and value > 0.0:
+                found.append(Free(STATE, quantity, value, value / 1e12, value * 1e12, True, None, i))
+            else:
+                raise InputError(
+                    "infer: parts='rests': the problem needs an initial_state, where the search for that of each part begins"
+                )
+    return found

@@ -1,0 +1,236 @@
+"""Starting values of free numbers that a record itself shows: levels and slopes of stick-slip, plateaus of velocity steps."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from stickslip.foundation.arrays import Floats
+from stickslip.foundation.errors import InputError, full_name
+from stickslip.foundation.show import brief
+from stickslip.inference.fit.by_features import events_of
+from stickslip.inference.fit.free import Free
+from stickslip.inference.fit.part import Part, changed
+from stickslip.inference.record.features import arrests_in
+from stickslip.inference.record.noise import noise_of
+from stickslip.loading import LoadingHistory
+from stickslip.problem.problem import Problem
+
+COSINE = math.sqrt(math.pi**2 - 8.0)
+"""Twice the standard deviation, in time, of the fall of a spring force along half a cosine of angular frequency 1."""
+TAIL, LEAST = 0.3, 8
+"""Share of a part of constant rate, at its end, of which the median is a plateau; smallest number of samples of such a part."""
+CLEAR = 5.0
+"""Height of a transient, in standard deviations of the noise, from which it is used."""
+CREEPS, STIFFER = 0.8, 1.1
+"""Slope of shear between events, as a share of the stiffness of the problem, beyond which it is doubted: creep makes it smaller."""
+
+
+class StickSlip(NamedTuple):
+    """Friction before and after slip events, the rise between them per displacement of the machine, and the duration of a fall.
+
+    `rise` is in N/m (block) or Pa/m (slab), `duration` in s, and NaN if the record does not tell it.
+    """
+
+    peak: float
+    rest: float
+    rise: float
+    duration: float
+
+
+def with_starts(
+    free: Sequence[Free], problem: Problem, parts: Sequence[Part], given: Iterable[str]
+) -> tuple[tuple[Free, ...], list[str]]:
+    """Return free numbers that begin where the record shows them, and sentences on that.
+
+    `given` has the names of those whose start the user chose. A number keeps the value of the problem as a second start.
+    """
+    given = {full_name(str(name), [one.name for one in free], "", "") for name in given}
+    shown = {name: value for part in reversed(parts) for name, value in _shown(problem, part, {one.name for one in free})}
+    wanted = [one for one in free if one.name in shown and one.name not in given and one.low < shown[one.name] < one.high]
+    values = {one.name: shown[one.name] for one in wanted}
+    if not _allowed(problem, values):
+        values = {name: value for name, value in values.items() if _allowed(problem, {name: value})}
+        values = values if _allowed(problem, values) else {}
+    found = [one.begun_at(values[one.name]) if one.name in values else one for one in free]
+    texts = [f"{one.name} {brief(values[one.name], one.declared.unit, 3)}" for one in wanted if one.name in values]
+    notes = [f"the search begins with what the record shows: {', '.join(texts)}; also with the values given"] if texts else []
+    return tuple(found), [*notes, *dict.fromkeys(note for part in parts for note in _doubts(problem, part, free))]
+
+
+def _allowed(problem: Problem, values: Mapping[str, float]) -> bool:
+    try:
+        changed(problem, values)
+    except InputError:
+        return False
+    return True
+
+
+def _shown(problem: Problem, part: Part, names: set[str]) -> Iterator[tuple[str, float]]:
+    """Yield names and values (SI) of numbers that a part of a record shows."""
+    if part.record.shear is None:
+        return
+    friction = _friction(problem, part)
+    stepped = isinstance(part.loading, LoadingHistory) and hasattr(problem.friction, "distance") and bool(problem.friction.states)
+    cycles = None if stepped else stick_slip(problem, part)  # friction falls after a step of rate, too
+    if cycles is not None:
+        yield from _of_law(problem, cycles, names)
+        yield from (_of_block(problem, part, cycles, names) if not problem.body.has_waves else _of_slab(problem, cycles, names))
+    elif not stepped and len(arrests_in(friction)):
+        yield "friction.static", float(np.nanmax(np.abs(friction)))
+    else:
+        yield from _of_steps(problem, part, friction, names)
+
+
+def _friction(problem: Problem, part: Part) -> Floats:
+    """Return the measured friction of a part."""
+    name = part.record.shear
+    assert name is not None
+    return part.record.measured[name] / (1.0 if name == "friction" else problem.normal)
+
+
+def stick_slip(problem: Problem, part: Part) -> StickSlip | None:
+    """Return what the slip events of a part have in common; None for fewer than two after the first one."""
+    try:
+        events, _ = events_of(part)
+    except InputError:
+        return None
+    if len(events) < 2:
+        return None
+    (peak, rest, drop), scale = list(events.measured.values())[:3], 1.0 if part.record.shear == "friction" else problem.normal
+    clock = events.time - part.record.time[0]
+    loading = problem.pull_rate if part.loading is None else part.loading
+    if isinstance(loading, LoadingHistory):
+        loading = float(np.mean(loading.at(np.linspace(clock[0], clock[-1], 1000))))
+    pull = abs(loading)
+    moved = pull * float(np.mean(events.measured["recurrence"]))
+    rise = float(np.mean(drop)) / scale * problem.normal / moved if moved > 0.0 else math.nan
+    lasting = events.measured.get("duration", np.array([math.nan]))
+    return StickSlip(float(np.median(peak)) / scale, float(np.median(rest)) / scale, rise, float(np.median(lasting)))
+
+
+def _of_law(problem: Problem, cycles: StickSlip, names: set[str]) -> Iterator[tuple[str, float]]:
+    """Yield static and dynamic friction: slip overshoots, so that friction in slip lies between its peak and the rest."""
+    law, swing = problem.friction, 1.0  # a slab under a rigid driver, and a block without damping, fall as far below as above
+    if hasattr(law, "static") and hasattr(law, "dynamic"):
+        if not problem.body.has_waves and "body.stiffness" not in names and math.isfinite(cycles.rise):
+            body: Any = problem.body
+            ratio = min(body.damping / (2.0 * math.sqrt(body.mass * cycles.rise)), 0.99)
+            swing = math.exp(-math.pi * ratio / math.sqrt(1.0 - ratio**2))
+        yield "friction.static", cycles.peak
+        yield "friction.dynamic", (cycles.rest + swing * cycles.peak) / (1.0 + swing)
+    elif hasattr(law, "reference"):
+        yield "friction.reference", 0.5 * (cycles.peak + cycles.rest)
+
+
+def _of_block(problem: Problem, part: Part, cycles: StickSlip, names: set[str]) -> Iterator[tuple[str, float]]:
+    """Yield stiffness and mass of a block: the rise between events, and the time of half a swing."""
+    body: Any = problem.body
+    stiffness = body.stiffness
+    if "body.stiffness" in names and math.isfinite(cycles.rise):
+        stiffness = cycles.rise
+        yield "body.stiffness", stiffness
+    if math.isfinite(cycles.duration):
+        yield "body.mass", stiffness * (cycles.duration / (COSINE if part.sensor == "spring" else math.pi)) ** 2
+
+
+def _of_slab(problem: Problem, cycles: StickSlip, names: set[str]) -> Iterator[tuple[str, float]]:
+    """Yield thickness, wave speed or density of a slab: slip lasts for a round trip, and G/h is the rise between events."""
+    body: Any = problem.body
+    thickness, speed = float(np.sum(body.thickness)), float(np.mean(body.wave_speed))
+    if np.ndim(body.thickness) or np.ndim(body.wave_speed):
+        return
+    lasts = math.isfinite(cycles.duration)
+    if "body.thickness" in names:
+        thickness = 0.5 * speed * cycles.duration if lasts else body.density * speed**2 / cycles.rise
+        yield "body.thickness", thickness
+    elif "body.wave_speed" in names:
+        speed = 2.0 * thickness / cycles.duration if lasts else math.sqrt(cycles.rise * thickness / body.density)
+        yield "body.wave_speed", speed
+    if "body.density" in names and (lasts or not {"body.thickness", "body.wave_speed"} & names):
+        yield "body.density", cycles.rise * thickness / speed**2
+
+
+class RatePlateau(NamedTuple):
+    """Friction at the end of a part of constant rate (m/s), and its samples: time (s) and friction."""
+
+    rate: float
+    friction: float
+    time: Floats
+    samples: Floats
+
+
+def _plateaus(part: Part, friction: Floats) -> list[RatePlateau]:
+    """Return the plateaus of a part of a record, in their order; parts without rate, or with too few samples, are passed over."""
+    known, clock = np.isfinite(friction), part.record.clock
+    clock, friction = clock[known], friction[known]
+    loading = part.loading
+    rows = np.array(loading.segments)[:, :2].tolist() if isinstance(loading, LoadingHistory) else [[0.0, loading or 0.0]]
+    found = []
+    for (begin, rate), (end, _) in pairwise([*rows, [math.inf, 0.0]]):
+        inside = slice(*np.searchsorted(clock, [begin, end]).tolist())
+        time, values = clock[inside], friction[inside]
+        if rate != 0.0 and len(time) >= LEAST:
+            found.append(
+                RatePlateau(abs(rate), abs(float(np.median(values[-math.ceil(TAIL * len(values)) :]))), time, np.abs(values))
+            )
+    return found
+
+
+def _of_steps(problem: Problem, part: Part, friction: Floats, names: set[str]) -> Iterator[tuple[str, float]]:
+    """Yield reference friction, a, b and distance of a rate-and-state law from steady sliding at several rates."""
+    law: Any = problem.friction
+    plateaus = _plateaus(part, friction)
+    if not plateaus or not all(hasattr(law, name) for name in ("reference", "a", "b", "distance", "rate")):
+        return
+    logs, levels = np.log([one.rate / law.rate for one in plateaus]), np.array([one.friction for one in plateaus])
+    slope = law.a - law.b
+    if float(np.ptp(logs)) > 0.1:
+        slope = float(np.polyfit(logs, levels, 1)[0])
+        direct, distance = _transients(plateaus, noise_of(friction))
+        a = direct if "friction.a" in names and math.isfinite(direct) else law.a
+        if "friction.b" in names and a - slope > 0.0:
+            yield "friction.b", a - slope
+        elif "friction.a" in names and law.b + slope > 0.0:
+            a = law.b + slope
+        if "friction.a" in names:
+            yield "friction.a", a
+        if math.isfinite(distance):
+            yield "friction.distance", distance
+    yield "friction.reference", float(np.mean(levels - slope * logs))
+
+
+def _transients(plateaus: Sequence[RatePlateau], noise: float) -> tuple[float, float]:
+    """Return the direct effect per factor e of rate, and the slip (m) over which it decays by a factor e; NaN if none is clear."""
+    effects, distances = list[float](), list[float]()
+    for before, after in pairwise(plateaus):
+        logs = math.log(after.rate / before.rate)
+        if abs(logs) < 0.1:
+            continue
+        height = math.copysign(1.0, logs) * (after.samples - before.friction)
+        top = int(np.argmax(height[: len(height) // 2]))
+        rest = np.abs(after.samples[top:] - after.friction)
+        if height[top] > CLEAR * noise:
+            effects.append(float(height[top]) / abs(logs))
+            below = np.flatnonzero(rest < rest[0] / math.e)
+            if rest[0] > CLEAR * noise and len(below):
+                distances.append(after.rate * float(after.time[top + below[0]] - after.time[top]))
+    return float(np.median(effects or [math.nan])), float(np.median([one for one in distances if one > 0.0] or [math.nan]))
+
+
+def _doubts(problem: Problem, part: Part, free: Sequence[Free]) -> Iterator[str]:
+    """Yield a question if a stiffness that is fixed is not that of the record."""
+    if problem.body.has_waves or part.record.shear is None or any(one.name == "body.stiffness" for one in free):
+        return
+    cycles, body = stick_slip(problem, part), problem.body
+    stiffness = float(getattr(body, "stiffness", math.nan))
+    if cycles is not None and not (CREEPS < cycles.rise / stiffness < STIFFER or math.isnan(cycles.rise / stiffness)):
+        rises, has = brief(cycles.rise, "N/m", 3), brief(stiffness, "N/m", 3)
+        yield (
+            f"between slip events of {part.record.name} shear rises by {rises} of load point, and the stiffness of the problem is "
+            f"{has}: should it be free?"
+        )

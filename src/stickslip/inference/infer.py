@@ -1,0 +1,331 @@
+"""Infer: from a laboratory record to the parameters of a problem, by full runs with inertia and waves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from stickslip.foundation.arguments import check_whole, for_users, shown
+from stickslip.foundation.arrays import Floats
+from stickslip.foundation.conversion import WithUnit
+from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.quantities import Quantity
+from stickslip.inference.certainty.certainty import Certainty, Profile, certainty_of, profile_of, unknown
+from stickslip.inference.certainty.directions import IDLE
+from stickslip.inference.certainty.sampling import MOST_SAMPLES, sample
+from stickslip.inference.fit.by_features import FeatureModel, by_features, scatter_of
+from stickslip.inference.fit.estimate import Estimate, estimate, windows_of
+from stickslip.inference.fit.free import LOAD, Free, read_free, with_scale
+from stickslip.inference.fit.model import Model
+from stickslip.inference.fit.part import Part, first_sizes, share_of, shortened
+from stickslip.inference.fit.search import COMPETES, SearchProgress, Tell
+from stickslip.inference.fit.setup import at_rests, evenly, hints_of, own_of, parts_of, scales_of, with_parts
+from stickslip.inference.fit.starting import with_starts
+from stickslip.inference.inference import Inference
+from stickslip.inference.record.noise import LOSSES
+from stickslip.inference.record.record import Record
+from stickslip.inference.record.resample import MOST_FITTED, resampled
+from stickslip.problem.problem import Problem
+from stickslip.problem.run_quantities import check_rtol
+from stickslip.scenarios.source import read_source
+from stickslip.study import TextProgress, telling
+
+if TYPE_CHECKING:
+    from stickslip.scenarios.scenario import Scenario
+
+WAYS = ("samples", "features")
+"""What of a record is fitted: each sample, or features of its slip events."""
+MOST_PARTS, MOST_SEARCHED = 24, 8
+"""Largest number of parts between rests that are fitted, and among which the first search goes on."""
+LEAST_FITTED = 2000
+"""Number of samples up to which a part is fitted as it is, however many there are."""
+TIME = Quantity("s", "time of the record")
+WEIGHT = Quantity("1", "exponent of the weight of samples after a change of the pull rate", at_least=0.0)
+RTOL = 1e-8
+"""Default relative tolerance of the runs: far below the noise of a laboratory."""
+
+
+@dataclass(frozen=True)
+class Wishes:
+    """The options of `infer`, where they are described."""
+
+    by: str
+    observe: Sequence[str] | str | None
+    start: str | None
+    sensor: str
+    parts: str | None
+    each: Sequence[str] | None
+    held_out: float | str | WithUnit | None
+    profiles: bool
+    samples: int
+    bounds: Mapping[str, Any] | None
+    priors: Mapping[str, Any] | None
+    begin_at: Mapping[str, Any] | None
+    loss: str
+    weight: float
+    windows: bool
+    starts: int
+    seed: int
+    rtol: float
+
+    def check(self) -> None:
+        """Raise InputError for options that are out of range."""
+        if self.loss not in LOSSES:
+            raise InputError(f"infer: loss {ascii(self.loss)[:40]} is unknown; {nearest(str(self.loss), LOSSES)}")
+        if self.by not in WAYS:
+            raise InputError(f"infer: by {ascii(self.by)[:40]} is unknown; {nearest(str(self.by), WAYS)}")
+        if self.by == "features" and self.parts is not None:
+            raise InputError("infer: by='features' and parts='rests' are two ways to fit stick-slip: choose one")
+        if self.parts not in (None, "rests"):
+            raise InputError(f"infer: parts must be 'rests' or left out, got {shown(self.parts)}")
+        if self.windows and (self.parts is not None or self.by == "features"):
+            raise InputError("infer: windows are of records that are fitted as a whole: leave out parts='rests' and by='features'")
+        WEIGHT.check("infer", "weight", self.weight)
+        for name, least, most in (("starts", 1, 1000), ("samples", 0, MOST_SAMPLES), ("seed", 0, 2**32 - 1)):
+            check_whole(f"infer: {name}", getattr(self, name), least, most)
+        check_rtol(self.rtol, "infer")
+
+
+@for_users
+def infer(
+    problem: Problem | Scenario | str | Path,
+    record: Any,
+    free: Sequence[str] | str,
+    *,
+    begin: float | str | WithUnit | None = None,
+    end: float | str | WithUnit | None = None,
+    progress: TextProgress | bool | None = None,
+    by: str = "samples",
+    observe: Sequence[str] | str | None = None,
+    start: str | None = None,
+    sensor: str = "contact",
+    parts: str | None = None,
+    each: Sequence[str] | None = None,
+    bounds: Mapping[str, Any] | None = None,
+    priors: Mapping[str, Any] | None = None,
+    begin_at: Mapping[str, Any] | None = None,
+    loss: str = "linear",
+    weight: float = 0.0,
+    windows: bool = False,
+    starts: int = 4,
+    held_out: float | str | WithUnit | None = None,
+    profiles: bool = False,
+    samples: int = 0,
+    seed: int = 0,
+    rtol: float = RTOL,
+) -> Inference:
+    """Find the numbers of a problem with which its run follows a laboratory record, and how well the record determines them.
+
+    Parameters
+    ----------
+    problem : Problem, Scenario, str or Path
+        The problem with values at which the search begins: itself, its scenario, the name of a bundled scenario, or a file.
+    record : str, Path, DataFrame, mapping, Record, or list of them
+        The record: a CSV file, or columns by their headings, as `Record.read` describes. Several records share the free numbers.
+    free : list of str
+        Names of the free numbers: those of `problem.parameters`, such as "friction.a" and "body.stiffness", and "initial.load",
+        "initial.state", "record.trend" (friction per metre of slip), "record.delay" (s, by which the record is late) and
+        "record.servo" (s: after a step the load point approaches its new rate as exp(-t/servo)).
+    begin, end : float or str, optional
+        The part of the record that is taken: times (s, as in the record, or texts with a unit).
+    progress : bool or callable, optional
+        True shows the progress in one line. A function is called with a line of text.
+    by : {"samples", "features"}
+        What of the record is fitted: its samples, or features of its slip events (stick-slip), with their scatter from event to
+        event.
+    observe : str or list of str, optional
+        Which samples are fitted: friction, shear_stress or shear_force, slip, slip_rate; by default shear, or else all that is
+        there. Or which features: peak, rest, drop (peak minus rest), recurrence, duration, event_slip, peak_rate; by default all
+        that the record has but the drop.
+    start : {"steady", "record", "problem"}, optional
+        How the run begins: in steady sliding at the first pull rate (default for a law with a state that never sticks), with the
+        load of the first samples (default for others), or as the problem says.
+    sensor : {"contact", "spring"}
+        Where shear is measured: at the contact, or by a load cell behind the spring of a block, which inertia separates from it.
+    parts : "rests", optional
+        Split the record after each slip event and begin a run at each rest, with the load that is measured there.
+    each : list of str, optional
+        What is free for each of these parts: "initial.load" within its noise (default), and "initial.state" of a law that has one.
+    bounds : mapping, optional
+        Lower and upper limits by name. The default is a factor of 1000 to both sides for positive quantities, and of 30 for pure
+        numbers.
+    priors : mapping, optional
+        What you know beforehand, by name: "normal(0.6, 0.05)", "lognormal(10 um, 0.5)", with the standard deviation of the
+        logarithm, or "uniform(0, 1)".
+    begin_at : mapping, optional
+        Values at which the search begins, by name; by default those that the record shows, or else those of the problem.
+    loss : {"linear", "soft_l1", "huber", "cauchy"}
+        How residuals count. Choose one other than linear if some samples lie far off.
+    weight : float
+        Exponent p of the weight (n/j)**p of the j-th of n samples after each change of the pull rate, as in RSFit3000 (Skarbek &
+        Savage 2019, Geosphere 15, 1665). Default 0: all samples count alike.
+    windows : bool
+        If True, shorter parts of the record are fitted, too: `found.windows` has the numbers, and a note their spread.
+    starts : int
+        Number of starts of the search: the given one, and the best of twelve times as many draws. Default 4. If none of them leads
+        near the record, and this is not 1, a search without derivatives follows.
+    held_out : float or str, optional
+        Share of the record at its end, or time (text with a unit), that is not fitted but predicted.
+    profiles : bool
+        If True, intervals follow from profiles of the likelihood, and not from its curvature.
+    samples : int
+        Number of samples of the posterior distribution that are drawn with emcee. Default 0.
+    seed : int
+        Seed of starts and samples.
+    rtol : float
+        Relative tolerance of the runs. Default 1e-8.
+
+    Returns
+    -------
+    Inference
+        The best numbers with intervals, the best problem, and what the record does not determine. After Ctrl-C it holds the best
+        numbers so far.
+
+    Raises
+    ------
+    InputError
+        If the record or an option cannot be used, or no run succeeds; the message is one line with the cure.
+    KeyboardInterrupt
+        If the user presses Ctrl-C before a run has succeeded.
+
+    Notes
+    -----
+    Least squares over full runs; positive numbers are searched along their logarithm. What is left is then looked at: its size
+    and, by restricted maximum likelihood, the time over which it remembers itself. Intervals, of 95 %, allow for that memory, and
+    for residuals that are largest where they count most, as those of a model that is a little wrong (sandwich covariance). A
+    misfit is told as a misfit. What is left moves the numbers only as it weighs several quantities, and what you know beforehand.
+    """
+    wishes = Wishes(
+        by=by, observe=observe, start=start,
+        sensor=sensor, parts=parts, each=each, held_out=held_out, profiles=profiles, samples=samples,
+        bounds=bounds, priors=priors, begin_at=begin_at, loss=loss, weight=weight, windows=windows,
+        starts=starts, seed=seed, rtol=rtol,
+    )  # fmt: skip
+    wishes.check()
+    source = read_source("infer", problem)
+    given = source if isinstance(source, Problem) else source.problem
+    records = _records(record, begin=begin, end=end)
+    observed = wishes.observe if by == "samples" else None
+    recorded, notes = parts_of(given, records, observed, wishes.start, wishes.sensor)
+    whole = recorded
+    if wishes.parts == "rests":
+        between = [piece for part in whole for piece in at_rests(part)]
+        whole = evenly(between, MOST_PARTS)
+        notes.append(f"{len(whole)} parts between rests, each with a run of its own")
+        if len(whole) < len(between):
+            notes[-1] += f", evenly spread among {len(between)}; by features all of them are fitted, with their scatter"
+    whole, notes = _resampled(whole, notes)
+    share = share_of(wishes.held_out, whole)
+    fitted = shortened(whole, share)
+    if by == "features":
+        fitted, _ = by_features(fitted, wishes.observe)
+        whole, said = by_features(whole, wishes.observe)
+        notes += said
+    model = _model(given, fitted, free, wishes)
+    shared, said = with_starts([one for one in model.free if one.part is None], given, recorded, wishes.begin_at or ())
+    model = model.with_(free=(*shared, *(one for one in model.free if one.part is not None)))
+    notes += said
+    with telling(progress, "infer") as tell:
+        try:
+            found = _inferred(model, tuple(whole), wishes, notes, tell)
+        except InputError as error:
+            doubts = [note for note in notes if note.endswith("?")]  # a unit or a sign may be why no run succeeds
+            raise InputError("; ".join([str(error), *doubts])) from None
+    options = {"begin": begin, "end": end} | vars(wishes)
+    return replace(found, asked={name: value for name, value in options.items() if value not in (None, False)})
+
+
+def _resampled(parts: list[Part], notes: list[str]) -> tuple[list[Part], list[str]]:
+    """Return the parts with a number of samples that can be fitted, and the notes with what was done."""
+    found, most = [], max(MOST_FITTED // len(parts), LEAST_FITTED)
+    for part in parts:
+        record, said = resampled(part.record, most)
+        found.append(replace(part, record=record))
+        notes = [*notes, *said]
+    return found, notes
+
+
+def _records(source: Any, **times: Any) -> list[Record]:
+    sources = source if isinstance(source, list | tuple) else [source]
+    if not sources:
+        raise InputError("infer: record must be at least one record, got none")
+    begin, end = (None if value is None else TIME.check("infer", name, value) for name, value in times.items())
+    return [Record.read(one, begin, end) for one in sources]
+
+
+def _model(problem: Problem, parts: list[Part], names: Sequence[str] | str, wishes: Wishes) -> Model:
+    chosen = read_free(
+        problem, names, hints_of(problem, parts[0]), bounds=wishes.bounds, priors=wishes.priors, start=wishes.begin_at
+    )
+    chosen = with_scale(chosen, scales_of(parts[0], problem))
+    own = list[Free]()
+    if wishes.parts == "rests":
+        own = own_of(problem, parts, wishes.each)
+    elif wishes.by == "samples" and all(part.start == "record" for part in parts):
+        own = own_of(problem, parts, [LOAD])  # the load of the first samples is known to their noise only
+    own = [one for one in own if one.name not in {shared.name for shared in chosen}]
+    kind = FeatureModel if wishes.by == "features" else Model
+    sizes = scatter_of(parts) if wishes.by == "features" else first_sizes(parts)
+    model = kind(problem, tuple(parts), (*chosen, *own), wishes.rtol, sizes, weight=wishes.weight)
+    if wishes.by == "features" and sum(len(part.observed) for part in parts) < len(chosen):
+        names = ", ".join(parts[0].observed)
+        raise InputError(f"infer: {names} cannot determine {len(chosen)} numbers: free fewer of them, or record slip too")
+    if model.samples <= len(chosen):
+        raise InputError(f"infer: {model.samples} samples cannot determine {len(chosen)} numbers: free fewer of them")
+    return model
+
+
+def _inferred(model: Model, whole: tuple[Part, ...], wishes: Wishes, notes: list[str], tell: Tell) -> Inference:
+    """Return the result of all that was asked for; Ctrl-C leaves out what was not finished."""
+    tell = SearchProgress(tell)
+    found = _estimated(model.with_(ran=tell.run), wishes, tell)
+    sure, profiles, windows = unknown(found), list[Profile](), None
+    walk, finished = None, found.finished
+    try:
+        tell("what the record determines")
+        sure = certainty_of(found)
+        found = _idle_as_given(found, sure)
+        if finished and wishes.windows:
+            windows = windows_of(found, tell)
+        if finished and wishes.profiles:
+            shared = [i for i, one in enumerate(found.model.free) if one.part is None]
+            profiles.extend(profile_of(found, sure, i, tell) for i in shared)
+        if finished and wishes.samples:
+            walk = sample(found, sure, wishes.samples, tell, seed=wishes.seed)
+            finished = not walk.stopped
+    except KeyboardInterrupt:
+        finished = False
+    found = replace(found, finished=finished)
+    return Inference(found, sure, whole, tuple(notes), tuple(profiles), walk, windows)
+
+
+def _estimated(model: Model, wishes: Wishes, tell: Tell) -> Estimate:
+    """Return the best fit; of many parts, a few are searched first."""
+    if len(model.parts) <= MOST_SEARCHED:
+        return estimate(model, wishes.starts, wishes.loss, wishes.seed, tell)
+    few = estimate(with_parts(model, MOST_SEARCHED), wishes.starts, wishes.loss, wishes.seed, tell)
+
+    def with_shared(searched: Floats) -> tuple[Free, ...]:
+        values = {one.label: value for one, value in zip(few.model.free, few.model.values(searched), strict=True)}
+        return tuple(one if one.part is not None else replace(one, start=values[one.label], given=None) for one in model.free)
+
+    begun = model.with_(free=with_shared(few.searched))
+    if not few.finished:
+        return Estimate(model, begun.begin, finished=False, loss=wishes.loss)
+    tell(f"all {len(model.parts)} parts")
+    found = estimate(begun, 1, wishes.loss, wishes.seed, tell)
+    others = [begun.with_(free=with_shared(x)).begin for x in few.others]
+    others = [x for x in others if found.cost(x) < found.cost(found.searched) + COMPETES]
+    return replace(found, model=found.model.with_(free=model.free), others=tuple(others))
+
+
+def _idle_as_given(found: Estimate, sure: Certainty) -> Estimate:
+    """Return a best fit in which numbers without influence have the values that were given."""
+    idle = np.linalg.norm(sure.slopes, axis=0) < IDLE
+    given = np.where(idle, found.model.begin, found.searched)
+    kept = idle.any() and found.cost(given) < found.cost(found.searched) + IDLE
+    return replace(found, searched=given) if kept else found

@@ -1,0 +1,304 @@
+"""The result of `infer`: numbers with intervals, the best problem, and what is and is not known."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, Self
+
+import numpy as np
+import pandas as pd
+
+from stickslip.foundation.arguments import check_whole, for_users, shown
+from stickslip.foundation.arrays import Floats
+from stickslip.foundation.atomic_write import write_atomically, write_table
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.netcdf_file import write
+from stickslip.foundation.quantities import Choice, fields_of
+from stickslip.foundation.show import brief, with_uncertainty
+from stickslip.friction.law import FrictionLaw
+from stickslip.inference.certainty.sampling import MOST_SAMPLES, sample
+from stickslip.inference.fit.free import DELAY, TREND
+from stickslip.inference.fit.memory import EVEN, LONGEST, WHITE
+from stickslip.inference.fit.model import unit_of
+from stickslip.inference.fit.part import first_sizes
+from stickslip.inference.fit.search import SearchProgress
+from stickslip.inference.fitted_record import FittedRecord
+from stickslip.inference.record.features import arrests_in
+from stickslip.inference.record.noise import rounding_of
+from stickslip.inference.record.record import SHEAR
+from stickslip.io.netcdf import origin
+from stickslip.scenarios.scenario import Scenario
+from stickslip.solution.accessors import report_of_study
+from stickslip.study import TextProgress, telling
+
+MISSED, MISSED_SHARE = 3.0, 0.2
+"""Sizes of residuals, in the noise of neighbouring samples and in the scatter of the record, beyond which a run misses it."""
+FALLING = 0.2
+"""Share of the time in which shear falls below which it does so in slip events."""
+MANY = 1.5
+"""Size of residuals, in the standard deviations that were given, from which they are told to be larger."""
+
+
+def _near(value: float, uncertainty: float) -> str:
+    size = abs(value) / uncertainty if 0.0 < uncertainty < math.inf else 1.0
+    return f"{value:.{min(max(2 + math.ceil(math.log10(max(size, 1e-3))), 3), 12)}g}"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Inference(FittedRecord):
+    """The result of `infer`: a `FittedRecord`, told in sentences, as a scenario, and in files."""
+
+    def more(self, samples: int, *, progress: TextProgress | bool | None = None) -> Self:
+        """Draw further samples of the posterior distribution, until there are `samples` in all, and return the result with them.
+
+        The walk goes on where it ended, also where Ctrl-C ended it. Raises InputError if no samples were drawn before, or if there
+        are as many already.
+        """
+        count = check_whole("more: samples", samples, 1, MOST_SAMPLES)
+        if self.walk is None:
+            raise InputError("more: no samples were drawn: ask `infer` for some first, with samples=")
+        if count <= len(self.walk.drawn):
+            raise InputError(f"more: there are {len(self.walk.drawn)} samples already, got {count}")
+        with telling(progress, "infer") as tell:
+            told = SearchProgress(tell)
+            found = replace(self.estimate, model=self.model.with_(ran=told.run))
+            walk = sample(found, self.certainty, count, told, before=self.walk)
+        return replace(self, walk=walk, estimate=replace(self.estimate, finished=not walk.stopped))
+
+    @property
+    def scenario(self) -> Scenario:
+        """The scenario that runs to the curve of the (first part of the) record."""
+        name = Path(self.parts[0].record.name).name
+        title = f"Fitted to {name}" + (f", part 1 of {len(self.parts)}" if len(self.parts) > 1 else "")
+        about = "\n".join([self.headline, *(f"{name} = {text}" for name, text, _ in self.rows), *self.notes])
+        return Scenario(self.best, self.parts[0].duration, self.model.rtol, title, about, name="fitted")
+
+    @property
+    def notes(self) -> list[str]:
+        """What is not determined, and what else to know before the numbers are used, one sentence each."""
+        return list(dict.fromkeys(notes_of(self)))
+
+    @property
+    def rows(self) -> list[tuple[str, str, str]]:
+        """Name, value with interval, and unit of each free number that all parts share, as text."""
+        found = []
+        for name, row in self.table.iterrows():
+            one = next(free for free in self.free if free.label == name)
+            if one.part is not None:
+                continue
+            unit = "" if row.unit == "1" else row.unit
+            how = (
+                "on a bound"
+                if row.source == "bound"
+                else f"{_near(row.low, row.uncertainty)} to {_near(row.high, row.uncertainty)}"
+            )
+            sure = bool(np.isfinite(row.uncertainty))
+            how = how if sure or row.source == "bound" else "not determined"
+            found.append((str(name), with_uncertainty(row.value, row.uncertainty if sure else None), f"{unit}  ({how})".strip()))
+        return found
+
+    @property
+    def headline(self) -> str:
+        """What was found from what, in one line."""
+        shared = sum(one.part is None for one in self.free)
+        sizes = ", ".join(f"{name} {brief(size, unit_of(name), 3)}" for name, size in self.model.sizes.items())
+        what = "scatter" if self.model.of_means else "noise"
+        return f"{shared} number{'' if shared == 1 else 's'} from {self.model.counted}, {what}: {sizes}; intervals of 95 %"
+
+    def to_toml(self, path: str | Path) -> Path:
+        """Write the scenario that runs to the curve shown, with the loading as a list of steps, and return the path."""
+        text = self.scenario.to_toml()
+        return write_atomically(Path(path), lambda draft: draft.write_text(text, encoding="utf-8"))
+
+    def to_netcdf(self, path: str | Path) -> Path:
+        """Write data, model, residual, numbers, samples and provenance, and return the path. Raises InputError if that fails."""
+        provenance: dict[str, Any] = {**origin(self.runs[0]), "title": "stickslip inference", "notes": "\n".join(self.notes)}
+        return write(self.to_dataset().assign_attrs(provenance | {"scenario": self.scenario.to_toml()}), Path(path))
+
+    def to_csv(self, path: str | Path) -> Path:
+        """Write the table of numbers as CSV, after the notes as comment lines (#), and return the path."""
+        return write_table(Path(path), self.table.reset_index(), [self.headline, *self.notes])
+
+    def report(self, folder: str | Path, *others: Inference) -> Path:
+        """Write a report into a folder: a page that needs no other file, with figures, numbers, best scenario and data beside it.
+
+        It returns the path of the page, `report.html`, which ranks `others`, inferences from the same record with other laws, by
+        what they predict, as `ranking` does. Raises InputError if the best numbers do not run to the end of the record, or if
+        `others` are of another record, and OSError if the folder cannot be written.
+        """
+        return report_of_study(self, Path(folder), *others)
+
+    def _lines(self) -> Iterator[str]:
+        yield self.headline
+        width = max(len(name) for name, _, _ in self.rows)
+        for name, value, unit in self.rows:
+            yield f"{name:<{width}}  {value} {unit}"
+        yield from self.notes
+
+
+@for_users
+def ranking(*found: Inference) -> pd.DataFrame:
+    """Compare inferences from one record, each with `held_out`, by what they predict of the part that was left out, best first.
+
+    There is one row for each. Columns: law, free (number of free numbers), fit and prediction (root mean square residual of the
+    part that was fitted and of the part that was left out, in standard deviations of the least noise that any of them found), and
+    bic (Schwarz's criterion of the fitted part, smaller is better). Raises InputError for none, if no part was left out, or if the
+    records differ.
+    """
+    if not found or not all(isinstance(one, Inference) for one in found):
+        got = ", ".join(shown(one) for one in found) or "none"
+        raise InputError(f"ranking: needs inferences, as in ranking(infer(..., held_out=0.3), infer(..., held_out=0.3)), got {got}")
+    if len({(one.model.samples, tuple(len(part.record) for part in one.parts)) for one in found}) > 1:
+        raise InputError("ranking: the inferences are of different records or leave out different parts")
+    least = {name: min(one.model.sizes[name] for one in found) for name in found[0].model.sizes}
+    rows = []
+    for one in found:
+        if one.prediction is None:
+            raise InputError("ranking: nothing was left out to be predicted: give held_out=0.3 to infer")
+        errors = [one.errors(least, fitted=fitted) for fitted in (True, False)]
+        rows.append((_called(one.model.problem.friction), len(one.model.free), *errors, one.bic))
+    table = pd.DataFrame(rows, columns=["law", "free", "fit", "prediction", "bic"])
+    return table.sort_values("prediction", ignore_index=True)
+
+
+def _called(law: FrictionLaw) -> str:
+    """Return the kind of a law with its choices, such as "rate-and-state, ageing"."""
+    chosen = (str(getattr(law, name)) for name, (declared, _) in fields_of(type(law)).items() if isinstance(declared, Choice))
+    return ", ".join([law.kind, *chosen])
+
+
+def notes_of(study: FittedRecord) -> Iterator[str]:
+    """Yield sentences on what is not determined, and on what else to know before the numbers are used."""
+    yield from warnings_of(study)
+    yield from study.certainty.notes
+    yield from minima_of(study)
+    yield from noise_of(study)
+    if study.prediction is not None:
+        yield f"what was left out is predicted with an error of {study.prediction:.3g} times the noise"
+    if study.windows is not None:
+        yield from _windows(study.windows, {one.label: one.declared.unit for one in study.free}, study.table)
+    yield from record_of(study)
+    yield from study.about_samples
+    yield from study.about
+
+
+def warnings_of(study: FittedRecord) -> Iterator[str]:
+    """Yield sentences on what speaks against the numbers as a whole."""
+    if not study.estimate.finished:
+        yield "interrupted: these are the best numbers so far"
+    yield from _misfit(study)
+
+
+def minima_of(study: FittedRecord) -> Iterator[str]:
+    """Yield a sentence on each other minimum that competes with the best one."""
+    for x in study.estimate.others:
+        values = [f"{one.label} {brief(v, one.declared.unit, 3)}" for one, v in zip(study.free, study.model.values(x), strict=True)]
+        yield f"another minimum fits almost as well: {', '.join(values[:8])}; bounds or priors choose between them"
+
+
+def noise_of(study: FittedRecord) -> Iterator[str]:
+    """Yield sentences on the memory of the noise, and on standard deviations that were given too small."""
+    if study.features is not None:
+        yield from _features(study, missed=False)
+        return
+    for name, memory in study.model.memory.items():
+        if memory.time > 0.0 and not _drifts(study, name):
+            yield f"residuals of {name} remember themselves for {brief(memory.time, 's', 3)}; the intervals allow for it"
+    for name, size in study.model.sizes.items():
+        if size > MANY and any(name in part.record.deviations for part in study.parts):
+            yield f"residuals of {name} are {size:.3g} times the standard deviations given; the intervals allow for it"
+
+
+def record_of(study: FittedRecord) -> Iterator[str]:
+    """Yield a sentence if numbers of the record itself were found, which no scenario holds."""
+    own = [f"{name} = {study.values[name]:.4g}" for name in (TREND, DELAY) if name in study.values]
+    if own:
+        yield f"{' and '.join(own)} belong to the record: the run of the best scenario, and the explorer, are without them"
+
+
+def _features(study: FittedRecord, *, missed: bool) -> Iterator[str]:
+    """Yield a sentence on each feature whose mean the run misses, or does not miss."""
+    if study.features is None:
+        return
+    rows: list[Any] = list(study.features[study.features.missed == missed].itertuples())
+    for row in rows:
+        of = f"{row.feature} of part {row.part}" if len(study.model.parts) > 1 else row.feature
+        mean = f"{brief(row.mean, row.unit, 5)} ± {brief(row.error, row.unit, 2)}"
+        ran = "has no slip events" if math.isnan(row.run) else f"has {brief(row.run, row.unit, 4)}"
+        away = f", {abs(row.run - row.mean) / row.error:.0f} standard errors away" if missed and np.isfinite(row.run) else ""
+        yield f"{'the run misses ' * missed}{of}: the mean of the record is {mean}, and the run {ran}{away}"
+
+
+def _misfit(study: FittedRecord) -> Iterator[str]:
+    """Yield sentences on what is left if that is no noise: far too much of it, a drift, or most where the run changes."""
+    if study.features is not None:
+        yield from _features(study, missed=True)
+        return
+    for name, noise in first_sizes(study.model.parts).items():
+        given = any(name in part.record.deviations for part in study.model.parts)
+        size, scatter = study.model.sizes[name], _scatter(study, name)
+        if not given and size > MISSED * noise and size > MISSED_SHARE * scatter:
+            alone = len(study.parts) == 1 and name in SHEAR and _sticks_and_slips(study.parts[0].record.measured[name])
+            cure = "; the record has several slip events: fit each from its own rest with parts='rests'" if alone else ""
+            if not cure and _never_slips(study, name):
+                cure = "; the record has a slip event, the run has none: begin, or give bounds, with numbers with which it slips"
+            yield (
+                f"the run misses features of {name}: what is left is {size / noise:.3g} times the noise of neighbouring samples "
+                f"and {size / scatter:.0%} of the scatter of the record, and its numbers may mean little{cure}"
+            )
+        elif _drifts(study, name):
+            yield (
+                f"what is left of {name} is no noise but a drift or a misfit: it remembers itself for more than an eighth of the "
+                "record; a trend can be free as record.trend, or another law may follow"
+            )
+        if (times := study.certainty.uneven.get(name, EVEN).misfit) > 1.0 and size > _rounding(study, name):
+            yield (
+                f"what is left of {name} is {times:.2g} times larger where the run depends most on its numbers than elsewhere: "
+                "law, machine or loading do not follow there; intervals are wider for it, but another model may give other numbers"
+            )
+
+
+def _scatter(study: FittedRecord, name: str) -> float:
+    """Return the standard deviation of what was measured (SI)."""
+    values = [part.record.measured[name] for part in study.model.parts if name in part.observed]
+    return max(float(np.nanstd(np.concatenate(values))), 1e-300)
+
+
+def _rounding(study: FittedRecord, name: str) -> float:
+    """Return half the step of the digitiser of a quantity (SI), 0 if it has none that shows."""
+    return max(rounding_of(part.record.measured[name]) for part in study.model.parts if name in part.observed)
+
+
+def _drifts(study: FittedRecord, name: str) -> bool:
+    """Return True if what is left of a quantity remembers itself for as long as is looked for."""
+    longest = max(part.record.clock[-1] for part in study.model.parts if name in part.observed)
+    return study.model.memory.get(name, WHITE).time > 0.95 * LONGEST * float(longest)
+
+
+def _sticks_and_slips(shear: Floats) -> bool:
+    """Return True if shear falls more than once, and much faster than it rises: after a velocity step it falls slowly."""
+    known = shear[np.isfinite(shear)]
+    bottoms = [0, *arrests_in(known).tolist()]
+    falling = sum(last - first - int(np.argmax(known[first : last + 1])) for first, last in pairwise(bottoms))
+    return len(bottoms) > 2 and falling < FALLING * bottoms[-1]
+
+
+def _never_slips(study: FittedRecord, name: str) -> bool:
+    """Return True if shear drops in a record as in a slip event, and nothing of the kind happens in its run."""
+    shown = study.curves[study.curves.quantity == name]
+    drops = name in SHEAR and any(len(arrests_in(part.record.measured[name])) > 0 for part in study.parts)
+    return drops and float(np.ptp(shown.model)) < 0.5 * float(np.nanmax(shown.data) - np.nanmin(shown.data))
+
+
+def _windows(table: pd.DataFrame, units: Mapping[str, str], intervals: pd.DataFrame) -> Iterator[str]:
+    """Yield sentences on the spread of numbers over windows, and on those that it makes more unsure than their intervals."""
+    spread = [f"{name} {brief(table[name].min(), unit, 4)} to {brief(table[name].max(), unit, 4)}" for name, unit in units.items()]
+    lasts = table.end - table.begin
+    yield f"over {len(table)} windows of {lasts.min():.3g} to {lasts.max():.3g} s: {', '.join(spread)}"
+    wide = [n for n in units if np.ptp(table[n]) > intervals.high[n] - intervals.low[n]]
+    if wide:
+        yield f"{' and '.join(wide)} depend more on the window than the intervals say: give that spread beside the interval"

@@ -1,0 +1,241 @@
+"""Turn the load point of a record into a loading history: straight parts of its displacement, within its noise."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from stickslip.foundation.arrays import Floats
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.show import brief
+from stickslip.inference.record.noise import GAUSSIAN, noise_of, rounding_of
+from stickslip.inference.record.record import Record
+from stickslip.loading import LoadingHistory, Steps
+
+MOST_PARTS = 2000
+"""Largest number of straight parts; a record that needs more is approximated more coarsely."""
+SURE = 5.0
+"""Number of standard deviations by which the mean of some samples may differ from a straight part."""
+ROUNDING = 1e-7
+"""Smallest noise that is assumed, as a share of the range of the displacement: no sensor and no clock is better."""
+BLOCKS = 16
+"""Smallest number of means from which their noise is measured; wider ones are taken to be surer, as under white noise."""
+WALK = 1.7
+"""Growth from one width to its double, twice in turn or at the widest, that is motion; that of a random walk is sqrt(2)."""
+MANY_GAPS = 0.05
+"""Share of the samples from which gaps are how the record was sampled."""
+GAP = 20.0
+"""Factor by which the time between two samples is longer than usual if there is a gap between them."""
+
+
+class Loading(NamedTuple):
+    """The pull rate of a run (m/s), a number if it is constant, and sentences on how it follows from the record."""
+
+    rate: LoadingHistory | float
+    notes: tuple[str, ...]
+
+
+def loading_of(record: Record) -> Loading | None:
+    """Return the pull rate in a record as a loading history; None if the record has no load point.
+
+    A displacement becomes straight lines from knot to knot, as few as leave nothing but noise; a line goes over gaps, and a jump is
+    a short line. A rate becomes steps in the same way. Raises InputError if there are too few numbers.
+    """
+    is_rate = record.load_point is None
+    given = record.load_rate if is_rate else record.load_point
+    if given is None:
+        return None
+    known = np.isfinite(given)
+    time, values = record.clock[known], given[known]
+    if len(time) < 2:
+        raise InputError(
+            f"{record.name}: the load point has fewer than two numbers: give its rate in the scenario, and leave it out"
+        )
+    least = max(float(np.max(np.abs(values - values[0]))), 1e-3 * float(np.max(np.abs(values))))
+    floor = max(rounding_of(values), ROUNDING * least, 1e-300)
+    allowed = _allowed(time, values, max(noise_of(values), floor), floor)
+    noise = float(allowed[0]) / SURE
+    cuts, coarser = straight_parts(time, values, allowed, 0 if is_rate else 1)
+    if is_rate:
+        middle = 0.5 * (time[np.array(cuts[1:-1], int) - 1] + time[cuts[1:-1]]) if len(cuts) > 2 else np.zeros(0)
+        starts = np.append(0.0, middle)
+        rates = np.array([values[first:last].mean() for first, last in pairwise(cuts)])
+    else:
+        at, heights = _joined(time, values, _knots(time, values, cuts, coarser * noise))
+        rates, starts = np.diff(heights) / np.diff(at), np.append(0.0, at[1:-1])
+        rates[np.abs(np.diff(heights)) < coarser * noise] = 0.0  # at rest, as far as can be told
+    return Loading(_steps(starts, rates), _notes(record, time, rates, coarser, noise))
+
+
+def _steps(starts: Floats, rates: Floats) -> Steps | float:
+    changed = np.append(True, np.diff(rates) != 0.0)
+    if changed.sum() == 1:
+        return float(rates[0])
+    return Steps(starts[changed].tolist(), rates[changed].tolist())
+
+
+def _notes(record: Record, time: Floats, rates: Floats, coarser: float, noise: float) -> tuple[str, ...]:
+    what, unit = ("rate", "m/s") if record.load_point is None else ("displacement", "m")
+    parts = f"{len(rates)} part{'s' if len(rates) > 1 else ''} of constant rate"
+    within = f"its noise of {brief(noise, unit, 3)}"
+    within = within if coarser == 1.0 else f"{brief(coarser * noise, unit, 3)}, {coarser:g} times its noise"
+    found = [f"the {what} of the load point is followed in {parts}, within {within}"]
+    steps = np.diff(time)
+    gaps = int((steps > GAP * float(np.median(steps))).sum())
+    if 0 < gaps < MANY_GAPS * len(steps):
+        found.append(f"the load point has {gaps} gap{'s' if gaps > 1 else ''}, over which its rate is taken as constant")
+    return tuple(found)
+
+
+def _allowed(time: Floats, values: Floats, noise: float, floor: float) -> Floats:
+    """Return how far means over 1, 2, 4, ... neighbouring samples may lie from a straight part, shape (n,).
+
+    That is `SURE` standard deviations of what noise does to such a mean. They are measured on the values themselves, since a sensor
+    hums and a digitiser rounds, so that neighbouring errors resemble each other: a mean over a width holds the noise of that width
+    and of all beyond it. No mean is surer than the last digit.
+    """
+    sums = [np.append(0.0, np.cumsum(one - one[0])) for one in (time, values)]
+    own = [noise]
+    while 2 ** len(own) * BLOCKS <= len(values):
+        own.append(_noise_of_means(sums[0], sums[1], 2 ** len(own)))
+    grows = [*(after > WALK * before for before, after in pairwise(own)), True]
+    motion = next((k for k, twice in enumerate(pairwise(grows)) if all(twice)), len(own) - 1)
+    sizes = [noise]
+    for k in range(1, len(values).bit_length()):
+        white = sizes[-1] / math.sqrt(2.0)
+        sizes.append(max(own[k], white) if k <= motion else white)
+    beyond = np.cumsum(np.square(sizes)[::-1])[::-1] + sizes[-1] ** 2
+    return np.asarray(np.maximum(SURE * np.sqrt(0.5 * beyond), floor))
+
+
+def _noise_of_means(time_sums: Floats, sums: Floats, width: int) -> float:
+    """Return the standard deviation of means over a number of samples, each compared with the line between those beside it."""
+    first = np.arange(0, len(sums) - width, max(width // 4, 1))
+    t, y = ((total[first + width] - total[first]) / width for total in (time_sums, sums))
+    apart = min(width, 4)
+    t0, t1, t2 = t[: -2 * apart], t[apart:-apart], t[2 * apart :]
+    share = (t1 - t0) / (t2 - t0)
+    bends = y[apart:-apart] - (1.0 - share) * y[: -2 * apart] - share * y[2 * apart :]
+    return float(np.median(np.abs(bends / np.sqrt(1.0 + (1.0 - share) ** 2 + share**2)))) / GAUSSIAN
+
+
+def straight_parts(time: Floats, values: Floats, allowed: Floats, order: int = 1) -> tuple[list[int], float]:
+    """Return the indices at which parts that are straight (order 1) or constant (0) begin, and the number of samples behind them.
+
+    `allowed` is how far means over 1, 2, 4, ... samples may lie from a part. The second number is the factor by which more than
+    that had to be allowed for parts that are not too many.
+    """
+    coarser = 1.0
+    while True:
+        cuts = _cuts(time, values, coarser * allowed, order)
+        if len(cuts) - 1 <= MOST_PARTS:
+            return _without_needless(time, values, cuts, coarser * allowed, order), coarser
+        coarser *= 4.0
+
+
+def _cuts(time: Floats, values: Floats, allowed: Floats, order: int) -> list[int]:
+    """Return indices between which parts leave nothing but noise; the search stops a little beyond the largest number of parts."""
+    open_parts, ends = [(0, len(time))], list[int]()
+    while open_parts and len(ends) + len(open_parts) <= 2 * MOST_PARTS:
+        first, last = open_parts.pop()
+        at = None if last - first < 3 else _worst(time[first:last], values[first:last], allowed, order)
+        if at is None:
+            ends.append(first)
+        else:
+            open_parts += [(first, first + at), (first + at, last)]
+    ends += [first for first, _ in open_parts]
+    return [*sorted(ends), len(time)]
+
+
+def _line(time: Floats, values: Floats) -> tuple[float, float]:
+    """Return level at the middle time and slope of the line of least squares."""
+    t = time - time.mean()
+    spread = float(t @ t)
+    return float(values.mean()), float(t @ (values - values.mean())) / spread if spread > 0.0 else 0.0
+
+
+def _rest(time: Floats, values: Floats, order: int) -> Floats:
+    level, slope = _line(time, values)
+    return np.asarray(values - level - (slope * (time - time.mean()) if order else 0.0))
+
+
+def _is_noise(rest: Floats, allowed: Floats) -> bool:
+    """Return True if means of neighbouring samples are as small as noise makes them, over all lengths that are powers of 2."""
+    sums = np.append(0.0, np.cumsum(rest))
+    for k in range(len(rest).bit_length()):
+        width = 2**k
+        step = max(width // 2, 1)
+        if np.max(np.abs(sums[width::step] - sums[:-width:step])) > width * allowed[k]:
+            return False
+    return True
+
+
+def _worst(time: Floats, values: Floats, allowed: Floats, order: int) -> int | None:
+    """Return where to cut a part that is not straight, or None if it is.
+
+    A line is cut where it is farthest from the chord of its ends, a constant where the sum of what it leaves is largest.
+    """
+    rest = _rest(time, values, order)
+    if _is_noise(rest, allowed):
+        return None
+    if order == 0:
+        return int(np.argmax(np.abs(np.cumsum(rest)[:-1]))) + 1
+    width = max(min(len(values) // 8, 16), 1)
+    begin, end = values[:width].mean(), values[-width:].mean()
+    t0, t1 = time[:width].mean(), time[-width:].mean()
+    away = np.abs(values - begin - (end - begin) * (time - t0) / (t1 - t0))
+    return int(np.clip(np.argmax(away[1:-1]) + 1, 1, len(values) - 1))
+
+
+def _without_needless(time: Floats, values: Floats, cuts: list[int], allowed: Floats, order: int) -> list[int]:
+    """Return the cuts without those whose two parts are one."""
+    kept = [cuts[0]]
+    for i in range(1, len(cuts) - 1):
+        first, last = kept[-1], cuts[i + 1]
+        if not _is_noise(_rest(time[first:last], values[first:last], order), allowed):
+            kept.append(cuts[i])
+    return [*kept, cuts[-1]]
+
+
+def _knots(time: Floats, values: Floats, cuts: list[int], noise: float) -> list[float]:
+    """Return the times at which neighbouring lines meet; if they do not meet near the cut, there is a jump between two knots."""
+    found = [float(time[0])]
+    for first, at, last in zip(cuts[:-2], cuts[1:-1], cuts[2:], strict=True):
+        left, right = float(time[at - 1]), float(time[at])
+        (a, p), (b, q) = (_line(time[part], values[part]) for part in (slice(first, at), slice(at, last)))
+        t1, t2 = float(time[first:at].mean()), float(time[at:last].mean())
+        if p != q and at - first > 1 and last - at > 1:
+            meet, room = (b - a + p * t1 - q * t2) / (p - q), 2.0 * (right - left) + SURE * noise / abs(p - q)
+            if left - room <= meet <= right + room:
+                found.append(float(np.clip(meet, t1, t2)))
+                continue
+        found += [left, right]
+    found.append(float(time[-1]))
+    ascending = [found[0]]
+    for knot in found[1:]:
+        if knot > ascending[-1] + 1e-12 * (found[-1] - found[0]):
+            ascending.append(knot)
+    return ascending
+
+
+def _joined(time: Floats, values: Floats, knots: list[float]) -> tuple[Floats, Floats]:
+    """Return knots and the heights there of the continuous line of straight parts that is closest to the values."""
+    from scipy.sparse import csr_matrix
+    from scipy.sparse.linalg import spsolve
+
+    at = np.array(knots)
+    n = np.clip(np.searchsorted(at, time, side="right") - 1, 0, len(at) - 2)
+    share = (time - at[n]) / (at[n + 1] - at[n])
+    rows = np.arange(len(time))
+    matrix = csr_matrix(
+        (np.concatenate([1.0 - share, share]), (np.concatenate([rows, rows]), np.concatenate([n, n + 1]))), (len(time), len(at))
+    )
+    # knots without samples beside them: they follow the straight line between the samples
+    straight = np.interp(at, time, values)
+    weak = 1e-8
+    normal = (matrix.T @ matrix).tolil()
+    normal.setdiag(normal.diagonal() + weak)
+    return at, np.asarray(spsolve(normal.tocsc(), matrix.T @ (values - np.interp(time, at, straight)))) + straight

@@ -1,0 +1,210 @@
+"""Read a laboratory record from files and tables: columns of one clock or two, in order of time, and what was done with them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.foundation.arguments import as_path, shown
+from stickslip.foundation.arrays import Floats
+from stickslip.foundation.columns import Table, read_mapping
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.headings import find, missing, quoted
+from stickslip.foundation.quantities import Quantity
+from stickslip.foundation.text_columns import read_file
+from stickslip.inference.record.doubts import checked
+from stickslip.inference.record.record import LOADING, MEASURED, Record
+from stickslip.scenarios.entries import typed_number
+
+LARGEST_FILE = 500_000_000
+"""Size (bytes) of the largest record that is read."""
+MOST_SAMPLES = 5_000_000
+"""Largest number of samples of a record."""
+BESIDE = ("normal_stress", "normal_force", "rotation_rate", "rotation", "radius")
+"""Columns of which others are made."""
+WANTED = ("time", *LOADING, *MEASURED, *BESIDE, *(f"{name}_deviation" for name in MEASURED))
+"""The columns that are looked for."""
+LATER = Quantity("s", "time by which the second clock begins later")
+FEW = 6
+"""Largest number of headings that a message names."""
+
+
+class _Columns(NamedTuple):
+    """Columns (SI) by their names, on one clock in ascending order; their place, and the headings that were passed over."""
+
+    columns: dict[str, Floats]
+    place: str
+    at_header: str
+    header: tuple[str, ...]
+    passed: tuple[str, ...]
+    notes: list[str]
+
+
+def read_record(source: Any, beside: Any = None, later: float = 0.0) -> Record:
+    """Read a record as `Record.read` describes, the whole of it. Raises InputError."""
+    source, beside, later = _two_in(source) if beside is None else (source, beside, later)
+    read = _ordered(source)
+    if beside is not None:
+        read = _joined(read, _ordered(beside), later)
+    found, notes = read.columns, read.notes
+    _take_ratio(found, "shear_stress", "normal_stress")
+    _take_ratio(found, "shear_force", "normal_force")
+    _take_rotation(found, notes)
+    notes += _passed_over(read)
+    measured = {name: found[name] for name in MEASURED if name in found}
+    if not measured:
+        raise InputError(f"{read.at_header}: nothing measured; {missing(read.header, 'friction')}{_there(read.passed)}")
+    deviations = {name: found[f"{name}_deviation"] for name in measured if f"{name}_deviation" in found}
+    for name, values in deviations.items():
+        if not (np.isfinite(values) & (values > 0.0)).all():
+            raise InputError(f"{read.place}: {name}_deviation must be above 0 in each row")
+    driven = {name: found.get(name) for name in LOADING}
+    return checked(Record(found["time"], measured, deviations, **driven, name=read.place, notes=tuple(notes)))
+
+
+def _two_in(source: Any) -> tuple[Any, Any, float]:
+    """Return the two files that a text like "shear.csv+load.csv@2.5" names, and how much later (s) the second clock begins."""
+    if not isinstance(source, str) or "+" not in source or Path(source).exists():
+        return source, None, 0.0
+    first, _, second = source.partition("+")
+    file, at, seconds = second.rpartition("@")
+    return first, file if at else second, LATER.check("record", "@", typed_number(seconds)) if at else 0.0
+
+
+def _ordered(source: Any) -> _Columns:
+    """Return the columns of a source in order of time. Raises InputError."""
+    table = _table_in(source)
+    used = {one.place for one in find(table.header, WANTED, table.place).values()}
+    passed = tuple(heading for i, heading in enumerate(table.header) if i not in used and heading.strip())
+    at_header = table.at_header or table.place
+    if "time" not in table.columns:
+        raise InputError(f"{at_header}: no column 'time'; {missing(table.header, 'time')}{_there(passed)}")
+    notes: list[str] = []
+    return _Columns(_in_order(dict(table.columns), table.place, notes), table.place, at_header, tuple(table.header), passed, notes)
+
+
+def _table_in(source: Any) -> Table:
+    """Return the known columns of a source. Raises InputError."""
+    if isinstance(source, Mapping) or hasattr(source, "columns"):
+        return read_mapping(source, WANTED, "record", raw=True)
+    if not isinstance(source, str | os.PathLike):
+        raise InputError(f"infer: record must be a CSV file, a DataFrame, or a mapping of headings to numbers, got {shown(source)}")
+    return read_file(as_path("infer: record", source), WANTED, (LARGEST_FILE, MOST_SAMPLES), raw=True)
+
+
+def _there(passed: tuple[str, ...]) -> str:
+    """Return the end of a message that names headings which were not understood."""
+    return f"; not understood: {_listed(passed)}" if passed else ""
+
+
+def _listed(headings: tuple[str, ...]) -> str:
+    more = f" and {len(headings) - FEW} more" if len(headings) > FEW else ""
+    return ", ".join(quoted(one) for one in headings[:FEW]) + more
+
+
+def _passed_over(read: _Columns) -> Iterator[str]:
+    """Yield sentences on columns that are not used: headings that were not understood, and what is measured beside shear."""
+    columns = read.columns
+    if read.passed:
+        cure = "the displacement of the machine is called load_point, and its rate load_rate"
+        cure = "" if set(LOADING) & set(columns) else f"; {cure}"
+        yield f"columns that were not understood: {_listed(read.passed)}{cure}"
+    shear, *others = [name for name in MEASURED if name in columns] or [""]
+    others = [name for name in others if name in ("slip", "slip_rate") and shear not in ("slip", "slip_rate")]
+    if others:
+        yield f"{shear} is what is fitted, unless observe names {' or '.join(others)}, which the record has too"
+
+
+def _joined(first: _Columns, second: _Columns, later: float) -> _Columns:
+    """Return the columns of two sources on the clock of the first, at the samples of the one with shear, or else of the first.
+
+    Raises InputError if both have a column, or if the two clocks have no time in common.
+    """
+    twice = sorted((set(first.columns) & set(second.columns)) - {"time"})
+    if twice:
+        raise InputError(f"{first.place}+{second.place}: both have {', '.join(twice)}: remove one")
+    second.columns["time"] = second.columns["time"] + later
+    has_more = sum(name in second.columns for name in MEASURED) > sum(name in first.columns for name in MEASURED)
+    main, other = (second, first) if has_more else (first, second)
+    time, clock = main.columns["time"], other.columns["time"]
+    inside = (time >= clock[0]) & (time <= clock[-1])
+    place = f"{first.place}+{second.place}"
+    if inside.sum() < 2:
+        spans = " and ".join(f"{one.columns['time'][0]:g} to {one.columns['time'][-1]:g} s" for one in (first, second))
+        cure = "give how much later the zero of the second one is: FIRST+SECOND@SECONDS, or later=SECONDS in Python"
+        raise InputError(f"{place}: the two clocks have no time in common, {spans}: {cure}")
+    columns = {name: values[inside] for name, values in main.columns.items()}
+    for name, values in other.columns.items():
+        known = np.isfinite(values)
+        if name != "time" and known.any():
+            columns[name] = np.interp(time[inside], clock[known], values[known])
+    named = ", ".join(name for name in other.columns if name != "time")
+    told = f"{named} of {other.place} {'are' if ',' in named else 'is'} taken at the times of {main.place}"
+    notes = [*first.notes, *second.notes, told + (f", {inside.sum()} of {len(time)} samples" if not inside.all() else "")]
+    return _Columns(columns, place, place, first.header + second.header, first.passed + second.passed, notes)
+
+
+def _take_ratio(found: dict[str, Floats], shear: str, normal: str) -> None:
+    """Replace a shear stress or force with its normal one by friction, unless friction itself is there."""
+    if shear in found and normal in found and "friction" not in found:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio = found.pop(shear) / found[normal]
+            if f"{shear}_deviation" in found:
+                found["friction_deviation"] = found.pop(f"{shear}_deviation") / np.abs(found[normal])
+        found["friction"] = np.where(np.isfinite(ratio), ratio, np.nan)
+
+
+def _take_rotation(found: dict[str, Floats], notes: list[str]) -> None:
+    """Make the load point, or its rate, of a rotation and the radius of the contact, unless it is there."""
+    turned, made = ("rotation", "load_point") if "rotation" in found else ("rotation_rate", "load_rate")
+    if turned not in found or set(LOADING) & set(found):
+        return
+    if "radius" in found:
+        found[made] = found[turned] * float(np.nanmedian(found["radius"]))
+        notes.append(f"{made} is {turned} times the radius")
+    else:
+        cure = "a column radius (mm), the mean radius of the contact, makes it the load point"
+        notes.append(f"{turned} is passed over: {cure}")
+
+
+def _in_order(found: dict[str, Floats], place: str, notes: list[str]) -> dict[str, Floats]:
+    """Return columns sorted by time, with one row for each time. Raises InputError for fewer than two rows with a time."""
+    known = np.isfinite(found["time"])
+    if not known.all():
+        lost = int((~known).sum())
+        notes.append(f"{lost} rows without a time are left out" if lost > 1 else "1 row without a time is left out")
+        found = {name: values[known] for name, values in found.items()}
+    time = found["time"]
+    if len(time) < 2:
+        raise InputError(f"{place}: at least two rows with a time are needed, got {len(time)}")
+    for name, values in found.items():
+        lost = int((~np.isfinite(values)).sum())
+        if lost and name != "time":
+            notes.append(f"{name} has no number in {lost} of {len(values)} rows: left out")
+            found[name] = np.where(np.isfinite(values), values, np.nan)
+    if (np.diff(time) < 0.0).any():
+        notes.append("the rows were not in the order of time: they were sorted")
+        order = np.argsort(time, kind="stable")
+        found = {name: values[order] for name, values in found.items()}
+        time = found["time"]
+    if (np.diff(time) == 0.0).any():
+        first = np.flatnonzero(np.append(True, np.diff(time) > 0.0))
+        again = len(time) - len(first)
+        notes.append(f"{again} rows repeat a time: means were taken" if again > 1 else "1 row repeats a time: the mean was taken")
+        if len(first) < 2:
+            raise InputError(f"{place}: all rows have one time, {time[0]:g} s")
+        found = {name: _means(values, first) for name, values in found.items()}
+    return found
+
+
+def _means(values: Floats, first: NDArray[np.intp]) -> Floats:
+    """Return means of groups of rows that begin at some indices; numbers that are missing do not count."""
+    known = np.isfinite(values)
+    count = np.add.reduceat(known.astype(float), first)
+    with np.errstate(invalid="ignore"):
+        return np.asarray(np.add.reduceat(np.where(known, values, 0.0), first) / count)

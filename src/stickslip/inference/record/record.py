@@ -1,0 +1,124 @@
+"""Hold a laboratory record: time, what the machine did, and what was measured."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from stickslip.foundation.arguments import CheckedArguments, shown
+from stickslip.foundation.arrays import Floats
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.show import brief
+
+SHEAR = ("friction", "shear_stress", "shear_force")
+"""What may be measured of the resistance; a record is fitted by the first of these that it has."""
+MEASURED = (*SHEAR, "slip", "slip_rate")
+"""Everything that may be fitted."""
+LOADING = ("load_point", "load_rate")
+UNITS = {"friction": "1", "shear_stress": "Pa", "shear_force": "N", "slip": "m", "slip_rate": "m/s"}
+UNITS |= {f"{name}_{level}": UNITS[name] for name in SHEAR for level in ("peak", "rest", "drop")}
+UNITS |= {"recurrence": "s", "duration": "s", "event_slip": "m", "peak_rate": "m/s"}
+HIGHEST, LOWEST = 3.0, 1e-2
+"""Friction coefficients beyond which a record is refused, or doubted."""
+
+
+@dataclass(frozen=True, eq=False)
+class Record(CheckedArguments):
+    """A laboratory record in SI, at ascending times (s). Make one with `Record.read`.
+
+    `measured` holds friction (1), shear_stress (Pa), shear_force (N), slip (m) and slip_rate (m/s), NaN where nothing was measured,
+    and `deviations` their standard deviations, where they are given. `load_point` (m) and `load_rate` (m/s) are those of the load
+    point, or None. `notes` say what was done with the record, one sentence each. `relative` is the noise of each sample relative to
+    the usual one, where some are means of more samples than others, or None.
+    """
+
+    time: Floats
+    measured: dict[str, Floats]
+    deviations: dict[str, Floats] = field(default_factory=dict)
+    load_point: Floats | None = None
+    load_rate: Floats | None = None
+    name: str = "record"
+    notes: tuple[str, ...] = ()
+    relative: Floats | None = None
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.measured, Mapping) or not set(self.measured) <= set(UNITS):
+            names = f"a mapping of arrays by name ({', '.join(MEASURED)})"
+            example = 'Record.read({"time": t, "friction": x}) makes a record of columns'
+            raise InputError(f"Record: measured must be {names}, got {shown(self.measured)}; {example}")
+
+    @classmethod
+    def read(
+        cls, source: Any, begin: float | None = None, end: float | None = None, *, beside: Any = None, later: float = 0.0
+    ) -> Record:
+        """Read a record.
+
+        Parameters
+        ----------
+        source : str, Path, DataFrame, mapping or Record
+            A text file, or columns of numbers by their headings: `time` with any of `friction`, `shear_stress`, `shear_force`,
+            `slip` and `slip_rate`, and with `load_point` (displacement) or `load_rate` of the machine. Shear stress with
+            `normal_stress`, and shear force with `normal_force`, give friction; `rotation_rate` (rpm) with `radius` gives the load
+            rate. Headings may carry units, as in "tau (MPa)". "FIRST.csv+SECOND.csv@SECONDS" is short for `beside` and `later`.
+        begin, end : float, optional
+            Times (s, as in the record) between which the record is taken.
+        beside : str, Path, DataFrame or mapping, optional
+            A second source with a clock of its own and other columns, such as the load point.
+        later : float
+            How much later (s) the zero of the second clock is than that of the first.
+
+        Raises
+        ------
+        InputError
+            If the record cannot be used; the message is one line with the place and the cure.
+        """
+        if isinstance(source, Record):
+            return source.part(begin, end)
+        from stickslip.inference.record.read import read_record
+
+        return read_record(source, beside, later).part(begin, end)
+
+    def part(self, begin: float | None = None, end: float | None = None) -> Record:
+        """Return the samples between two times (s, as in the record). Raises InputError if there are fewer than two."""
+        inside = (self.time >= (-np.inf if begin is None else begin)) & (self.time <= (np.inf if end is None else end))
+        if inside.sum() < 2:
+            spans = f"the record goes from {self.time[0]:g} to {self.time[-1]:g} s"
+            raise InputError(f"{self.name}: fewer than two samples in the part that is asked for; {spans}")
+        return self if inside.all() else self._of(inside)
+
+    def _of(self, chosen: Any) -> Record:
+        def cut(values: Floats | None) -> Floats | None:
+            return None if values is None else np.asarray(values[chosen])
+
+        measured = {name: values[chosen] for name, values in self.measured.items()}
+        deviations = {name: values[chosen] for name, values in self.deviations.items()}
+        loads = cut(self.load_point), cut(self.load_rate)
+        return replace(
+            self,
+            time=self.time[chosen],
+            measured=measured,
+            deviations=deviations,
+            load_point=loads[0],
+            load_rate=loads[1],
+            relative=cut(self.relative),
+        )
+
+    @property
+    def clock(self) -> Floats:
+        """Times since the first sample (s), shape (n,): those of the run."""
+        return np.asarray(self.time - self.time[0])
+
+    @property
+    def shear(self) -> str | None:
+        """The name of the measured resistance; None if there is none."""
+        return next((name for name in SHEAR if name in self.measured), None)
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def __repr__(self) -> str:
+        what = ", ".join([*self.measured, *(name for name in LOADING if getattr(self, name) is not None)])
+        return f"Record({self.name}: {len(self)} samples in {brief(float(np.ptp(self.time)), 's')}: {what})"

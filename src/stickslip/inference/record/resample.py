@@ -1,0 +1,195 @@
+"""Records with too many samples, as means over neighbouring ones, and jumps of a run between samples."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.foundation.arrays import Floats
+from stickslip.inference.record.loading import GAP
+from stickslip.inference.record.noise import noise_of, rounding_of
+from stickslip.inference.record.record import Record
+from stickslip.trajectory.history import Side
+
+RAMP = 2
+"""Number of samples over which a jump is spread at least, so that both samples beside it change as it moves."""
+UNSURE = 1.0 / math.sqrt(24.0)
+"""Standard deviation of these two samples, as a share of the height of the jump.
+
+As a ramp over two samples moves by a share x of the time between them, one changes by x/2 and so does the other. With this standard
+deviation they tell x with the standard deviation of a place that may be anywhere between them, 1/sqrt(12).
+"""
+STEEP = 0.5
+"""Change of a steep part of a curve in the time between two samples, as a share of the range of the curve, from which it jumps."""
+REACH = 3
+"""Number of samples beside the jump of a run among which the one of the data is looked for."""
+
+
+class Jumps(NamedTuple):
+    """Times of jumps (s), ascending, and their heights (after minus before)."""
+
+    time: Floats
+    height: Floats
+
+
+def jumps_in(curve: Callable[[Floats, Side], Floats], breaks: Floats, least: float, step: float = 0.0) -> Jumps:
+    """Return the jumps of a curve that are higher than `least`; `curve` gives its values at times, from the left or the right.
+
+    So is a part between two breaks that is so steep that samples, which are apart by a time `step` (s), pass it over: it jumps in
+    its middle.
+    """
+    if not len(breaks):
+        return Jumps(breaks, breaks)
+    left, right = curve(breaks, "left"), curve(breaks, "right")
+    height, between = right - left, left[1:] - right[:-1]
+    steep = (np.abs(between) > least) & (step * np.abs(between) > STEEP * float(np.ptp(left)) * np.diff(breaks))
+    chosen = np.abs(height) > least
+    time = np.concatenate([breaks[chosen], 0.5 * (breaks[1:] + breaks[:-1])[steep]])
+    order = np.argsort(time, kind="stable")
+    return Jumps(time[order], np.concatenate([height[chosen], between[steep]])[order])
+
+
+def spread(values: Floats, time: Floats, jumps: Jumps, width: int) -> Floats:
+    """Return values at samples in which each jump is a ramp over `width` samples, with the jump in its middle.
+
+    The values change steadily as a jump moves.
+    """
+    result = values.copy()
+    for at, height in zip(jumps.time.tolist(), jumps.height.tolist(), strict=True):
+        k = int(np.searchsorted(time, at)) - 1
+        if not 0 <= k < len(time) - 1:
+            continue
+        near = slice(max(k - width // 2, 0), k + width // 2 + 2)
+        away = (time[near] - at) / (width * (time[k + 1] - time[k]))
+        share = np.maximum(0.5 - np.abs(away), 0.0)
+        result[near] += np.where(away < 0.0, share, -share) * height
+    return result
+
+
+def unsure(time: Floats, data: Floats, jumps: Jumps) -> Floats:
+    """Return the standard deviation that the unknown time of each jump adds at the two samples between which the data jump."""
+    added = np.zeros(len(time))
+    change = np.nan_to_num(np.diff(data))
+    for at, height in zip(jumps.time.tolist(), jumps.height.tolist(), strict=True):
+        k = int(np.searchsorted(time, at)) - 1
+        if 0 <= k < len(change):
+            first = max(k - REACH, 0)
+            k = first + int(np.argmax(change[first : k + REACH + 1] * height))
+            added[k : k + 2] += (UNSURE * height) ** 2
+    return np.sqrt(added)
+
+
+MOST_FITTED = 100_000
+"""Largest number of samples of a part that are fitted as they are."""
+SURE, FARTHEST = 5.0, 6.0
+"""Standard deviations by which a bend, and a single sample, may differ from a line through a bin of which the mean is taken."""
+COARSEST = 1e6
+"""Largest factor on the noise with which bins are still divided."""
+SMALLEST_NOISE = 1e-9
+"""Smallest noise, as a share of the range of a quantity."""
+
+
+@dataclass(frozen=True)
+class Bins:
+    """Groups of neighbouring samples: index of the first sample, and number of samples, of each."""
+
+    first: NDArray[np.intp]
+    count: NDArray[np.intp]
+
+    def sums(self, values: Floats) -> Floats:
+        """Return the sum over each bin."""
+        return np.asarray(np.add.reduceat(values, self.first))
+
+    def is_mixed(self, values: Floats, noise: float) -> NDArray[np.bool_]:
+        """Return True for bins in which values differ from a line by more than noise, or only some are missing."""
+        missing = self.sums((~np.isfinite(values)).astype(float))
+        i = np.arange(len(values)) - np.repeat(self.first, self.count)
+        t = (2.0 * i + 1.0) / np.repeat(self.count, self.count) - 1.0
+        values = np.where(np.isfinite(values), values, 0.0)
+        rest = values - np.repeat(self.sums(values) / self.count, self.count)
+        slope = self.sums(rest * t) / np.maximum(self.sums(t * t), 1e-300)
+        rest = rest - np.repeat(slope, self.count) * t
+        mixed = np.maximum.reduceat(np.abs(rest), self.first) > FARTHEST * noise
+        for shape in (1.5 * t**2 - 0.5, 2.5 * t**3 - 1.5 * t):  # Legendre's polynomials: a bend, and a step
+            mixed |= np.abs(self.sums(rest * shape)) > SURE * noise * np.sqrt(self.sums(shape * shape))
+        return np.asarray((mixed | (missing > 0.0)) & (missing < self.count))
+
+    def split(self, whole: NDArray[np.bool_]) -> Bins:
+        """Return the bins in which those that are not to stay whole are single samples."""
+        single = np.repeat(~whole, self.count)
+        begins = single.copy()
+        begins[self.first] = True
+        first = np.flatnonzero(begins)
+        return Bins(first, np.diff(np.append(first, len(single))))
+
+
+def resampled(record: Record, most: int = MOST_FITTED) -> tuple[Record, tuple[str, ...]]:
+    """Return a record of about so many samples at most, and a sentence on what was done.
+
+    Samples are replaced by means over groups of them, which no gap divides. So what is faster than a group is averaged and does
+    not turn up as something slow. Where a measured quantity bends or jumps within a group, its samples stay.
+    """
+    if len(record) <= most:
+        return record, ()
+    size = -(-len(record) // most)
+    bins, between = _bins(record.time, size), _bins(record.time, size, size // 2)
+    known = {name: values for name, values in record.measured.items() if np.isfinite(values).any()}
+    noise = {name: _noise(values) for name, values in known.items()}
+    coarser = 1.0
+    while True:
+        single = np.zeros(len(record), bool)
+        single[[0, -1]] = True  # the run begins and ends with the record
+        for name, values in known.items():
+            for groups in (bins, between):
+                single |= np.repeat(groups.is_mixed(values, coarser * noise[name]), groups.count)
+        kept = bins.split(bins.sums(single.astype(float)) == 0.0)
+        if len(kept.first) <= 2 * most or coarser > COARSEST:
+            return _means(record, kept), (_told(record, kept, size, coarser),)
+        coarser *= 4.0
+
+
+def _noise(values: Floats) -> float:
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    return max(noise_of(values), rounding_of(values), SMALLEST_NOISE * max(high - low, 1e-3 * max(abs(low), abs(high)), 1e-300))
+
+
+def _bins(time: Floats, size: int, shift: int = 0) -> Bins:
+    """Return groups of so many samples, fewer before and after gaps; the first group after a gap is shorter by a shift."""
+    steps = np.diff(time)
+    begins = np.flatnonzero(np.append(True, steps > GAP * float(np.median(steps))))
+    since = np.arange(len(time)) - np.repeat(begins, np.diff(np.append(begins, len(time))))
+    first = np.flatnonzero((since == 0) | ((since + shift) % size == 0))
+    return Bins(first, np.diff(np.append(first, len(time))))
+
+
+def _means(record: Record, bins: Bins) -> Record:
+    def mean(values: Floats) -> Floats:
+        return bins.sums(values) / bins.count
+
+    usual = float(np.median(bins.count))
+    measured = {name: mean(values) for name, values in record.measured.items()}
+    deviations = {name: np.sqrt(mean(values**2) / bins.count * usual) for name, values in record.deviations.items()}
+    loads = [None if one is None else mean(one) for one in (record.load_point, record.load_rate)]
+    relative = np.sqrt(usual / bins.count)
+    return replace(
+        record,
+        time=mean(record.time),
+        measured=measured,
+        deviations=deviations,
+        load_point=loads[0],
+        load_rate=loads[1],
+        relative=relative,
+    )
+
+
+def _told(record: Record, bins: Bins, size: int, coarser: float) -> str:
+    single = int((bins.count == 1).sum())
+    text = f"the {len(record)} samples of {record.name} became {len(bins.first)}: means over {size}"
+    if single:
+        text += f", and {single} samples as they are, where a measured quantity bends or jumps"
+    return text if coarser == 1.0 else f"{text} by more than {coarser:g} times its noise"

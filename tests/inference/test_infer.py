@@ -1,0 +1,322 @@
+"""Inference from records that scipy's integrator and closed forms have made: the numbers come back within their intervals."""
+
+from __future__ import annotations
+
+import math
+import sys
+from dataclasses import replace
+from importlib import import_module
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from stickslip.foundation.netcdf_file import read
+from stickslip.inference.certainty.sampling import sample
+from stickslip.inference.inference import Inference
+from stickslip.inference.record.loading import loading_of
+from tests.inference.laboratory import CoulombBlock, WeakeningSlab, correlated, load_point
+from tests.inference.velocity_steps import CLEAN, CLOCK, GUESS, RATES, STEPS, TIMES, TRUE, TRUTH, inferred, record
+
+
+@pytest.fixture(scope="module")
+def found() -> Inference:
+    return inferred(profiles=True, held_out=0.2)
+
+
+def check_holds(study: Inference, truth: dict[str, float], widths: float = 1.5) -> None:
+    """Check that true values are within so many half widths of the intervals of 95 %."""
+    for name, value in truth.items():
+        row = study.table.loc[name]
+        half = 0.5 * (row.high - row.low)
+        assert abs(row.value - value) < widths * half, (name, row.value, value, half)
+
+
+def test_the_engine_and_the_integrator_of_the_record_agree() -> None:
+    law = ss.friction.RateAndState(TRUE.reference, TRUE.a, TRUE.b, TRUE.distance)
+    run = ss.simulate(ss.Problem(ss.SpringBlock(TRUE.mass, TRUE.stiffness, TRUE.normal), law, pull_rate=STEPS), 200.0)
+    assert np.abs(run.traction(CLOCK) / TRUE.normal - CLEAN).max() < 1e-8
+
+
+def test_velocity_steps_give_back_friction_and_stiffness_of_the_machine(found: Inference) -> None:
+    check_holds(found, TRUTH)
+    assert (found.table.uncertainty / found.table.value).max() < 0.02
+    assert found.fit.noise["friction"] == pytest.approx(2e-4, rel=0.05)
+    assert found.prediction == pytest.approx(1.0, abs=0.15)
+    assert found.estimate.finished
+
+
+def test_profiles_of_a_nearly_linear_fit_are_the_intervals_of_its_curvature(found: Inference) -> None:
+    for profile, width, one, x in zip(found.profiles, found.certainty.widths, found.free, found.estimate.searched, strict=True):
+        half = found.certainty.factor * width
+        assert profile.low == pytest.approx(one.natural(x - half), rel=0.15 * half)
+        assert profile.high == pytest.approx(one.natural(x + half), rel=0.15 * half)
+        assert min(profile.rise) == 0.0
+
+
+def test_the_scenario_written_runs_to_the_curve_shown(found: Inference, tmp_path: Path) -> None:
+    run = ss.simulate(found.to_toml(tmp_path / "best.toml"))
+    shown = found.curves
+    assert run.traction(shown.time) / 5e4 == pytest.approx(shown.model.to_numpy(), rel=1e-9)
+
+
+def test_the_file_holds_data_model_numbers_and_where_they_come_from(found: Inference, tmp_path: Path) -> None:
+    stored = read(found.to_netcdf(tmp_path / "a.nc"))
+    assert stored["residual"].values == pytest.approx(stored["data"].values - stored["model"].values, abs=1e-15)
+    assert dict(zip(stored["number"].values, stored["value"].values, strict=True)) == pytest.approx(found.values)
+    assert stored.attrs["scenario"] == found.scenario.to_toml()
+    assert "stickslip" in stored.attrs["source"]
+    assert (stored["fitted"].values == 0).sum() == 300
+
+
+def test_the_figure_shows_record_residual_rate_and_pairs(found: Inference) -> None:
+    figure = found.plot()
+    titles = [axes.get_title(loc="left") for axes in figure.axes]
+    wanted = {"(a)  record and best run", "(b)  residual", "(c)  slip rate of the best run", "(d)  pairs, 95 %"}
+    assert wanted <= set(titles)
+    assert len(titles) == 3 + 6
+    assert "samples" not in found.to_dataset()
+
+
+def test_correlated_noise_is_told_and_widens_the_intervals() -> None:
+    white, memory = inferred(), inferred(record(per_sample=10.0))
+    assert memory.model.memory["friction"].time == pytest.approx(10.0 * CLOCK[1], rel=0.3)
+    assert white.model.memory["friction"].time == 0.0
+    assert any(note.startswith("residuals of friction remember themselves for 1.") for note in memory.notes)
+    check_holds(memory, TRUTH)
+    slow = ["friction.reference"]  # what changes slowly suffers most from slow noise
+    assert (memory.table.uncertainty / white.table.uncertainty)[slow].min() > 2.5
+
+
+def test_words_say_what_the_record_does_not_determine() -> None:
+    study = inferred(free=[*TRUTH, "friction.rate", "body.mass"])
+    assert "body.mass has no influence on what is fitted: fix it" in study.notes
+    assert "the record does not determine friction.reference and friction.rate separately: fix one of them" in study.notes
+    assert not np.isfinite(study.table.uncertainty[["friction.rate", "friction.reference", "body.mass"]]).any()
+    check_holds(study, {name: TRUTH[name] for name in ("friction.a", "friction.b", "body.stiffness")})
+
+
+def test_a_number_on_a_bound_is_told_and_has_no_interval() -> None:
+    study = inferred(bounds={"b": (0.0128, 0.02)})
+    assert study.table.source["friction.b"] == "bound"
+    assert any(note.startswith("friction.b lies on the lower end of its bounds, 0.0128") for note in study.notes)
+
+
+def test_a_prior_pulls_as_much_as_it_is_sure() -> None:
+    loose = inferred(priors={"a": "normal(0.012, 0.1)"})
+    tight = inferred(priors={"a": "lognormal(0.012, 1e-5)"})
+    assert loose.values["friction.a"] == pytest.approx(TRUE.a, rel=0.02)
+    assert tight.values["friction.a"] == pytest.approx(0.012, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("start", "starts"),
+    [
+        ({"distance": "1 mm", "stiffness": 1e6}, 2),
+        pytest.param({"a": 0.02, "b": 0.022, "distance": "60 um", "stiffness": 2.5e7}, 4, marks=pytest.mark.slow),
+    ],
+    ids=["two numbers", "all numbers"],
+)
+def test_starts_far_off_lead_to_the_same_numbers(start: dict[str, Any], starts: int) -> None:
+    """Least squares alone do not, and the search without derivatives takes over."""
+    names = [name for name in TRUTH if name.partition(".")[2] in start] if starts == 2 else list(TRUTH)
+    known = replace(GUESS, friction=replace(GUESS.friction, a=TRUE.a, b=TRUE.b, reference=TRUE.reference)) if starts == 2 else GUESS
+    said: list[str] = []
+    study = ss.studies.infer(known, record(), names, starts=starts, begin_at=start, progress=said.append)
+    assert any("without derivatives" in one for one in said)
+    check_holds(study, {name: TRUTH[name] for name in names})
+
+
+def test_outliers_are_borne_by_a_robust_loss() -> None:
+    data = record()
+    data.loc[::97, "mu"] += 0.02
+    check_holds(inferred(data, loss="soft_l1"), TRUTH, 2.0)
+    assert abs(inferred(data).values["friction.reference"] - TRUE.reference) > 1.5e-4
+
+
+def test_a_trend_and_the_clock_of_the_record_can_be_free() -> None:
+    data = record()
+    moved = load_point(CLOCK, TIMES, RATES)
+    late = np.interp(CLOCK - 1.5, CLOCK, CLEAN)
+    data["mu"] = late + 5.0 * moved + 1e-4 * correlated(len(CLOCK), 0.0, 3)
+    study = inferred(data, [*TRUTH, "record.trend", "record.delay"])
+    assert study.values["record.delay"] == pytest.approx(1.5, abs=0.05)
+    assert study.values["record.trend"] == pytest.approx(5.0, rel=0.05)
+    assert any(
+        "belong to the record: the run of the best scenario, and the explorer, are without them" in one for one in study.notes
+    )
+
+
+def test_two_records_share_the_numbers() -> None:
+    one, two = record(seed=1), record(seed=2)
+    alone, both = inferred(one), inferred([one, two])
+    check_holds(both, TRUTH)
+    ratio = both.table.uncertainty / alone.table.uncertainty
+    assert ratio.to_numpy() == pytest.approx(math.sqrt(0.5), rel=0.1)
+
+
+def test_slip_can_be_fitted_beside_friction() -> None:
+    data = record()
+    spring = CLEAN * TRUE.normal / TRUE.stiffness  # slip is what the spring has not taken
+    slip = load_point(CLOCK, TIMES, RATES) - spring + spring[0]
+    data["slip (um)"] = 1e6 * slip + 0.05 * correlated(len(CLOCK), 0.0, 5) + 300.0
+    alone, both = inferred(data, observe="friction"), inferred(data, observe=["friction", "slip"])
+    check_holds(both, TRUTH)
+    assert (both.table.uncertainty <= 1.02 * alone.table.uncertainty).all()
+    assert both.fit.noise["slip"] == pytest.approx(5e-8, rel=0.1)
+
+
+def test_laws_are_ranked_by_what_they_predict() -> None:
+    slip_law = replace(GUESS, friction=replace(GUESS.friction, evolution="slip"))
+    options: dict[str, Any] = {"starts": 1, "held_out": "110 s"}
+    ranked = [ss.studies.infer(one, record(), tuple(TRUTH), **options) for one in (slip_law, GUESS)]
+    table = ss.studies.ranking(*ranked)
+    assert table.prediction.is_monotonic_increasing
+    assert ranked[1].prediction < ranked[0].prediction
+
+
+def test_stick_slip_of_a_block_is_fitted_event_by_event() -> None:
+    true = CoulombBlock()
+    time = np.arange(0.0, 0.3, 1e-4)
+    force, _ = true.sampled(time, 300.0)
+    start = ss.Problem(ss.SpringBlock(1.5, 5e6, 1e3), ss.friction.Coulomb(0.7, 0.4), pull_rate=1e-3, initial_load=300.0)
+    data = {"time (s)": time, "shear force (N)": force + correlated(len(time), 0.0, 0), "load point (m)": 1e-3 * time}
+    free = ["static", "dynamic", "stiffness", "mass"]
+    study = ss.studies.infer(start, data, free, sensor="spring", parts="rests", starts=1)
+    assert len(study.parts) == 4
+    truth = {"friction.static": 0.65, "friction.dynamic": 0.5, "body.stiffness": 4e6, "body.mass": 2.0}
+    check_holds(study, truth, 2.0)
+    whole = ss.studies.infer(start, data, free, sensor="spring", starts=1)
+    check_holds(whole, truth, 2.0)  # events are few, and starting values from the record bring the search near
+
+
+def test_a_load_point_of_a_million_samples_with_noise_a_gap_and_a_jump_is_followed() -> None:
+    time = np.linspace(0.0, 1000.0, 200_001)
+    moved = load_point(time, [0.0, 300.0, 400.0], [1e-6, 1e-5, 1e-6]) + 5e-5 * (time > 700.0)
+    noisy = moved + 1e-7 * correlated(len(time), 0.0, 0)
+    keep = (time < 500.0) | (time > 560.0)
+    read_in = ss.studies.Record.read({"time (s)": time[keep], "load point (m)": noisy[keep], "mu": 0.6 + 0.0 * time[keep]})
+    loading: Any = loading_of(read_in)
+    segments = np.array(loading.rate.segments)
+    ends = np.append(segments[1:, 0], 1000.0)
+    at = np.append(0.0, np.cumsum(segments[:, 1] * (ends - segments[:, 0])))
+    assert np.abs(np.interp(time, np.append(segments[:, 0], 1000.0), at) - moved).max() < 6e-7 or len(segments) > 4
+    assert at[-1] == pytest.approx(moved[-1] - moved[0], abs=2e-7)
+    assert len(segments) < 20
+    assert "1 gap" in loading.notes[1]
+
+
+def test_ctrl_c_leaves_the_best_numbers_so_far(monkeypatch: pytest.MonkeyPatch) -> None:
+    module, calls = import_module("stickslip.inference.fit.model"), []
+    original = module.simulate
+
+    def stops(*args: Any, **options: Any) -> Any:
+        calls.append(1)
+        if len(calls) > 25:
+            raise KeyboardInterrupt
+        return original(*args, **options)
+
+    monkeypatch.setattr(module, "simulate", stops)
+    model = import_module("stickslip.inference.infer")
+    monkeypatch.setattr(model, "certainty_of", lambda found: calls.clear() or original_certainty(found))
+    study = inferred()
+    assert not study.estimate.finished
+    assert study.notes[0] == "interrupted: these are the best numbers so far"
+    assert study.values["friction.reference"] == pytest.approx(0.62, rel=0.05)
+
+
+original_certainty = import_module("stickslip.inference.certainty.certainty").certainty_of
+
+
+@pytest.mark.slow
+def test_thickness_and_impedance_of_a_laboratory_slab_come_out_of_one_slip_event() -> None:
+    """Only impedance and travel time act on the contact: with the wave speed known, density and thickness follow to 1 %."""
+    true, stress = WeakeningSlab(), 2.9e6
+    clock, shear, slip = true.run(stress, 5.7e-3)
+    slab = ss.ElasticSlab(1200.0, true.wave_speed, 0.101, true.normal)
+    law = ss.friction.LinearSlipWeakening(0.6005, 0.49, 2.2e-5)
+    guess = ss.Problem(slab, law, pull_rate=true.pull, initial_load=stress)
+    same = replace(guess, body=replace(slab, density=true.density, thickness=true.thickness))
+    run = ss.simulate(replace(same, friction=ss.friction.LinearSlipWeakening(0.6, 0.5, 2e-5)), 5.7e-3)
+    at = clock[clock <= 5.7e-3]
+    assert np.abs(run.slip(at) - slip[: len(at)]).max() < 1e-9  # of 3.6e-5 m
+    time = np.unique(np.concatenate([np.linspace(0.0, 4.9e-3, 200), np.arange(4.9e-3, 5.7e-3, 2e-6)]))
+    noise = [correlated(len(time), 0.0, seed) for seed in (1, 2)]
+    data = {"time (s)": time, "tau (Pa)": np.interp(time, clock, shear) + 2e3 * noise[0], "load rate (m/s)": true.pull + 0.0 * time}
+    data["slip (m)"] = np.interp(time, clock, slip) + 5e-8 * noise[1]
+    free = ["static", "dynamic", "distance", "thickness", "density", "initial.load"]
+    bounds = {"initial.load": (2.89e6, 2.91e6)}
+    study = ss.studies.infer(guess, data, free, observe="shear_stress,slip", starts=2, bounds=bounds)
+    assert study.values["body.thickness"] == pytest.approx(0.1, rel=0.01)
+    assert study.values["body.density"] == pytest.approx(1180.0, rel=0.01)
+    assert study.values["friction.distance"] == pytest.approx(2e-5, rel=0.02)
+    assert study.values["friction.static"] == pytest.approx(0.6, rel=1e-3)
+
+
+def test_posterior_samples_have_the_intervals_of_the_curvature() -> None:
+    pytest.importorskip("emcee")
+    free = ("friction.a", "friction.reference")
+    study = inferred(free=free, samples=800)
+    assert study.samples is not None
+    assert len(study.samples) == 800
+    spread = study.samples.std().to_numpy()
+    assert spread == pytest.approx(study.table.uncertainty.to_numpy(), rel=0.3)
+    assert set(study.table.source) == {"samples"}
+    assert "800 samples" in study.about_samples[0]
+    assert len(study.plot().axes) == 4
+
+
+def test_more_samples_go_on_where_the_walk_ended() -> None:
+    pytest.importorskip("emcee")
+    study = inferred(free=("friction.a", "friction.reference"), samples=160)
+    longer = study.more(320)
+    assert longer.samples is not None
+    assert study.samples is not None
+    assert len(longer.samples) == 320
+    assert longer.samples[:160].equals(study.samples)
+    assert longer.about_samples[0].startswith("320 samples")
+    with pytest.raises(ss.InputError, match="more: there are 160 samples already, got 160"):
+        study.more(160)
+    with pytest.raises(ss.InputError, match="more: no samples were drawn: ask `infer` for some first, with samples="):
+        inferred().more(100)
+
+
+def drawn_until(call: int, count: int, before: Any = None) -> Any:
+    """Samples of one number with a normal distribution, where Ctrl-C comes in the call of the model with this number."""
+    calls = iter(range(call))
+
+    def residual(x: np.ndarray) -> np.ndarray:
+        if next(calls, None) is None:
+            raise KeyboardInterrupt
+        return np.array([x[0]])
+
+    model = SimpleNamespace(limits=(np.array([-9.0]), np.array([9.0])), residual=residual)
+    found: Any = SimpleNamespace(model=model, searched=np.zeros(1), loss="linear")
+    sure: Any = SimpleNamespace(widths=np.ones(1), covariance=np.eye(1), excess=np.ones(1))
+    return sample(found, sure, count, lambda _: None, seed=1, before=before)
+
+
+def test_samples_that_were_drawn_before_ctrl_c_are_kept(capfd: pytest.CaptureFixture[str]) -> None:
+    """16 walkers take 375 steps, and 113 before these; half of the walkers move at a time, so that 16 calls are a step."""
+    pytest.importorskip("emcee")
+    whole = drawn_until(100_000, 6000)
+    assert whole.notes[0].startswith("6000 samples")
+    for call in (16 * 200, 16 * 200 + 3, 16 * 200 + 11):
+        some = drawn_until(call, 6000)
+        count = len(some.drawn)
+        assert some.notes[0] == f"sampling was stopped: {count} of 6000 samples were drawn; `more` goes on"
+        assert abs(count - 16 * (200 - 113)) <= 32
+        assert np.array_equal(some.drawn, whole.drawn[:count])
+        assert np.array_equal(drawn_until(100_000, 6000, some).drawn, whole.drawn)
+    with pytest.raises(KeyboardInterrupt):
+        drawn_until(16 * 50, 6000)
+    assert capfd.readouterr() == ("", "")
+
+
+def test_samples_without_emcee_are_refused_with_the_way_to_install_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "emcee", None)
+    with pytest.raises(ss.InputError, match=r"samples need emcee: pip install 'stickslip\[infer\]'"):
+        inferred(samples=100)
