@@ -102,10 +102,10 @@ ROOMS = {
         ("resume", "simulate"),
     ),
     "studies": (
-        ("regularisations", "separation"),
+        ("separation",),
         ("analogy", "compare", "ensemble", "find", "inference", "verdict"),
-        ("one_run", "regularise", "scheme_shocks"),
-        ("scheme_measures",),
+        ("one_run", "regularisations", "scheme_shocks"),
+        ("regularise", "scheme_measures"),
         ("judgement",),
         ("schemes",),
         ("benchmarks",),

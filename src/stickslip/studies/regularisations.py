@@ -22,6 +22,7 @@ from stickslip.foundation.errors import InputError, nearest
 from stickslip.friction import LaggedFriction
 from stickslip.problem.problem import Problem, check_problem
 from stickslip.solution.solution import Solution
+from stickslip.studies.verdict import mean_magnitude
 
 UNIFORM = 2001
 """Number of evenly spaced times at which runs are compared; times within the pieces of both histories are added."""
@@ -42,8 +43,7 @@ def difference(one: Solution, other: Solution, until: float) -> SlipDifference:
     """Return the slip of `one` minus the slip of `other`, from t = 0 to `until` (s)."""
     time = np.unique(np.concatenate([np.linspace(0.0, until, UNIFORM), _inside(one, 0.0, until), _inside(other, 0.0, until)]))
     gap = one.slip(time) - other.slip(time)
-    mean = float(np.trapezoid(np.abs(gap), time)) / until
-    return SlipDifference(mean, float(np.abs(gap).max()), float(gap[-1]))
+    return SlipDifference(mean_magnitude(gap, time), float(np.abs(gap).max()), float(gap[-1]))
 
 
 def _inside(solution: Solution, start: float, end: float) -> Floats:

@@ -15,6 +15,7 @@ from stickslip.friction import FrictionLaw
 from stickslip.schemes.contract import Energies, Series
 from stickslip.solution.solution import Solution
 from stickslip.studies.scheme_shocks import Shock, shadow, shocks_of
+from stickslip.studies.verdict import mean_magnitude
 from stickslip.trajectory.slip_events import default_event_rate
 
 COLUMNS = {
@@ -138,7 +139,7 @@ class MeasuredSeries:
     @property
     def slip_error(self) -> float:
         """The mean magnitude of the slip difference, m."""
-        return float(np.trapezoid(np.abs(self.gap), self.time) / (self.time[-1] - self.time[0]))
+        return mean_magnitude(self.gap, self.time)
 
     @property
     def shadow(self) -> float:

@@ -6,11 +6,9 @@ physical hypothesis". With the exact solution of every rule this can be measured
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -29,7 +27,7 @@ from stickslip.solution.solution import Solution
 from stickslip.studies.judgement import TOLERANCE, Judgement
 from stickslip.studies.scheme_measures import COLUMNS, MeasuredSeries
 from stickslip.studies.scheme_shocks import SHOCK_COLUMNS
-from stickslip.studies.verdict import NONE, UNTOLD, RulePaths, exact_runs
+from stickslip.studies.verdict import NONE, UNTOLD, RulePaths, exact_runs, local_orders
 from stickslip.study import Study, TextProgress, telling
 
 if TYPE_CHECKING:
@@ -95,8 +93,10 @@ class Schemes(Study):
             misses = {f"miss_{rule}": miss for rule, miss in self.paths.misses(one.series).items()}
             rows.append(own | one.row() | misses | {"rule": self.paths.followed(one.series)})
         table = pd.DataFrame(rows, columns=list(self.columns))
-        for name in ("slip", "rate"):
-            table[f"{name}_order"] = _orders(table, f"{name}_error")
+        for _, meshes in table.groupby("scheme", sort=False):
+            for name in ("slip", "rate"):
+                errors = meshes[f"{name}_error"].to_numpy(float)
+                table.loc[meshes.index, f"{name}_order"] = local_orders(meshes.step.to_numpy(float), errors)
         return table
 
     @property
@@ -158,15 +158,6 @@ class Schemes(Study):
 
 def _depends(found: list[str]) -> str:
     return f"depends on the mesh ({'; '.join(dict.fromkeys(found))})"
-
-
-def _orders(table: pd.DataFrame, column: str) -> list[float]:
-    """Return the order of an error between each mesh and the one before of the same scheme; NaN for the first."""
-    found = [math.nan]
-    for before, after in pairwise(table[["scheme", "step", column]].itertuples(index=False)):
-        usable = before[0] == after[0] and before[1] != after[1] and min(before[2], after[2]) > 0.0
-        found.append(math.log(before[2] / after[2]) / math.log(before[1] / after[1]) if usable else math.nan)
-    return found[: len(table)]
 
 
 @for_users
