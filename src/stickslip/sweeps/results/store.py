@@ -123,16 +123,15 @@ def check_store(path: Path) -> zarr.Group:
         raise InputError(f"{path}: exists and is not the store of a sweep: choose another name")
     group = FORMAT.opened(path)
     check_metadata(path, group)
-    members = set(group.array_keys()) - {*read_design(group.attrs)[1], TIME}
-    for name, array in group.arrays():
-        if name not in members:
-            _check_file(path, first_file_of(array), "copy it from elsewhere, or choose another name")
+    arrays = dict(group.arrays())
+    others = {*read_design(group.attrs)[1], TIME} & set(arrays)
+    for name in sorted(others):
+        _check_file(path, first_file_of(arrays.pop(name)), "copy it from elsewhere, or choose another name")
+    ends = {name: ".0" * (array.ndim - array_of(group, STATUS).ndim) for name, array in arrays.items()}
     for status in path.glob(f"{STATUS}/c.*"):
         if status.suffix != ".partial":
-            again = f"remove {status}, and the same sweep runs these members again"
-            for name in sorted(members):
-                ends = [".0"] * (array_of(group, name).ndim - array_of(group, STATUS).ndim)
-                _check_file(path, f"{name}/{status.name}{''.join(ends)}", again)
+            for name, end in ends.items():
+                _check_file(path, f"{name}/{status.name}{end}", f"remove {status}, and the same sweep runs these members again")
     return group
 
 
