@@ -140,8 +140,9 @@ ROOMS = {
     ),
     "reference": (("rate_and_state",), ("block", "folds", "planar", "slab")),
     "cli": (
+        ("expand", "options"),
         ("output", "overrides"),
-        ("long_run", "options", "installation"),
+        ("long_run", "installation"),
         ("commands",),
         ("app",),
         ("main",),

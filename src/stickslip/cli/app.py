@@ -28,6 +28,7 @@ from stickslip.cli.commands.run import run
 from stickslip.cli.commands.schemes import schemes
 from stickslip.cli.commands.show import show
 from stickslip.cli.commands.sweep import sweep
+from stickslip.cli.expand import expanded
 from stickslip.cli.options import CHOICES
 from stickslip.foundation.errors import InputError, nearest
 
@@ -149,7 +150,7 @@ class Commands(TyperGroup):
 def _built(name: str) -> Any:
     """Return a command as typer reads it from its function."""
     alone = typer.Typer(add_completion=False, **STYLE)
-    alone.command(name, cls=Command, help=prose_of(COMMANDS[name]))(COMMANDS[name])
+    alone.command(name, cls=Command, help=prose_of(COMMANDS[name]))(expanded(COMMANDS[name]))
     return typer.main.get_command(alone)
 
 

@@ -205,14 +205,5 @@ ScenarioName = Annotated[str, typer.Argument(help=SCENARIO, autocompletion=compl
 FigureFile = Annotated[Path | None, option("Save a figure (.png, .pdf or .svg).", "--figure", "-f", panel=FIGURES)]
 Dpi = Annotated[float | None, option("Dots per inch of figures (.png): 200 if not given.", panel=FIGURES)]
 SIZE_HELP = 'Size of figures: "16 x 10 cm", "3.5 x 5 in", "single column" or "double column".'
-Size = Annotated[str | None, option(SIZE_HELP, "--size", "--figure-size", panel=FIGURES)]
 Duration = Annotated[str | None, option('Override the duration: s, or with a unit ("480 years").')]
 Rtol = Annotated[float | None, option("Override the relative tolerance.")]
-
-RunFigure = Annotated[Path | None, picture("slip, slip rate and traction over time", "--figure", "-f")]
-PathFigure = Annotated[Path | None, picture("the path of the run in the set K", "--path")]
-CatalogueFigure = Annotated[Path | None, picture("the slip events", "--catalogue-figure")]
-EnergyFigure = Annotated[Path | None, picture("where the energy is", "--energy-figure")]
-FrictionFigure = Annotated[Path | None, picture("the friction coefficient against slip", "--friction-figure")]
-SpaceTime = Annotated[Path | None, picture("the inside of the slab over time", "--space-time")]
-Animation = Annotated[Path | None, option("Save the slab in motion (.gif; .mp4 and .webm need ffmpeg).", panel=FIGURES)]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from stickslip.cli.options import SCENARIO, Changes, Dpi, FigureFile, Size, axes_of, complete_scenario, option, table_of
+from stickslip.cli.options import SCENARIO, Changes, FigureFile, axes_of, complete_scenario, option, table_of
 from stickslip.cli.output.files import FigureLook, Target, announce, check_targets, drawing, write_files
 from stickslip.foundation.errors import InputError
 
@@ -28,8 +28,7 @@ def analogy(
     map_axes: Annotated[list[str] | None, axes_of("the map")] = None,
     out: Annotated[Path | None, table_of("point")] = None,
     figure: FigureFile = None,
-    dpi: Dpi = None,
-    size: Size = None,
+    look: FigureLook,
     within: Annotated[float, typer.Option(help="Largest relative difference of the answers.")] = 0.1,
     duration: Annotated[str | None, option("How long to wait for the end of the event: s, or with a unit.")] = None,
 ) -> None:
@@ -51,7 +50,6 @@ def analogy(
     from stickslip.cli.output.studies import show_analogy
     from stickslip.cli.overrides import load_with
 
-    look = FigureLook(dpi, size)
     check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))
     look.check(figure)
     typed = AXES if map_axes is None and scenario == BUNDLED else map_axes or []

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from stickslip.cli.options import Dpi, FigureFile, Size, option
+from stickslip.cli.options import FigureFile, option
 from stickslip.cli.output.files import FigureLook, Target, announce, check_targets, drawing, write_files
 from stickslip.foundation.errors import InputError, nearest
 
@@ -24,8 +24,7 @@ def benchmark(
     out: Annotated[Path | None, option("Judge: save the table (.csv, and the shocks in NAME-shocks.csv).", "--out", "-o")] = None,
     tolerance: Annotated[float, option("Judge: the largest share by which a series that passes may be off.")] = 0.05,
     figure: FigureFile = None,
-    dpi: Dpi = None,
-    size: Size = None,
+    look: FigureLook,
 ) -> None:
     r"""Give twelve problems with exact series to other programs, and judge the series that they write.
 
@@ -62,7 +61,6 @@ def benchmark(
 
         announce(*write_benchmark(what, folder or Path()))
         return
-    look = FigureLook(dpi, size)
     check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))
     look.check(figure)
     if not _judge(Path(what), name, tolerance, (out, figure, look)):

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from stickslip.cli.options import Changes, Dpi, ScenarioName, Size, axes_of, option
+from stickslip.cli.options import Changes, ScenarioName, axes_of, option
 from stickslip.cli.output.files import FigureLook, Target, announce, check_targets, drawing, write_files
 from stickslip.cli.output.show import print_words, say, titled
 from stickslip.foundation.errors import InputError, InputWarning
@@ -37,8 +37,7 @@ def check(
         Path | None, option("Save a figure of the set K, or of the map (.png, .pdf, .svg).", "--figure", "-f")
     ] = None,
     steady_figure: Annotated[Path | None, option("Save a figure of steady sliding (.png, .pdf, .svg).", "--steady-figure")] = None,
-    dpi: Dpi = None,
-    size: Size = None,
+    look: FigureLook,
     map_axes: Annotated[list[str] | None, axes_of("a regime map")] = None,
     runs: Annotated[bool, typer.Option("--runs/--no-runs", help=RUNS)] = True,
 ) -> None:
@@ -66,7 +65,6 @@ def check(
     from stickslip.cli.overrides import load
     from stickslip.scenarios.examine import examine
 
-    look = FigureLook(dpi, size)
     check_targets(Target("--figure", figure), Target("--steady-figure", steady_figure))
     look.check(figure, steady_figure)
     with warnings.catch_warnings():

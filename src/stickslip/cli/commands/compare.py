@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from stickslip.cli.options import Dpi, Duration, FigureFile, Rtol, Size, complete_source, option, table_of
+from stickslip.cli.options import Duration, FigureFile, Rtol, complete_source, option, table_of
 from stickslip.cli.output.files import FigureLook, Target, announce, check_targets, drawing, write_files
 from stickslip.foundation.errors import InputError
 
@@ -22,8 +22,7 @@ def compare(
     *,
     out: Annotated[Path | None, table_of("run")] = None,
     figure: FigureFile = None,
-    dpi: Dpi = None,
-    size: Size = None,
+    look: FigureLook,
     event: Annotated[int | None, option("Draw this slip event of each, in local time: 0 the first, -1 the last.")] = None,
     duration: Duration = None,
     rtol: Rtol = None,
@@ -46,7 +45,6 @@ def compare(
     """
     from stickslip.cli.output.studies import show_comparison
 
-    look = FigureLook(dpi, size)
     check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))
     look.check(figure)
     found = _compared(runs, duration, rtol, event)

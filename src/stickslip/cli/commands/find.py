@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from stickslip.cli.options import Changes, Dpi, FigureFile, ScenarioName, Size, option, table_of
+from stickslip.cli.options import Changes, FigureFile, ScenarioName, option, table_of
 from stickslip.cli.output.files import FigureLook, Target, announce, check_targets, drawing, write_files
 from stickslip.cli.output.show import print_sentences, titled
 from stickslip.foundation.errors import InputError
@@ -25,8 +25,7 @@ def find(
     within: Annotated[float, typer.Option(help="Width of the last bracket, as a share of its upper end.")] = 1e-3,
     out: Annotated[Path | None, table_of("run")] = None,
     figure: FigureFile = None,
-    dpi: Dpi = None,
-    size: Size = None,
+    look: FigureLook,
 ) -> None:
     r"""Find an edge along one number of a scenario, by bisection on exact runs.
 
@@ -50,7 +49,6 @@ def find(
     from stickslip.scenarios.entries import typed_number
     from stickslip.studies.find import find as study
 
-    look = FigureLook(dpi, size)
     check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))
     look.check(figure)
     name, given, ends = along.partition("=")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from stickslip.cli.options import Changes, Dpi, FigureFile, Size, complete_fitted, complete_table, complete_template, option
+from stickslip.cli.options import Changes, FigureFile, complete_fitted, complete_table, complete_template, option
 from stickslip.cli.output.files import FigureLook, Target, announce, check_targets, drawing, write_files
 from stickslip.cli.output.show import console, print_sentences, print_words, say
 from stickslip.foundation.errors import InputError, InputWarning
@@ -43,8 +43,7 @@ def fit(
     changes: Changes = None,
     out: Annotated[Path | None, option("Write a scenario with the law (.toml).", "--out", "-o")] = None,
     figure: FigureFile = None,
-    dpi: Dpi = None,
-    size: Size = None,
+    look: FigureLook,
 ) -> None:
     r"""Make a friction law from measured points.
 
@@ -72,7 +71,6 @@ def fit(
     from stickslip.cli.overrides import typed_values
     from stickslip.friction import Points
 
-    look = FigureLook(dpi, size)
     check_targets(Target("--out", out, (".toml",)), Target("--figure", figure))
     look.check(figure)
     _check_options(law, smooth, monotone, along, {"--fix": fix, "--start": start})

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from stickslip.cli.options import ACCURACY, RESULTS, TABLES, Changes, Dpi, FigureFile, ScenarioName, Size, complete_table, option
+from stickslip.cli.options import ACCURACY, RESULTS, TABLES, Changes, FigureFile, ScenarioName, complete_table, option
 from stickslip.cli.output.files import FigureLook, Target, announce, check_folder, check_targets, drawing, write_files
 from stickslip.foundation.errors import InputError
 
@@ -66,8 +66,7 @@ def infer(
     scenario_out: Annotated[Path | None, option("Write the scenario that runs to the curve found (.toml).", panel=RESULTS)] = None,
     report: Annotated[Path | None, option("Write a page with all of it to this folder.", panel=RESULTS)] = None,
     figure: FigureFile = None,
-    dpi: Dpi = None,
-    size: Size = None,
+    look: FigureLook,
 ) -> None:
     r"""Find the parameters with which a run follows a laboratory record, with their uncertainty.
 
@@ -99,7 +98,6 @@ def infer(
     from stickslip.cli.output.studies import show_inference, show_ranking
     from stickslip.cli.overrides import load
 
-    look = FigureLook(dpi, size)
     targets = Target("--out", out, (".nc", ".csv")), Target("--scenario-out", scenario_out, (".toml",))
     check_targets(*targets, Target("--figure", figure))
     if report is not None:

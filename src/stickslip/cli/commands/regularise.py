@@ -9,12 +9,10 @@ import typer
 
 from stickslip.cli.options import (
     Changes,
-    Dpi,
     Duration,
     FigureFile,
     Rtol,
     ScenarioName,
-    Size,
     complete_regularisation,
     option,
     table_of,
@@ -37,8 +35,7 @@ def regularise(
     count: Annotated[int, typer.Option(help="How many sizes, evenly spaced in their logarithm.")] = 8,
     out: Annotated[Path | None, table_of("size")] = None,
     figure: FigureFile = None,
-    dpi: Dpi = None,
-    size: Size = None,
+    look: FigureLook,
     duration: Duration = None,
     rtol: Rtol = None,
 ) -> None:
@@ -62,7 +59,6 @@ def regularise(
     from stickslip.cli.output.studies import show_regularisation
     from stickslip.cli.overrides import load_with
 
-    look = FigureLook(dpi, size)
     check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))
     look.check(figure)
     chosen = load_with("regularise", scenario, changes, duration=duration, rtol=rtol)

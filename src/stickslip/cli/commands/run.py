@@ -11,23 +11,15 @@ from stickslip.cli.options import (
     ACCURACY,
     RESULTS,
     SCENARIO,
-    Animation,
-    CatalogueFigure,
     Changes,
-    Dpi,
     Duration,
-    EnergyFigure,
-    FrictionFigure,
-    PathFigure,
-    RunFigure,
-    Size,
-    SpaceTime,
     argument,
     complete_rule,
     complete_scenario,
     option,
 )
-from stickslip.cli.output.files import FigureLook, announce
+from stickslip.cli.output.files import announce
+from stickslip.cli.output.pictures import Pictures
 
 if TYPE_CHECKING:
     from stickslip.trajectory.status import Status
@@ -62,15 +54,7 @@ def run(
     out: Annotated[Path | None, option(OUT, "--out", "-o", panel=RESULTS)] = None,
     catalogue: Annotated[Path | None, option(CATALOGUE, panel=RESULTS)] = None,
     energy: Annotated[bool, typer.Option("--energy", help=ENERGY, rich_help_panel=RESULTS)] = False,
-    figure: RunFigure = None,
-    path: PathFigure = None,
-    catalogue_figure: CatalogueFigure = None,
-    energy_figure: EnergyFigure = None,
-    friction_figure: FrictionFigure = None,
-    space_time: SpaceTime = None,
-    animation: Animation = None,
-    dpi: Dpi = None,
-    size: Size = None,
+    pictures: Pictures,
     rtol: Annotated[float | None, option("Override the relative tolerance.", panel=ACCURACY)] = None,
     creep_rtol: Annotated[float | None, option(CREEP_RTOL, panel=ACCURACY)] = None,
     shortest_event: Annotated[str | None, option(SHORTEST_EVENT, panel=ACCURACY)] = None,
@@ -101,10 +85,8 @@ def run(
     """
     from stickslip.cli.long_run import Request, list_events, solve, solve_contact
     from stickslip.cli.output.contact import show_run
-    from stickslip.cli.output.pictures import Pictures
     from stickslip.cli.output.summary import show_catalogue, show_solution
 
-    drawn = Pictures(figure, path, catalogue_figure, energy_figure, friction_figure, space_time, animation, FigureLook(dpi, size))
     replaced = {"duration": duration, "events": events, "rtol": rtol, "creep_rtol": creep_rtol}
     replaced |= {"shortest_event": shortest_event, "selection": selection}
     request = Request(
@@ -116,26 +98,26 @@ def run(
         out=out,
         catalogue=catalogue,
         energy=energy,
-        pictures=drawn,
+        pictures=pictures,
     )
     request.check()
     if request.has_contact:
         run = solve_contact(request)
         show_run(run)
-        announce(out or resume, *drawn.draw_contact(run))
+        announce(out or resume, *pictures.draw_contact(run))
         _leave(run.status)
     if request.keeps_events_only:
         chosen, found = list_events(request)
         show_catalogue(chosen, found)
-        if drawn.wanted:
-            announce(*drawn.draw_events(found.read(), chosen.title or chosen.name))
+        if pictures.wanted:
+            announce(*pictures.draw_events(found.read(), chosen.title or chosen.name))
         _leave(found.status)
     chosen, solution = solve(request)
     show_solution(chosen, solution)
     file = request.file_of(solution)
     if (out or resume) and file is None:
         typer.echo(f"not written: {out or resume} ({len(solution.history)} pieces; --max-pieces allows more, and writes them)")
-    announce(file, *drawn.draw(solution))
+    announce(file, *pictures.draw(solution))
     _leave(solution.status)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-from stickslip.cli.options import Changes, Dpi, Duration, FigureFile, Rtol, ScenarioName, Size, option
+from stickslip.cli.options import Changes, Duration, FigureFile, Rtol, ScenarioName, option
 from stickslip.cli.output.files import FigureLook, Target, announce, check_targets, drawing, write_files
 from stickslip.foundation.errors import InputError
 
@@ -27,8 +27,7 @@ def schemes(
     files: Annotated[list[Path] | None, option("Judge the series in a file instead; may be repeated.", "--series")] = None,
     out: Annotated[Path | None, option("Save the table (.csv, and the shocks in NAME-shocks.csv).", "--out", "-o")] = None,
     figure: FigureFile = None,
-    dpi: Dpi = None,
-    size: Size = None,
+    look: FigureLook,
     duration: Duration = None,
     rtol: Rtol = None,
 ) -> None:
@@ -51,7 +50,6 @@ def schemes(
     from stickslip.cli.output.studies import show_schemes, tables_of
     from stickslip.cli.overrides import load_with
 
-    look = FigureLook(dpi, size)
     check_targets(Target("--out", out, (".csv",)), Target("--figure", figure))  # the file of shocks goes beside it
     look.check(figure)
     chosen = load_with("schemes", scenario, changes, duration=duration, rtol=rtol)

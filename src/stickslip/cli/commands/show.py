@@ -12,19 +12,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from stickslip.cli.options import (
-    Animation,
-    CatalogueFigure,
-    Dpi,
-    EnergyFigure,
-    FrictionFigure,
-    PathFigure,
-    RunFigure,
-    Size,
-    SpaceTime,
     complete_quantity,
     complete_result,
 )
-from stickslip.cli.output.files import FigureLook, announce, check_targets, drawing
+from stickslip.cli.output.files import announce, check_targets, drawing
 from stickslip.cli.output.pictures import Pictures
 from stickslip.cli.output.show import console, say
 from stickslip.foundation.errors import InputError
@@ -47,16 +38,8 @@ def show(
     result: Annotated[Path, typer.Argument(help=RESULT, autocompletion=complete_result)],
     *,
     scenario: Annotated[bool, typer.Option("--scenario", help=SCENARIO_ONLY)] = False,
-    figure: RunFigure = None,
     quantity: Annotated[str | None, typer.Option("--quantity", "-q", help=QUANTITY, autocompletion=complete_quantity)] = None,
-    path: PathFigure = None,
-    catalogue_figure: CatalogueFigure = None,
-    energy_figure: EnergyFigure = None,
-    friction_figure: FrictionFigure = None,
-    space_time: SpaceTime = None,
-    animation: Animation = None,
-    dpi: Dpi = None,
-    size: Size = None,
+    pictures: Pictures,
 ) -> None:
     r"""Show what is in a file of results, as after the run, and draw figures from it without running it again.
 
@@ -75,8 +58,6 @@ def show(
 
     Exit code: 0 done, 2 unusable input.
     """
-    look = FigureLook(dpi, size)
-    pictures = Pictures(figure, path, catalogue_figure, energy_figure, friction_figure, space_time, animation, look)
     check_targets(*pictures.targets())
     pictures.check()
     found = stored(result, quantity)

@@ -12,9 +12,7 @@ import typer
 
 from stickslip.cli.options import (
     Changes,
-    Dpi,
     ScenarioName,
-    Size,
     complete_design,
     complete_quantity,
     complete_series,
@@ -71,8 +69,7 @@ def sweep(
     workers: Workers = None,
     scheduler: Scheduler = None,
     figure: Figure = None,
-    dpi: Dpi = None,
-    size: Size = None,
+    look: FigureLook,
     dry_run: DryRun = False,
 ) -> None:
     r"""Run a scenario many times with two or three varied numbers, for maps of pulses, slips and regimes.
@@ -103,7 +100,6 @@ def sweep(
     from stickslip.sweeps.execution.plan import make_plan
 
     _check_files(vary, table, out, figure)
-    look = FigureLook(dpi, size)
     look.check(figure)
     chosen = load(scenario, "sweep", changes)
     plan = make_plan(

@@ -8,10 +8,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryFile
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import typer
 
+from stickslip.cli.options import FIGURES, SIZE_HELP, Dpi, option
 from stickslip.foundation.atomic_write import check_replaceable, write_atomically
 from stickslip.foundation.errors import InputError, warn
 
@@ -31,8 +32,8 @@ PICTURES = (".png", ".pdf", ".svg")
 class FigureLook:
     """What a user typed on the look of figures: dots per inch and size."""
 
-    dpi: float | None = None
-    size: str | None = None
+    dpi: Dpi = None
+    size: Annotated[str | None, option(SIZE_HELP, "--size", "--figure-size", panel=FIGURES)] = None
 
     @property
     def dots(self) -> float:
@@ -71,14 +72,14 @@ class Target(NamedTuple):
 def check_targets(*targets: Target) -> None:
     """Refuse files that could not be written later, and a file that is named twice. Raises InputError."""
     named: dict[Path, str] = {}
-    for option, path, suffixes in targets:
+    for name, path, suffixes in targets:
         if path is None:
             continue
-        check_target(path, option, suffixes)
+        check_target(path, name, suffixes)
         place = path.absolute()
         if place in named:
-            raise InputError(f"{option} {path}: is already the file of {named[place]}: choose another name")
-        named[place] = option
+            raise InputError(f"{name} {path}: is already the file of {named[place]}: choose another name")
+        named[place] = name
 
 
 def check_target(path: Path | None, option: str, suffixes: tuple[str, ...] = PICTURES) -> None:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from stickslip.cli.options import FIGURES, option, picture
 from stickslip.cli.output.files import PICTURES, FigureLook, Target, drawing, write_files
 from stickslip.foundation.errors import InputError
 
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from stickslip.solution.planar import PlanarSolution
     from stickslip.solution.solution import Solution
 
+ANIMATION = "Save the slab in motion (.gif; .mp4 and .webm need ffmpeg)."
 FILMS = (".gif", ".mp4", ".webm")
 """File suffixes of animations, those of `figures.runs.animation`, which takes long to import."""
 
@@ -26,19 +28,19 @@ FILMS = (".gif", ".mp4", ".webm")
 class Pictures:
     """The file of each figure and of the animation, None for those that are not wanted."""
 
-    figure: Path | None
-    path: Path | None
-    catalogue_figure: Path | None
-    energy_figure: Path | None
-    friction_figure: Path | None
-    space_time: Path | None
-    animation: Path | None
-    look: FigureLook
+    figure: Annotated[Path | None, picture("slip, slip rate and traction over time", "--figure", "-f")] = None
+    path: Annotated[Path | None, picture("the path of the run in the set K", "--path")] = None
+    catalogue_figure: Annotated[Path | None, picture("the slip events", "--catalogue-figure")] = None
+    energy_figure: Annotated[Path | None, picture("where the energy is", "--energy-figure")] = None
+    friction_figure: Annotated[Path | None, picture("the friction coefficient against slip", "--friction-figure")] = None
+    space_time: Annotated[Path | None, picture("the inside of the slab over time", "--space-time")] = None
+    animation: Annotated[Path | None, option(ANIMATION, panel=FIGURES)] = None
+    look: FigureLook = field(default_factory=FigureLook)
 
     @property
     def wanted(self) -> dict[str, Path]:
         """The files that are wanted, by option."""
-        named = {"--" + field.name.replace("_", "-"): getattr(self, field.name) for field in fields(self) if field.name != "look"}
+        named = {"--" + one.name.replace("_", "-"): getattr(self, one.name) for one in fields(self) if one.name != "look"}
         return {option: target for option, target in named.items() if target is not None}
 
     def targets(self) -> list[Target]:
