@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from inspect import signature
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
+from stickslip.cli.app import COMMANDS
 from stickslip.cli.output.studies import as_options
 from tests.inference.laboratory import RateAndStateBlock, correlated, load_point
 
@@ -130,3 +132,10 @@ def test_windows_and_weights_are_asked_for_by_options(command):
     shown = command("infer", "velocity-steps-block", "data.csv", *options)
     assert shown.code == 0, shown.err
     assert "Over 8 windows of" in shown.out
+
+
+def test_each_option_of_python_is_one_of_the_command_line_with_the_same_default():
+    typed, renamed = signature(COMMANDS["infer"]).parameters, {"by": "by_what", "bounds": "bound", "priors": "prior"}
+    for name, parameter in signature(ss.studies.infer).parameters.items():
+        if parameter.kind is parameter.KEYWORD_ONLY and name != "progress":
+            assert typed[renamed.get(name, name)].default == parameter.default, name

@@ -103,16 +103,8 @@ def infer(
     if report is not None:
         check_folder(report, "--report")
     look.check(figure)
-    options: dict[str, Any] = {
-        "by": by_what,
-        "observe": observe,
-        "start": start,
-        "sensor": sensor,
-        "parts": parts,
-        "loss": loss,
-        "starts": starts,
-    }
-    options |= {"weight": weight, "windows": windows}
+    options: dict[str, Any] = {"by": by_what, "observe": observe, "start": start, "sensor": sensor, "parts": parts}
+    options |= {"loss": loss, "starts": starts, "weight": weight, "windows": windows}
     options |= {"each": each and each.split(","), "seed": seed, "profiles": profiles, "samples": samples, "rtol": rtol}
     options |= {"held_out": _typed(held_out), "begin": _typed(begin), "end": _typed(end)}
     options |= {"bounds": _bounds(bound), "priors": _values(prior, "--prior"), "begin_at": _values(begin_at, "--begin-at")}
