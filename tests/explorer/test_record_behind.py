@@ -113,6 +113,7 @@ def test_the_misfit_is_the_distance_from_what_another_integrator_made() -> None:
     assert "It differs from record by friction 0.0003, slip" in answer.sentence
     view = view_of(answer)
     assert [key.text for key in view.keys["traction"]][1] == "measured, misfit 0.0003"
+    assert view.titles["traction"] == view_of(solve(SCENARIO.scenario())).titles["traction"]
     assert len(view.columns["measured"]["time"]) == 601
     low, high = view.limits["traction"]
     drawn = view.columns["measured"]["traction"]

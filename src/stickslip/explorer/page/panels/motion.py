@@ -51,8 +51,8 @@ def data_of(answer: Answer, units: Units) -> View:
     name = FORCES["traction"] if force else CURVES["traction"][0]
     name = f"change of {name}" if units.offset else name
     keys = {name: (LegendKey(main.name, name), *_key(answer, name)) for name in CURVE_OF}
-    for name, key in _misfits(answer).items():
-        keys[name] = (*keys[name], key)
+    for panel, key in _misfits(answer).items():
+        keys[panel] = (*keys[panel], key)
     keys["traction"] = (*keys["traction"], LegendKey("spring force" if force else "load", "load", "dot"))
     time = columns["motion"]["time"]
     view = View(
