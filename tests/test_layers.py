@@ -185,6 +185,12 @@ ROOM_HEIGHT = {package: heights(rooms) for package, rooms in ROOMS.items()}
 
 
 @cache
+def tree_of(path: Path) -> ast.Module:
+    """Return the syntax tree of a file, which several tests walk."""
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
+@cache
 def imports(path: Path) -> list[tuple[str, str]]:
     """Return what a file imports as dotted names, each with "eager", "later" (inside a function) or "types" (for type checkers)."""
     found: list[tuple[str, str]] = []
@@ -202,7 +208,7 @@ def imports(path: Path) -> list[tuple[str, str]]:
                 inside = isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef)
                 walk(child, "later" if inside and kind == "eager" else kind)
 
-    walk(ast.parse(path.read_text(encoding="utf-8")), "eager")
+    walk(tree_of(path), "eager")
     return found
 
 
@@ -239,8 +245,7 @@ FILES = [path for path in sorted(PACKAGE.rglob("*.py")) if parts(path)[0] not in
 
 def test_no_two_classes_have_one_name() -> None:
     """A name that grep finds once: annotations of one class do not read as those of another."""
-    trees = {path: ast.parse(path.read_text(encoding="utf-8")) for path in FILES}
-    places = [(node.name, path.name) for path, tree in trees.items() for node in ast.walk(tree) if isinstance(node, ast.ClassDef)]
+    places = [(node.name, path.name) for path in FILES for node in ast.walk(tree_of(path)) if isinstance(node, ast.ClassDef)]
     names = [name for name, _ in places]
     assert [place for place in places if names.count(place[0]) > 1] == []
 
@@ -301,7 +306,7 @@ def test_the_key_of_the_compile_cache_covers_all_that_is_compiled() -> None:
     covered = set(compiled_sources())
     assert all(path.is_file() for path in covered)
     for path in FILES:
-        tree = ast.parse(path.read_text(encoding="utf-8"))
+        tree = tree_of(path)
         origin = {
             alias.asname or alias.name: (node.module, alias.name)
             for node in ast.walk(tree)
