@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 from stickslip.foundation.arguments import NamesAttributes
 from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.constants import YEAR
-from stickslip.run.progress import told
+from stickslip.run.progress import reporting
 from stickslip.solution.accessors import figure_of_study, known_to_pyplot
 from stickslip.solution.solution import Solution
 
@@ -34,7 +34,7 @@ TextProgress = Callable[[str], Any]
 @contextmanager
 def telling(progress: TextProgress | bool | None, what: str) -> Iterator[TextProgress]:
     """Provide the function that receives the progress of a study, as `told` does; it does nothing if no progress is wanted."""
-    with told(progress, what) as tell:
+    with reporting(progress, what) as tell:
         yield tell or (lambda text: None)
 
 

@@ -151,7 +151,7 @@ def test_memory_does_not_grow_with_the_number_of_events(monkeypatch: pytest.Monk
         run_loop(run, monitor, Interrupts())
         run.count.to_the_end, run.before_end = 0, None
         capacities.add(len(run.store.pieces))
-    assert run.stream.told > 9_000
+    assert run.stream.reported > 9_000
     assert run.forgotten > 150_000
     assert capacities == {256}
 

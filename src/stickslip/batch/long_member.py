@@ -71,7 +71,7 @@ class Folding:
         new.tell()
         if run.before_end is not None:
             return run.grow()
-        self.counted -= run.forget_told()
+        self.counted -= run.forget_reported()
         if run.length > LARGEST_SHARE * LARGEST_HISTORY:
             return False
         return run.length < len(run.store.pieces) // 2 or run.grow()

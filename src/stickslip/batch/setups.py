@@ -131,12 +131,12 @@ def spread(numbers: Any, count: int) -> Floats:
     return np.array(np.broadcast_to(found, (*found.shape[: max(found.ndim - 1, 0)], count)), order="C")
 
 
-def split_times(time: Floats, row: Floats) -> tuple[Integers, Floats]:
-    """Split times (s) into whole rows and an offset in the row, in (0, row], as `limits.split_time` does for one time."""
-    whole = np.floor(time / row)
-    offset = time - whole * row
+def split_times(time: Floats, round_trip: Floats) -> tuple[Integers, Floats]:
+    """Split times (s) into whole round trips and an offset in (0, round_trip], as `limits.split_time` does for one time."""
+    whole = np.floor(time / round_trip)
+    offset = time - whole * round_trip
     back = (offset <= 0.0) & (whole > 0)
-    return (whole - back).astype(np.int64), np.where(back, row, np.minimum(offset, row))
+    return (whole - back).astype(np.int64), np.where(back, round_trip, np.minimum(offset, round_trip))
 
 
 # ---- the law ----------------------------------------------------------------------------------------------------------------

@@ -108,18 +108,18 @@ def find(header: Sequence[str], wanted: Sequence[str], place: str) -> dict[str, 
     """Return what a header has of the wanted columns. Raises InputError for two of one kind, and for a unit that does not fit."""
     if len(header) > MOST_COLUMNS:
         raise InputError(f"{place}: more than {MOST_COLUMNS} columns: not a table of numbers")
-    told = [_understood(cell, tuple(wanted)) for cell in header]
+    understood = [_understood(cell, tuple(wanted)) for cell in header]
     found = {}
     for column in wanted:
-        at = [i for i, one in enumerate(told) if one is not None and one[0] == column]
-        exact = [i for i in at if plain(told[i][1]) == plain(column)]  # type: ignore[index] # at has none that are None
+        at = [i for i, one in enumerate(understood) if one is not None and one[0] == column]
+        exact = [i for i in at if plain(understood[i][1]) == plain(column)]  # type: ignore[index] # at has none that are None
         at = exact if len(exact) == 1 else at
         if len(at) > 1:
             cure = "rename or remove one"
             cure = "of two clocks, write each with its columns to a file of its own" if column == "time" else cure
             raise InputError(f"{place}: columns {at[0] + 1} and {at[1] + 1} both are the {column}: {cure}")
         if at:
-            unit = told[at[0]][2]  # type: ignore[index]
+            unit = understood[at[0]][2]  # type: ignore[index]
             found[column] = FoundColumn(at[0], factor_of(unit, column, f"{place}, column {at[0] + 1}"), unit)
     return {column: found[column] for column in wanted if column in found}
 

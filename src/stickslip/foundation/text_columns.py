@@ -157,9 +157,9 @@ def _head(lines: Sequence[str], wanted: Sequence[str]) -> _Head:
         return heads[headers[0]]
     comment = lines[first - 1].lstrip().lstrip("#") if first else ""
     if named[first] == 0 and comment and all(map(is_number, _split(lines[first], heads[first].separator))):
-        told = _header_in([*lines[: first - 1], comment, *lines[first:]], first - 1)
-        if count_named(told.cells[:MOST_COLUMNS], wanted) > 1:  # headings behind a #, as numpy.savetxt writes them
-            return told
+        header = _header_in([*lines[: first - 1], comment, *lines[first:]], first - 1)
+        if count_named(header.cells[:MOST_COLUMNS], wanted) > 1:  # headings behind a #, as numpy.savetxt writes them
+            return header
     return heads[first]
 
 

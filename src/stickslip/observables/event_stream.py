@@ -44,7 +44,7 @@ class EventStream:
     threshold: float
     first: int = 0
     last_start: HistoryPlace = BEFORE  # of the last event that was reported
-    told: int = 0
+    reported: int = 0
     energies: bool = False
     """True if the rows also hold the energies of the events."""
 
@@ -103,4 +103,4 @@ class Look:
         stream, last = self.stream, self.old + len(self.known_by) - 1
         stream.first = int(self.events.piece[0, last])
         stream.last_start = HistoryPlace(stream.first, float(self.events.xi[0, last]))
-        stream.told += len(self.known_by)
+        stream.reported += len(self.known_by)

@@ -22,7 +22,7 @@ from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_event_rate
 from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import CHECKPOINT_EVERY, RunOptions, problem_and_options
-from stickslip.run.progress import Progress, told
+from stickslip.run.progress import Progress, reporting
 from stickslip.run.run_loop import run_to_end
 from stickslip.trajectory.status import ENOUGH_EVENTS, UNDER_WAY, Status
 from stickslip.trajectory.tables import creep_note
@@ -95,7 +95,7 @@ def catalogue(
     file = None if path is None else as_path("catalogue: path", path)
     if file is not None:
         check_catalogue(file)
-    with told(progress, "catalogue") as report:
+    with reporting(progress, "catalogue") as report:
         given, options = problem_and_options(
             "catalogue",
             problem,
@@ -200,13 +200,13 @@ class OutputSoFar:
 class EventRows:
     """The sink (`run_loop.Sink`) that writes rows as events become known, and discards the history that they no longer need.
 
-    `told` is the output at the point from which this run, or a longer one, would continue, and `residual` (Pa or N) the largest
+    `so_far` is the output at the point from which this run, or a longer one, would continue, and `residual` (Pa or N) the largest
     bound of the steps that were proven anew: some of the first ones, and of those still in memory at the end.
     """
 
     run: ExactRun
     rows: Rows | RowsInMemory
-    told: OutputSoFar | None = None
+    so_far: OutputSoFar | None = None
     residual: float | None = None
     who = "catalogue"
     wants_events = True
@@ -226,16 +226,16 @@ class EventRows:
         run = self.run
         if self.residual is None:
             self.residual = proven(run.history()).residual
-        if run.forget_told() > 0:
+        if run.forget_reported() > 0:
             self._remember()
         return run.length < len(run.store.pieces) // 2 or run.grow()
 
     def save(self, code: int = UNDER_WAY) -> None:
         """Renew the checkpoint once the rows that it relies on are on the disk."""
-        if isinstance(self.rows, RowsInMemory) or self.told is None:
+        if isinstance(self.rows, RowsInMemory) or self.so_far is None:
             return
         self.rows.sync()
-        save_checkpoint(self.run.solution(code), checkpoint_of(self.rows), self._about(self.told, self.rows))
+        save_checkpoint(self.run.solution(code), checkpoint_of(self.rows), self._about(self.so_far, self.rows))
 
     def finish(self, code: int) -> Catalogue:
         """Write the remaining rows, with one for an event that the end leaves open, and give the table its final format."""
@@ -259,21 +259,21 @@ class EventRows:
             "proven": proof,
         }
         return Catalogue(
-            self.rows, stream.told, solution.status, solution.duration, {name: note for name, note in notes.items() if note}
+            self.rows, stream.reported, solution.status, solution.duration, {name: note for name, note in notes.items() if note}
         )
 
     def _remember(self) -> None:
         if self.run.before_end is None:
-            self.told = OutputSoFar(self.rows.size, replace(self.run.stream))
+            self.so_far = OutputSoFar(self.rows.size, replace(self.run.stream))
 
-    def _about(self, told: OutputSoFar, rows: Rows) -> dict[str, Any]:
-        stream = told.stream
+    def _about(self, so_far: OutputSoFar, rows: Rows) -> dict[str, Any]:
+        stream = so_far.stream
         return {
             CATALOGUE: FORMAT,
             "catalogue": rows.path.name,
-            "bytes": told.size,
-            "digest": rows.digest(told.size),
-            "told": stream.told,
+            "bytes": so_far.size,
+            "digest": rows.digest(so_far.size),
+            "told": stream.reported,
             "first": stream.first,
             "last_piece": stream.last_start.piece,
             "last_xi": stream.last_start.xi,

@@ -44,22 +44,22 @@ class ExactRun(Session):
     @property
     def has_enough(self) -> bool:
         """True if as many events have been reported as the options ask for."""
-        return self.options.max_events is not None and self.stream.told >= self.options.max_events
+        return self.options.max_events is not None and self.stream.reported >= self.options.max_events
 
     def report(self, pace: Pace) -> Report:
         """Return the progress of the run: see `Solver.report`."""
-        options, told = self.options, self.stream.told
+        options, reported = self.options, self.stream.reported
         now = min(self.time, options.duration)
-        share = max(now / options.duration, told / options.max_events if options.max_events else 0.0)
+        share = max(now / options.duration, reported / options.max_events if options.max_events else 0.0)
         rate = abs(float(self.state.rate_now)) if self.count.mode != 0 else 0.0
         doing: Doing = "stuck" if rate == 0.0 else "slipping" if rate > self.stream.threshold else "creeping"
         pieces = self.forgotten + self.length
-        return Report(now, options.duration, told, options.max_events, pieces, doing, *pace.at(now, share))
+        return Report(now, options.duration, reported, options.max_events, pieces, doing, *pace.at(now, share))
 
     def new_events(self) -> Look:
         """Return the events that are new, no more than the options still ask for: see `Solver.new_events`."""
         look, most = self.stream.look(self.history()), self.options.max_events
-        missing = len(look.known_by) + 1 if most is None else most - self.stream.told
+        missing = len(look.known_by) + 1 if most is None else most - self.stream.reported
         if missing <= len(look.known_by):
             look = look.first_ones(missing)
             self._return(int(look.known_by[-1]) + 1)
@@ -124,7 +124,7 @@ class ExactRun(Session):
         half, last = history.start[[self.length // 2, max(self.length // 2, self.length - 4 * SPARE)]].tolist()
         return Crowd(self.length, history.duration, half, last, options.duration).status(cures)
 
-    def forget_told(self) -> int:
+    def forget_reported(self) -> int:
         """Discard history that neither events to come nor the engine need. Returns the number of pieces discarded.
 
         Nothing is discarded after the checkpoint for a longer run has been stored, which refers to pieces by their number.

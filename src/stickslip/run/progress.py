@@ -20,7 +20,7 @@ Show = Callable[[str], object]
 
 
 @contextmanager
-def told(progress: Callable[[News], object] | bool | None, what: str) -> Iterator[Callable[[News], object] | None]:
+def reporting(progress: Callable[[News], object] | bool | None, what: str) -> Iterator[Callable[[News], object] | None]:
     """Provide the function that receives the progress of `what`: the user's function, or a display if `progress` is True.
 
     It is None if no progress is wanted. Raises InputError for anything else.

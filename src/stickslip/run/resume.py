@@ -18,7 +18,7 @@ from stickslip.run.catalogue import Catalogue, alone_with, checkpoint_of, follow
 from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import CHECKPOINT_EVERY, RunOptions
 from stickslip.run.planar_run import PlanarProgress, resume_planar
-from stickslip.run.progress import Progress, told
+from stickslip.run.progress import Progress, reporting
 from stickslip.run.run_loop import WholeHistory, run_to_end
 from stickslip.solution.planar import PlanarSolution
 from stickslip.solution.solution import Solution
@@ -81,14 +81,14 @@ def resume(
         given = {"max_events": max_events, "checkpoint": checkpoint, "max_pieces": max_pieces}
         if needless := [name for name, value in given.items() if value is not None]:
             raise InputError(f"resume: {file}: the run of a PlanarSlab continues in its own folder, without {needless[0]}")
-        with told(progress, "resume") as report:
+        with reporting(progress, "resume") as report:
             return resume_planar(file, duration, progress=report, checkpoint_every=checkpoint_every)
     paused = PausedCatalogue.read(file) if is_catalogue(file) else None
     if paused is not None and checkpoint is not None:
         raise InputError(f"resume: {file}: a catalogue is resumed in its own file: leave out checkpoint")
     stopped = read_solution(file) if paused is None else paused.stopped
     kept = file if checkpoint is None else as_path("resume: checkpoint", checkpoint)
-    with told(progress, "resume") as report:
+    with reporting(progress, "resume") as report:
         others: dict[str, Any] = {"progress": report, "checkpoint_every": checkpoint_every, "max_pieces": max_pieces}
         options = RunOptions.to_continue(stopped, duration, max_events, checkpoint=kept, **others)
         return resume_run(stopped, file, options) if paused is None else paused.resume(options).read()

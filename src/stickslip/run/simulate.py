@@ -16,7 +16,7 @@ from stickslip.problem.problem import Problem
 from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import CHECKPOINT_EVERY, RunOptions, options_of
 from stickslip.run.planar_run import PlanarProgress, simulate_planar
-from stickslip.run.progress import Progress, told
+from stickslip.run.progress import Progress, reporting
 from stickslip.run.run_loop import WholeHistory, run_to_end
 from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.source import read_source
@@ -132,7 +132,7 @@ def simulate(
     A run that needs more pieces than the default allows ends with the status "too many pieces", and its checkpoint file is left as
     it was. With max_pieces the file is written whatever ended the run.
     """
-    with told(progress, "simulate") as report:
+    with reporting(progress, "simulate") as report:
         if not PLANAR.solves(problem):
             problem = read_source("simulate", problem, contact=True)
         given = {

@@ -19,7 +19,7 @@ from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import about_time, number
 from stickslip.problem.problem import Problem
-from stickslip.run.progress import told
+from stickslip.run.progress import reporting
 from stickslip.scenarios.scenario import Scenario
 from stickslip.sweeps.design.quantities import DEFAULT, Wanted
 from stickslip.sweeps.execution.chunk import FIRST_FAILURE, NOT_RUN, ChunkResult, Runner, run_chunk
@@ -147,7 +147,7 @@ def sweep(
         samples=samples,
         chunk=chunk,
     )
-    with runner_of(threads, workers, scheduler) as run, told(progress, "sweep") as tell:
+    with runner_of(threads, workers, scheduler) as run, reporting(progress, "sweep") as tell:
         return carry_out(plan, out, run, tell)
 
 

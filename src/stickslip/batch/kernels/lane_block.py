@@ -119,6 +119,6 @@ def lend_rate(run: Run, own: LaneBlock) -> Floats:
     """Copy the slip rate over the step at hand, and the powers of its length, to the run; return where the rate is."""
     lend_step(run, own)
     for n in range(TERMS):
-        run.part[n] = own.rate[n]
+        run.trial[n] = own.rate[n]
     powers_of(own.length, run.powers)
-    return run.part
+    return run.trial

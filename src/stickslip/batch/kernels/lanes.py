@@ -132,7 +132,7 @@ def step_under(formula: Integers, side: Side) -> None:
     `formula` points to the addresses of its series, of its radii and of its values.
     """
     table, waits, jets, block, known, inspects = side
-    rows, lane_0, taking, fresh, degree = block_in_all_lanes(block), block_in_one_lane(block), 0, 0, 1
+    lanes, lane_0, taking, fresh, degree = block_in_all_lanes(block), block_in_one_lane(block), 0, 0, 1
     targets, moves, is_block = integers(block + 8 * WIDTH * TARGETS), False, False
     for lane in range(WIDTH):
         run, targets[lane] = run_in(table, lane), block + 8 * WIDTH * NOWHERE
@@ -144,18 +144,18 @@ def step_under(formula: Integers, side: Side) -> None:
             targets[lane] = table[lane * RUN_SIZE + HISTORY] + 8 * ROW * run.counts.length
             lane_0[lane].disc, waits[lane], taking = run.counts.disc, Waits.SLIPPING, taking | 1 << lane
     choose_length(formula, LaneStep(table, block, taking, moves, degree))
-    reached = settle(rows)
-    calculate(rows, degree)
-    sound = check_end(rows, formula[2], moves, degree)
-    move(rows, reached, is_block)
-    store(rows, targets)
+    reached = settle(lanes)
+    calculate(lanes, degree)
+    sound = check_end(lanes, formula[2], moves, degree)
+    move(lanes, reached, is_block)
+    store(lanes, targets)
     kept, rest = 0, sound & taking
     while rest != 0:
         lane, rest = first_of(rest), rest & (rest - 1)
         if is_simple(run_in(table, lane), lane_0[lane]):
             kept |= 1 << lane
-    keep(rows, kept)
-    rising, falling = inspect(rows) if inspects else (0, 0)
+    keep(lanes, kept)
+    rising, falling = inspect(lanes) if inspects else (0, 0)
     while taking != 0:
         lane, taking = first_of(taking), taking & (taking - 1)
         run, own = run_in(table, lane), lane_0[lane]
@@ -176,73 +176,73 @@ def step_under(formula: Integers, side: Side) -> None:
 def choose_length(formula: Integers, step: LaneStep) -> None:
     """Expand the series in all lanes, and find the lengths that the error allows and that can be proven, as `usable`."""
     table, block, taking, moves, degree = step
-    rows, lane_0 = block_in_all_lanes(block), block_in_one_lane(block)
-    begin(rows, degree)
-    call_jet(formula[0], numbers_of(rows.constants), numbers_of(rows.k), numbers_of(rows.load_along_slip), numbers_of(rows.jet))
-    rows.usable = length_at(rows.jet, rows.tolerance, 0.5)
-    odd = taking & ~((rows.usable >= FAR_FROM_GUESS) & ~(rows.jet[TERMS - 1] == 0.0))
+    lanes, lane_0 = block_in_all_lanes(block), block_in_one_lane(block)
+    begin(lanes, degree)
+    call_jet(formula[0], numbers_of(lanes.constants), numbers_of(lanes.k), numbers_of(lanes.load_along_slip), numbers_of(lanes.jet))
+    lanes.usable = length_at(lanes.jet, lanes.tolerance, 0.5)
+    odd = taking & ~((lanes.usable >= FAR_FROM_GUESS) & ~(lanes.jet[TERMS - 1] == 0.0))
     while odd != 0:
         lane, odd = first_of(odd), odd & (odd - 1)
         lend_step(run_in(table, lane), lane_0[lane])
         lane_0[lane].usable = usable_length(run_in(table, lane).jet, lane_0[lane].tolerance)
-    rows.limit = (rows.state.target - rows.state.xi) / rows.unit
-    rows.length = min(rows.usable, rows.limit)
-    prove(rows, formula[1], moves, degree)
+    lanes.limit = (lanes.state.target - lanes.state.xi) / lanes.unit
+    lanes.length = min(lanes.usable, lanes.limit)
+    prove(lanes, formula[1], moves, degree)
     largest = ALLOWED_SLOPE if moves else ALLOWED
-    odd = taking & ~(rows.share <= largest)
-    near = odd & (rows.share <= largest * NEAR)
+    odd = taking & ~(lanes.share <= largest)
+    near = odd & (lanes.share <= largest * NEAR)
     if near != 0:  # as the search for a single run begins
-        rows.length = chosen(near, shortened(rows.length, rows.share, largest), rows.length)
-        prove(rows, formula[1], moves, degree)
-        odd = taking & ~(rows.share <= largest)
-        rows.usable = chosen(near & ~odd, rows.length, rows.usable)
-    odd |= taking & ~(rows.k.free == 1.0)
+        lanes.length = chosen(near, shortened(lanes.length, lanes.share, largest), lanes.length)
+        prove(lanes, formula[1], moves, degree)
+        odd = taking & ~(lanes.share <= largest)
+        lanes.usable = chosen(near & ~odd, lanes.length, lanes.usable)
+    odd |= taking & ~(lanes.k.free == 1.0)
     while odd != 0:
         lane, odd = first_of(odd), odd & (odd - 1)
         prove_alone(run_in(table, lane), lane_0[lane])
 
 
 @inlined
-def begin(rows: LaneBlock, degree: int) -> None:
+def begin(lanes: LaneBlock, degree: int) -> None:
     """Calculate the input of the series in all lanes, as `taylor_step.prepare_series` does.
 
     `degree` is the largest of the loads' degrees, here and below.
     """
-    state, k, local, seen = rows.state, rows.k, rows.local, rows.load_along_slip
+    state, k, local, seen = lanes.state, lanes.k, lanes.local, lanes.load_along_slip
     pace = state.speed + 2.0 * state.bend * state.xi
-    rows.unit = unit_from(state.target - state.xi, pace, state.last_step)
+    lanes.unit = unit_from(state.target - state.xi, pace, state.last_step)
     for n in range(degree + 1):
-        local[n] = rows.load[n]
+        local[n] = lanes.load[n]
     if (state.xi == 0.0) != ALL_LANES:
         shift_low(local, degree, state.xi)
-    scale_low(local, degree, rows.unit)
+    scale_low(local, degree, lanes.unit)
     for n in range(1, degree + 1):
-        seen[n] = rows.direction * local[n]
+        seen[n] = lanes.direction * local[n]
     for n in range(degree + 1, TERMS):
         local[n] = seen[n] = 0.0
-    seen[0] = chosen(rows.direction > 0.0, local[0], -local[0] - 2.0 * rows.reference)
-    k.speed, k.bend = pace * rows.unit, 2.0 * state.bend * rows.unit * rows.unit
-    k.slip, k.rate = state.law_slip + rows.slip_shift, abs(state.rate_now)
+    seen[0] = chosen(lanes.direction > 0.0, local[0], -local[0] - 2.0 * lanes.reference)
+    k.speed, k.bend = pace * lanes.unit, 2.0 * state.bend * lanes.unit * lanes.unit
+    k.slip, k.rate = state.law_slip + lanes.slip_shift, abs(state.rate_now)
 
 
 @inlined
-def prove(rows: LaneBlock, radii: int, moves: bool, degree: int) -> None:
+def prove(lanes: LaneBlock, radii: int, moves: bool, degree: int) -> None:
     """Calculate in all lanes what a step may miss, as `certificate.share_on_disc` does; with inertia if the contact `moves`."""
-    powers = rows.disc_powers
-    powers_of(rows.ratio * rows.length, powers)
-    put_discs(rows.k, rows.jet, powers, rows.ball)
-    call_radii(radii, numbers_of(rows.constants), numbers_of(rows.jet), numbers_of(rows.ball))
-    force = force_on_disc(rows.k, rows.ball, load_on_disc(rows.load_along_slip, powers, degree))
-    size = rows.tolerance * size_of_rate(rows.jet, rows.length)
+    powers = lanes.disc_powers
+    powers_of(lanes.ratio * lanes.length, powers)
+    put_discs(lanes.k, lanes.jet, powers, lanes.ball)
+    call_radii(radii, numbers_of(lanes.constants), numbers_of(lanes.jet), numbers_of(lanes.ball))
+    force = force_on_disc(lanes.k, lanes.ball, load_on_disc(lanes.load_along_slip, powers, degree))
+    size = lanes.tolerance * size_of_rate(lanes.jet, lanes.length)
     if moves:
-        missed = rows.length * (abs(rows.k.speed) / rows.k.inertia * force + slope_on_disc(rows.jet, powers)) * rows.shrunk
-        resistance = rows.k.inertia / (rows.length * abs(rows.k.speed))
+        missed = lanes.length * (abs(lanes.k.speed) / lanes.k.inertia * force + slope_on_disc(lanes.jet, powers)) * lanes.shrunk
+        resistance = lanes.k.inertia / (lanes.length * abs(lanes.k.speed))
     else:
-        missed = force / rows.k.damping * rows.shrunk
-        resistance = rows.k.damping
-    rows.share = missed / max(size, SMALLEST)
-    rows.state.residual = resistance * rows.share * rows.tolerance * size_of_rate(rows.jet, rows.length)
-    rows.state.unbalanced = 0.0
+        missed = force / lanes.k.damping * lanes.shrunk
+        resistance = lanes.k.damping
+    lanes.share = missed / max(size, SMALLEST)
+    lanes.state.residual = resistance * lanes.share * lanes.tolerance * size_of_rate(lanes.jet, lanes.length)
+    lanes.state.unbalanced = 0.0
 
 
 @kernel
@@ -259,69 +259,69 @@ def prove_alone(run: Run, own: LaneBlock) -> None:
 
 
 @inlined
-def settle(rows: LaneBlock) -> int:
+def settle(lanes: LaneBlock) -> int:
     """Choose the lengths of proven steps, as `taylor_step.settle_length` does; return the lanes that reach their target."""
-    rows.last_step = duration_of(rows.k, rows.usable)
-    reached = rows.usable >= rows.limit
-    half = 0.5 * rows.limit
-    rows.length = chosen(reached, rows.limit, chosen(rows.usable > half, half, rows.usable))
+    lanes.last_step = duration_of(lanes.k, lanes.usable)
+    reached = lanes.usable >= lanes.limit
+    half = 0.5 * lanes.limit
+    lanes.length = chosen(reached, lanes.limit, chosen(lanes.usable > half, half, lanes.usable))
     return reached
 
 
 @inlined
-def calculate(rows: LaneBlock, degree: int) -> None:
+def calculate(lanes: LaneBlock, degree: int) -> None:
     """Calculate slip rate and load over the step, slip in it, and the slip rate at its end.
 
     The calculations are those of `step_events.stretch` and `keep_step.keep_step`.
     """
-    length, rate, load = rows.length, rows.rate, rows.row.load
-    powers_of(length, rows.powers)
-    multiply(rows.jet, rows.powers, rate)
-    multiply(rows.local, rows.powers, load)
-    straight = rows.k.speed * length * moment(rate, 1)
-    rows.grown = straight + rows.k.bend * length * length * moment(rate, 2)
-    rows.rate_end = total(rate)
+    length, rate, load = lanes.length, lanes.rate, lanes.row.load
+    powers_of(length, lanes.powers)
+    multiply(lanes.jet, lanes.powers, rate)
+    multiply(lanes.local, lanes.powers, load)
+    straight = lanes.k.speed * length * moment(rate, 1)
+    lanes.grown = straight + lanes.k.bend * length * length * moment(rate, 2)
+    lanes.rate_end = total(rate)
 
 
 @inlined
-def check_end(rows: LaneBlock, values: int, moves: bool, degree: int) -> int:
+def check_end(lanes: LaneBlock, values: int, moves: bool, degree: int) -> int:
     """Return the lanes whose step is sound: slip rate and friction stay above zero, and rounding hides nothing at the end.
 
     The end is put into the contact equation, as `certificate.measure_end` does.
     """
-    k, rate, place, value = rows.k, rows.rate, rows.at_end, rows.value
-    place[0], place[1] = k.slip + k.chi * rows.grown, rows.rate_end
-    call_values(values, numbers_of(rows.constants), numbers_of(place), numbers_of(value))
-    missing = imbalance(k, load_at_end(rows.load_along_slip, rows.powers, degree), value, rows.rate_end, rows.state.unbalanced)
+    k, rate, place, value = lanes.k, lanes.rate, lanes.at_end, lanes.value
+    place[0], place[1] = k.slip + k.chi * lanes.grown, lanes.rate_end
+    call_values(values, numbers_of(lanes.constants), numbers_of(place), numbers_of(value))
+    missing = imbalance(k, load_at_end(lanes.load_along_slip, lanes.powers, degree), value, lanes.rate_end, lanes.state.unbalanced)
     if moves:
-        missed, rough = missed_by_motion(k, missing, rate, rows.length, rows.grown), ROUGH_SLOPE
-        missing = missed * force_of_slope(k, rows.length)
+        missed, rough = missed_by_motion(k, missing, rate, lanes.length, lanes.grown), ROUGH_SLOPE
+        missing = missed * force_of_slope(k, lanes.length)
     else:
         missed, rough = missed_by_rate(k, missing, value), ROUGH
-    rows.state.residual = rows.state.residual + abs(missing) + abs(rows.state.unbalanced)
-    sound = (missed <= rough * rows.tolerance * size_at_end(rate, rows.rate_end)) & (abs(rows.rate_end) < math.inf)
+    lanes.state.residual = lanes.state.residual + abs(missing) + abs(lanes.state.unbalanced)
+    sound = (missed <= rough * lanes.tolerance * size_at_end(rate, lanes.rate_end)) & (abs(lanes.rate_end) < math.inf)
     sound &= (rate[0] > 0.0) & (bound_below(rate) > 0.0)
-    return sound & ~(rows.reference + k.normal * (value.mu + k.offset) < -NEGLIGIBLE * k.normal)
+    return sound & ~(lanes.reference + k.normal * (value.mu + k.offset) < -NEGLIGIBLE * k.normal)
 
 
 @inlined
-def move(rows: LaneBlock, reached: int, is_block: bool) -> None:
+def move(lanes: LaneBlock, reached: int, is_block: bool) -> None:
     """Calculate what the step leaves in the history, as `keep_step.move` and `pieces.record` do."""
-    state, k, row, length = rows.state, rows.k, rows.row, rows.length
-    rows.to = chosen(reached, state.target, state.xi + length * rows.unit)
-    width = rows.to - state.xi
+    state, k, row, length = lanes.state, lanes.k, lanes.row, lanes.length
+    lanes.to = chosen(reached, state.target, state.xi + length * lanes.unit)
+    width = lanes.to - state.xi
     row.phase_from = phase_in(state, state.xi)
-    row.phase_to = phase_in(state, rows.to)
+    row.phase_to = phase_in(state, lanes.to)
     row.speed = (state.speed + 2.0 * state.bend * state.xi) * width
     row.bend = state.bend * width * width
     row.slip, row.law_slip, row.residual = state.slip_now, state.law_slip, state.residual
     row.gain = math.nan
     if is_block:
-        unload_straight(rows.direction * rows.stiffness * (k.speed * length), rows.rate, row.load)
+        unload_straight(lanes.direction * lanes.stiffness * (k.speed * length), lanes.rate, row.load)
         if (k.bend == 0.0) != ALL_LANES:
-            unload_bent(rows.direction * rows.stiffness * (k.bend * length * length), rows.rate, row.load)
+            unload_bent(lanes.direction * lanes.stiffness * (k.bend * length * length), lanes.rate, row.load)
     for n in range(TERMS):
-        row.rate[n] = rows.direction * rows.rate[n]
+        row.rate[n] = lanes.direction * lanes.rate[n]
 
 
 @inlined
@@ -331,9 +331,9 @@ def phase_in(state: State, xi: float) -> float:
 
 
 @inlined
-def store(rows: LaneBlock, targets: Integers) -> None:
+def store(lanes: LaneBlock, targets: Integers) -> None:
     """Write what the step leaves in the history there, but for whole numbers, where something else is left for `append`."""
-    places = rows_of(rows.row)
+    places = rows_of(lanes.row)
     for first in range(ROW - WIDTH, FIRST_FLOAT - WIDTH, -WIDTH):
         store_across(places, targets, max(first, 0))
 
@@ -349,28 +349,28 @@ def is_simple(run: Run, own: LaneBlock) -> bool:
 
 
 @inlined
-def keep(rows: LaneBlock, kept: int) -> None:
+def keep(lanes: LaneBlock, kept: int) -> None:
     """Move to the end of the step in the lanes that keep it."""
-    state, signed = rows.state, rows.direction * rows.grown
-    state.xi = chosen(kept, rows.to, state.xi)
+    state, signed = lanes.state, lanes.direction * lanes.grown
+    state.xi = chosen(kept, lanes.to, state.xi)
     state.slip_now = chosen(kept, state.slip_now + signed, state.slip_now)
-    state.law_slip = chosen(kept, state.law_slip + rows.k.chi * rows.grown, state.law_slip)
-    state.rate_now = chosen(kept, rows.direction * max(rows.rate_end, 0.0), state.rate_now)
-    state.last_step = chosen(kept, rows.last_step, state.last_step)
+    state.law_slip = chosen(kept, state.law_slip + lanes.k.chi * lanes.grown, state.law_slip)
+    state.rate_now = chosen(kept, lanes.direction * max(lanes.rate_end, 0.0), state.rate_now)
+    state.last_step = chosen(kept, lanes.last_step, state.last_step)
     state.largest_residual = chosen(kept, max(state.largest_residual, state.residual), state.largest_residual)
-    rows.load[0] = chosen(kept, rows.load[0] - rows.stiffness * signed, rows.load[0])
-    rows.k.free, rows.k.force = chosen(kept, 1.0, rows.k.free), chosen(kept, 0.0, rows.k.force)
+    lanes.load[0] = chosen(kept, lanes.load[0] - lanes.stiffness * signed, lanes.load[0])
+    lanes.k.free, lanes.k.force = chosen(kept, 1.0, lanes.k.free), chosen(kept, 0.0, lanes.k.force)
 
 
 @inlined
-def inspect(rows: LaneBlock) -> tuple[int, int]:
+def inspect(lanes: LaneBlock) -> tuple[int, int]:
     """Return the lanes in which the slip rate is proven to rise throughout the step, and those in which it is proven to fall.
 
     Calculates the slip in the step from what it leaves in the history, as `reduction.grown` does.
     """
-    row = rows.row
-    rows.in_piece = chosen(row.bend == 0.0, row.speed * moment(row.rate, 1), math.nan)
-    rate, slope, rises = rows.rate, rows.slope, rows.rate[1] > 0.0
+    row = lanes.row
+    lanes.in_piece = chosen(row.bend == 0.0, row.speed * moment(row.rate, 1), math.nan)
+    rate, slope, rises = lanes.rate, lanes.slope, lanes.rate[1] > 0.0
     way = chosen(rises, 1.0, -1.0)
     for n in range(TERMS - 1):
         slope[n] = (n + 1) * rate[n + 1] * way

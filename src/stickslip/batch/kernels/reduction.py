@@ -78,8 +78,8 @@ def offset_at(history: HistoryPiece, piece: int, xi: float) -> float:
 @kernel
 def time_between(history: HistoryPiece, round_trip_time: float, place: tuple[int, float], later: tuple[int, float]) -> float:
     """Return the time (s) from one place (piece, xi) to a later one."""
-    rows = history[later[0]].trip - history[place[0]].trip
-    return rows * round_trip_time + (offset_at(history, later[0], later[1]) - offset_at(history, place[0], place[1]))
+    trips = history[later[0]].trip - history[place[0]].trip
+    return trips * round_trip_time + (offset_at(history, later[0], later[1]) - offset_at(history, place[0], place[1]))
 
 
 @kernel
@@ -198,14 +198,14 @@ def place_just_before(run: Run, piece: int) -> tuple[int, float, int]:
     history, last = run.history, piece - 1
     if not rests_before(history, run.params.round_trip_time, piece):
         return last, 1.0, 0
-    row, phase = history[piece].trip, history[piece].phase_from
+    trip, phase = history[piece].trip, history[piece].phase_from
     if phase == 0.0:
-        row, phase = row - 1, run.params.round_trip_time
+        trip, phase = trip - 1, run.params.round_trip_time
     while last >= 0 and not (history[last].phase_from < phase <= history[last].phase_to):
         last -= 1
     if last < 0:
         return piece - 1, 1.0, 0
-    return last, place_of(history, last, phase - history[last].phase_from), row - history[last].trip
+    return last, place_of(history, last, phase - history[last].phase_from), trip - history[last].trip
 
 
 @kernel

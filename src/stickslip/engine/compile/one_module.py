@@ -226,17 +226,17 @@ class _Wait:
     """What this process has spent on compilation (processor time, s), and what its user has been told."""
 
     spent, began = 0.0, 0.0
-    told: ClassVar[set[str]] = set()
+    announced: ClassVar[set[str]] = set()
 
     @classmethod
     def begin(cls, name: str) -> None:
         """Begin to compile a function, and say so if its user has to wait and does not know."""
         message = SLOW.get(name, "")
-        if not message and cls.spent > NOTICED and not cls.told:
+        if not message and cls.spent > NOTICED and not cls.announced:
             is_new = CACHE is None or not any(CACHE.glob("loop.run_until-*"))
             message = SLOW["run_until"] if is_new else OTHERS
-        if message and message not in cls.told:
-            cls.told.add(message)
+        if message and message not in cls.announced:
+            cls.announced.add(message)
             cache.announce(message)
         cls.began = time.process_time()
 

@@ -124,7 +124,7 @@ def onset_of_slip(run: Run, load: Floats, strength: Floats) -> tuple[float, int]
 
     The place is NONE, and the direction 0, if the load stays within the strength.
     """
-    part, onset, direction = run.part, NONE, 0
+    part, onset, direction = run.trial, NONE, 0
     for way in (1, -1):
         for k in range(at.TERMS):
             part[k] = strength[k] - way * load[k]
@@ -233,7 +233,7 @@ def branch_exit(run: Run) -> float:
 
     The result is inf if this does not happen on the present piece of load.
     """
-    branch, mode, part, xi = run.branch_table[run.counts.branch], run.counts.mode, run.part, run.state.xi
+    branch, mode, part, xi = run.branch_table[run.counts.branch], run.counts.mode, run.trial, run.state.xi
     first = NONE
     for upper in (0, 1):
         bound = branch.keep_to if upper == 1 else branch.keep_from

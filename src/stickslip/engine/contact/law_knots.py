@@ -43,7 +43,7 @@ def rate_knot_crossing(run: Run, rate: Floats) -> tuple[float, int]:
 
     The place is NONE if the rate stays in the piece.
     """
-    first, turn, part = NONE, 1, run.part
+    first, turn, part = NONE, 1, run.trial
     for way in (1, -1):
         knot = run.counts.piece if way == 1 else run.counts.piece - 1
         if knot < 0 or knot >= run.pieces - 1 or is_end_of_branch(run, run.law[knot].knot):

@@ -85,7 +85,7 @@ def approach_fold(run: Run, width: float) -> float:
     The slip rate goes as the square root of the time left, so that root becomes the variable. Returns 0 once the side piece is in
     place, or else the part of the way (in xi) that the contact must slip first.
     """
-    backwards, squared = run.part, run.spare
+    backwards, squared = run.trial, run.spare
     restrict(run.load, run.state.xi + width, -width, backwards)  # from the fold backwards: z on [0, 1]
     share = share_described(backwards)
     if share < 1.0:
@@ -118,9 +118,9 @@ def load_outruns_fold(run: Run) -> bool:
     """Return True if the load grows faster than the friction at the fold does as the contact slips there."""
     fold, xi, direction = run.branch_table[run.counts.branch].rate_from, run.state.xi, run.counts.mode
     friction_at(run, run.state.law_slip, fold)
-    restrict(run.load, xi, 1.0, run.part)
+    restrict(run.load, xi, 1.0, run.trial)
     sense = direction if run.params.counts_net == 1.0 else 1
-    return direction * run.part[1] > run.friction.by_slip * sense * fold * (run.state.speed + 2.0 * run.state.bend * xi)
+    return direction * run.trial[1] > run.friction.by_slip * sense * fold * (run.state.speed + 2.0 * run.state.bend * xi)
 
 
 @kernel
@@ -130,7 +130,7 @@ def depart_from_fold(run: Run, left: float) -> None:
     `left` is the way (in xi) to the end of the step. The bit is so short that the load is a straight line in time along it, even
     in the echo of an earlier fold.
     """
-    width, forwards = DEPARTURE * left, run.part
+    width, forwards = DEPARTURE * left, run.trial
     restrict(run.load, run.state.xi, width, forwards)
     rise, seen = run.counts.mode * forwards[1], SAME_LOAD * abs(run.branch_table[run.counts.branch].excess_from)
     if 0.0 < rise < seen:  # By rounding, the load at the end of the bit would still be the fold's.

@@ -89,7 +89,7 @@ def prove_step(run: Run, h: float, force: float) -> float:
     The bound of the load that the contact equation lacks is added to what was measured of it (`stages.defects`) in
     run.state.residual. `force` (Pa or N) is the force that the step ignores.
     """
-    slips, rate, load = run.counts.mode != 0, run.part, run.spare
+    slips, rate, load = run.counts.mode != 0, run.trial, run.spare
     restrict(run.jet, 0.5, 1.0, rate)
     restrict(run.load_along_slip, 0.5, 1.0, load)
     params, ball, value = run.params, run.ball, run.value

@@ -254,7 +254,7 @@ def turn_with_load(run: Run, left: float) -> float:
     every moment; a contact with mass is turned where its slip rate is zero. The sign is never taken from the polynomial of the
     slip rate: near a load of zero that rate may lie far below the error of the polynomial.
     """
-    part, direction, rounding = run.part, 1, LOAD_ROUNDING * size_of_load(run)
+    part, direction, rounding = run.trial, 1, LOAD_ROUNDING * size_of_load(run)
     restrict(run.load, run.state.xi, left, part)
     part[0] += run.params.reference
     if part[0] < 0.0:

@@ -82,7 +82,7 @@ class Run(MemoryRecord):
     friction: Friction = inside(Friction, TERMS)  # friction at the contact, as last evaluated
     saved_load: Floats = floats_inside(TERMS)  # Pa or N: the piece of load that is continued after a fold
     saved: State = inside(State, TERMS)  # the first SAVED fields of the state that belong to it
-    part: Floats = floats_inside(TERMS)  # room for polynomials that are only tested
+    trial: Floats = floats_inside(TERMS)  # room for polynomials that are only tested
     spare: Floats = floats_inside(TERMS)  # further room of this kind
     state_jet: Floats = floats_inside(STATES * TERMS)  # polynomials of the law's states over an implicit step
     stage_rate: Floats = floats_inside(TERMS)  # m/s: slip rate at Radau's points of an implicit step

@@ -74,16 +74,16 @@ def join(nodes: EchoNode, ramp: float, a: int, b: int) -> int:
 
 
 @kernel
-def part(nodes: EchoNode, ramp: float, n: int, phase: float) -> tuple[int, int]:
+def split(nodes: EchoNode, ramp: float, n: int, phase: float) -> tuple[int, int]:
     """Split tree n and return the roots of two: the pieces that begin before a phase (s), and the others."""
     if n == NOTHING:
         return NOTHING, NOTHING
     if nodes[n].phase < phase:
-        before, behind = part(nodes, ramp, nodes[n].right, phase)
+        before, behind = split(nodes, ramp, nodes[n].right, phase)
         nodes[n].right = before
         settle(nodes, ramp, n)
         return n, behind
-    before, behind = part(nodes, ramp, nodes[n].left, phase)
+    before, behind = split(nodes, ramp, nodes[n].left, phase)
     nodes[n].left = behind
     settle(nodes, ramp, n)
     return before, n
@@ -188,19 +188,19 @@ def next_trip(run: Run, n: int, limit: float) -> int:
 
 @kernel
 def leave_out_ends(run: Run, piece: HistoryPiece) -> None:
-    """Restrict run.part, the echo of a piece, to places further than `shortest` from its ends if short pieces are lumped.
+    """Restrict run.trial, the echo of a piece, to places further than `shortest` from its ends if short pieces are lumped.
 
     Slip near an end alone would be too short to be resolved. If nothing would be left, the load becomes its mean in time.
     """
     width = piece.phase_to - piece.phase_from
     share = run.params.shortest / width if run.counts.lumps == 1 else 0.0
     if share >= 0.5:
-        mean = mean_of(run.part, piece.speed, piece.bend, width)
-        fill(run.part, 0.0)
-        run.part[0] = mean
+        mean = mean_of(run.trial, piece.speed, piece.bend, width)
+        fill(run.trial, 0.0)
+        run.trial[0] = mean
     elif share > 0.0:
-        restrict(run.part, share, 1.0 - 2.0 * share, run.spare)
-        copy(run.spare, run.part, TERMS)
+        restrict(run.trial, share, 1.0 - 2.0 * share, run.spare)
+        copy(run.spare, run.trial, TERMS)
 
 
 @kernel
@@ -209,9 +209,9 @@ def add(run: Run, n: int) -> None:
     node, piece = run.echoes[n], run.history[n]
     load, rate = piece.load, piece.rate
     for k in range(TERMS):
-        run.part[k] = load[k] - 2.0 * run.params.impedance * rate[k]
+        run.trial[k] = load[k] - 2.0 * run.params.impedance * rate[k]
     leave_out_ends(run, piece)
-    node.phase, node.high, node.low = piece.phase_from, maximum(run.part), maximum(run.part, -1.0)
+    node.phase, node.high, node.low = piece.phase_from, maximum(run.trial), maximum(run.trial, -1.0)
     node.left = node.right = NOTHING
     node.first_up = node.first_down = n
     node.trip = piece.trip
@@ -231,7 +231,7 @@ def add_new(run: Run) -> None:
 def pass_to(run: Run, n: int) -> None:
     """Move the pieces before piece n to the tree of those that have been passed, and take piece n out of the tree ahead."""
     phase = run.echoes[n].phase
-    before, rest = part(run.echoes, run.params.ramp, run.counts.ahead, phase)
+    before, rest = split(run.echoes, run.params.ramp, run.counts.ahead, phase)
     run.counts.behind = join(run.echoes, run.params.ramp, run.counts.behind, before)
     run.counts.ahead = without_first(run.echoes, run.params.ramp, rest)
     if run.counts.new_from == run.counts.length:

@@ -123,7 +123,7 @@ def tone_series(run: Run, amplitude: float, time: float) -> None:
     frequency = run.params.tone_frequency
     turn, bend = frequency * run.state.speed, 2.0 * frequency * run.state.bend
     angle = frequency * time + run.params.tone_phase
-    sine, cosine = run.spare, run.part
+    sine, cosine = run.spare, run.trial
     sine[0], cosine[0] = amplitude * math.sin(angle), amplitude * math.cos(angle)
     for k in range(TERMS - 1):
         before = k - 1 if k > 0 else 0
