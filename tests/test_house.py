@@ -1,4 +1,4 @@
-"""Tests share problems, laws and truth through helper modules, never through each other; a release has one version."""
+"""Tests share helper modules, never each other; a release has one version; workflows and hooks run what the Makefile runs."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
+import yaml
 
 import stickslip
 
@@ -21,13 +22,18 @@ def first(pattern: str, name: str) -> str:
     return found[1]
 
 
+def named_pythons() -> list[str]:
+    """Return the versions of Python that the classifiers of the package name."""
+    return re.findall(r"Python :: (3\.\d+)", "\n".join(PROJECT["classifiers"]))
+
+
 def test_changelog_and_citation_are_of_this_version() -> None:
     assert first(r"^## \[([^\]]+)\]", "CHANGELOG.md") == stickslip.__version__
     assert first(r"^version: (\S+)$", "CITATION.cff") == stickslip.__version__
 
 
 def test_the_oldest_python_that_is_named_is_the_oldest_that_is_accepted() -> None:
-    named = re.findall(r"Python :: (3\.\d+)", "\n".join(PROJECT["classifiers"]))
+    named = named_pythons()
     assert PROJECT["requires-python"] == f">={named[0]}"
     assert re.findall(r"3\.\d+", first(r"^- (Python 3.*)$", "CHANGELOG.md")) == named
 
@@ -35,6 +41,30 @@ def test_the_oldest_python_that_is_named_is_the_oldest_that_is_accepted() -> Non
 def test_the_extra_of_notebooks_has_all_of_the_explorer() -> None:
     extras = PROJECT["optional-dependencies"]
     assert set(extras["explorer"]) <= set(extras["notebook"])
+
+
+WORKFLOWS = sorted((ROOT / ".github/workflows").glob("*.yml"))
+
+
+@pytest.mark.parametrize("path", WORKFLOWS, ids=lambda path: path.stem)
+def test_each_step_of_a_workflow_is_a_make_target(path: Path) -> None:
+    targets = set(re.findall(r"^([a-z ]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE))
+    known = {name for group in targets for name in group.split()}
+    for job in yaml.safe_load(path.read_text(encoding="utf-8"))["jobs"].values():
+        matrix = job.get("strategy", {}).get("matrix", {})
+        runs = [step["run"] for step in job["steps"] if "run" in step]
+        asked = [run.replace("${{ matrix.target }}", target) for run in runs for target in matrix.get("target", [""])]
+        assert asked
+        assert {f"make {name}" for name in known} >= set(asked)
+        assert matrix.get("python", named_pythons()) == named_pythons()
+
+
+def test_hooks_run_the_tools_that_lint_runs() -> None:
+    hooks = yaml.safe_load((ROOT / ".pre-commit-config.yaml").read_text(encoding="utf-8"))["repos"]
+    assert [repository["repo"] for repository in hooks] == ["local"]
+    entries = {hook["entry"].removesuffix(" --fix") for hook in hooks[0]["hooks"]}
+    lint = first(r"^lint:[^\n]*\n((?:\t[^\n]*\n)+)", "Makefile").replace("$(BIN)", ".venv/bin").replace(" --check", "")
+    assert {line.strip().removesuffix(" .") for line in lint.splitlines()} == entries
 
 
 TESTS = Path(__file__).parent
