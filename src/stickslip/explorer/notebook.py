@@ -63,6 +63,17 @@ def explore(
     InputError
         If the libraries of the extra `explorer` are missing, if the problem cannot be read, or if it cannot be written as a
         scenario because its law is a function of Python.
+
+    See Also
+    --------
+    stickslip.simulate : run a problem without a page.
+
+    Examples
+    --------
+    >>> import stickslip as ss
+    >>> page = ss.explore("fig6-slab")  # in a notebook, where `page` as the last line of the cell shows it
+    >>> page.explorer.answer.sentence[:40]
+    'Irregular: several slip rates at some lo'
     """
     check_extra("explore")
     from stickslip.explorer.server.start import shown_in_notebook

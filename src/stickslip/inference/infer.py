@@ -198,6 +198,26 @@ def infer(
     and, by restricted maximum likelihood, the time over which it remembers itself. Intervals, of 95 %, allow for that memory, and
     for residuals that are largest where they count most, as those of a model that is a little wrong (sandwich covariance). A
     misfit is told as a misfit. What is left moves the numbers only as it weighs several quantities, and what you know beforehand.
+
+    See Also
+    --------
+    stickslip.studies.Record : read a record and look at it first.
+    stickslip.friction.Fit : fit a law to points of friction against slip or slip rate.
+
+    Examples
+    --------
+    >>> import stickslip as ss
+    >>> import numpy as np
+    >>> scenario = ss.load_scenario("velocity-steps-block")
+    >>> time = np.linspace(0.0, 400.0, 801)
+    >>> run = ss.simulate(scenario)
+    >>> noise = 3e-4 * np.random.default_rng(1).standard_normal(len(time))
+    >>> record = {"time (s)": time, "mu": run.traction(time) / scenario.problem.normal + noise}
+    >>> found = ss.studies.infer(scenario, record, ["friction.a", "friction.b"], starts=1)
+    >>> print(found.table[["low", "high"]].rename_axis(None).round(4).to_string())
+                   low    high
+    friction.a  0.0099  0.0101
+    friction.b  0.0129  0.0131
     """
     wishes = Wishes(
         by=by, observe=observe, start=start,

@@ -85,6 +85,20 @@ class Problem(ProblemFields):
     At most one of `pull_rate` and `far_stress` may be a loading history (`stickslip.loading`). The initial velocity in a slab is
     linear in x, from the initial rate, or rest, at the contact to the pull rate at 0 s at the driver. With initial_rate="steady" it
     is the same everywhere.
+
+    See Also
+    --------
+    stickslip.simulate : run a problem.
+    stickslip.load_scenario : read a problem and its duration from a file.
+
+    Examples
+    --------
+    >>> import stickslip as ss
+    >>> body = ss.SpringBlock(mass=1.0, stiffness="1 kN/m", normal_force=10.0)
+    >>> law = ss.friction.Coulomb(static=0.6, dynamic=0.5)
+    >>> problem = ss.Problem(body, law, pull_rate="1 mm/s", initial_excess=0.0)
+    >>> print(f"starts at a load of {problem.load:.3f} {problem.load_unit}; S = {problem.normal} {problem.load_unit}")
+    starts at a load of 6.000 N; S = 10.0 N
     """
 
     def __setattr__(self, name: str, value: Any) -> NoReturn:

@@ -90,6 +90,18 @@ def catalogue(
         If an argument is out of range (see `stickslip.simulate`), the suffix of `path` is unknown, Parquet is wanted without
         pyarrow, the file exists and was not written by this package, another run writes to the same files, or `energy` is combined
         with a positive creep_rtol.
+
+    See Also
+    --------
+    stickslip.simulate : keep the whole motion.
+    stickslip.studies.catalogue_statistics : recurrence and slip of a catalogue, with their scatter.
+
+    Examples
+    --------
+    >>> import stickslip as ss
+    >>> events = ss.catalogue("cycles-block", max_events=3)
+    >>> print((events.recurrence / ss.YEAR).round(4).to_list(), events.slip.round(6).to_list())
+    [nan, 4.6937, 4.6937] [0.164279, 0.164279, 0.164279]
     """
     rate = check_event_rate(event_rate, "catalogue")
     file = None if path is None else as_path("catalogue: path", path)

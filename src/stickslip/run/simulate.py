@@ -131,6 +131,20 @@ def simulate(
 
     A run that needs more pieces than the default allows ends with the status "too many pieces", and its checkpoint file is left as
     it was. With max_pieces the file is written whatever ended the run.
+
+    See Also
+    --------
+    stickslip.catalogue : keep slip events only, for runs of many cycles.
+    stickslip.sweep : run with many values of some parameters.
+    stickslip.resume : continue a run from its checkpoint.
+
+    Examples
+    --------
+    >>> import stickslip as ss
+    >>> solution = ss.simulate("fig6-slab")
+    >>> event = solution.events.iloc[0]
+    >>> print(f"{event.slip:.6f} m of slip in {event.duration:.6f} s, at up to {event.peak_rate:.6f} m/s")
+    23.440233 m of slip in 5.714286 s, at up to 4.102041 m/s
     """
     with reporting(progress, "simulate") as report:
         if not PLANAR.solves(problem):

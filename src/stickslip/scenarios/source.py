@@ -66,6 +66,20 @@ def uniqueness(problem: Problem | Scenario | str | Path, law_slip: float | str |
 
     Raises InputError if friction falls at least as fast as Z v rises even at the fastest rate of the search, or if the table of the
     selection rule cannot be followed; for a scenario also as `stickslip.load_scenario` does.
+
+    See Also
+    --------
+    stickslip.studies.critical_value : the value of a parameter from which on the answer is not unique.
+    stickslip.selection : the rules that select one of several answers.
+
+    Examples
+    --------
+    >>> import stickslip as ss
+    >>> body = ss.ElasticSlab(thickness="10 km", density=2700, wave_speed="3 km/s", normal_stress="100 MPa")
+    >>> law = ss.friction.HyperbolicRate(static=0.8, dynamic=0.3, alpha="1 s/m")
+    >>> answer = ss.uniqueness(ss.Problem(body, law, pull_rate="3 cm/year", initial_excess=0.0))
+    >>> print(answer.regime, f"above {answer.critical_parameter} = {answer.critical_value:.4f} {answer.critical_unit}")
+    irregular above alpha = 0.1620 s/m
     """
     found = read_source("uniqueness", problem)
     return uniqueness_of(found if isinstance(found, Problem) else found.problem, law_slip)

@@ -156,6 +156,19 @@ def compare(
         `duration` or `rtol` is out of range or given with a solution, or if a run has no such event.
     KeyboardInterrupt
         If the user presses Ctrl-C.
+
+    See Also
+    --------
+    stickslip.sweep : many runs that differ in the values of parameters only.
+
+    Examples
+    --------
+    >>> import stickslip as ss
+    >>> study = ss.studies.compare("fig5-slab-printed", "fig5-block-printed", names=["slab", "block"])
+    >>> print(study.table[["name", "pulses", "slip", "shocks"]].round(4).to_string(index=False))
+     name  pulses   slip  shocks
+     slab       1 0.0006       2
+    block       1 0.0074       0
     """
     if len(sources) < 2:
         raise InputError(f"compare: needs two scenarios or runs, or more, got {len(sources)}")

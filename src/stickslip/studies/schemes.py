@@ -205,6 +205,19 @@ def schemes(
         If the problem does not suit the schemes, if a name is unknown, or if cells or the Courant number are out of range.
     KeyboardInterrupt
         If the user presses Ctrl-C before the first run of a scheme is finished.
+
+    See Also
+    --------
+    stickslip.studies.judge_series : judge the output of your own program in the same way.
+
+    Examples
+    --------
+    >>> import stickslip as ss
+    >>> study = ss.studies.schemes("fig6-slab", scheme="characteristics", cells=[50, 100])
+    >>> print(study.table[["scheme", "cells", "slip_error"]].to_string(index=False))
+             scheme  cells  slip_error
+    characteristics     50    0.061670
+    characteristics    100    0.030765
     """
     lasts, given = read_duration_and_problem("schemes", problem, duration)
     several = [scheme] if isinstance(scheme, str) or not isinstance(scheme, Sequence) else scheme

@@ -134,6 +134,21 @@ def sweep(
     ------
     InputError
         For anything that cannot be used: a parameter, a value, a quantity, or an `out` that belongs to another sweep.
+
+    See Also
+    --------
+    stickslip.simulate : one run.
+    stickslip.studies.find : the value of one parameter at which the answer changes.
+
+    Examples
+    --------
+    >>> import stickslip as ss
+    >>> found = ss.sweep("fig6-slab", {"alpha": [0.1, 0.5, 1.0]})
+    >>> print(found.slip.round(4).to_series().to_string())
+    friction.alpha
+    0.1     0.0000
+    0.5    17.7259
+    1.0    23.4402
     """
     plan = make_plan(
         scenario,

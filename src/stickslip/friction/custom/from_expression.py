@@ -54,6 +54,18 @@ class FromExpression(RemembersSlip):
     state changes at rest, too, where v = 0. Friction must be finite at state 0. If it is zero at v = 0 in every state, or if the
     state changes its sign at reversal, the contact never sticks. A law may have two states: a semicolon separates their equations
     in `evolution`, and their units in `state_unit` ("m; 1").
+
+    See Also
+    --------
+    stickslip.friction.FromFunction : a law from a function of Python.
+    stickslip.friction.Fit : a law from measured points.
+
+    Examples
+    --------
+    >>> import stickslip as ss
+    >>> law = ss.friction.FromExpression("0.6 - a*(1 - exp(-u/d))", {"a": 0.3, "d": "1 m"})
+    >>> print(law.coefficient([0.0, 1.0, 1e3], 0.0).round(6))
+    [0.6      0.410364 0.3     ]
     """
 
     kind = "expression"
