@@ -120,6 +120,7 @@ def main() -> None:
         print(*rows[-1].values(), sep="  ", file=sys.stderr, flush=True)
     draw(data(Runs())).savefig(FIGURE, dpi=150)
     for row in table():
+        del row["commit"]
         print(f"| {' | '.join(row.values())} |")
 
 

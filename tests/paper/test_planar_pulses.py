@@ -28,7 +28,7 @@ from stickslip.paper.planar import (
 from tests.reference.planar_methods import FrictionalVolume, LawAtNodes, PlanarCase
 
 TRIP = 40.0 / 7.0
-PAGE = Path(__file__).parents[2] / "docs" / "fault-in-2d-and-3d.md"
+PAGE = Path(__file__).parents[2] / "docs" / "pulses-in-2d-and-3d.md"
 
 
 def test_the_paper_belongs_to_the_family_of_slip_laws() -> None:
@@ -143,6 +143,7 @@ def test_without_the_library_the_chapter_shows_the_stored_run_and_says_so(monkey
 def test_the_page_shows_the_stored_study() -> None:
     text = PAGE.read_text(encoding="utf-8")
     for row in table():
+        del row["commit"]  # it stands with the stored rows
         assert f"| {' | '.join(row.values())} |" in text
 
 
