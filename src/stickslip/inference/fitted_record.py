@@ -1,4 +1,4 @@
-"""What fits a record: numbers with intervals, the best runs, and what is left of the record."""
+"""The best fit to a record: numbers with intervals, the best runs, and the residuals."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ from stickslip.study import StudyWithDataset
 
 @dataclass(frozen=True, eq=False, repr=False)
 class FittedRecord(StudyWithDataset):
-    """The best fit to a record with its model, and what the record determines.
+    """The best fit to a record: the model, the numbers, and how well the record determines them.
 
-    `parts` are the parts of the record, with what was left out of the fit; `about` says what was done with it, one sentence each.
-    `profiles` of the likelihood and the `walk` through the posterior distribution are there if they were asked for. `windows`, if
-    they were asked for, has the numbers of shorter parts of the record, one row each: begin, end (s since the first sample),
-    samples, and each free number (SI). `asked` are the options that were given, by name.
+    `parts` are the parts of the record, including those left out of the fit; `about` says what was done with the record, one
+    sentence each. `profiles` of the likelihood, the `walk` through the posterior distribution and `windows` are there if the user
+    asked for them. `windows` has one row for each shorter part of the record: begin, end (s since the first sample), samples, and
+    each free number (SI). `asked` are the options that were given, by name.
     """
 
     estimate: Estimate
@@ -65,8 +65,8 @@ class FittedRecord(StudyWithDataset):
     def table(self) -> pd.DataFrame:
         """A table with one row for each free number, by its name.
 
-        Columns: value, uncertainty (standard, infinite where the record does not determine it, NaN on a bound), low and high
-        (interval of 95 %), all in SI; unit; start, where the search began; source of the interval: curvature, profile or samples.
+        Columns: value, uncertainty (standard; infinite where the record does not determine it, NaN on a bound), low and high (95 %
+        interval), all in SI; unit; start (starting value of the search); source of the interval: curvature, profile or samples.
         """
         rows = [self._row(i, one) for i, one in enumerate(self.free)]
         columns = ["value", "uncertainty", "low", "high", "unit", "start", "source"]
@@ -125,12 +125,12 @@ class FittedRecord(StudyWithDataset):
 
     @cached_property
     def _whole(self) -> Model:
-        """The model with what was left out of the fit; numbers of parts that were not fitted are those of the record."""
+        """The model including the parts left out of the fit; the numbers of those parts are read off the record."""
         return self.model.with_(parts=self.parts)
 
     @cached_property
     def runs(self) -> tuple[Solution, ...]:
-        """The best run of each part, those that were left out too. Raises InputError if one fails, as after a bad prediction."""
+        """The best run of each part, including those left out. Raises InputError if one fails, as after a bad prediction."""
         found = [self._whole.solve(self.estimate.searched, i) for i in range(len(self.parts))]
         if any(run is None for run in found):
             raise InputError("infer: the best numbers do not run to the end of the record")
@@ -144,7 +144,7 @@ class FittedRecord(StudyWithDataset):
         """Data, model and residual at each sample.
 
         Columns: part; time (s since the first sample of the part); quantity; data, model and residual (data minus model, SI);
-        fitted, False for what was left out.
+        fitted (False for samples left out).
         """
         pieces = []
         for i, run in enumerate(self.runs):
@@ -163,7 +163,7 @@ class FittedRecord(StudyWithDataset):
         return float(np.mean(apart[known & fitted if (known & fitted).any() else known]))
 
     def errors(self, sizes: Mapping[str, float], *, fitted: bool) -> float:
-        """Return the root mean square residual of what was fitted, or left out, in given sizes of noise by quantity (SI)."""
+        """Return the root mean square residual of the samples fitted, or left out, in units of the given noise by quantity (SI)."""
         table = self.curves[(self.curves.fitted == fitted) & self.curves.residual.notna()]
         if table.empty:
             return math.nan
@@ -172,13 +172,13 @@ class FittedRecord(StudyWithDataset):
 
     @cached_property
     def prediction(self) -> float | None:
-        """Root mean square error of what was left out, in standard deviations of the noise; None if nothing was."""
+        """Root mean square error of the prediction of samples left out, in standard deviations of the noise; None without them."""
         error = self.errors(self.model.sizes, fitted=False)
         return None if math.isnan(error) else error
 
     @property
     def bic(self) -> float:
-        """Schwarz's criterion: of inferences from one record the smallest fits best for its number of free numbers."""
+        """Schwarz's criterion: among inferences from one record, the smallest fits best for its number of free numbers."""
         n, total = self.model.samples, 0.0
         for name, size in self.model.sizes.items():
             count = sum(len(b.time) for i in range(len(self.model.parts)) for q, b in self.model.blocks(i) if q == name)
@@ -195,7 +195,7 @@ class FittedRecord(StudyWithDataset):
 
     @property
     def fit(self) -> pd.DataFrame:
-        """What is left of each fitted quantity: samples, noise (standard deviation, SI), memory (s), and rms of the residual."""
+        """The residuals of each fitted quantity: samples, noise (standard deviation, SI), memory (s), and rms of the residual."""
         table, rows = self.curves[self.curves.fitted], {}
         for name, size in self.model.sizes.items():
             rest = table.residual[table.quantity == name].dropna().to_numpy()

@@ -38,11 +38,11 @@ if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario
 
 WAYS = ("samples", "features")
-"""What of a record is fitted: each sample, or features of its slip events."""
+"""Data to fit: each sample of a record, or features of its slip events."""
 MOST_PARTS, MOST_SEARCHED = 24, 8
-"""Largest number of parts between rests that are fitted, and among which the first search goes on."""
+"""Largest number of parts between rests to fit, and of those in the first search."""
 LEAST_FITTED = 2000
-"""Number of samples up to which a part is fitted as it is, however many there are."""
+"""A part with at most this many samples is fitted as it is, however many parts there are."""
 TIME = Quantity("s", "time of the record")
 WEIGHT = Quantity("1", "exponent of the weight of samples after a change of the pull rate", at_least=0.0)
 RTOL = 1e-8
@@ -51,7 +51,7 @@ RTOL = 1e-8
 
 @dataclass(frozen=True)
 class Wishes:
-    """The options of `infer`, where they are described."""
+    """The options of `infer`; see there."""
 
     by: str
     observe: Sequence[str] | str | None
@@ -118,12 +118,12 @@ def infer(
     seed: int = 0,
     rtol: float = RTOL,
 ) -> Inference:
-    """Find the numbers of a problem with which its run follows a laboratory record, and how well the record determines them.
+    """Fit the numbers of a problem to a laboratory record, by full runs, and find how well the record determines them.
 
     Parameters
     ----------
     problem : Problem, Scenario, str or Path
-        The problem with values at which the search begins: itself, its scenario, the name of a bundled scenario, or a file.
+        The problem, with starting values for the search: itself, its scenario, the name of a bundled scenario, or a file.
     record : str, Path, DataFrame, mapping, Record, or list of them
         The record: a CSV file, or columns by their headings, as `Record.read` describes. Several records share the free numbers.
     free : list of str
@@ -131,49 +131,51 @@ def infer(
         "initial.state", "record.trend" (friction per metre of slip), "record.delay" (s, by which the record is late) and
         "record.servo" (s: after a step the load point approaches its new rate as exp(-t/servo)).
     begin, end : float or str, optional
-        The part of the record that is taken: times (s, as in the record, or texts with a unit).
+        The part of the record to use: times (s, as in the record, or texts with a unit).
     progress : bool or callable, optional
         True shows the progress in one line. A function is called with a line of text.
     by : {"samples", "features"}
-        What of the record is fitted: its samples, or features of its slip events (stick-slip), with their scatter from event to
+        The data to fit: samples of the record, or features of its slip events (stick-slip), with their scatter from event to
         event.
     observe : str or list of str, optional
-        Which samples are fitted: friction, shear_stress or shear_force, slip, slip_rate; by default shear, or else all that is
-        there. Or which features: peak, rest, drop (peak minus rest), recurrence, duration, event_slip, peak_rate; by default all
-        that the record has but the drop.
+        The samples to fit: friction, shear_stress or shear_force, slip, slip_rate; by default shear if the record has it, or else
+        all of them. Or the features to fit: peak, rest, drop (peak minus rest), recurrence, duration, event_slip, peak_rate; by
+        default all that the record has except the drop.
     start : {"steady", "record", "problem"}, optional
         How the run begins: in steady sliding at the first pull rate (default for a law with a state that never sticks), with the
         load of the first samples (default for others), or as the problem says.
     sensor : {"contact", "spring"}
-        Where shear is measured: at the contact, or by a load cell behind the spring of a block, which inertia separates from it.
+        Where shear is measured: at the contact, or by a load cell behind the spring of a block. The two differ by the inertia of
+        the block.
     parts : "rests", optional
         Split the record after each slip event and begin a run at each rest, with the load that is measured there.
     each : list of str, optional
-        What is free for each of these parts: "initial.load" within its noise (default), and "initial.state" of a law that has one.
+        Numbers that are free in each of these parts: "initial.load" within its noise (default), and "initial.state" if the law has
+        one.
     bounds : mapping, optional
-        Lower and upper limits by name. The default is a factor of 1000 to both sides for positive quantities, and of 30 for pure
-        numbers.
+        Lower and upper limits by name. The default for positive quantities is a factor of 1000 to both sides of the starting value,
+        or of 30 for pure numbers.
     priors : mapping, optional
-        What you know beforehand, by name: "normal(0.6, 0.05)", "lognormal(10 um, 0.5)", with the standard deviation of the
-        logarithm, or "uniform(0, 1)".
+        Prior knowledge by name: "normal(0.6, 0.05)", "lognormal(10 um, 0.5)" (median and standard deviation of the logarithm), or
+        "uniform(0, 1)".
     begin_at : mapping, optional
-        Values at which the search begins, by name; by default those that the record shows, or else those of the problem.
+        Starting values of the search, by name; by default those that the record shows, or else those of the problem.
     loss : {"linear", "soft_l1", "huber", "cauchy"}
-        How residuals count. Choose one other than linear if some samples lie far off.
+        How residuals count. Choose another than linear if some samples are far off.
     weight : float
         Exponent p of the weight (n/j)**p of the j-th of n samples after each change of the pull rate, as in RSFit3000 (Skarbek &
         Savage 2019, Geosphere 15, 1665). Default 0: all samples count alike.
     windows : bool
         If True, shorter parts of the record are fitted, too: `found.windows` has the numbers, and a note their spread.
     starts : int
-        Number of starts of the search: the given one, and the best of twelve times as many draws. Default 4. If none of them leads
-        near the record, and this is not 1, a search without derivatives follows.
+        Number of starts of the search: the given one, and the best of twelve times as many draws. Default 4. If several starts do
+        not lead near the record, a search without derivatives follows.
     held_out : float or str, optional
-        Share of the record at its end, or time (text with a unit), that is not fitted but predicted.
+        End of the record that is predicted instead of fitted: a share, or a time (text with a unit).
     profiles : bool
         If True, intervals follow from profiles of the likelihood, and not from its curvature.
     samples : int
-        Number of samples of the posterior distribution that are drawn with emcee. Default 0.
+        Number of samples to draw from the posterior distribution, with emcee. Default 0.
     seed : int
         Seed of starts and samples.
     rtol : float
@@ -194,10 +196,10 @@ def infer(
 
     Notes
     -----
-    Least squares over full runs; positive numbers are searched along their logarithm. What is left is then looked at: its size
-    and, by restricted maximum likelihood, the time over which it remembers itself. Intervals, of 95 %, allow for that memory, and
-    for residuals that are largest where they count most, as those of a model that is a little wrong (sandwich covariance). A
-    misfit is told as a misfit. What is left moves the numbers only as it weighs several quantities, and what you know beforehand.
+    Least squares over full runs; positive numbers are searched on a logarithmic scale. The size of the residuals is then estimated
+    and, by restricted maximum likelihood, their correlation time. The 95 % intervals allow for this correlation, and for residuals
+    that are largest at the samples that count most, as those of a slightly wrong model (sandwich covariance). A misfit is reported
+    as a misfit. The estimated noise affects the best numbers only through the weights of several quantities and of priors.
 
     See Also
     --------
@@ -260,7 +262,7 @@ def infer(
 
 
 def _resampled(parts: list[Part], notes: list[str]) -> tuple[list[Part], list[str]]:
-    """Return the parts with a number of samples that can be fitted, and the notes with what was done."""
+    """Return the parts with a manageable number of samples, and the notes with what was done."""
     found, most = [], max(MOST_FITTED // len(parts), LEAST_FITTED)
     for part in parts:
         record, said = resampled(part.record, most)
@@ -286,7 +288,7 @@ def _model(problem: Problem, parts: list[Part], names: Sequence[str] | str, wish
     if wishes.parts == "rests":
         own = own_of(problem, parts, wishes.each)
     elif wishes.by == "samples" and all(part.start == "record" for part in parts):
-        own = own_of(problem, parts, [LOAD])  # the load of the first samples is known to their noise only
+        own = own_of(problem, parts, [LOAD])  # the first samples give the load only to within their noise
     own = [one for one in own if one.name not in {shared.name for shared in chosen}]
     kind = FeatureModel if wishes.by == "features" else Model
     sizes = scatter_of(parts) if wishes.by == "features" else first_sizes(parts)
@@ -300,7 +302,7 @@ def _model(problem: Problem, parts: list[Part], names: Sequence[str] | str, wish
 
 
 def _inferred(model: Model, whole: tuple[Part, ...], wishes: Wishes, notes: list[str], tell: Tell) -> Inference:
-    """Return the result of all that was asked for; Ctrl-C leaves out what was not finished."""
+    """Return the result with all that the user asked for; after Ctrl-C, without the parts that were not finished."""
     tell = SearchProgress(tell)
     found = _estimated(model.with_(ran=tell.run), wishes, tell)
     sure, profiles, windows = unknown(found), list[Profile](), None
@@ -344,7 +346,7 @@ def _estimated(model: Model, wishes: Wishes, tell: Tell) -> Estimate:
 
 
 def _idle_as_given(found: Estimate, sure: Certainty) -> Estimate:
-    """Return a best fit in which numbers without influence have the values that were given."""
+    """Return the best fit with the given values of numbers without influence."""
     idle = np.linalg.norm(sure.slopes, axis=0) < IDLE
     given = np.where(idle, found.model.begin, found.searched)
     kept = idle.any() and found.cost(given) < found.cost(found.searched) + IDLE

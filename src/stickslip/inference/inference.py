@@ -1,4 +1,4 @@
-"""The result of `infer`: numbers with intervals, the best problem, and what is and is not known."""
+"""The result of `infer`: numbers with intervals, the best problem, and notes on what the record does not determine."""
 
 from __future__ import annotations
 
@@ -36,11 +36,11 @@ from stickslip.solution.accessors import report_of_study
 from stickslip.study import TextProgress, telling
 
 MISSED, MISSED_SHARE = 3.0, 0.2
-"""Sizes of residuals, in the noise of neighbouring samples and in the scatter of the record, beyond which a run misses it."""
+"""A run misses a record if residuals exceed this multiple of the noise of neighbouring samples and this share of the scatter."""
 FALLING = 0.2
-"""Share of the time in which shear falls below which it does so in slip events."""
+"""Shear falls in slip events if it falls during less than this share of the time."""
 MANY = 1.5
-"""Size of residuals, in the standard deviations that were given, from which they are told to be larger."""
+"""Residuals above this many given standard deviations are reported as larger than the stated noise."""
 
 
 def _near(value: float, uncertainty: float) -> str:
@@ -50,13 +50,13 @@ def _near(value: float, uncertainty: float) -> str:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Inference(FittedRecord):
-    """The result of `infer`: a `FittedRecord`, told in sentences, as a scenario, and in files."""
+    """The result of `infer`: a `FittedRecord` that can be read as sentences, used as a scenario, and written to files."""
 
     def more(self, samples: int, *, progress: TextProgress | bool | None = None) -> Self:
         """Draw further samples of the posterior distribution, until there are `samples` in all, and return the result with them.
 
-        The walk goes on where it ended, also where Ctrl-C ended it. Raises InputError if no samples were drawn before, or if there
-        are as many already.
+        The walk continues from its end, also after Ctrl-C. Raises InputError if no samples were drawn before, or if there are as
+        many already.
         """
         count = check_whole("more: samples", samples, 1, MOST_SAMPLES)
         if self.walk is None:
@@ -71,7 +71,7 @@ class Inference(FittedRecord):
 
     @property
     def scenario(self) -> Scenario:
-        """The scenario that runs to the curve of the (first part of the) record."""
+        """The scenario whose run is the best curve through the record, or through its first part."""
         name = Path(self.parts[0].record.name).name
         title = f"Fitted to {name}" + (f", part 1 of {len(self.parts)}" if len(self.parts) > 1 else "")
         about = "\n".join([self.headline, *(f"{name} = {text}" for name, text, _ in self.rows), *self.notes])
@@ -79,12 +79,12 @@ class Inference(FittedRecord):
 
     @property
     def notes(self) -> list[str]:
-        """What is not determined, and what else to know before the numbers are used, one sentence each."""
+        """Notes to read before using the numbers, one sentence each: what is not determined, and what raises doubts."""
         return list(dict.fromkeys(notes_of(self)))
 
     @property
     def rows(self) -> list[tuple[str, str, str]]:
-        """Name, value with interval, and unit of each free number that all parts share, as text."""
+        """Name, value with interval, and unit of each shared free number, as text."""
         found = []
         for name, row in self.table.iterrows():
             one = next(free for free in self.free if free.label == name)
@@ -103,14 +103,14 @@ class Inference(FittedRecord):
 
     @property
     def headline(self) -> str:
-        """What was found from what, in one line."""
+        """One line: how many numbers were found from how many samples, and the noise."""
         shared = sum(one.part is None for one in self.free)
         sizes = ", ".join(f"{name} {brief(size, unit_of(name), 3)}" for name, size in self.model.sizes.items())
         what = "scatter" if self.model.of_means else "noise"
         return f"{shared} number{'' if shared == 1 else 's'} from {self.model.counted}, {what}: {sizes}; intervals of 95 %"
 
     def to_toml(self, path: str | Path) -> Path:
-        """Write the scenario that runs to the curve shown, with the loading as a list of steps, and return the path."""
+        """Write the scenario of the best curve, with the loading as a list of steps, and return the path."""
         text = self.scenario.to_toml()
         return write_atomically(Path(path), lambda draft: draft.write_text(text, encoding="utf-8"))
 
@@ -124,11 +124,12 @@ class Inference(FittedRecord):
         return write_table(Path(path), self.table.reset_index(), [self.headline, *self.notes])
 
     def report(self, folder: str | Path, *others: Inference) -> Path:
-        """Write a report into a folder: a page that needs no other file, with figures, numbers, best scenario and data beside it.
+        """Write a report into a folder and return the path of its page, `report.html`.
 
-        It returns the path of the page, `report.html`, which ranks `others`, inferences from the same record with other laws, by
-        what they predict, as `ranking` does. Raises InputError if the best numbers do not run to the end of the record, or if
-        `others` are of another record, and OSError if the folder cannot be written.
+        The page needs no other file; figures, numbers, best scenario and data are written beside it. `others` are inferences from
+        the same record with other laws; the page ranks them by their predictions, as `ranking` does. Raises InputError if the best
+        numbers do not run to the end of the record, or if `others` are of another record, and OSError if the folder cannot be
+        written.
         """
         return report_of_study(self, Path(folder), *others)
 
@@ -142,11 +143,11 @@ class Inference(FittedRecord):
 
 @for_users
 def ranking(*found: Inference) -> pd.DataFrame:
-    """Compare inferences from one record, each with `held_out`, by what they predict of the part that was left out, best first.
+    """Rank inferences from one record, each with `held_out`, by their prediction of the part left out, best first.
 
     There is one row for each. Columns: law, free (number of free numbers), fit and prediction (root mean square residual of the
-    part that was fitted and of the part that was left out, in standard deviations of the least noise that any of them found), and
-    bic (Schwarz's criterion of the fitted part, smaller is better). Raises InputError for none, if no part was left out, or if the
+    fitted part and of the part left out, in units of the smallest noise that any of the inferences found), and bic (Schwarz's
+    criterion of the fitted part, smaller is better). Raises InputError without inferences, if no part was left out, or if the
     records differ.
     """
     if not found or not all(isinstance(one, Inference) for one in found):
@@ -172,7 +173,7 @@ def _called(law: FrictionLaw) -> str:
 
 
 def notes_of(study: FittedRecord) -> Iterator[str]:
-    """Yield sentences on what is not determined, and on what else to know before the numbers are used."""
+    """Yield the notes to read before using the numbers."""
     yield from warnings_of(study)
     yield from study.certainty.notes
     yield from minima_of(study)
@@ -187,7 +188,7 @@ def notes_of(study: FittedRecord) -> Iterator[str]:
 
 
 def warnings_of(study: FittedRecord) -> Iterator[str]:
-    """Yield sentences on what speaks against the numbers as a whole."""
+    """Yield sentences on doubts about the numbers as a whole."""
     if not study.estimate.finished:
         yield "interrupted: these are the best numbers so far"
     yield from _misfit(study)
@@ -201,7 +202,7 @@ def minima_of(study: FittedRecord) -> Iterator[str]:
 
 
 def noise_of(study: FittedRecord) -> Iterator[str]:
-    """Yield sentences on the memory of the noise, and on standard deviations that were given too small."""
+    """Yield sentences on the memory of the noise, and on given standard deviations that are too small."""
     if study.features is not None:
         yield from _features(study, missed=False)
         return
@@ -214,14 +215,14 @@ def noise_of(study: FittedRecord) -> Iterator[str]:
 
 
 def record_of(study: FittedRecord) -> Iterator[str]:
-    """Yield a sentence if numbers of the record itself were found, which no scenario holds."""
+    """Yield a sentence if some of the numbers belong to the record itself and so are in no scenario."""
     own = [f"{name} = {study.values[name]:.4g}" for name in (TREND, DELAY) if name in study.values]
     if own:
         yield f"{' and '.join(own)} belong to the record: the run of the best scenario, and the explorer, are without them"
 
 
 def _features(study: FittedRecord, *, missed: bool) -> Iterator[str]:
-    """Yield a sentence on each feature whose mean the run misses, or does not miss."""
+    """Yield a sentence on each feature whose mean the run misses (or, with missed=False, meets)."""
     if study.features is None:
         return
     rows: list[Any] = list(study.features[study.features.missed == missed].itertuples())
@@ -234,7 +235,7 @@ def _features(study: FittedRecord, *, missed: bool) -> Iterator[str]:
 
 
 def _misfit(study: FittedRecord) -> Iterator[str]:
-    """Yield sentences on what is left if that is no noise: far too much of it, a drift, or most where the run changes."""
+    """Yield sentences on residuals that are no noise: far too large, a drift, or largest where the run changes."""
     if study.features is not None:
         yield from _features(study, missed=True)
         return
@@ -263,18 +264,18 @@ def _misfit(study: FittedRecord) -> Iterator[str]:
 
 
 def _scatter(study: FittedRecord, name: str) -> float:
-    """Return the standard deviation of what was measured (SI)."""
+    """Return the standard deviation of the measured values (SI)."""
     values = [part.record.measured[name] for part in study.model.parts if name in part.observed]
     return max(float(np.nanstd(np.concatenate(values))), 1e-300)
 
 
 def _rounding(study: FittedRecord, name: str) -> float:
-    """Return half the step of the digitiser of a quantity (SI), 0 if it has none that shows."""
+    """Return half the step of the digitiser of a quantity (SI), 0 if no step shows."""
     return max(rounding_of(part.record.measured[name]) for part in study.model.parts if name in part.observed)
 
 
 def _drifts(study: FittedRecord, name: str) -> bool:
-    """Return True if what is left of a quantity remembers itself for as long as is looked for."""
+    """Return True if the residuals of a quantity have the longest correlation time that the estimate allows."""
     longest = max(part.record.clock[-1] for part in study.model.parts if name in part.observed)
     return study.model.memory.get(name, WHITE).time > 0.95 * LONGEST * float(longest)
 
@@ -288,14 +289,14 @@ def _sticks_and_slips(shear: Floats) -> bool:
 
 
 def _never_slips(study: FittedRecord, name: str) -> bool:
-    """Return True if shear drops in a record as in a slip event, and nothing of the kind happens in its run."""
+    """Return True if shear drops in the record as in a slip event, but not in its run."""
     shown = study.curves[study.curves.quantity == name]
     drops = name in SHEAR and any(len(arrests_in(part.record.measured[name])) > 0 for part in study.parts)
     return drops and float(np.ptp(shown.model)) < 0.5 * float(np.nanmax(shown.data) - np.nanmin(shown.data))
 
 
 def _windows(table: pd.DataFrame, units: Mapping[str, str], intervals: pd.DataFrame) -> Iterator[str]:
-    """Yield sentences on the spread of numbers over windows, and on those that it makes more unsure than their intervals."""
+    """Yield sentences on the spread of numbers over windows, and on the numbers that vary more than their intervals allow."""
     spread = [f"{name} {brief(table[name].min(), unit, 4)} to {brief(table[name].max(), unit, 4)}" for name, unit in units.items()]
     lasts = table.end - table.begin
     yield f"over {len(table)} windows of {lasts.min():.3g} to {lasts.max():.3g} s: {', '.join(spread)}"

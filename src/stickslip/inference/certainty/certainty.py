@@ -1,4 +1,4 @@
-"""What a record determines of the free numbers: covariance, intervals, profiles of the likelihood, and words."""
+"""How well a record determines the free numbers: covariance, intervals, profiles of the likelihood, and sentences about them."""
 
 from __future__ import annotations
 
@@ -22,34 +22,34 @@ from stickslip.inference.fit.search import Tell
 from stickslip.inference.record.noise import cost_of, weights
 
 EXACT = 1e-10
-"""Relative tolerance of the runs from which derivatives at the best fit are taken."""
+"""Relative tolerance of the runs behind the derivatives at the best fit."""
 UNSEEN = 3e-5
-"""Effect of a combination, as a share of the largest, that a profile does not follow: noise of differences is near 1e-6."""
+"""Profiles ignore combinations with less than this share of the largest effect: differences between runs have noise near 1e-6."""
 TOGETHER = 0.9
-"""Correlation of two numbers from which it is told if their sum, difference, product or ratio is known much better."""
+"""Two numbers more correlated than this get a note if their sum, difference, product or ratio is known much better."""
 AT_BOUND = 1e-4
-"""Distance from a bound, in searched numbers, at which a number lies on it."""
+"""A searched number closer to its bound than this lies on the bound."""
 ROUGH = 0.1
-"""Difference of derivatives to one side from those to both, as a share, from which the fit is not smooth."""
+"""If left and right derivatives differ by more than this share, the fit is not smooth."""
 HALF, NORMAL = 0.975, 1.959963984540054
 """Probability below the upper end of an interval of 95 %, and that end for a normal deviate."""
 FEWEST = 4.0
-"""Least number of independent samples, beyond the free numbers, that are assumed: so few make intervals 1.4 times as wide."""
+"""At least this many independent samples beyond the free numbers are assumed; so few widen intervals by a factor of 1.4."""
 GAIN = 0.02
-"""Fall of twice the logarithm of the likelihood below which a place of a profile is found."""
+"""A point of a profile is found when a further step gains less than this in twice the log-likelihood."""
 CHORDS, PLACES = 6, 10
 """Largest number of steps with one matrix of derivatives, and of places of a profile on one side."""
 
 
 @dataclass(frozen=True)
 class Certainty:
-    """What a record determines of the searched numbers.
+    """How well a record determines the searched numbers.
 
-    `covariance` is NaN for those that are not determined and 0 for those on a bound. `widths` are their standard uncertainties,
-    infinite where the record does not determine a number, 0 on a bound; `factor` times that is half the width of an interval of 95
-    %. `excess` is the factor by which each is larger than white noise of the same size would make it. `notes` are sentences on what
-    is not determined, `slopes` derivatives of the residuals with respect to the searched numbers, and `uneven` says of each
-    quantity how many times larger residuals are where the run depends most on its numbers.
+    `covariance` is NaN for numbers that the record does not determine and 0 for those on a bound. `widths` are the standard
+    uncertainties: infinite where the record does not determine a number, 0 on a bound. `factor` times a width is half a 95 %
+    interval. `excess` is the ratio of each width to that under white noise of the same size. `notes` are sentences on what is not
+    determined. `slopes` are the derivatives of the residuals with respect to the searched numbers. `uneven` says for each quantity
+    how many times larger the residuals are where the run depends most on its numbers.
     """
 
     covariance: Floats
@@ -64,7 +64,7 @@ class Certainty:
 
 
 def unknown(found: Estimate) -> Certainty:
-    """Return that nothing is known of how sure the numbers are, as after Ctrl-C."""
+    """Return a `Certainty` that knows nothing, as after Ctrl-C."""
     count = len(found.searched)
     nothing = np.full((count, count), np.nan)
     no = np.zeros(count, bool)
@@ -72,10 +72,11 @@ def unknown(found: Estimate) -> Certainty:
 
 
 def certainty_of(found: Estimate) -> Certainty:
-    """Return what a record determines at a best fit, from the derivatives there and from what is left of the record.
+    """Return how well a record determines the numbers, from derivatives and residuals at the best fit.
 
-    Uncertainties are those that noise with the memory found gives to an estimate of least squares. If the residuals themselves say
-    more, as where a model that is a little wrong leaves most where it counts most, those count (a sandwich covariance).
+    Uncertainties are those of least squares under noise with the estimated correlation time. Where the residuals themselves give
+    larger ones, as where a slightly wrong model misfits most at the samples that count most, these are taken (a sandwich
+    covariance).
     """
     x = found.searched
     model = found.model.with_(rtol=min(EXACT, found.model.rtol)).fine(x)
@@ -108,10 +109,10 @@ def certainty_of(found: Estimate) -> Certainty:
 
 
 def _covariance(model: Model, residual: Floats, slopes: Floats, variance: float) -> tuple[Floats, dict[str, Unevenness]]:
-    """Return the covariance of some searched numbers from what is left, and how uneven the residuals of each quantity are.
+    """Return the covariance of some searched numbers from the residuals, and how uneven the residuals of each quantity are.
 
-    `slopes` are the derivatives of the residuals with respect to these numbers, all of which the record determines, and `variance`
-    is a factor on it, beside the size of the noise.
+    `slopes` are the derivatives of the residuals with respect to these numbers; the record determines all of them. `variance`
+    multiplies the covariance, besides the size of the noise.
     """
     from scipy.stats import t as student
 
@@ -171,17 +172,17 @@ def _bound_note(free: Free, value: float, *, at_low: bool) -> str:
 
 
 def _slopes(model: Model, x: Floats) -> tuple[Floats, dict[int, str]]:
-    """Return the derivatives of the residuals, and a sentence for each number with which they do not change smoothly.
+    """Return the derivatives of the residuals, and a sentence for each number whose change does not change them smoothly.
 
-    A sample that a jump of the run passes within the step of the differences has no derivative with respect to any number: its row
-    is 0, so that what such samples tell is left out of the curvature, and intervals are rather too wide.
+    If a jump of the run passes a sample within the step of the differences, this sample has no derivative. Its row is then 0: the
+    sample does not add to the curvature, which makes intervals too wide rather than too narrow.
     """
     if model.of_means:
         return model.jacobian(x), {}
     right, left = model.jacobian(x, sides=(1.0,)), model.jacobian(x, sides=(-1.0,))
     right, left = np.where(right.any(axis=0), right, left), np.where(left.any(axis=0), left, right)  # a limit leaves one side only
     size, apart = np.maximum(np.abs(right), np.abs(left)), np.abs(right - left)
-    seen = np.linalg.norm(right + left, axis=0) > 2.0 * IDLE  # what is left of another column is the noise of runs
+    seen = np.linalg.norm(right + left, axis=0) > 2.0 * IDLE  # any other column is only noise of the runs
     rough = (apart > 0.5 * size) & (size > 1e-3 * np.max(size, axis=0, initial=0.0)) & seen
     notes = {}
     for i in range(len(x)):
@@ -198,8 +199,8 @@ def _slopes(model: Model, x: Floats) -> tuple[Floats, dict[int, str]]:
 class Profile:
     """The likelihood along one number (SI, ascending), with all others fitted anew.
 
-    `rise` is twice the logarithm of the likelihood below that of the best fit, for as many independent samples as there are; `low`
-    and `high` are the ends of the interval of 95 %, infinite or a bound where the rise is never reached.
+    `rise` is twice the fall of the log-likelihood from the best fit, for the number of independent samples. `low` and `high` are
+    the ends of the 95 % interval: infinite, or a bound, where the likelihood never falls that far.
     """
 
     name: str
@@ -229,7 +230,7 @@ def profile_of(found: Estimate, sure: Certainty, column: int, tell: Tell) -> Pro
 
 
 def _end(found: Estimate, sure: Certainty, what: tuple[int, float, float], places: list[tuple[float, float]]) -> float:
-    """Return the searched number on one side at which the likelihood has fallen to the end of the interval."""
+    """Return one end of the interval, as a searched number."""
     column, side, least = what
     model, best = found.model, found.searched
     low, high = (end[column] for end in model.limits)

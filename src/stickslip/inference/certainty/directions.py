@@ -1,4 +1,4 @@
-"""Directions in which the free numbers can move without any effect on what is fitted, and what is determined in spite of them."""
+"""Find moves of the free numbers that leave the fitted curve unchanged, and the combinations that are determined all the same."""
 
 from __future__ import annotations
 
@@ -13,28 +13,28 @@ from stickslip.foundation.arrays import Floats
 from stickslip.inference.fit.model import Model
 
 FAINT = 0.02
-"""Effect of a direction, as a share of the largest, below which a run tells if it has any."""
+"""A direction with less than this share of the largest effect is tried in runs, to see whether it has any effect."""
 MOVED, SHORTEST = 0.02, 1e-4
-"""Way along a direction, in searched numbers, after which it is looked for an effect: the longest and the shortest one."""
+"""Longest and shortest move along a direction, in searched numbers, to look for an effect."""
 IDLE = 0.1
-"""Effect of a factor e on all residuals together, in standard deviations, below which numbers have no influence."""
+"""A number has no influence if a factor e on it changes all residuals together by less than this many standard deviations."""
 CORRECTIONS = 10
-"""Largest number of steps back to where residuals are as before: a direction without effect may bend."""
+"""Largest number of steps back to the former residuals: a direction without effect may bend."""
 SURE_BELOW, LEAST_SHARE = 1e-9, 30.0
-"""Effect below which a direction is not used for such steps, and times of the noise of runs that count as no effect."""
+"""Least effect (as a share of the largest) of the directions used for such steps; multiple of the runs' noise that is no effect."""
 TAKES_PART = 0.1
-"""Effect of its own move, in standard deviations, from which a number belongs to those that move together without effect."""
+"""A number belongs to those that move together without effect if its own move has an effect above this (standard deviations)."""
 SAME = 0.02
-"""Share by which a product of powers may change along a direction and still count as constant."""
+"""A product of powers that changes by less than this share along a direction counts as constant."""
 POWERS = (1, -1, 2, -2)
-"""Powers of two numbers that are tried, the simplest first."""
+"""Powers to try for a product of two numbers, the simplest first."""
 COUNTED = {2: "neither of the two", 3: "none of the three", 4: "none of the four", 5: "none of the five"}
 BETTER = 3.0
-"""Factor by which a combination of two numbers is known better than either, from which it is told."""
+"""A combination of two numbers is reported if it is known better than either by this factor."""
 
 
 def null_directions(model: Model, x: Floats, slopes: Floats, columns: NDArray[np.intp]) -> Floats:
-    """Return moves of some searched numbers that change nothing, shape (number of them, number of moves).
+    """Return moves of some searched numbers that change nothing, shape (number of numbers, number of moves).
 
     The curvature only proposes a direction; the numbers are then moved along it, back to the same residuals, and compared.
     `slopes` are the derivatives with respect to the numbers in `columns`.
@@ -79,7 +79,7 @@ def _moved(model: Model, x: Floats, columns: NDArray[np.intp], direction: Floats
 
 
 def without(slopes: Floats, moves: Floats) -> Floats:
-    """Return derivatives in which some moves have no effect at all."""
+    """Return derivatives without the effect of some moves."""
     if not moves.size:
         return slopes
     sizes = np.linalg.norm(slopes, axis=0)
@@ -101,7 +101,7 @@ def families(slopes: Floats, moves: Floats) -> list[tuple[list[int], list[int]]]
 
 
 def constants(moves: Floats) -> list[Floats]:
-    """Return powers of some numbers whose products stay along moves of their logarithms; [] if simple ones are too few.
+    """Return powers whose products stay constant along moves of the logarithms; [] if there are too few simple ones.
 
     `moves` has the shape (number of numbers, number of moves).
     """
@@ -127,7 +127,7 @@ def formula(labels: Sequence[str], powers: Floats) -> str:
 
 
 def told(labels: Sequence[str], moves: Floats, slopes: Floats, factor: float) -> Iterator[tuple[list[int], str]]:
-    """Yield sets of numbers that move together, by their indices, and what the record determines of them, "" if that is not simple.
+    """Yield sets of numbers that move together, by their indices, and a sentence on what is determined ("" if that is not simple).
 
     The sentence holds if all numbers are logarithms. The numbers are in the order in which a body or a law declares them.
     """
@@ -145,9 +145,10 @@ def told(labels: Sequence[str], moves: Floats, slopes: Floats, factor: float) ->
 
 
 def better_known(values: Floats, covariance: Floats, names: tuple[str, str], *, alike: bool) -> str:
-    """Return the simple combination of two positive numbers that is known much better than either; "" if there is none.
+    """Return a simple combination of two positive numbers that is known much better than either; "" if there is none.
 
-    `covariance` is that of their logarithms. Numbers that are `alike`, of one unit, are compared by sum and difference.
+    `covariance` is that of their logarithms. Numbers of the same unit (`alike`) are combined as sum and difference, others as
+    product and ratio.
     """
     for sign in (1.0, -1.0):
         weights = np.array([1.0, sign]) * (values if alike else 1.0)

@@ -20,19 +20,19 @@ from stickslip.inference.record.noise import cost_of
 MOST_SAMPLES = 1_000_000
 """Largest number of posterior samples."""
 WALKERS = 4
-"""Number of walkers for each free number; there are 16 at least."""
+"""Number of walkers for each free number; at least 16 in all."""
 FORGET = 0.3
-"""Share of the steps, beyond those that are kept, that let the walkers forget where they began."""
+"""Steps in which the walkers forget where they began, as a share of the steps that are kept."""
 FEW_TIMES = 20.0
-"""Number of correlation times of the walkers below which samples are too few."""
+"""Walks shorter than this many correlation times have too few samples."""
 
 
 @dataclass(frozen=True, eq=False)
 class PosteriorWalk:
-    """The walk through the posterior distribution so far: what it kept, and from where it can go on."""
+    """The walk through the posterior distribution so far: its samples, and the state to go on from."""
 
     chain: Floats
-    """Places of the walkers after each step, shape (steps, walkers, free numbers), without the steps that they forget."""
+    """Places of the walkers after each step, shape (steps, walkers, free numbers), without the first steps that are dropped."""
     state: Any
     """Places, probabilities and random state after the last step, as emcee has them."""
     asked: int
@@ -64,9 +64,9 @@ def sample(
 ) -> PosteriorWalk:
     """Draw `count` samples of the searched numbers, or go on with the walk `before` until there are so many in all.
 
-    Numbers on a bound may leave it, and those that are not determined are drawn within their limits. Ctrl-C ends the walk with the
-    samples of the steps that are done; there are fewer then. Raises InputError if emcee is not installed, and KeyboardInterrupt if
-    Ctrl-C comes before the walkers have forgotten where they began.
+    Numbers on a bound may leave it; numbers that the record does not determine are drawn within their limits. Ctrl-C ends the walk
+    early with the samples so far. Raises InputError if emcee is not installed, and KeyboardInterrupt if Ctrl-C comes before the
+    walkers have forgotten where they began.
     """
     try:
         import emcee
@@ -104,8 +104,8 @@ def sample(
 class _Posterior:
     """The logarithm of the posterior density; after Ctrl-C it is `stopped` and runs nothing more.
 
-    emcee would print an exception as a fault of this function. What is left of a record is not independent: its likelihood counts
-    as much less as the variances of the numbers are larger for it, by `tempered`.
+    It raises nothing: emcee would print an exception as a fault of this function. Residuals of neighbouring samples depend on each
+    other, which makes the variances of the numbers larger by some factor; the log-likelihood is divided by it (`tempered`).
     """
 
     def __init__(self, found: Estimate, tempered: float) -> None:
@@ -124,7 +124,7 @@ class _Posterior:
 
 
 def _memory(chain: Floats, correlation: Callable[[Floats], Floats]) -> float:
-    """Return the steps after which the walkers, shape (steps, walkers), are independent (Sokal's window, as in emcee)."""
+    """Return the correlation time, in steps, of walkers of shape (steps, walkers) (Sokal's window, as in emcee)."""
     mean = np.mean([correlation(chain[:, k]) for k in range(chain.shape[1])], axis=0)
     times = 2.0 * np.cumsum(mean) - 1.0
     inside = np.arange(len(times)) >= 5.0 * times
@@ -132,7 +132,7 @@ def _memory(chain: Floats, correlation: Callable[[Floats], Floats]) -> float:
 
 
 def _begun(found: Estimate, sure: Certainty, walkers: int, random: np.random.Generator) -> Floats:
-    """Return places of walkers, drawn from the normal distribution that the curvature gives, inside the limits."""
+    """Return places of walkers inside the limits, drawn from the normal distribution with the curvature of the best fit."""
     low, high = found.model.limits
     width = np.where(np.isfinite(sure.widths), sure.widths, 0.1)
     covariance = np.where(np.isfinite(sure.covariance), sure.covariance, 0.0)

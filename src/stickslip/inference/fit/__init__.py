@@ -1,1 +1,1 @@
-"""The free numbers of a problem, the runs that follow a record, and the search for the best ones."""
+"""The free numbers of a problem, runs under the loading of a record, and the search for the best fit."""

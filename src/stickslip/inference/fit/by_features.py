@@ -1,4 +1,4 @@
-"""Fit a record of many slip events by the means of their features, in place of sample by sample."""
+"""Fit a record of many slip events by the means of their features, instead of sample by sample."""
 
 from __future__ import annotations
 
@@ -22,28 +22,28 @@ from stickslip.inference.record.record import Record
 from stickslip.solution.solution import Solution
 
 CYCLES = 6.0
-"""Length of a run in times between events of the record; its first events are passed over."""
+"""Length of a run, in recurrence times of the record; the first events are skipped."""
 SETTLING = 2
-"""Number of events of a run after which its features count."""
+"""Number of first events of a run that do not count."""
 SPARE = 2
-"""Number of events beyond the number of features, of which the scatter of features and their correlation are estimated."""
+"""At least this many more events than features are needed to estimate the scatter of the features and their correlation."""
 COARSE, FINE = 1000, 200
-"""Numbers of times at which a run is looked at as a whole, and between two times, besides the ends of its pieces."""
+"""Numbers of times to sample a whole run, and a part of it between two times, besides the ends of its pieces."""
 COARSER = 1e-2
-"""Step of differences, in searched numbers: waves on their way shift features of a slab by a share of 1e-4 or so."""
+"""Step of differences, in searched numbers; it is large because waves in a slab shift its features by some 1e-4 of their size."""
 FEWEST = 4.0
-"""Number of samples in a fall from which its duration and peak rate can be told."""
+"""Falls shorter than this many samples have no measurable duration and peak rate."""
 MISSED, ALLOWED = 4.0, 0.1
-"""Distance of a run from the mean of a feature that counts as a miss: in standard errors, with which a share of the scatter counts
-together, since of a thousand events the mean is known better than any law holds."""
+"""A run misses the mean of a feature if it is farther away than MISSED times the root of the sum of squares of the standard error
+and of ALLOWED times the scatter. After a thousand events the mean is known better than any law holds, hence the second term."""
 GAP = 0.1
-"""Length of a gap in a record, in the usual time between events, in which one may be hidden."""
+"""A gap in a record longer than this share of the usual time between events may hide one."""
 MEASURED = 3e-5
-"""Error with which features of a run and of a record without noise agree, as a share of their size."""
+"""Features of a run and of a record without noise agree to this share of their size."""
 
 
 class Means(NamedTuple):
-    """Means of features of a part (SI), the Cholesky factor of their covariance, and the number of independent parts behind it."""
+    """Means of features of a part (SI), the Cholesky factor of their covariance, and its number of degrees of freedom."""
 
     values: Floats
     root: Floats
@@ -76,7 +76,7 @@ class FeaturePart(Part):
 
     @property
     def begins(self) -> float:
-        """The time of the record at which the run begins (s)."""
+        """The time (s) in the record where the run begins."""
         return self.samples.begins
 
     def first_load(self, normal: float) -> tuple[float, float]:
@@ -92,10 +92,10 @@ class FeaturePart(Part):
 def means_of(features: Floats) -> Means:
     """Return the means of features, shape (features, events), and the covariance of these means.
 
-    It holds if neighbouring events depend on each other. The covariance is the power of the features at low frequencies, in the
-    first cosines of a transform over all events (Lazarus, Lewis, Stock & Watson 2018, J. Bus. Econ. Stat. 36, 541). Their number
-    grows as the events to the power 2/3: the more events, the longer a memory is allowed for, as that of a static friction which
-    decides about the time before its event and the time after it.
+    The covariance also holds if neighbouring events depend on each other: a high static friction, for example, lengthens the time
+    before its event and the time after it. It is the power of the features at low frequencies, in the first terms of a cosine
+    transform over all events (Lazarus, Lewis, Stock & Watson 2018, J. Bus. Econ. Stat. 36, 541). The number of terms is the number
+    of events to the power 2/3, so that more events allow for longer correlations.
     """
     from scipy.fft import dct
 
@@ -106,7 +106,7 @@ def means_of(features: Floats) -> Means:
     covariance = waves @ waves.T / (used * events)
     sizes = np.sqrt(np.diag(covariance) + (MEASURED * means) ** 2 + 1e-300)
     correlation = covariance / np.outer(sizes, sizes)
-    least = 1.0 / used  # what is left of one feature, once the others are known, is not known better than this
+    least = 1.0 / used  # the variance of one feature, once the others are known, is not known better than this
     correlation *= 1.0 - least
     np.fill_diagonal(correlation, 1.0)
     return Means(means, sizes[:, None] * np.linalg.cholesky(correlation), used)
@@ -144,7 +144,7 @@ def _chosen(wanted: Sequence[str] | None, record: Record) -> list[str]:
 
 
 def events_of(part: Part) -> tuple[Record, list[str]]:
-    """Return the features of the events of a record at the times of these, and sentences on what was left out."""
+    """Return the features of the events of a record as a record at the times of the events, and sentences on what was left out."""
     record, shear = part.record, part.record.shear
     if shear is None:
         raise InputError(f"{record.name}: by='features' needs shear, whose drops are the slip events")
@@ -178,7 +178,7 @@ def events_of(part: Part) -> tuple[Record, list[str]]:
 
 
 def _with_gap(time: Floats, at: Floats, recurrence: Floats) -> NDArray[np.bool_]:
-    """Return True for events before which samples are missing for so long that another event may be hidden there."""
+    """Return True for events after a gap that may hide another event."""
     steps = np.append(np.diff(time), 0.0)
     before, this = np.searchsorted(time, at - recurrence), np.searchsorted(time, at)
     longest = [float(np.max(steps[max(first, 0) : last + 1], initial=0.0)) for first, last in zip(before - 1, this, strict=True)]
@@ -187,10 +187,10 @@ def _with_gap(time: Floats, at: Floats, recurrence: Floats) -> NDArray[np.bool_]
 
 @dataclass
 class FeatureModel(Model):
-    """Distances of the features of a run, which repeat, from the means of those of the record.
+    """Distances of the mean features of a run from those of the record.
 
-    There is one residual for each feature of a part. They are in standard errors of the means, and what features have in common is
-    taken away.
+    There is one residual for each feature of a part, in standard errors of the means and decorrelated: the correlation of the
+    features is removed by the Cholesky factor of their covariance.
     """
 
     of_means: ClassVar[bool] = True
@@ -235,24 +235,24 @@ class FeatureModel(Model):
 
     @property
     def independent(self) -> float:
-        """The number of independent samples: the scatter of features is known from so many."""
+        """The number of independent samples behind the scatter of the features."""
         spare = max(self._spare, 0)
         return float(sum(self.part_of(i).means.degrees for i in range(len(self.parts))) - spare + len(self.free))
 
     @property
     def _spare(self) -> int:
-        """The number of features beyond the number of free numbers."""
+        """The number of features minus the number of free numbers."""
         return sum(len(part.observed) for part in self.parts) - len(self.free)
 
     def variance(self, searched: Floats) -> float:
-        """Return the factor on the covariance: what features that are more than the numbers leave, if that is more than scatter."""
+        """Return the factor on the covariance: 1, or the mean squared residual if above 1 and features outnumber the numbers."""
         if self._spare < 1:
             return 1.0
         rest = np.concatenate([self.part_residual(searched, i) for i in range(len(self.parts))])
         return max(1.0, float(rest @ rest) / self._spare)
 
     def fine(self, searched: Floats) -> Model:
-        """Return the model with steps of differences in which waves on their way do not show."""
+        """Return the model with steps of differences that are long enough to hide the effect of waves."""
         return self.with_(step=COARSER)
 
     def thinned(self, most: int) -> Model:
@@ -262,8 +262,8 @@ class FeatureModel(Model):
     def compared(self, searched: Floats) -> pd.DataFrame:
         """Return the features of a run beside their means in the record, one row for each feature of a part.
 
-        Columns: part, feature, mean and its standard error, run (NaN without events), unit, and missed: True if they are farther
-        apart than their errors, and a share of the scatter, let expect.
+        Columns: part, feature, mean and its standard error, run (NaN without events), unit, and missed: True if run and mean are
+        farther apart than the error of the mean and a share of the scatter explain.
         """
         rows = []
         for i, part in enumerate(self.parts):
@@ -287,7 +287,7 @@ def scatter_of(parts: Sequence[Part]) -> dict[str, float]:
 
 
 def features_of_run(run: Solution, part: FeaturePart) -> dict[str, float]:
-    """Return the mean features of the events of a run, but the first ones if there are enough; empty if it has fewer than two."""
+    """Return the mean features of the events of a run, without the first ones if there are enough; empty for fewer than two."""
     shear = part.samples.record.shear
     assert shear is not None
     names = [shear, *(name for name, of in (("slip", "event_slip"), ("slip_rate", "peak_rate")) if of in part.observed)]

@@ -30,25 +30,25 @@ from stickslip.inference.record.loading import loading_of
 from stickslip.inference.record.noise import GAUSSIAN, cost_of
 
 FEW = 1500
-"""Number of samples of a part with which starts are compared and followed."""
+"""Starts are compared and followed on this many samples of a part."""
 
 ROUGH = 1.2
-"""Size of residuals, in the noise of neighbouring samples, from which a best fit is searched once more without derivatives."""
+"""If residuals exceed this multiple of the noise of neighbouring samples, the best fit is improved without derivatives."""
 ROUNDS = 4
 """Largest number of times that noise and numbers are estimated in turn."""
 SETTLED = 0.05
-"""Change of a number, in standard uncertainties, that asks for no further turn."""
+"""No further turn is needed if no number changes by more than this many standard uncertainties."""
 NARROWING = (64, 16, 4)
-"""Numbers of samples over which jumps of a run are spread one after the other, so that a fit finds those of the record."""
+"""Jumps of a run are spread over these numbers of samples in turn, so that a fit finds the jumps of the record."""
 APART = 5.0
-"""Distance of two minima, in standard uncertainties, from which they are two."""
+"""Minima closer than this many standard uncertainties are one."""
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """The result of a search: the model, with the size and the memory of the noise as they were estimated, and the best fit.
+    """The result of a search: the model with the estimated size and memory of the noise, and the best fit.
 
-    `others` are searched numbers of other minima that compete; `finished` is False after Ctrl-C; `loss` is the function of squared
+    `others` are the searched numbers at competing minima; `finished` is False after Ctrl-C; `loss` is the function of squared
     residuals that is summed.
     """
 
@@ -59,7 +59,7 @@ class Estimate:
     loss: str = "linear"
 
     def cost(self, searched: Floats) -> float:
-        """Return the sum that the search minimises, twice the negative logarithm of the posterior but for a constant."""
+        """Return the sum that the search minimises: minus twice the logarithm of the posterior, up to a constant."""
         return cost_of(self.model.residual(searched), self.loss)
 
 
@@ -86,7 +86,7 @@ def estimate(model: Model, starts: int, loss: str, seed: int, tell: Tell) -> Est
 
 
 def _at_jumps(model: Model, minima: list[Floats], loss: str, tell: Tell) -> Floats:
-    """Return the best of some minima; where runs jump, each follows its jumps, spread less and less, to those of the record."""
+    """Return the best of some minima; if runs jump, fit each anew with its jumps spread over fewer and fewer samples."""
     ends = []
     if not any(model.with_jumps(x).unsure for x in minima):
         return minima[0]
@@ -100,9 +100,10 @@ def _at_jumps(model: Model, minima: list[Floats], loss: str, tell: Tell) -> Floa
 
 
 def _with_noise(model: Model, searched: Floats, loss: str, tell: Tell, best: Best) -> Estimate:
-    """Return the best fit, with the sizes of the noise and then its memory, which moves the fit only against what was known before.
+    """Return the best fit with the size and memory of the noise.
 
-    Several quantities are weighed by the sizes of their noise, which are estimated in turn with the fit until both stay.
+    Several quantities are weighted by the sizes of their noise. Fit and sizes are estimated in turn until both settle. The memory
+    only sets the weight of the data against the priors.
     """
     for turn in range(ROUNDS):
         tell(f"fit {turn + 1} to all samples")
@@ -125,7 +126,7 @@ def _with_noise(model: Model, searched: Floats, loss: str, tell: Tell, best: Bes
 
 
 def _noise(model: Model, searched: Floats, by: Floats, loss: str) -> Model:
-    """Return the model with sizes and memory of the noise of each quantity, from what a fit leaves."""
+    """Return the model with sizes and memory of the noise of each quantity, from the residuals of a fit."""
     sizes, memory = dict(model.sizes), {}
     residual = np.concatenate([model.part_residual(searched, i) for i in range(len(model.parts))])
     for name, rest, slopes, weight, blocks in pieces_of(model, residual, by):
@@ -140,7 +141,7 @@ def _noise(model: Model, searched: Floats, by: Floats, loss: str) -> Model:
 
 
 class QuantityPiece(NamedTuple):
-    """What belongs to a quantity in all parts: residuals, rows of a matrix, weights of the samples, and blocks of neighbours."""
+    """One quantity in all parts: residuals, rows of a matrix, weights of the samples, and blocks of neighbouring samples."""
 
     name: str
     residual: Floats
@@ -174,7 +175,7 @@ def _widths(by: Floats) -> Floats:
 
 
 def _competing(model: Model, best: Floats, others: list[Floats], every: int) -> tuple[Floats, ...]:
-    """Return minima that fit almost as well as the best one, and are elsewhere."""
+    """Return other minima that fit almost as well as the best one."""
     thin = model.with_(every=every, unsure={})
     if not others:
         return ()
@@ -188,13 +189,13 @@ def _competing(model: Model, best: Floats, others: list[Floats], every: int) -> 
 
 
 KEPT_BEFORE, KEPT_AFTER = (1.0, 0.5), (1.0, 0.75, 0.5, 0.35)
-"""Shares that are kept of the time before the first change of the pull rate, and after the last one."""
+"""Shares to keep of the time before the first change of the pull rate, and after the last one."""
 LEAST = 10
 """Smallest number of samples for each free number."""
 
 
 def windows_of(found: Estimate, tell: Tell) -> pd.DataFrame:
-    """Return the numbers that are found from shorter parts of a record, one row each, the whole record first."""
+    """Return the numbers fitted to shorter parts of a record, one row each, the whole record first."""
     labels = [one.label for one in found.model.free]
     rows = [(0.0, found.model.parts[0].duration, found.model.samples, *found.model.values(found.searched))]
     for shares in list(product(KEPT_BEFORE, KEPT_AFTER))[1:]:
@@ -211,9 +212,9 @@ def windows_of(found: Estimate, tell: Tell) -> pd.DataFrame:
 
 
 def _cut(part: Part, found: Estimate, before: float, after: float) -> Part | None:
-    """Return a part without some of its begin and of its end; None if that is not possible.
+    """Return a part shortened at its beginning and end; None if that is not possible.
 
-    A record without a load point keeps its begin, where the loading of the problem begins.
+    A record without a load point keeps its beginning, because the loading of the problem starts there.
     """
     clock, changes = part.record.clock, part.changes(found.model.problem)
     first, last = (float(changes[0]), float(changes[-1])) if len(changes) else (clock[-1], 0.0)

@@ -1,4 +1,4 @@
-"""The free numbers of an inference: their names, scales, limits and what is known of them before."""
+"""The free numbers of an inference: their names, scales, limits and priors."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from stickslip.foundation.quantities import Quantity
 from stickslip.problem.problem import Problem
 
 FARTHEST, FARTHEST_PURE = 1e3, 30.0
-"""Factors by which positive numbers, with a unit and without, may differ from where the search begins, unless bounds say."""
+"""Largest factors between a positive number (with a unit, without) and its starting value, unless the user gives bounds."""
 NEAR, NEAR_KNOWN = 10.0, 2.0
-"""Factors within which starts are drawn: of slips and rates of a law, and of pure numbers and the body, which are known better."""
+"""Starts are drawn within these factors: slips and rates of a law; pure numbers and the body, which are known better."""
 TREND, DELAY, SERVO = "record.trend", "record.delay", "record.servo"
 LOAD, STATE = "initial.load", "initial.state"
 _PRIOR = re.compile(r"\s*(normal|lognormal|uniform)\s*\(\s*([^,()]+)\s*,\s*([^,()]+)\s*\)\s*")
@@ -24,9 +24,9 @@ _PRIOR = re.compile(r"\s*(normal|lognormal|uniform)\s*\(\s*([^,()]+)\s*,\s*([^,(
 
 @dataclass(frozen=True)
 class Prior:
-    """What is known of a number before, by its kind and two numbers (SI).
+    """A prior: its kind and two numbers (SI).
 
-    They are mean and standard deviation ("normal"), median and standard deviation of the logarithm ("lognormal"), or both ends
+    These are mean and standard deviation ("normal"), median and standard deviation of the logarithm ("lognormal"), or both ends
     ("uniform").
     """
 
@@ -35,7 +35,7 @@ class Prior:
     second: float
 
     def residual(self, value: float) -> float:
-        """Return the distance of a value from what is known, in standard deviations; 0 for a uniform one."""
+        """Return the distance of a value from the prior's middle, in standard deviations; 0 for a uniform prior."""
         if self.kind == "uniform":
             return 0.0
         if self.kind == "normal":
@@ -45,11 +45,11 @@ class Prior:
 
 @dataclass(frozen=True)
 class Free:
-    """A free number, by its full name such as "friction.a", with its limits and the value at which the search begins (SI).
+    """A free number: its full name such as "friction.a", its limits and its starting value (SI).
 
-    If it is positive (`log`) the search goes along its logarithm; if not, `scale` is the size of a step (SI). `part` is the part of
-    the record to which alone it belongs, or None; `bounded` is True if the user gave the limits. `given` is the value of the
-    problem where the search begins elsewhere.
+    The search works on the logarithm of a positive number (`log`), and otherwise in steps of `scale` (SI). `part` is the one part
+    of the record that the number belongs to, or None. `bounded` is True if the user gave the limits. `given` is the value in the
+    problem if the search starts from another one.
     """
 
     name: str
@@ -65,7 +65,7 @@ class Free:
     given: float | None = None
 
     def begun_at(self, value: float) -> Free:
-        """Return the number with another value at which the search begins; the one it had is a second start."""
+        """Return the number with another starting value; its former one becomes a second start."""
         return replace(self, start=value, given=self.start)
 
     @property
@@ -74,7 +74,7 @@ class Free:
         return self.name if self.part is None else f"{self.name}[{self.part}]"
 
     def searched(self, value: float) -> float:
-        """Return the number on which the search works: a logarithm, or a multiple of the scale."""
+        """Return the searched number for a value (SI): its logarithm, or a multiple of the scale."""
         if not self.log:
             return value / self.scale
         return math.log(value) if value > 0.0 else -math.inf
@@ -89,12 +89,12 @@ class Free:
         return self.scale
 
     def width(self, value: float, searched: float) -> float:
-        """Return a standard deviation of the value (SI) from that of the searched number."""
+        """Return the standard deviation of the value (SI) from that of the searched number."""
         return abs(value) * searched if self.log else self.scale * searched
 
     @property
     def near(self) -> tuple[float, float]:
-        """The searched numbers between which starts are drawn."""
+        """Lower and upper end of the range of starts, as searched numbers."""
         low, high = self.searched(self.low), self.searched(self.high)
         at = self.searched(self.start)
         reach = math.log(NEAR_KNOWN if self.declared.unit == "1" or self.name.startswith("body.") else NEAR) if self.log else 1.0
@@ -112,7 +112,7 @@ class Free:
 def read_free(problem: Problem, names: Sequence[str], hints: Mapping[str, float], **given: Any) -> tuple[Free, ...]:
     """Return the free numbers of a problem.
 
-    `hints` are values at which numbers begin that the problem lacks, such as "initial.state", and scales, as "record.trend".
+    `hints` has starting values for numbers that the problem lacks, such as "initial.state", and scales, as for "record.trend".
     `given` may hold `bounds`, `priors` and `start`, each a mapping by name. Raises InputError.
     """
     known = known_numbers(problem, hints)
@@ -132,7 +132,7 @@ def read_free(problem: Problem, names: Sequence[str], hints: Mapping[str, float]
 
 
 def known_numbers(problem: Problem, hints: Mapping[str, float]) -> dict[str, tuple[Quantity, float]]:
-    """Return declaration and value of all numbers that may be free."""
+    """Return declaration and value of every number that may be free."""
     found = {
         name: (one.declared, one.value)
         for name, one in problem.parameters.items()
@@ -244,5 +244,5 @@ def _number(one: Any) -> Any:
 
 
 def with_scale(free: Iterable[Free], scales: Mapping[str, float]) -> tuple[Free, ...]:
-    """Return free numbers, with scales (SI) for those that begin at 0 and have no other."""
+    """Return free numbers, with scales (SI) for those that start at 0 and have no scale yet."""
     return tuple(replace(one, scale=scales[one.name]) if one.scale == 1.0 and one.name in scales else one for one in free)

@@ -1,6 +1,6 @@
-"""What a least-squares fit leaves: how long it remembers itself, how sure numbers are in spite of that, and whether it is noise.
+"""Residuals of a least-squares fit: their correlation time ("memory"), the uncertainty it causes, and whether they are noise.
 
-The fit itself is plain least squares: weights that follow from what is left would let a misfit choose what is fitted.
+The fit itself is plain least squares: if weights followed from the residuals, a misfit would choose which samples count.
 """
 
 from __future__ import annotations
@@ -14,21 +14,21 @@ import numpy as np
 from stickslip.foundation.arrays import Floats
 
 FORGOTTEN = 0.02
-"""Correlation of neighbouring samples below which noise counts as white."""
+"""Noise is white if neighbouring samples are less correlated than this."""
 UNSEEN = 1e-9
-"""Eigenvalue of the normal matrix, whose diagonal is 1, below which a combination is not determined."""
+"""A combination of numbers is undetermined if its eigenvalue of the normal matrix (diagonal 1) is below this."""
 LONGEST = 1.0 / 8.0
-"""Longest time of correlation that is looked for, as a share of the longest part of a record: what lasts longer is a misfit."""
+"""Longest correlation time considered, as a share of the longest part of a record; anything longer is a misfit, not noise."""
 MOST = 4000
-"""Largest number of samples from which the memory is estimated: of more, means over neighbours are taken."""
+"""Largest number of samples to estimate the memory from; if there are more, means over neighbours are used."""
 TIMES, SHARES = (2.0, 8.0, 32.0, 128.0), (0.05, 0.5, 0.9)
-"""Times of correlation, in samples, and shares of white noise at which the search for both begins."""
+"""Starting values for the correlation time (samples) and for the share of white noise."""
 SPREAD = 8
-"""Share of a block, 1/SPREAD, up to which sums of neighbouring samples are compared with chance."""
+"""Sums over neighbouring samples extend over at most 1/SPREAD of a block."""
 CHANCE = 1e-4
-"""Probability with which noise of one size may look larger where the run changes than elsewhere."""
+"""Significance level of the test whether residuals are larger where the run changes than elsewhere."""
 ACTIVE = 0.5
-"""Share of all that determines the numbers which the active samples hold."""
+"""The active samples are those with the largest leverage, which together have this share of it."""
 
 
 class ResidualBlock(NamedTuple):
@@ -39,10 +39,10 @@ class ResidualBlock(NamedTuple):
 
 
 class Memory(NamedTuple):
-    """What is known of residuals as noise.
+    """The noise in residuals: a correlated part and a white part.
 
-    `time` is the time over which they remember themselves (s; 0 for white noise); `size` is the standard deviation of the part
-    that does, and `white` of the part that does not; for white noise `size` is 0.
+    `time` is the correlation time (s; 0 if all noise is white), `size` the standard deviation of the correlated part (0 if all
+    noise is white), and `white` that of the white part.
     """
 
     time: float
@@ -56,11 +56,11 @@ class Memory(NamedTuple):
 
 
 WHITE = Memory(0.0, 0.0, 1.0)
-"""White noise of the size that was assumed."""
+"""White noise of the assumed size."""
 
 
 def independent(time: Floats, memory: Memory) -> float:
-    """Return how many independent samples there are among those at some times, as many as the memory of the noise leaves."""
+    """Return the effective number of independent samples at some times, given the memory of the noise."""
     if memory.time <= 0.0 or len(time) < 2 or memory.total == 0.0:
         return float(len(time))
     rho = math.exp(-float(np.median(np.diff(time))) / memory.time)
@@ -71,9 +71,9 @@ def independent(time: Floats, memory: Memory) -> float:
 def memory_of(residual: Floats, slopes: Floats, blocks: Sequence[ResidualBlock]) -> Memory:
     """Return the memory of residuals by restricted maximum likelihood; white noise if that explains them as well.
 
-    `slopes` are the derivatives of the residuals with respect to the parameters that were fitted, shape (n, p): what the fit took
-    from the noise is allowed for (Patterson & Thompson 1971, Biometrika 58, 545). The noise is white, with another on top whose
-    correlation falls as exp(-dt/time).
+    `slopes` are the derivatives of the residuals with respect to the fitted parameters, shape (n, p): they allow for the noise that
+    the fit has absorbed (Patterson & Thompson 1971, Biometrika 58, 545). The noise is the sum of white noise and of noise with the
+    correlation exp(-dt/time).
     """
     from scipy.optimize import minimize
 
@@ -109,10 +109,10 @@ def memory_of(residual: Floats, slopes: Floats, blocks: Sequence[ResidualBlock])
 def _restricted(
     residual: Floats, slopes: Floats, blocks: Sequence[ResidualBlock], time: float, share: float
 ) -> tuple[float, float]:
-    """Return twice the negative logarithm of the restricted likelihood, but for a constant, and the size of the noise.
+    """Return minus twice the logarithm of the restricted likelihood, up to a constant, and the size of the noise.
 
-    `slopes` have unit length and are at right angles, so that white noise has the criterion 2 (n - p) log(size). The noise is white
-    to a `share`, w; the rest, of covariance A, has a tridiagonal inverse T, and ((1 - w) A + w)^-1 is ((1 - w) + w T)^-1 T.
+    `slopes` are orthonormal, so that white noise has the criterion 2 (n - p) log(size). A `share` w of the variance is white; the
+    rest has the covariance A with the tridiagonal inverse T. Hence ((1 - w) A + w)^-1 is ((1 - w) + w T)^-1 T.
     """
     from scipy.linalg import cho_solve_banded, cholesky_banded
 
@@ -149,7 +149,7 @@ def _means(
 
 
 def independent_columns(slopes: Floats) -> Floats:
-    """Return columns of unit length, and at right angles, for all that the parameters can change together."""
+    """Return orthonormal columns that span all changes of the residuals by the parameters."""
     sizes = np.linalg.norm(slopes, axis=0)
     left, seen, _ = np.linalg.svd(slopes[:, sizes > 0.0] / sizes[sizes > 0.0], full_matrices=False)
     return np.asarray(left[:, seen**2 > UNSEEN])
@@ -163,9 +163,9 @@ def rms(residual: Floats, slopes: Floats) -> float:
 
 
 def spread_by(influence: Floats, memory: Memory, blocks: Sequence[ResidualBlock]) -> Floats:
-    """Return the covariance of numbers that noise with a memory makes, shape (p, p); `influence` of each sample has shape (n, p).
+    """Return the covariance of numbers under noise with a memory, shape (p, p); `influence` of each sample has shape (n, p).
 
-    That is influence.T C influence, with the covariance of the noise C, whose product is a recurrence along the samples.
+    That is influence.T C influence with the covariance C of the noise. A recurrence along the samples gives the product with C.
     """
     from scipy.linalg import solve_banded
 
@@ -181,10 +181,10 @@ def spread_by(influence: Floats, memory: Memory, blocks: Sequence[ResidualBlock]
 
 
 def spreads_of(influence: Floats, residual: Floats, blocks: Sequence[ResidualBlock]) -> list[Floats]:
-    """Return covariances of numbers, each of shape (p, p), from what is left itself, for sums over more and more samples.
+    """Return covariances of numbers from the residuals themselves, each of shape (p, p), for sums over more and more samples.
 
-    Where residuals are largest where they count most, these are larger than noise of one size makes them (White 1980, Econometrica
-    48, 817; Newey & West 1987, Econometrica 55, 703, with Bartlett's weights).
+    They exceed the covariance under noise of uniform size if residuals are largest at the samples that count most (White 1980,
+    Econometrica 48, 817; Newey & West 1987, Econometrica 55, 703, with Bartlett's weights).
     """
     n, p = influence.shape
     parts = [influence[rows] * residual[rows, None] for rows, _ in blocks]
@@ -204,7 +204,7 @@ def spreads_of(influence: Floats, residual: Floats, blocks: Sequence[ResidualBlo
 class Unevenness(NamedTuple):
     """How many times larger residuals are where a run depends most on its numbers than elsewhere; 1 if chance explains it.
 
-    `misfit` is the part of it that noise, which differs from sample to sample, does not explain.
+    `misfit` is the part of this factor that larger noise from sample to sample does not explain.
     """
 
     found: float
@@ -217,7 +217,7 @@ EVEN = Unevenness(1.0, 1.0)
 def unevenness(residual: Floats, slopes: Floats, memory: Memory, blocks: Sequence[ResidualBlock]) -> Unevenness:
     """Return how uneven residuals are; `slopes` are their derivatives with respect to the numbers, shape (n, p).
 
-    Noise does not know where the run changes; what the law, the loading or the machine cannot follow does.
+    Noise does not depend on where the run changes; a misfit of law, loading or machine does.
     """
     from scipy.stats import f
 
@@ -232,5 +232,5 @@ def unevenness(residual: Floats, slopes: Floats, memory: Memory, blocks: Sequenc
     freedom = [max(1.0, share * len(one)) for one in (active, rest)]
     quiet, noise = max(float(np.mean(rest**2)), 1e-300), max(float(np.mean(np.diff(rest, 2) ** 2)), 1e-300)
     ratio = float(np.mean(active**2)) / quiet
-    net = ratio / max(float(np.mean(np.diff(active, 2) ** 2)) / noise, 1.0)  # what differs from sample to sample is no misfit
+    net = ratio / max(float(np.mean(np.diff(active, 2) ** 2)) / noise, 1.0)  # noise from sample to sample is no misfit
     return Unevenness(*(math.sqrt(one) if one > 1.0 and float(f.sf(one, *freedom)) < CHANCE else 1.0 for one in (ratio, net)))

@@ -23,34 +23,34 @@ from stickslip.study import uninterrupted
 from stickslip.trajectory.history import Side
 
 OF_NO_ZERO = ("slip",)
-"""Quantities that a sensor measures from a zero of its own: the mean of their residual is taken away."""
+"""Quantities with an arbitrary zero of the sensor: the mean of their residual is subtracted."""
 JUMPING = ("friction", "shear_stress", "shear_force", "slip_rate")
 """Quantities that may jump in a run."""
 SEEN = 0.1
-"""Height of a jump, in standard deviations, from which it is spread between samples."""
+"""Jumps higher than this many standard deviations are spread between samples."""
 FAILED = 1e5
-"""Residual, in standard deviations, that stands for a run that failed."""
+"""Residual, in standard deviations, of every sample of a failed run."""
 LARGEST = 1e7
 """Largest residual, in standard deviations, so that squares and their sums stay finite."""
 STEP = 2e-4
-"""Longest step of differences, in searched numbers: the square of it is the error, and 1e-8 over it the noise of runs."""
+"""Longest step of differences, in searched numbers. Errors: the square of the step, and the noise of runs, 1e-8 over the step."""
 NO_ROOM = 1e-10
-"""Step of differences that a limit leaves no room for."""
+"""If a limit leaves less room than this for a step, there is no difference to that side."""
 CHANGED, ABOVE_NOISE = 0.5, 30.0
-"""Change of all residuals together that a fine step makes: in standard deviations, and in the noise of runs if that is more."""
+"""A fine step changes all residuals together by CHANGED standard deviations, or by ABOVE_NOISE times the noise of runs if more."""
 
 
 @dataclass
 class Model:
     """Residuals of a record, part by part, as a function of the searched numbers.
 
-    `sizes` are standard deviations (SI) of each observed quantity that has no column of them, and `memory` is what was found of
-    their noise, in these. Each `every`-th sample is used. `step` is that of differences, in searched numbers: one for all, or one
-    for each. `smooth` is the share of the samples over which residuals are averaged, so that an event at another time is felt from
-    afar. A run that needs more than `max_pieces` has failed. A jump of a run is spread over `blur` samples, and `unsure` is the
-    standard deviation (SI) of each used sample from the unknown time of a jump beside it, by part and quantity. `weight` is
-    the exponent of the weight of samples after a change of the pull rate. `ran` is called after each run.
-    `of_means` is True if residuals are few means whose errors are known.
+    `sizes` are the standard deviations (SI) of the observed quantities without a column of deviations; `memory` is the memory of
+    their noise, in units of `sizes`. Each `every`-th sample is used. `step` is the step of differences, in searched numbers: one
+    for all, or one each. Residuals are averaged over the share `smooth` of the samples, so that an event at a wrong time is felt
+    from afar. A run that needs more than `max_pieces` has failed. A jump of a run is spread over `blur` samples. `unsure` is the
+    standard deviation (SI) that the unknown time of a nearby jump gives each used sample, by part and quantity. `weight` is the
+    exponent of the weight of samples after a change of the pull rate. `ran` is called after each run. `of_means` is True if
+    residuals are few means whose errors are known.
     """
 
     problem: Problem
@@ -100,7 +100,7 @@ class Model:
         return {one.name: v for one, v in zip(self.free, self.values(searched), strict=True) if one.part in (None, part)}
 
     def curves(self, run: Solution, searched: Floats, part: int, every: int = 1) -> dict[str, Floats]:
-        """Return what would be measured in a run at each sample, by the name of the quantity (SI)."""
+        """Return the values that would be measured in a run at each sample, by the name of the quantity (SI)."""
         this, own = self.parts[part], self._own(searched, part)
         time = np.clip(this.record.clock[::every] - own.get(DELAY, 0.0), 0.0, run.history.span[1])
         found, shift = {}, 0.0
@@ -120,7 +120,7 @@ class Model:
         return jumps_in(lambda time, side: measured(run, name, this.sensor, time, side), run.breaks[1:-1], least, step)
 
     def with_jumps(self, searched: Floats) -> Model:
-        """Return the model in which samples beside a jump of the run are as unsure as the time of the jump makes them."""
+        """Return the model with added uncertainty for samples beside a jump, whose time lies somewhere between two samples."""
         model, added = self.with_(unsure={}), dict[tuple[int, str], Floats]()
         for i, part in enumerate(self.parts):
             run = model.solve(searched, i)
@@ -190,9 +190,9 @@ class Model:
         return found
 
     def priors(self, searched: Floats) -> Floats:
-        """Return the distances from what was known before, in standard deviations, times the root of samples per independent one.
+        """Return the distances from the priors, in standard deviations, times the root of samples per independent sample.
 
-        Residuals that remember themselves count as if they were independent, and what was known before must not be outweighed.
+        The factor balances the residuals, which are correlated but counted as if they were independent.
         """
         values = zip(self.free, self.values(searched), strict=True)
         found = [one.prior.residual(v) for one, v in values if one.prior is not None and one.prior.kind != "uniform"]
@@ -206,7 +206,7 @@ class Model:
     def jacobian(self, searched: Floats, *, sides: Sequence[float] = (1.0, -1.0)) -> Floats:
         """Return the derivatives of all residuals with respect to the searched numbers, by differences.
 
-        A number that belongs to one part asks for runs of that part only. If the run on one side fails, the other is used.
+        A number of one part needs runs of that part only. If the run on one side fails, the difference is taken on the other.
         """
         lows, highs = self.limits
         base = [self.part_residual(searched, i) for i in range(len(self.parts))]
@@ -226,9 +226,9 @@ class Model:
         return result
 
     def fine(self, searched: Floats) -> Model:
-        """Return the model with steps of differences that stay inside the uncertainty: a sharp event bends within longer ones."""
+        """Return the model with steps of differences inside the uncertainty: a sharp event bends residuals within longer steps."""
         change, steps = max(CHANGED, ABOVE_NOISE * self.noise), np.full(len(self.free), STEP)
-        for _ in range(3):  # beyond a bend the slope of a long step is too small, and with it the step that follows too long
+        for _ in range(3):  # across a bend a long step gives too small a slope, and so too long a next step
             sizes = np.linalg.norm(self.with_(step=steps).jacobian(searched, sides=(1.0,)), axis=0)
             shorter = np.minimum(change / np.maximum(sizes, 1e-300), steps)
             if np.all(shorter > 0.5 * steps):
@@ -238,11 +238,11 @@ class Model:
 
     @property
     def noise(self) -> float:
-        """The error of all runs together, in standard deviations, as their tolerance lets expect it."""
+        """The error of all runs together, in standard deviations, as expected from their tolerance."""
         return self.rtol * math.sqrt(sum(self._squares(i) for i in range(len(self.parts))))
 
     def _squares(self, part: int) -> float:
-        """Return the sum of squares of what was measured in a part, in standard deviations."""
+        """Return the sum of squares of the measured values of a part, in standard deviations."""
         names = self.parts[part].observed
         return sum(float(np.nansum((self.data(part, name)[:: self.every] / self._deviations(part, name)) ** 2)) for name in names)
 
@@ -282,13 +282,13 @@ class Model:
 
     @property
     def given(self) -> Floats:
-        """The searched numbers as they were given, where the search begins elsewhere."""
+        """The searched numbers as the problem gives them, for those that start elsewhere."""
         low, high = self.limits
         return np.clip([one.searched(one.start if one.given is None else one.given) for one in self.free], low, high)
 
     @property
     def samples(self) -> int:
-        """The number of measured values that are fitted."""
+        """The number of fitted values."""
         return sum(block.rows.stop - block.rows.start for i in range(len(self.parts)) for _, block in self.blocks(i))
 
     @property
@@ -298,13 +298,13 @@ class Model:
 
     @property
     def independent(self) -> float:
-        """The number of independent samples, as many as the memory of the noise leaves."""
+        """The effective number of independent samples, given the memory of the noise."""
         blocks = [one for i in range(len(self.parts)) for one in self.blocks(i)]
         return sum(independent(block.time, self.memory[name]) if name in self.memory else len(block.time) for name, block in blocks)
 
     @property
     def scatter(self) -> float:
-        """The sum of squares of what was measured about its mean, in standard deviations."""
+        """The sum of squares of the measured values about their means, in standard deviations."""
         total = 0.0
         for i, part in enumerate(self.parts):
             for name in part.observed:
@@ -314,15 +314,15 @@ class Model:
 
     @property
     def inflation(self) -> float:
-        """The number of samples per independent one."""
+        """The number of samples per independent sample."""
         return self.samples / self.independent if self.memory else 1.0
 
     def variance(self, searched: Floats) -> float:
-        """Return the factor on the covariance of the numbers, beside the size of the noise: 1."""
+        """Return the factor on the covariance of the numbers, besides the size of the noise: 1."""
         return 1.0
 
     def thinned(self, most: int) -> Model:
-        """Return the same model on about so many samples, but no fewer than 200 of the longest part."""
+        """Return the same model on about `most` samples, but at least 200 of the longest part."""
         longest = max(len(part.record) for part in self.parts)
         return self.with_(every=max(1, -(-longest // max(most // len(self.parts), 200))), unsure={})
 
@@ -342,7 +342,7 @@ def measured(run: Solution, name: str, sensor: str, time: Floats, side: Side = "
 
 
 def averaged(rest: Floats, width: int) -> Floats:
-    """Return running means of so many residuals, times the root of their number, so that white noise keeps its size."""
+    """Return running means of `width` residuals, times the root of that number, so that white noise keeps its size."""
     if width < 2:
         return rest
     sums = np.append(0.0, np.cumsum(np.clip(np.nan_to_num(rest, nan=FAILED), -LARGEST, LARGEST)))

@@ -1,4 +1,4 @@
-"""A part of a record with a run of its own: how it is loaded and begins, its end that is left out, and other numbers in it."""
+"""A part of a record with a run of its own: its loading, its start, other numbers in its problem, and an end that is left out."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ from stickslip.problem.parameters import put_many
 from stickslip.problem.problem import Problem
 
 SMALLEST_NOISE = 1e-9
-"""Smallest noise, as a share of the range of a quantity: a record without noise has rounding."""
+"""Smallest noise, as a share of the range of a quantity: even a record without noise is rounded."""
 
 
 CHANGES = 0.1
-"""Share of the range of the pull rate by which it changes at least where a change counts."""
+"""A change of the pull rate counts if it is at least this share of the rate's range."""
 
 
 @dataclass(frozen=True, eq=False)
 class Part:
     """A part of a record with its own run.
 
-    `loading` is the pull rate since the first sample, or None for the problem's own; `observed` are the quantities that are fitted.
-    `sensor` is "contact" if shear is measured there, "spring" for a load cell behind the spring of a block. The run begins
-    ("start") in "steady" sliding, as the "record" does, or as the "problem" says.
+    `loading` is the pull rate since the first sample, or None for the problem's own; `observed` are the fitted quantities.
+    `sensor` is "contact" if shear is measured there, "spring" for a load cell behind the spring of a block. `start` says how the
+    run begins: in "steady" sliding, as the "record" does, or as the "problem" says.
     """
 
     record: Record
@@ -49,7 +49,7 @@ class Part:
 
     @property
     def begins(self) -> float:
-        """The time of the record at which the run begins (s)."""
+        """The time (s) in the record where the run begins."""
         return float(self.record.time[0])
 
     @cached_property
@@ -61,7 +61,7 @@ class Part:
         return found
 
     def changes(self, problem: Problem) -> Floats:
-        """Return the times (s) at which the pull rate of a run begins to change by a tenth of its range or more."""
+        """Return the times (s) when the pull rate of a run begins to change by a tenth of its range or more."""
         pull = problem.pull_rate if self.loading is None else self.loading
         if not isinstance(pull, LoadingHistory):
             return np.zeros(0)
@@ -87,7 +87,7 @@ class Part:
         return np.asarray(weight * math.sqrt(len(weight) / float(weight @ weight)))
 
     def begun(self, problem: Problem) -> Problem:
-        """Return a problem under the loading of this part, with the start that its data give. Raises InputError."""
+        """Return a problem under the loading of this part, with the initial conditions from its data. Raises InputError."""
         rates: dict[str, Any] = {} if self.loading is None else {"pull_rate": self.loading}
         if self.start == "steady":
             return steady(problem, rates)
@@ -128,13 +128,13 @@ def steady(problem: Problem, rates: Mapping[str, Any]) -> Problem:
 
 
 SETTLED, POINTS = 1e-4, 32
-"""Share of a change of rate that is left when an exponential approach ends, and number of points on the way."""
+"""An exponential approach to a new rate ends when this share of the change remains; number of points on the way."""
 
 
 def approached(pull: LoadingHistory | float, time: float) -> LoadingHistory | float:
-    """Return a pull rate whose steps are approached as exp(-t/time): the servo of a machine has such a time (s).
+    """Return a pull rate that approaches each new value as exp(-t/time), as the servo of a machine does (time in s).
 
-    The rate is linear between points that are closest where it changes fastest. Raises InputError if it is not one of steps.
+    The rate is linear between points, which are closest where it changes fastest. Raises InputError if it does not change in steps.
     """
     if not isinstance(pull, LoadingHistory):
         return pull
@@ -154,12 +154,12 @@ def approached(pull: LoadingHistory | float, time: float) -> LoadingHistory | fl
 
 
 def changed(problem: Problem, values: Mapping[str, float]) -> Problem:
-    """Return a problem with other numbers, by their full names; those of the record are passed over. Raises InputError."""
+    """Return a problem with other numbers, by their full names; numbers of the record are ignored. Raises InputError."""
     return put_many(problem, {name: value for name, value in values.items() if not name.startswith("record.")})
 
 
 def first_sizes(parts: Sequence[Part]) -> dict[str, float]:
-    """Return the noise of each observed quantity from sample to sample; 1 where all have a column of standard deviations."""
+    """Return the noise of each observed quantity from sample to sample; 1 if all parts have a column of standard deviations."""
     found: dict[str, float] = {}
     for name in dict.fromkeys(name for part in parts for name in part.observed):
         having = [part.record for part in parts if name in part.observed]
@@ -175,11 +175,11 @@ def first_sizes(parts: Sequence[Part]) -> dict[str, float]:
 
 LEFT_OUT = Quantity("s", "time at the end of the record that is left out", above=0.0)
 LEAST = 8
-"""Smallest number of samples that a part keeps."""
+"""A part keeps at least this many samples."""
 
 
 def share_of(held_out: Any, parts: Sequence[Part]) -> float:
-    """Return the share of a record at its end that is left out, from a share or a time. Raises InputError."""
+    """Return the share to leave out at the end of a record, from a share or a time. Raises InputError."""
     if held_out is None:
         return 0.0
     if isinstance(held_out, int | float) and not isinstance(held_out, bool):
@@ -193,10 +193,9 @@ def share_of(held_out: Any, parts: Sequence[Part]) -> float:
 
 
 def shortened(parts: Sequence[Part], share: float) -> list[Part]:
-    """Return the parts that are fitted: of one record its first part, of several the whole ones that come first.
+    """Return the parts to fit: a single part without its end, or the first ones of several parts, each as a whole.
 
-    Parts that are left out as a whole follow nothing; a record in several parts keeps the first of them. Raises InputError if too
-    little is left.
+    A part that is left out is left out as a whole; the first one always stays. Raises InputError if too little is left.
     """
     if share == 0.0:
         return list(parts)

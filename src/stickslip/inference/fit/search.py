@@ -17,53 +17,53 @@ from stickslip.inference.record.resample import RAMP
 Tell = Callable[[str], Any]
 
 COMPETES = 20.0
-"""Difference of twice the logarithm of the likelihood below which another minimum competes with the best one."""
+"""Another minimum competes with the best one if twice the log-likelihoods differ by less than this."""
 SCREENED = 12
-"""Number of draws of which one start is kept."""
+"""Number of draws for each start that is kept."""
 FIRST = 8
-"""Number of steps after which starts are compared again."""
+"""Starts are compared again after this many steps of least squares."""
 FOLLOWED, HOPELESS = 3, 30.0
-"""Number of starts that are followed to their end, and the factor by which the sum of squares of one may be above the least."""
+"""At most this many starts are followed to their end, those with a sum of squares below this multiple of the least."""
 FAR, FAR_SHARE = 5.0, 0.3
-"""Sizes of residuals from which a search goes on without derivatives, if both are exceeded: in the noise of neighbouring samples,
-and in the scatter of the record, which noise that remembers itself stays far below."""
+"""A search goes on without derivatives if residuals exceed both FAR times the noise of neighbouring samples and FAR_SHARE times the
+scatter of the record; correlated noise exceeds the first but stays far below the second."""
 AVERAGED = (0.1, 0.02, 0.005, 0.0)
-"""Shares of the samples over which residuals are averaged in a search without derivatives, from coarse to fine."""
+"""Widths of the averages over residuals in a search without derivatives, from coarse to fine, as shares of the samples."""
 GENERATIONS = 60
 """Largest number of generations of such a search."""
 LIGHT = 2000
-"""Largest number of pieces of a run while starts are compared, unless the run of the first start needs more than a third of it."""
+"""Largest number of pieces of a run while starts are compared; three times the pieces of the first start's run, if that is more."""
 
 
 @dataclass
 class SearchProgress:
-    """The progress of a search: what it does, and the number of runs so far; a line of text after each."""
+    """The progress of a search: its phase and the number of runs so far, as a line of text after each run."""
 
     tell: Callable[[str], Any]
     phase: str = ""
     runs: int = 0
 
     def __call__(self, phase: str) -> None:
-        """Tell that something else is done now."""
+        """Report that a new phase begins."""
         self.phase = phase
         self.tell(f"{phase}, {self.runs} runs so far" if self.runs else phase)
 
     def run(self) -> None:
-        """Tell that a run is done."""
+        """Report that a run is done."""
         self.runs += 1
         self.tell(f"{self.phase}, {self.runs} runs so far")
 
 
 @dataclass
 class Best:
-    """The best numbers so far, which are what Ctrl-C leaves."""
+    """The best numbers so far: the result after Ctrl-C."""
 
     cost: float = np.inf
     searched: Floats = field(default_factory=lambda: np.zeros(0))
 
 
 def solved(model: Model, start: Floats, loss: str, best: Best | None = None, *, thorough: bool = False, most: int = 40) -> Floats:
-    """Return the searched numbers of least squares that a search from a start finds; a thorough one takes central differences."""
+    """Return the least-squares solution from one start, as searched numbers; a thorough search takes central differences."""
     from scipy.optimize import least_squares
 
     low, high = model.limits
@@ -92,14 +92,14 @@ def solved(model: Model, start: Floats, loss: str, best: Best | None = None, *, 
 
 
 def is_rough(model: Model, x: Floats) -> bool:
-    """Return True if derivatives of residuals to one side differ from those to the other, as where a jump passes a sample."""
+    """Return True if left and right derivatives of the residuals differ, as where a jump passes a sample."""
     right, left = model.jacobian(x, sides=(1.0,)), model.jacobian(x, sides=(-1.0,))
     size = np.linalg.norm(right + left, axis=0)
     return bool((np.linalg.norm(right - left, axis=0) > 0.2 * size).any())
 
 
 def polished(model: Model, start: Floats, loss: str) -> Floats:
-    """Return where simplexes of falling size end that begin at a best fit: derivatives stop where a jump passes a sample."""
+    """Return a better fit by simplexes of falling size; least squares stops too early where a jump passes a sample."""
     from scipy.optimize import minimize
 
     low, high = model.limits
@@ -112,7 +112,7 @@ def polished(model: Model, start: Floats, loss: str) -> Floats:
 
 
 def light(model: Model) -> Model:
-    """Return the model with runs that end early if they need many more pieces than those where the search begins."""
+    """Return the model with a limit on pieces: runs end early if they need many more than the run at the start of the search."""
     needed = [len(run.history) for i in range(len(model.parts)) if (run := model.solve(model.begin, i)) is not None]
     return model.with_(max_pieces=min(model.max_pieces, max(LIGHT, 3 * max(needed, default=model.max_pieces))))
 
@@ -150,31 +150,31 @@ def searched_minima(model: Model, starts: int, loss: str, seed: int, *, tell: Te
 
 
 def _followed(model: Model, x: Floats, loss: str, best: Best, most: int = 40) -> tuple[float, Floats]:
-    """Return where a search ends, after what is minimised there, or where it begins if jumps that are spread have led it away."""
+    """Return the cost and numbers at the end of a search, or at its start if the spread jumps have led it away."""
     end = solved(model, x, loss, best, most=most)
     return min(((sharp_cost(model, one, loss), one) for one in (end, x)), key=lambda one: one[0])
 
 
 def sharp_cost(model: Model, x: Floats, loss: str) -> float:
-    """Return what is minimised if jumps of the run are as sharp as they are; those of the record may be some samples away."""
+    """Return the cost with sharp jumps of the run, each beside the nearest jump of the record within some samples."""
     return _cost(model.with_(blur=RAMP).with_jumps(x), x, loss)
 
 
 def is_far(model: Model, cost: float) -> bool:
-    """Return True if what is minimised is so large that the run does not come near the record."""
+    """Return True if the cost is so large that the run does not come near the record."""
     return cost > max(FAR**2 * model.samples, FAR_SHARE**2 * model.scatter)
 
 
 def _by_evolution(model: Model, seed: int, tell: Tell) -> Floats:
     """Return where a search without derivatives ends: differential evolution (Storn & Price 1997), then simplexes.
 
-    A slip event at another time than in the record tells derivatives nothing. Here residuals are averaged over some time, and count
-    by their logarithm, so that what follows well outweighs what does not follow at all.
+    Derivatives do not show how to move a slip event to its time in the record. Here residuals are averaged over some time and count
+    by their logarithm, so that stretches that fit well outweigh stretches that do not fit at all.
     """
     from scipy.optimize import differential_evolution, minimize
 
     low, high = model.limits
-    shared = [i for i, one in enumerate(model.free) if one.part is None] or list(range(len(model.free)))  # others are known nearly
+    shared = [i for i, one in enumerate(model.free) if one.part is None] or list(range(len(model.free)))  # others are nearly known
     begin = model.begin
 
     def whole(x: Floats) -> Floats:
@@ -206,13 +206,13 @@ def _by_evolution(model: Model, seed: int, tell: Tell) -> Floats:
 
 
 def _cost(model: Model, searched: Floats, loss: str) -> float:
-    """Return what is minimised, inf if a run fails."""
+    """Return the cost to minimise, inf if a run fails."""
     rest = model.residual(searched)
     return np.inf if (np.abs(rest) >= FAILED).all() or np.all(np.abs(rest[: len(rest) or 1]) >= FAILED) else cost_of(rest, loss)
 
 
 def _drawn(model: Model, count: int, seed: int) -> list[Floats]:
-    """Return a Latin hypercube of searched numbers around where the search begins; numbers of single parts stay."""
+    """Return a Latin hypercube of searched numbers around the start of the search; numbers of single parts stay."""
     from scipy.stats import qmc
 
     begin, shared = model.begin, [i for i, one in enumerate(model.free) if one.part is None]

@@ -1,4 +1,4 @@
-"""Set up an inference: what of a record is fitted, in which parts, and how each of their runs begins."""
+"""Set up an inference: choose the quantities to fit, the parts of a record, and the start of each run."""
 
 from __future__ import annotations
 
@@ -27,19 +27,19 @@ STARTS = ("steady", "record", "problem")
 SENSORS = ("contact", "spring")
 """Where shear is measured."""
 MANY_RATES = 40
-"""Number of rates from which a load point is doubted."""
+"""A load point with more rates than this raises a doubt."""
 FAR = 100.0
-"""Factor between the pull rates of record and problem from which the units of the record are doubted."""
+"""A larger factor than this between the pull rates of record and problem raises a doubt about the record's units."""
 LEAST = 8
 """Smallest number of samples of a part."""
 LATER = 0.05
-"""Share of the samples between two slip events that a part still holds after its event: noise chooses the lowest sample."""
+"""Share of the samples after a slip event that still belong to the part before it: noise decides which sample is the lowest."""
 
 
 def parts_of(
     problem: Problem, records: Sequence[Record], observe: Any, start: str | None, sensor: str
 ) -> tuple[list[Part], list[str]]:
-    """Return a part for each record, and sentences on what was done. Raises InputError for what does not go together."""
+    """Return a part for each record, and sentences on what was done. Raises InputError if options and records do not match."""
     if sensor not in SENSORS:
         raise InputError(f"infer: sensor {ascii(sensor)[:40]} is unknown; {nearest(str(sensor), SENSORS)}")
     if sensor == "spring" and problem.body.has_waves:
@@ -64,7 +64,7 @@ def parts_of(
 
 
 def _doubts(problem: Problem, rate: LoadingHistory | float) -> Iterator[str]:
-    """Yield sentences on a load point that moves as a machine hardly does."""
+    """Yield sentences on a load point that hardly moves like a machine."""
     segments = np.array(rate.segments)[:, 1] if isinstance(rate, LoadingHistory) else np.array([rate])
     if len(segments) > MANY_RATES:
         cure = "if the column is slip, call it slip and give the load rate"
@@ -77,7 +77,7 @@ def _doubts(problem: Problem, rate: LoadingHistory | float) -> Iterator[str]:
 
 
 def _check_force(record: Record, normal: float) -> None:
-    """Raise InputError if shear force is no friction under the normal force of the problem (N)."""
+    """Raise InputError if the shear force is implausible as friction under the normal force of the problem (N)."""
     size = float(np.nanmedian(np.abs(record.measured["shear_force"]))) / normal
     if not LOWEST < size < HIGHEST:
         raise InputError(
@@ -87,7 +87,7 @@ def _check_force(record: Record, normal: float) -> None:
 
 
 def _observed(record: Record, observe: Any, problem: Problem) -> tuple[str, ...]:
-    """Return the names of the quantities that are fitted. Raises InputError."""
+    """Return the names of the quantities to fit. Raises InputError."""
     if isinstance(observe, str):
         observe = [one.strip() for one in observe.split(",")]
     names = list(observe) if observe else [record.shear] if record.shear else [one for one in MEASURED if one in record.measured]
@@ -113,7 +113,7 @@ def _observed(record: Record, observe: Any, problem: Problem) -> tuple[str, ...]
 
 
 def hints_of(problem: Problem, part: Part) -> dict[str, float]:
-    """Return the load and the state with which the run of a part begins, as far as the problem can begin."""
+    """Return the load and the state at the start of a part's run, as far as the problem has them."""
     try:
         begun = part.begun(problem)
     except InputError:
@@ -127,13 +127,13 @@ def hints_of(problem: Problem, part: Part) -> dict[str, float]:
 
 
 def _steady_state(law: FrictionLaw, rate: float) -> Floats:
-    """Return the states of steady sliding at a rate (m/s), none if there are none."""
+    """Return the states of steady sliding at a rate (m/s); none if the law does not give them."""
     found = law.steady_state(abs(rate)) if rate else None
     return np.zeros(0) if found is None else found
 
 
 def scales_of(part: Part, problem: Problem) -> dict[str, float]:
-    """Return the sizes (SI) of steps for free numbers that begin at 0."""
+    """Return the step sizes (SI) for free numbers that start at 0."""
     record = part.record
     moved = record.measured.get("slip", record.load_point)
     reach = float(np.nanmax(moved) - np.nanmin(moved)) if moved is not None else 0.0
@@ -163,7 +163,7 @@ def at_rests(part: Part) -> list[Part]:
 
 
 def evenly(parts: Sequence[Part], most: int) -> list[Part]:
-    """Return so many parts at most, evenly spread over all."""
+    """Return at most `most` parts, evenly spread over all."""
     return [parts[i] for i in _spread(len(parts), most)]
 
 
@@ -172,14 +172,14 @@ def _spread(count: int, most: int) -> list[int]:
 
 
 def with_parts(model: Model, most: int) -> Model:
-    """Return a model of some of its parts, evenly spread, with the free numbers that all share and those of these parts."""
+    """Return the model with some of its parts, evenly spread, and with the shared free numbers and those of these parts."""
     kept = {part: i for i, part in enumerate(_spread(len(model.parts), most))}
     free = [one if one.part is None else replace(one, part=kept[one.part]) for one in model.free if one.part in (None, *kept)]
     return model.with_(parts=tuple(model.parts[part] for part in kept), free=tuple(free))
 
 
 def own_of(problem: Problem, parts: Sequence[Part], wanted: Iterable[str] | None) -> list[Free]:
-    """Return free numbers of one part each: the load at its start, known to the noise, and a state if the law has one."""
+    """Return the free numbers of single parts: the initial load, known to within its noise, and a state if the law has one."""
     names = (
         list(wanted)
         if wanted is not None

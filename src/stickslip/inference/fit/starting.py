@@ -1,4 +1,4 @@
-"""Starting values of free numbers that a record itself shows: levels and slopes of stick-slip, plateaus of velocity steps."""
+"""Starting values of free numbers from the record itself: levels and slopes of stick-slip, plateaus of velocity steps."""
 
 from __future__ import annotations
 
@@ -23,17 +23,18 @@ from stickslip.problem.problem import Problem
 COSINE = math.sqrt(math.pi**2 - 8.0)
 """Twice the standard deviation, in time, of the fall of a spring force along half a cosine of angular frequency 1."""
 TAIL, LEAST = 0.3, 8
-"""Share of a part of constant rate, at its end, of which the median is a plateau; smallest number of samples of such a part."""
+"""The plateau at a constant rate is the median over this last share of its samples; it needs at least so many samples."""
 CLEAR = 5.0
-"""Height of a transient, in standard deviations of the noise, from which it is used."""
+"""A transient counts if it is higher than this many standard deviations of the noise."""
 CREEPS, STIFFER = 0.8, 1.1
-"""Slope of shear between events, as a share of the stiffness of the problem, beyond which it is doubted: creep makes it smaller."""
+"""If the slope of shear between events is outside this range, relative to the stiffness of the problem, the stiffness is doubted.
+The range reaches farther down, because creep makes the slope smaller."""
 
 
 class StickSlip(NamedTuple):
     """Friction before and after slip events, the rise between them per displacement of the machine, and the duration of a fall.
 
-    `rise` is in N/m (block) or Pa/m (slab), `duration` in s, and NaN if the record does not tell it.
+    `rise` is in N/m (block) or Pa/m (slab), `duration` in s; each is NaN if the record does not show it.
     """
 
     peak: float
@@ -45,7 +46,7 @@ class StickSlip(NamedTuple):
 def with_starts(
     free: Sequence[Free], problem: Problem, parts: Sequence[Part], given: Iterable[str]
 ) -> tuple[tuple[Free, ...], list[str]]:
-    """Return free numbers that begin where the record shows them, and sentences on that.
+    """Return the free numbers with starting values from the record, and sentences on that.
 
     `given` has the names of those whose start the user chose. A number keeps the value of the problem as a second start.
     """
@@ -71,7 +72,7 @@ def _allowed(problem: Problem, values: Mapping[str, float]) -> bool:
 
 
 def _shown(problem: Problem, part: Part, names: set[str]) -> Iterator[tuple[str, float]]:
-    """Yield names and values (SI) of numbers that a part of a record shows."""
+    """Yield names and values (SI) of the numbers that a part of a record shows."""
     if part.record.shear is None:
         return
     friction = _friction(problem, part)
@@ -94,7 +95,7 @@ def _friction(problem: Problem, part: Part) -> Floats:
 
 
 def stick_slip(problem: Problem, part: Part) -> StickSlip | None:
-    """Return what the slip events of a part have in common; None for fewer than two after the first one."""
+    """Return the typical levels, slope and duration of a part's slip events; None for fewer than two after the first one."""
     try:
         events, _ = events_of(part)
     except InputError:
@@ -165,7 +166,7 @@ class RatePlateau(NamedTuple):
 
 
 def _plateaus(part: Part, friction: Floats) -> list[RatePlateau]:
-    """Return the plateaus of a part of a record, in their order; parts without rate, or with too few samples, are passed over."""
+    """Return the plateaus of a part of a record, in their order; stretches without motion or with too few samples are skipped."""
     known, clock = np.isfinite(friction), part.record.clock
     clock, friction = clock[known], friction[known]
     loading = part.loading
@@ -182,7 +183,7 @@ def _plateaus(part: Part, friction: Floats) -> list[RatePlateau]:
 
 
 def _of_steps(problem: Problem, part: Part, friction: Floats, names: set[str]) -> Iterator[tuple[str, float]]:
-    """Yield reference friction, a, b and distance of a rate-and-state law from steady sliding at several rates."""
+    """Yield reference friction, a, b and slip distance of a rate-and-state law from steady sliding at several rates."""
     law: Any = problem.friction
     plateaus = _plateaus(part, friction)
     if not plateaus or not all(hasattr(law, name) for name in ("reference", "a", "b", "distance", "rate")):
@@ -223,7 +224,7 @@ def _transients(plateaus: Sequence[RatePlateau], noise: float) -> tuple[float, f
 
 
 def _doubts(problem: Problem, part: Part, free: Sequence[Free]) -> Iterator[str]:
-    """Yield a question if a stiffness that is fixed is not that of the record."""
+    """Yield a question if a fixed stiffness differs from that of the record."""
     if problem.body.has_waves or part.record.shear is None or any(one.name == "body.stiffness" for one in free):
         return
     cycles, body = stick_slip(problem, part), problem.body

@@ -1,1 +1,1 @@
-"""A laboratory record: columns that are read, put right, resampled, and looked at for noise, memory, features and loading."""
+"""Read, check, correct and resample a laboratory record; find its noise, features and loading."""

@@ -1,4 +1,4 @@
-"""Put right, doubt or refuse what sensors and headings make of a record: signs, units, saturation, and columns that contradict."""
+"""Correct, doubt or refuse faults of sensors and headings: signs, units, saturation, and columns that contradict each other."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from stickslip.inference.record.noise import noise_of, saturated, spikes
 from stickslip.inference.record.record import HIGHEST, LOADING, LOWEST, SHEAR, UNITS, Record
 
 BACKWARD = 0.9
-"""Share of shear stresses below 0 from which the sign of a record is turned."""
+"""The sign of shear is turned if more than this share of it is negative."""
 FALLING = 0.7
-"""Share of its fast samples in which shear drops, from which a load point is slip."""
+"""A load point is taken for slip if shear drops in more than this share of its fast samples."""
 CONTRARY = {"slip": 3.0, "slip_rate": 10.0}
-"""Factor between slip and the motion of the load point from which they contradict; a rate may miss what is between samples."""
+"""Slip and load point contradict each other if they differ by more than this factor; a rate may miss motion between samples."""
 FEWEST = 30
-"""Smallest number of samples from which motions are compared."""
+"""Motions are compared only in records with at least this many samples."""
 LATEST = 0.1
-"""Share of the record behind which they are compared."""
+"""Motions are compared only after this first share of the record."""
 
 
 @np.errstate(over="ignore", invalid="ignore")  # marks of missing numbers may be huge
@@ -59,7 +59,7 @@ def _samples(which: NDArray[np.bool_], kind: str = "") -> str:
 
 
 def _check_signs(measured: dict[str, Floats], moved: Floats | None, notes: list[str]) -> None:
-    """Turn the sign of shear that is negative while the machine moves forwards, and doubt a machine that moves against shear."""
+    """Turn the sign of shear if it is negative while the machine moves forwards; doubt a machine that moves against shear."""
     ends = None if moved is None else moved[np.isfinite(moved)][[0, -1]]
     for name in (name for name in SHEAR if name in measured):
         negative = float(np.nanmean(measured[name] < 0.0))
@@ -82,7 +82,7 @@ def _check_friction(size: float, name: str, notes: list[str]) -> None:
 
 
 def _check_load_point(record: Record) -> None:
-    """Raise InputError if the column of the load point is slip: it jumps where the shear stress drops."""
+    """Raise InputError if the column of the load point is slip, which jumps where the shear stress drops."""
     shear, moved = record.shear, record.load_point
     if moved is None:
         return
@@ -105,10 +105,10 @@ def _check_load_point(record: Record) -> None:
 
 
 def _contradictions(record: Record) -> Iterator[str]:
-    """Yield sentences on slip that the load point, or another column of slip, contradicts.
+    """Yield sentences on slip that contradicts the load point or another column of slip.
 
-    The spring is as long as at first wherever shear is as large as at first, so that the contact has slipped there as far as the
-    load point has moved. Where shear is larger slip is less, where it is smaller slip is more.
+    When shear is back at its first value, so is the length of the spring: the contact has then slipped as far as the load point has
+    moved. It has slipped less if shear is larger, and more if shear is smaller.
     """
     moved: dict[str, Floats] = {name: _reached(record, name) for name in ("slip", "slip_rate") if name in record.measured}
     driven = next((_reached(record, name) for name in LOADING if getattr(record, name) is not None), None)
@@ -127,7 +127,7 @@ def _contradictions(record: Record) -> Iterator[str]:
 
 
 def _contrary(record: Record, moved: Mapping[str, Floats], driven: Floats, where: tuple[str, int, int]) -> Iterator[str]:
-    """Yield a sentence for each motion that is far more than another at one sample, or far less at another."""
+    """Yield a sentence for each motion that is far larger than another at sample `above`, or far smaller at sample `below`."""
     other, above, below = where
     least = 10.0 * noise_of(driven)
     for name, reached in moved.items():
@@ -144,7 +144,7 @@ def _contrary(record: Record, moved: Mapping[str, Floats], driven: Floats, where
 
 
 def _reached(record: Record, name: str) -> Floats:
-    """Return how far slip or load point have come since the first sample (m), by a displacement or the integral of a rate."""
+    """Return the displacement since the first sample (m) of a column, or of a rate's integral."""
     values = record.measured[name] if name in record.measured else getattr(record, name)
     known = np.isfinite(values)
     filled = np.interp(record.time, record.time[known], values[known])

@@ -1,7 +1,7 @@
 """Features of slip events: shear before and after its fall, duration of the fall, time between events, slip and peak slip rate.
 
-A record and a run are measured in the same way. Means and moments stand in place of single samples and crossings of levels, so that
-noise does not shift them and that they change smoothly with the numbers of a problem.
+Features of a record and of a run are measured in the same way. They are means and moments, not single samples or level crossings:
+noise does not shift them, and they change smoothly with the numbers of a problem.
 """
 
 from __future__ import annotations
@@ -18,35 +18,35 @@ from stickslip.foundation.arrays import Floats
 from stickslip.inference.record.noise import noise_of
 
 LEVELS = ("peak", "rest", "drop")
-"""Features of shear, which come after its name, as in "friction_peak": before the fall, after it, and their difference."""
+"""Features of shear, appended to its name as in "friction_peak": shear before the fall, after it, and the difference."""
 FEATURES = ("recurrence", "duration", "event_slip", "peak_rate")
-"""What else is known of events."""
+"""Other features of events."""
 DROP, OF_RANGE, ABOVE_NOISE = 0.25, 0.25, 8.0
-"""Fall of shear that is a slip event: as a share of the usual fall, of the range of shear, and in standard deviations of noise."""
+"""Least fall of shear in a slip event: as a share of the usual fall, of the range of shear, and in standard deviations of noise."""
 BESIDE = 0.15
 """Length of the straight lines before and after an event, as a share of the time to the event on that side."""
 BEGUN, ENDED = 0.1, 0.9
-"""Shares of the drop between which a fall is looked at first."""
+"""A first estimate of a fall extends between these shares of the drop."""
 SMOOTHED = 0.2
-"""Time over which a slip rate is averaged before its peak is taken, as a share of the duration of the fall."""
+"""The peak slip rate is the largest mean over this share of the duration of the fall."""
 SMALLEST = 1e-3
-"""Drop that is looked at, as a share of the range of a record without noise."""
+"""Smallest drop of a record without noise, as a share of its range."""
 GRID = 64
-"""Number of times at which such means are taken."""
+"""Number of such means."""
 
 Between = Callable[[float, float], "Samples"]
 """A function that gives the samples between two times."""
 
 
 class Samples(NamedTuple):
-    """Times (s) that do not descend, and what was measured then, by name (SI)."""
+    """Times (s) in ascending order (repeats allowed), and the values measured then, by name (SI)."""
 
     time: Floats
     values: Mapping[str, Floats]
 
 
 class Fall(NamedTuple):
-    """A fall of shear, as its samples show it at first: its time, its length, and the times between which nothing else falls."""
+    """A first estimate of a fall of shear: its time, its duration, and the times of the neighbouring falls."""
 
     at: float
     lasts: float
@@ -55,9 +55,9 @@ class Fall(NamedTuple):
 
 
 def features_in(all_of_it: Samples, between: Between, shear: str) -> dict[str, Floats]:
-    """Return the features of each slip event but the first by name, and "time", that of its fall (s); empty without events.
+    """Return the features of each slip event except the first, by name, and the "time" of its fall (s); empty without events.
 
-    Where contact and machine move backwards, shear and slip are negative, and count by their magnitude.
+    If contact and machine move backwards, shear and slip are negative and count by their magnitude.
     """
     sign = direction_of(all_of_it.values[shear])
 
@@ -109,10 +109,10 @@ def _crossing(time: Floats, shear: Floats, i: int, level: float) -> float:
 def _measured(fall: Fall, between: Between, shear: str) -> dict[str, float] | None:
     """Return the features of one event; None if there is too little beside it.
 
-    Peak and rest are what the straight lines before and after an event give for the time of its fall. Shear falls from one line to
-    the other. The share that has fallen is a distribution over time: its mean is the time of the event, and twice its standard
-    deviation the duration. Two jumps of equal height are as far apart, and the force of a block, which falls along a cosine, takes
-    2.3 times as long.
+    Straight lines before and after an event, extended to the time of its fall, give peak and rest. The share of the fall completed
+    so far is a distribution over time: its mean is the time of the event, and twice its standard deviation is the duration. For
+    two jumps of equal height this duration is the time between them. The force of a block falls along a cosine, which takes 2.3
+    times this duration.
     """
     begin, end = fall.at - fall.lasts, fall.at + 2.0 * fall.lasts
     before, after = (begin - BESIDE * (fall.at - fall.after), begin), (end, end + BESIDE * (fall.before - fall.at))
@@ -140,10 +140,10 @@ def _measured(fall: Fall, between: Between, shear: str) -> dict[str, float] | No
 
 
 def _moments(left: Floats, time: Floats) -> tuple[float, float]:
-    """Return mean and mean square of a time from the share that is left at each sample.
+    """Return mean and mean square of a time from the share still to fall at each sample.
 
-    Sums at samples make the variance of a smooth fall too small by a sixth of the squared sampling interval, and straight lines
-    between samples make it too large by as much (Euler & Maclaurin): the mean square is the mean of both.
+    For a smooth fall, sums over samples make the variance too small by a sixth of the squared sampling interval, and straight lines
+    between samples make it too large by as much (Euler & Maclaurin). The mean square is the average of both.
     """
     lasts, before, after = np.diff(time), left[:-1], left[1:]
     weighed = time[:-1] * (5.0 * before + after) + time[1:] * (before + 5.0 * after)
@@ -160,14 +160,14 @@ def _line(samples: Samples, name: str) -> Callable[[Any], Any] | None:
     time, values = _known(samples, name)
     if len(time) < 3 or time[-1] <= time[0]:
         return None
-    ends = np.concatenate([[time[0]], 0.5 * (time[1:] + time[:-1]), [time[-1]]])  # each sample counts as long as it stands for
+    ends = np.concatenate([[time[0]], 0.5 * (time[1:] + time[:-1]), [time[-1]]])  # each sample counts by the time it stands for
     middle = 0.5 * (time[0] + time[-1])
     slope, level = np.polyfit(time - middle, values, 1, w=np.sqrt(np.diff(ends))).tolist()
     return lambda at: level + slope * (at - middle)
 
 
 def _peak(samples: Samples, over: float) -> float:
-    """Return the largest mean of the slip rate over some time."""
+    """Return the largest mean of the slip rate over a time `over` (s)."""
     time, rate = _known(samples, "slip_rate")
     if len(time) < 3 or not over > 0.0:
         return math.nan
@@ -179,8 +179,8 @@ def _peak(samples: Samples, over: float) -> float:
 def arrests_in(values: Floats) -> NDArray[np.intp]:
     """Return the indices of the lowest samples after each large drop of the magnitude of shear.
 
-    A drop is large beside the usual one, so that neither the drift of a sensor nor one far larger drop, as where the machine is
-    unloaded, hides events.
+    A drop is large in comparison with the usual drop. So neither the drift of a sensor nor one far larger drop, as when the machine
+    is unloaded, hides events.
     """
     known = np.flatnonzero(np.isfinite(values))
     if len(known) < 2:
@@ -198,13 +198,13 @@ def arrests_in(values: Floats) -> NDArray[np.intp]:
 
 
 def _without_trend(shear: Floats) -> Floats:
-    """Return shear less its straight line of least squares."""
+    """Return shear minus its least-squares line."""
     place = np.linspace(-1.0, 1.0, len(shear))
     return np.asarray(shear - shear.mean() - place * (place @ shear) / (place @ place))
 
 
 def _drops(shear: Floats, least: float) -> list[tuple[int, float]]:
-    """Return the index of the lowest sample, and the height, of each drop that is larger than `least`."""
+    """Return the index of the lowest sample, and the height, of each drop larger than `least`."""
     found, falling, top, bottom = list[tuple[int, float]](), False, 0, 0
     values = shear.tolist()
     for i, value in enumerate(values):

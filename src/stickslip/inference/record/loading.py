@@ -1,4 +1,4 @@
-"""Turn the load point of a record into a loading history: straight parts of its displacement, within its noise."""
+"""Turn the load point of a record into a loading history: straight lines that follow its displacement to within the noise."""
 
 from __future__ import annotations
 
@@ -18,21 +18,22 @@ from stickslip.loading import LoadingHistory, Steps
 MOST_PARTS = 2000
 """Largest number of straight parts; a record that needs more is approximated more coarsely."""
 SURE = 5.0
-"""Number of standard deviations by which the mean of some samples may differ from a straight part."""
+"""The mean of some samples may differ from a straight part by this many standard deviations."""
 ROUNDING = 1e-7
-"""Smallest noise that is assumed, as a share of the range of the displacement: no sensor and no clock is better."""
+"""Smallest noise, as a share of the range of the displacement: no sensor and no clock is better."""
 BLOCKS = 16
-"""Smallest number of means from which their noise is measured; wider ones are taken to be surer, as under white noise."""
+"""The noise of means over some width is measured if there are at least this many; beyond that it falls as that of white noise."""
 WALK = 1.7
-"""Growth from one width to its double, twice in turn or at the widest, that is motion; that of a random walk is sqrt(2)."""
+"""If the noise of means grows by more than this factor as their width doubles, twice in turn or at the widest, it is motion. The
+noise of a random walk grows by sqrt(2)."""
 MANY_GAPS = 0.05
-"""Share of the samples from which gaps are how the record was sampled."""
+"""If more than this share of the samples have gaps, that is how the record was sampled, and no gap is reported."""
 GAP = 20.0
-"""Factor by which the time between two samples is longer than usual if there is a gap between them."""
+"""Two samples have a gap between them if they are more than this many usual steps apart."""
 
 
 class Loading(NamedTuple):
-    """The pull rate of a run (m/s), a number if it is constant, and sentences on how it follows from the record."""
+    """The pull rate of a run (m/s; a number if it is constant), and sentences on how it was made from the record."""
 
     rate: LoadingHistory | float
     notes: tuple[str, ...]
@@ -41,8 +42,8 @@ class Loading(NamedTuple):
 def loading_of(record: Record) -> Loading | None:
     """Return the pull rate in a record as a loading history; None if the record has no load point.
 
-    A displacement becomes straight lines from knot to knot, as few as leave nothing but noise; a line goes over gaps, and a jump is
-    a short line. A rate becomes steps in the same way. Raises InputError if there are too few numbers.
+    A displacement becomes as few straight lines between knots as leave only noise; lines bridge gaps, and a jump is a short line.
+    A rate becomes steps in the same way. Raises InputError if there are too few numbers.
     """
     is_rate = record.load_point is None
     given = record.load_rate if is_rate else record.load_point
@@ -93,9 +94,9 @@ def _notes(record: Record, time: Floats, rates: Floats, coarser: float, noise: f
 def _allowed(time: Floats, values: Floats, noise: float, floor: float) -> Floats:
     """Return how far means over 1, 2, 4, ... neighbouring samples may lie from a straight part, shape (n,).
 
-    That is `SURE` standard deviations of what noise does to such a mean. They are measured on the values themselves, since a sensor
-    hums and a digitiser rounds, so that neighbouring errors resemble each other: a mean over a width holds the noise of that width
-    and of all beyond it. No mean is surer than the last digit.
+    That is `SURE` standard deviations of such a mean. These are measured on the values themselves: sensors hum and digitisers
+    round, so that neighbouring errors are correlated and a mean contains the noise of its own width and of all larger widths. No
+    mean is surer than the last digit.
     """
     sums = [np.append(0.0, np.cumsum(one - one[0])) for one in (time, values)]
     own = [noise]
@@ -112,7 +113,7 @@ def _allowed(time: Floats, values: Floats, noise: float, floor: float) -> Floats
 
 
 def _noise_of_means(time_sums: Floats, sums: Floats, width: int) -> float:
-    """Return the standard deviation of means over a number of samples, each compared with the line between those beside it."""
+    """Return the standard deviation of means over `width` samples, each compared with the line between its neighbours."""
     first = np.arange(0, len(sums) - width, max(width // 4, 1))
     t, y = ((total[first + width] - total[first]) / width for total in (time_sums, sums))
     apart = min(width, 4)
@@ -123,10 +124,10 @@ def _noise_of_means(time_sums: Floats, sums: Floats, width: int) -> float:
 
 
 def straight_parts(time: Floats, values: Floats, allowed: Floats, order: int = 1) -> tuple[list[int], float]:
-    """Return the indices at which parts that are straight (order 1) or constant (0) begin, and the number of samples behind them.
+    """Return the first index of each straight (order 1) or constant (0) part and the number of samples, and a factor on `allowed`.
 
-    `allowed` is how far means over 1, 2, 4, ... samples may lie from a part. The second number is the factor by which more than
-    that had to be allowed for parts that are not too many.
+    `allowed` is how far means over 1, 2, 4, ... samples may lie from a part. The factor says how much more had to be allowed to
+    keep the number of parts below `MOST_PARTS`.
     """
     coarser = 1.0
     while True:
@@ -137,7 +138,7 @@ def straight_parts(time: Floats, values: Floats, allowed: Floats, order: int = 1
 
 
 def _cuts(time: Floats, values: Floats, allowed: Floats, order: int) -> list[int]:
-    """Return indices between which parts leave nothing but noise; the search stops a little beyond the largest number of parts."""
+    """Return the ends of parts that leave only noise, as indices; the search stops a little above the largest number of parts."""
     open_parts, ends = [(0, len(time))], list[int]()
     while open_parts and len(ends) + len(open_parts) <= 2 * MOST_PARTS:
         first, last = open_parts.pop()
@@ -151,7 +152,7 @@ def _cuts(time: Floats, values: Floats, allowed: Floats, order: int) -> list[int
 
 
 def _line(time: Floats, values: Floats) -> tuple[float, float]:
-    """Return level at the middle time and slope of the line of least squares."""
+    """Return the least-squares line: its level at the middle time, and its slope."""
     t = time - time.mean()
     spread = float(t @ t)
     return float(values.mean()), float(t @ (values - values.mean())) / spread if spread > 0.0 else 0.0
@@ -163,7 +164,7 @@ def _rest(time: Floats, values: Floats, order: int) -> Floats:
 
 
 def _is_noise(rest: Floats, allowed: Floats) -> bool:
-    """Return True if means of neighbouring samples are as small as noise makes them, over all lengths that are powers of 2."""
+    """Return True if means over 1, 2, 4, ... neighbouring samples are as small as noise makes them."""
     sums = np.append(0.0, np.cumsum(rest))
     for k in range(len(rest).bit_length()):
         width = 2**k
@@ -176,7 +177,7 @@ def _is_noise(rest: Floats, allowed: Floats) -> bool:
 def _worst(time: Floats, values: Floats, allowed: Floats, order: int) -> int | None:
     """Return where to cut a part that is not straight, or None if it is.
 
-    A line is cut where it is farthest from the chord of its ends, a constant where the sum of what it leaves is largest.
+    A line is cut at the sample farthest from the chord between its ends, a constant at the largest sum of residuals.
     """
     rest = _rest(time, values, order)
     if _is_noise(rest, allowed):
@@ -191,7 +192,7 @@ def _worst(time: Floats, values: Floats, allowed: Floats, order: int) -> int | N
 
 
 def _without_needless(time: Floats, values: Floats, cuts: list[int], allowed: Floats, order: int) -> list[int]:
-    """Return the cuts without those whose two parts are one."""
+    """Return the cuts without those that are not needed because both parts together leave only noise."""
     kept = [cuts[0]]
     for i in range(1, len(cuts) - 1):
         first, last = kept[-1], cuts[i + 1]
@@ -201,7 +202,7 @@ def _without_needless(time: Floats, values: Floats, cuts: list[int], allowed: Fl
 
 
 def _knots(time: Floats, values: Floats, cuts: list[int], noise: float) -> list[float]:
-    """Return the times at which neighbouring lines meet; if they do not meet near the cut, there is a jump between two knots."""
+    """Return the times where neighbouring lines meet; if they do not meet near the cut, a jump between two knots replaces them."""
     found = [float(time[0])]
     for first, at, last in zip(cuts[:-2], cuts[1:-1], cuts[2:], strict=True):
         left, right = float(time[at - 1]), float(time[at])
@@ -222,7 +223,7 @@ def _knots(time: Floats, values: Floats, cuts: list[int], noise: float) -> list[
 
 
 def _joined(time: Floats, values: Floats, knots: list[float]) -> tuple[Floats, Floats]:
-    """Return knots and the heights there of the continuous line of straight parts that is closest to the values."""
+    """Return knots and heights of the continuous, piecewise straight line closest to the values."""
     from scipy.sparse import csr_matrix
     from scipy.sparse.linalg import spsolve
 
@@ -233,7 +234,7 @@ def _joined(time: Floats, values: Floats, knots: list[float]) -> tuple[Floats, F
     matrix = csr_matrix(
         (np.concatenate([1.0 - share, share]), (np.concatenate([rows, rows]), np.concatenate([n, n + 1]))), (len(time), len(at))
     )
-    # knots without samples beside them: they follow the straight line between the samples
+    # knots without samples beside them lie on the straight line between the samples
     straight = np.interp(at, time, values)
     weak = 1e-8
     normal = (matrix.T @ matrix).tolil()

@@ -1,4 +1,4 @@
-"""Noise of a record, samples that tell of the sensor and not of friction, and how residuals count in the sum of a search."""
+"""Noise of a record, samples that show the sensor and not friction, and the loss function of a search."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from stickslip.foundation.arrays import Floats
 
 OUTLYING = 2.0
-"""Residual, in standard deviations, from which a loss other than the linear one counts it less."""
+"""Residuals above this many standard deviations count less, unless the loss is linear."""
 
 
 def cost_of(residual: Floats, loss: str = "linear") -> float:
-    """Return the sum that a search minimises; unless the loss is linear, residuals beyond `OUTLYING` count less than squares."""
+    """Return the sum that a search minimises; unless the loss is linear, residuals beyond `OUTLYING` count less than squared."""
     return OUTLYING**2 * float(np.sum(_LOSSES[loss][0]((residual / OUTLYING) ** 2)))
 
 
@@ -32,7 +32,7 @@ _LOSSES: dict[str, tuple[Callable[[Floats], Floats], Callable[[Floats], Floats]]
 }
 """Functions of squared residuals, as in scipy's least_squares, and their derivatives."""
 LOSSES = tuple(_LOSSES)
-"""Names of the functions of squared residuals that may be summed."""
+"""Names of these functions."""
 
 
 GAUSSIAN = 0.6744897501960817
@@ -40,7 +40,7 @@ GAUSSIAN = 0.6744897501960817
 
 
 def noise_of(values: Floats) -> float:
-    """Return the standard deviation of what differs from sample to sample, from second differences; trends do not count."""
+    """Return the standard deviation of the noise from sample to sample, from second differences; trends do not count."""
     known = values[np.isfinite(values)]
     if len(known) < 3:
         return 0.0
@@ -50,7 +50,7 @@ def noise_of(values: Floats) -> float:
 
 
 def rounding_of(values: Floats) -> float:
-    """Return half the step of a digitiser, or of the last digit that was written, if numbers change by multiples of one; else 0."""
+    """Return half the step of the digitiser or of the last written digit if values change by multiples of a step; otherwise 0."""
     known = values[np.isfinite(values)]
     if len(known) < 3:
         return 0.0
@@ -61,7 +61,7 @@ def rounding_of(values: Floats) -> float:
 
 
 def first_value(time: Floats, values: Floats, noise: float) -> tuple[float, float]:
-    """Return the value at the first time, and its standard error, from a line through as many samples as it fits to the noise."""
+    """Return the value at the first time and its standard error, from a line through as many samples as fit it within the noise."""
     known = np.isfinite(values)
     time, values = time[known], values[known]
     best = float(values[0]), noise
@@ -78,23 +78,23 @@ def first_value(time: Floats, values: Floats, noise: float) -> tuple[float, floa
 
 
 RAIL = 8
-"""Number of equal samples at the end of the range of a quantity from which its sensor counts as saturated."""
+"""A sensor counts as saturated after this many equal samples at an end of its range."""
 LONE = 10.0
-"""Factor by which such a run is longer than other runs of equal samples."""
+"""Such a run must also be longer than other runs of equal samples by this factor."""
 FEW, DIGITS_OF_NOISE = 3, 10.0
-"""Number of equal samples that noise makes unlikely, and its size, in steps of the digitiser, from which it does."""
+"""In noise above DIGITS_OF_NOISE steps of the digitiser, a run of FEW equal samples is unlikely enough."""
 LEAST_NOISE = 1e-4
-"""The same as a share of the range: a record without noise may rest at one value."""
+"""The noise must also be above this share of the range: a record without noise may rest at one value."""
 BEYOND = 10.0
-"""Factor by which a lone sample is larger than nine of ten samples: noise, and the marks of a missing number, as -999."""
+"""A spike is larger than nine of ten samples by this factor: a disturbance, or a mark of a missing number such as -999."""
 MOMENT = 3
-"""Largest number of such samples that follow each other."""
+"""Largest number of consecutive samples in a spike."""
 
 
 def saturated(values: Floats) -> NDArray[np.bool_]:
-    """Return True for samples of a run of one value at an end of the range, which is longer than other runs of equal samples.
+    """Return True for samples of a saturated sensor: equal samples at an end of the range, more than elsewhere in a row.
 
-    A record that spends half of its samples or more like this has levels: a sensor at its ends would have measured nothing else.
+    If half of all samples or more are like this, the quantity has levels: none of them counts as saturated.
     """
     flat = np.zeros(len(values), bool)
     if len(values) < 2 * RAIL:

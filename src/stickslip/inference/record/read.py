@@ -1,4 +1,4 @@
-"""Read a laboratory record from files and tables: columns of one clock or two, in order of time, and what was done with them."""
+"""Read a laboratory record from files and tables: columns on one clock or two, sorted by time, and notes on what was done."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ from stickslip.inference.record.record import LOADING, MEASURED, Record
 from stickslip.scenarios.entries import typed_number
 
 LARGEST_FILE = 500_000_000
-"""Size (bytes) of the largest record that is read."""
+"""Largest file to read (bytes)."""
 MOST_SAMPLES = 5_000_000
 """Largest number of samples of a record."""
 BESIDE = ("normal_stress", "normal_force", "rotation_rate", "rotation", "radius")
-"""Columns of which others are made."""
+"""Columns that only serve to compute others."""
 WANTED = ("time", *LOADING, *MEASURED, *BESIDE, *(f"{name}_deviation" for name in MEASURED))
-"""The columns that are looked for."""
+"""All known columns."""
 LATER = Quantity("s", "time by which the second clock begins later")
 FEW = 6
-"""Largest number of headings that a message names."""
+"""A message names at most this many headings."""
 
 
 class _Columns(NamedTuple):
-    """Columns (SI) by their names, on one clock in ascending order; their place, and the headings that were passed over."""
+    """Columns (SI) by name, on one clock and sorted by time; their place, and the headings that were ignored."""
 
     columns: dict[str, Floats]
     place: str
@@ -98,7 +98,7 @@ def _table_in(source: Any) -> Table:
 
 
 def _there(passed: tuple[str, ...]) -> str:
-    """Return the end of a message that names headings which were not understood."""
+    """Return the end of a message: the headings that were not understood."""
     return f"; not understood: {_listed(passed)}" if passed else ""
 
 
@@ -108,7 +108,7 @@ def _listed(headings: tuple[str, ...]) -> str:
 
 
 def _passed_over(read: _Columns) -> Iterator[str]:
-    """Yield sentences on columns that are not used: headings that were not understood, and what is measured beside shear."""
+    """Yield sentences on unused columns: headings that were not understood, and measured quantities other than shear."""
     columns = read.columns
     if read.passed:
         cure = "the displacement of the machine is called load_point, and its rate load_rate"
@@ -121,7 +121,7 @@ def _passed_over(read: _Columns) -> Iterator[str]:
 
 
 def _joined(first: _Columns, second: _Columns, later: float) -> _Columns:
-    """Return the columns of two sources on the clock of the first, at the samples of the one with shear, or else of the first.
+    """Return the columns of two sources on the clock of the first, at the times of the source with shear, or else of the first.
 
     Raises InputError if both have a column, or if the two clocks have no time in common.
     """
@@ -150,7 +150,7 @@ def _joined(first: _Columns, second: _Columns, later: float) -> _Columns:
 
 
 def _take_ratio(found: dict[str, Floats], shear: str, normal: str) -> None:
-    """Replace a shear stress or force with its normal one by friction, unless friction itself is there."""
+    """Replace shear and normal stress (or force) by friction, unless friction itself is there."""
     if shear in found and normal in found and "friction" not in found:
         with np.errstate(divide="ignore", invalid="ignore"):
             ratio = found.pop(shear) / found[normal]
@@ -160,7 +160,7 @@ def _take_ratio(found: dict[str, Floats], shear: str, normal: str) -> None:
 
 
 def _take_rotation(found: dict[str, Floats], notes: list[str]) -> None:
-    """Make the load point, or its rate, of a rotation and the radius of the contact, unless it is there."""
+    """Compute the load point, or its rate, from a rotation and the radius of the contact, unless it is there."""
     turned, made = ("rotation", "load_point") if "rotation" in found else ("rotation_rate", "load_rate")
     if turned not in found or set(LOADING) & set(found):
         return
@@ -203,7 +203,7 @@ def _in_order(found: dict[str, Floats], place: str, notes: list[str]) -> dict[st
 
 
 def _means(values: Floats, first: NDArray[np.intp]) -> Floats:
-    """Return means of groups of rows that begin at some indices; numbers that are missing do not count."""
+    """Return means over groups of rows, given the first row of each; missing numbers do not count."""
     known = np.isfinite(values)
     count = np.add.reduceat(known.astype(float), first)
     with np.errstate(invalid="ignore"):

@@ -1,4 +1,4 @@
-"""Hold a laboratory record: time, what the machine did, and what was measured."""
+"""Hold a laboratory record: time, motion of the machine, and measured quantities."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief
 
 SHEAR = ("friction", "shear_stress", "shear_force")
-"""What may be measured of the resistance; a record is fitted by the first of these that it has."""
+"""Possible measures of the resistance; the first of them that a record has is fitted."""
 MEASURED = (*SHEAR, "slip", "slip_rate")
-"""Everything that may be fitted."""
+"""All quantities that can be fitted."""
 LOADING = ("load_point", "load_rate")
 UNITS = {"friction": "1", "shear_stress": "Pa", "shear_force": "N", "slip": "m", "slip_rate": "m/s"}
 UNITS |= {f"{name}_{level}": UNITS[name] for name in SHEAR for level in ("peak", "rest", "drop")}
 UNITS |= {"recurrence": "s", "duration": "s", "event_slip": "m", "peak_rate": "m/s"}
 HIGHEST, LOWEST = 3.0, 1e-2
-"""Friction coefficients beyond which a record is refused, or doubted."""
+"""A record with a friction coefficient above HIGHEST is refused, one below LOWEST raises a doubt."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,9 +30,9 @@ class Record(CheckedArguments):
     """A laboratory record in SI, at ascending times (s). Make one with `Record.read`.
 
     `measured` holds friction (1), shear_stress (Pa), shear_force (N), slip (m) and slip_rate (m/s), NaN where nothing was measured,
-    and `deviations` their standard deviations, where they are given. `load_point` (m) and `load_rate` (m/s) are those of the load
-    point, or None. `notes` say what was done with the record, one sentence each. `relative` is the noise of each sample relative to
-    the usual one, where some are means of more samples than others, or None.
+    and `deviations` the standard deviations given for them. `load_point` (m) and `load_rate` (m/s) are displacement and rate of the
+    load point, or None. `notes` say what was done with the record, one sentence each. `relative` is the noise of each sample
+    relative to the usual noise if some samples are means over more samples than others, or None.
     """
 
     time: Floats
@@ -64,11 +64,11 @@ class Record(CheckedArguments):
             `normal_stress`, and shear force with `normal_force`, give friction; `rotation_rate` (rpm) with `radius` gives the load
             rate. Headings may carry units, as in "tau (MPa)". "FIRST.csv+SECOND.csv@SECONDS" is short for `beside` and `later`.
         begin, end : float, optional
-            Times (s, as in the record) between which the record is taken.
+            First and last time to use (s, as in the record).
         beside : str, Path, DataFrame or mapping, optional
             A second source with a clock of its own and other columns, such as the load point.
         later : float
-            How much later (s) the zero of the second clock is than that of the first.
+            Delay of the zero of the second clock behind that of the first (s).
 
         Raises
         ------
@@ -113,7 +113,7 @@ class Record(CheckedArguments):
 
     @property
     def shear(self) -> str | None:
-        """The name of the measured resistance; None if there is none."""
+        """The name of the measured resistance; None without one."""
         return next((name for name in SHEAR if name in self.measured), None)
 
     def __len__(self) -> int:

@@ -1,4 +1,4 @@
-"""Records with too many samples, as means over neighbouring ones, and jumps of a run between samples."""
+"""Reduce long records to means over neighbouring samples; spread jumps of a run over samples."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ from stickslip.inference.record.record import Record
 from stickslip.trajectory.history import Side
 
 RAMP = 2
-"""Number of samples over which a jump is spread at least, so that both samples beside it change as it moves."""
+"""A jump is spread over at least this many samples, so that both samples beside it change as it moves."""
 UNSURE = 1.0 / math.sqrt(24.0)
 """Standard deviation of these two samples, as a share of the height of the jump.
 
-As a ramp over two samples moves by a share x of the time between them, one changes by x/2 and so does the other. With this standard
-deviation they tell x with the standard deviation of a place that may be anywhere between them, 1/sqrt(12).
+If the ramp over two samples moves by a share x of the time between them, each sample changes by x/2. With this standard deviation
+the two samples determine x to 1/sqrt(12), the standard deviation of a time that may be anywhere between them.
 """
 STEEP = 0.5
-"""Change of a steep part of a curve in the time between two samples, as a share of the range of the curve, from which it jumps."""
+"""A steep part counts as a jump if it changes by more than this share of the curve's range in the time between two samples."""
 REACH = 3
-"""Number of samples beside the jump of a run among which the one of the data is looked for."""
+"""The jump of the data is searched among this many samples on each side of the jump of the run."""
 
 
 class Jumps(NamedTuple):
@@ -40,8 +40,7 @@ class Jumps(NamedTuple):
 def jumps_in(curve: Callable[[Floats, Side], Floats], breaks: Floats, least: float, step: float = 0.0) -> Jumps:
     """Return the jumps of a curve that are higher than `least`; `curve` gives its values at times, from the left or the right.
 
-    So is a part between two breaks that is so steep that samples, which are apart by a time `step` (s), pass it over: it jumps in
-    its middle.
+    A part between two breaks that is too steep for samples `step` (s) apart counts as a jump at its middle.
     """
     if not len(breaks):
         return Jumps(breaks, breaks)
@@ -55,9 +54,9 @@ def jumps_in(curve: Callable[[Floats, Side], Floats], breaks: Floats, least: flo
 
 
 def spread(values: Floats, time: Floats, jumps: Jumps, width: int) -> Floats:
-    """Return values at samples in which each jump is a ramp over `width` samples, with the jump in its middle.
+    """Return values at samples with each jump replaced by a ramp over `width` samples around it.
 
-    The values change steadily as a jump moves.
+    The values then change steadily as a jump moves.
     """
     result = values.copy()
     for at, height in zip(jumps.time.tolist(), jumps.height.tolist(), strict=True):
@@ -72,7 +71,7 @@ def spread(values: Floats, time: Floats, jumps: Jumps, width: int) -> Floats:
 
 
 def unsure(time: Floats, data: Floats, jumps: Jumps) -> Floats:
-    """Return the standard deviation that the unknown time of each jump adds at the two samples between which the data jump."""
+    """Return the standard deviation that the unknown time of each jump adds to the two samples beside the jump of the data."""
     added = np.zeros(len(time))
     change = np.nan_to_num(np.diff(data))
     for at, height in zip(jumps.time.tolist(), jumps.height.tolist(), strict=True):
@@ -85,18 +84,18 @@ def unsure(time: Floats, data: Floats, jumps: Jumps) -> Floats:
 
 
 MOST_FITTED = 100_000
-"""Largest number of samples of a part that are fitted as they are."""
+"""Parts with more samples than this are reduced before a fit."""
 SURE, FARTHEST = 5.0, 6.0
-"""Standard deviations by which a bend, and a single sample, may differ from a line through a bin of which the mean is taken."""
+"""A bin is replaced by its mean if a bend stays below SURE, and each sample below FARTHEST, standard deviations from a line."""
 COARSEST = 1e6
-"""Largest factor on the noise with which bins are still divided."""
+"""Largest factor on the noise in these comparisons."""
 SMALLEST_NOISE = 1e-9
 """Smallest noise, as a share of the range of a quantity."""
 
 
 @dataclass(frozen=True)
 class Bins:
-    """Groups of neighbouring samples: index of the first sample, and number of samples, of each."""
+    """Groups of neighbouring samples: first index and number of samples of each."""
 
     first: NDArray[np.intp]
     count: NDArray[np.intp]
@@ -106,7 +105,7 @@ class Bins:
         return np.asarray(np.add.reduceat(values, self.first))
 
     def is_mixed(self, values: Floats, noise: float) -> NDArray[np.bool_]:
-        """Return True for bins in which values differ from a line by more than noise, or only some are missing."""
+        """Return True for bins whose values differ from a line by more than noise, or are partly missing."""
         missing = self.sums((~np.isfinite(values)).astype(float))
         i = np.arange(len(values)) - np.repeat(self.first, self.count)
         t = (2.0 * i + 1.0) / np.repeat(self.count, self.count) - 1.0
@@ -120,7 +119,7 @@ class Bins:
         return np.asarray((mixed | (missing > 0.0)) & (missing < self.count))
 
     def split(self, whole: NDArray[np.bool_]) -> Bins:
-        """Return the bins in which those that are not to stay whole are single samples."""
+        """Return the bins with those that are not `whole` split into single samples."""
         single = np.repeat(~whole, self.count)
         begins = single.copy()
         begins[self.first] = True
@@ -129,10 +128,10 @@ class Bins:
 
 
 def resampled(record: Record, most: int = MOST_FITTED) -> tuple[Record, tuple[str, ...]]:
-    """Return a record of about so many samples at most, and a sentence on what was done.
+    """Return the record with about `most` samples at most, and a sentence on what was done.
 
-    Samples are replaced by means over groups of them, which no gap divides. So what is faster than a group is averaged and does
-    not turn up as something slow. Where a measured quantity bends or jumps within a group, its samples stay.
+    Groups of samples without a gap are replaced by their means, so that fast changes are averaged and not aliased into slow ones.
+    Where a measured quantity bends or jumps within a group, its samples stay.
     """
     if len(record) <= most:
         return record, ()
@@ -159,7 +158,7 @@ def _noise(values: Floats) -> float:
 
 
 def _bins(time: Floats, size: int, shift: int = 0) -> Bins:
-    """Return groups of so many samples, fewer before and after gaps; the first group after a gap is shorter by a shift."""
+    """Return groups of `size` samples, fewer beside gaps; the first group after a gap is shorter by `shift`."""
     steps = np.diff(time)
     begins = np.flatnonzero(np.append(True, steps > GAP * float(np.median(steps))))
     since = np.arange(len(time)) - np.repeat(begins, np.diff(np.append(begins, len(time))))
