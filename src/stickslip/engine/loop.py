@@ -2,8 +2,8 @@
 
 One loop serves both bodies. The load of a slab is the wave that left the contact one round trip ago, reflected by the driver,
 plus what the driver sends; the load of a block is the force of its spring. A piece of load is a polynomial in xi on [0, 1]. The
-contact sticks or slips along it in steps, each of which is appended to the history, and the history of one round trip of a slab
-is the load of the next.
+contact sticks or slips along it in steps, which are appended to the history. The history of one round trip of a slab is the load of
+the next.
 
 States of the loop, with the function or the event that leads from one to the next:
 
@@ -32,8 +32,8 @@ The loop knows its state by these fields:
     slip          counts.ready is Incoming.MET and counts.mode is +1 or -1
     near a fold   counts.at_fold is not NearFold.NONE (`folds.fold`)
 
-Where folds move with slip, a branch may have ended (counts.branch_ended is 1): the loop returns NEED_BRANCHES, unless the table of
-branches already holds at this slip, and then takes another branch or rest.
+If folds move with slip, a branch may have ended (counts.branch_ended is 1). The loop then returns NEED_BRANCHES, unless the table
+of branches already holds at this slip, and continues on another branch or at rest.
 """
 
 from __future__ import annotations
@@ -55,11 +55,11 @@ from stickslip.engine.waves.incoming_load import next_piece
 from stickslip.engine.waves.round_trip import close_round_trip
 
 ROOM = 8
-"""Least number of free rows in the history (1) for another pass of the loop, which appends fewer."""
+"""Free rows that the history needs for another pass of the loop (1); a pass appends fewer."""
 LARGEST_STALL = 200
-"""Number of steps in a row that take no time (1), beyond which a run ends: they would continue without end."""
+"""A run ends after more than this many consecutive steps that take no time (1), because they would never stop."""
 LARGEST_STORM = 10_000
-"""Excess (1) of slips too short to be resolved over all other slips, beyond which a run ends: they would continue without end."""
+"""A run ends if slips too short to be resolved outnumber all others by more than this (1), because they would never stop."""
 
 
 @kernel
@@ -113,7 +113,7 @@ def make_pass(run: Run, last_trip: int, last_phase: float) -> int:
 
 @kernel
 def obstacle(run: Run) -> int:
-    """Return the code of what keeps the run from going on, or Stop.NONE."""
+    """Return the code of the reason why the run cannot go on, or Stop.NONE."""
     if run.counts.length + ROOM > run.capacity:
         return Stop.FULL
     if run.counts.stalled > LARGEST_STALL or run.counts.unresolved_slips > LARGEST_STORM:
@@ -144,7 +144,7 @@ def bring_load(run: Run, last_trip: int) -> int:
 
 @kernel
 def walk_along_load(run: Run, last_trip: int, last_phase: float) -> int:
-    """Take one step along the present piece of load, which the end of the run may cut, or leave the piece at its end."""
+    """Take one step along the present piece of load, as far as the end of the run, or leave the piece at its end."""
     is_last = run.counts.trip == last_trip and run.counts.at_fold == NearFold.NONE and run.state.phase_to >= last_phase
     is_cut = is_last and run.state.phase_to > last_phase
     if is_cut and run.counts.to_the_end == 0:

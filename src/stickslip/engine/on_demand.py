@@ -1,4 +1,4 @@
-"""Parts of the engine that are compiled apart, when a run first needs them, and that the loop calls through their addresses.
+"""Parts of the engine that are compiled separately when a run first needs them; the loop calls them through their addresses.
 
 Most runs need none of them, and each costs seconds to compile. A part is one function of the run's memory, a task and a number.
 """
@@ -28,7 +28,7 @@ def implicit_steps(memory: int, task: int, left: float) -> float:
 
 @kernel
 def loading_history(memory: int, task: int, limit: float) -> float:
-    """Serve a loading that varies: see `Task`. `limit` is the load (Pa or N) below which round trips at rest are counted."""
+    """Serve a loading that varies: see `Task`. Round trips at rest count as long as the load stays below `limit` (Pa or N)."""
     if task == Task.ENTER_SEGMENT:
         return 1.0 if enter_segment(borrow(memory)) else 0.0
     if task == Task.TAKE_LOADING:
@@ -78,7 +78,7 @@ _at_hand: dict[EnginePart, int] = {}
 
 
 def lend_part(memory: Integers, part: EnginePart | None = None) -> None:
-    """Write the address of a part into a run's memory, by default of the part for which the engine has asked."""
+    """Write the address of a part into a run's memory, by default of the part that the engine has asked for."""
     run = Run(memory)
     part = EnginePart(run.missing) if part is None else part
     _at_hand[part] = part_at(PARTS[part])
@@ -86,16 +86,17 @@ def lend_part(memory: Integers, part: EnginePart | None = None) -> None:
 
 
 def lend_parts_at_hand(memory: Integers) -> None:
-    """Write the addresses of all parts that are there already into a run's memory, so that it need not return to ask for them."""
+    """Write the addresses of all parts that are already compiled into a run's memory, so that it need not ask for them."""
     run = Run(memory)
     for part, address in _at_hand.items():
         setattr(run, part.name.lower(), address)
 
 
 def lend_parts_of_batch(memory: Integers, params: Params, counts: Counts) -> None:
-    """Write the addresses of those parts that members with such numbers are likely to need; batches have no loading histories.
+    """Write the addresses of the parts that members of a batch with such numbers will probably need.
 
-    A massless contact rarely needs implicit steps: they are lent if they are there, and otherwise when it asks for them.
+    Batches have no loading histories. A massless contact rarely needs implicit steps: they are lent if already compiled, otherwise
+    when it asks for them.
     """
     Run(memory).implicit_steps = _at_hand.get(EnginePart.IMPLICIT_STEPS, 0)
     if counts.has_inertia == 1 or counts.states > 0:

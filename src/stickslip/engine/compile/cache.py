@@ -35,7 +35,7 @@ from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
 
 LARGEST_CACHE = 500_000_000
-"""Size (bytes) of all files in the cache above which the least recently used are removed."""
+"""Largest size (bytes) of the cache; beyond it, the least recently used files are removed."""
 SEAL = b"stickslip cache 1\n"
 """First bytes of each file of the cache; the checksum of its name and content follows, then the content."""
 NOT_COMPILED = ("cache.py", "private_folder.py")
@@ -54,7 +54,7 @@ COMPILED_FILES = (
 )
 """Other files that hold compiled functions, or constants that compiled functions use; tests/test_layers.py checks the list."""
 VERSIONS = f"{numba.__version__} {sys.version}"
-"""The versions of numba and Python, on which machine code depends, too."""
+"""The versions of numba and Python, because machine code depends on them, too."""
 DIGITS = 16
 """Number of hexadecimal digits of a key."""
 
@@ -125,7 +125,7 @@ def compiled_sources() -> list[Path]:
 
 
 def key_of(texts: Iterable[bytes]) -> str:
-    """Return the hash of the code in some source files: comments, docstrings and the layout of lines do not enter it."""
+    """Return the hash of the code in some source files, without comments, docstrings and the layout of lines."""
     digest = hashlib.sha256(VERSIONS.encode())
     for text in texts:
         digest.update(ast.dump(_without_docstrings(ast.parse(text))).encode())
@@ -253,9 +253,9 @@ SLOW = {
     "implicit_steps": "compiling implicit steps, for stiff contacts and laws with a state: about 6 s, once",
     "run_group": "compiling what sweeps and batches add to the engine: about 20 s, once",
 }
-"""Messages to show before the compilation of those functions for which a user has to wait, with all that is compiled after them."""
+"""Messages to show before a user has to wait for the compilation of a function and of all that is compiled after it."""
 OTHERS = "compiling more of the engine for this machine: up to 20 s, once"
-"""Message to show when other functions have taken `NOTICED` s and the next one is compiled."""
+"""Message to show when the compilation of other functions has taken `NOTICED` s and goes on."""
 NOTICED = 3.0
 """Processor time (s) of compilation without a message that a user hardly notices."""
 announce: Callable[[str], None] = tell

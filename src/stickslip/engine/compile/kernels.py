@@ -1,7 +1,7 @@
-"""Compile kernels: by `one_module` or, where that cannot be, plainly: by numba's public compiler with its own cache.
+"""Compile kernels by `one_module` or, if that is not possible, by numba's public compiler with its own cache ("plainly").
 
-Numba's compiler makes machine code of every function by itself, so that a first start takes longer; the results are the same. The
-files that it keeps have no checksums: they are noted when a process ends, and at the next start files with others are removed.
+Numba's compiler makes machine code of every function separately, so that a first start takes longer; the results are the same. Its
+files have no checksums: ours are noted when a process ends, and at the next start files that do not match them are removed.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""Every private name of numba that the package uses, in one place, and what is done where one of them is missing.
+"""Every private name of numba that the package uses, in one place, with a fallback if one of them is missing.
 
-Numba promises nothing about these names. Those that tell it the types of records and lanes have been the same for ten years, and
-nothing can replace them. Those behind the faster first start can be done without: where one is missing or has changed, numba's
-public compiler and its own cache take over, and `WHY_PLAIN` says why.
+Numba promises nothing about these names. Those that define the types of records and lanes have been the same for ten years, and
+nothing can replace them. The others only make the first start faster: if one is missing or has changed, numba's public compiler and
+its own cache take over, and `WHY_PLAIN` says why.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Compile kernels with numba in a third of its time: without what our code never needs, and with one module for each entry point.
+"""Compile kernels with numba in a third of its time: skip what our code never needs, and make one module for each entry point.
 
 By default numba makes machine code and wrappers of every function, and optimises each one together with all functions that it
 calls, again at every level of calls. Here a function that is called from compiled code becomes typed, unoptimised code and nothing
@@ -42,7 +42,7 @@ from stickslip.engine.compile.numba_privates import (
 from stickslip.engine.compile.numba_privates import Function as NumbaFunction
 
 NOT_NEEDED = (InlineClosureLikes, InlineInlinables, InlineOverloads, LiteralUnroll, NopythonRewrites, WithLifting)
-"""Passes of numba's compiler that find nothing in our code, which has no closures, array expressions or `with` statements."""
+"""Passes of numba's compiler that find nothing in our code: it has no closures, array expressions or `with` statements."""
 
 Function: Any = NumbaFunction
 _search = Function.get_call_type
@@ -94,7 +94,7 @@ class LeanCompiler(Compiler):  # type: ignore[misc] # numba is untyped
     """Numba's compiler without what our code does not need."""
 
     def define_pipelines(self) -> list[Any]:
-        """Return numba's passes but for those that look for closures, array expressions and functions to inline."""
+        """Return numba's passes except those that look for closures, array expressions and functions to inline."""
         (passes,) = super().define_pipelines()
         passes.passes = [one for one in passes.passes if one[0] not in NOT_NEEDED]
         passes.finalize()
@@ -134,7 +134,7 @@ class FunctionCode(JITCodeLibrary):  # type: ignore[misc] # numba is untyped
         return 0
 
     def own_module(self) -> Any:
-        """Return the code of this function alone, of which copies are linked into several modules."""
+        """Return the code of this function alone; copies of it are linked into several modules."""
         return super()._get_module_for_linking()
 
     def _get_module_for_linking(self) -> Any:

@@ -15,7 +15,7 @@ HAS_OWNERS = hasattr(os, "geteuid")
 SUPERUSER = 0
 """User number of root, who may own the folders above."""
 OTHERS_WRITE = stat.S_IWGRP | stat.S_IWOTH
-"""Mode bits with which other users may write into a folder."""
+"""Mode bits that let other users write into a folder."""
 OTHERS_ENTER = stat.S_IRWXG | stat.S_IRWXO
 """Mode bits that give other users any access to a folder."""
 

@@ -1,1 +1,1 @@
-"""The contact at one moment: friction, the contact equation, the place on the load, and what a step leaves in the history."""
+"""The contact at one moment: friction, the contact equation, the place on the load, and the record in the history."""

@@ -1,4 +1,4 @@
-"""Solve the contact equation at one load: friction, static strength, and the branch that the selection rule keeps."""
+"""Solve the contact equation at one load: evaluate friction and static strength, and choose the branch by the selection rule."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from stickslip.engine.state.layout import BranchRow, Cause, Floats, Incoming, St
 from stickslip.engine.state.workspace import Run
 
 TIE = 1e-13
-"""Distance (in xi) from the end of a piece within which events are left to the start of the next piece, because what arrives with
-the load comes first."""
+"""An event closer (in xi) to the end of a piece than this waits for the start of the next piece, because changes that arrive with
+the load come first."""
 SAME_LEVEL = 1e-14
-"""Share of the normal load (1) within which two levels of the load differ by rounding only, and count as one."""
+"""Two levels of the load that differ by less than this share of the normal load (1) are one: the rest is rounding."""
 NEAR_KNOT = 1e-12
-"""Relative distance (1) within which a slip rate counts as being at a knot."""
+"""A slip rate closer to a knot than this (relative, 1) counts as being at the knot."""
 
 
 @kernel
@@ -81,15 +81,15 @@ def friction_of(run: Run, piece: int, law_slip: float, rate: float) -> None:
 
 @kernel
 def rest_limit(run: Run) -> float:
-    """Return the load (Pa or N, minus the reference) at which the selection rule leaves rest forwards.
+    """Return the load (Pa or N, minus the reference) where the selection rule leaves rest forwards.
 
-    It is the static strength, or less where the rule lets slip begin below it. A strength that is not finite ends the run: no load
-    would ever exceed one that is not a number.
+    It is the static strength, or less if the rule lets slip begin below it. A strength that is not finite ends the run: no load
+    would ever exceed a strength that is not a number.
     """
     friction_at(run, run.state.law_slip, 0.0)
     if not math.isfinite(run.friction.stress):
         run.counts.breach = Stop.FAILED
-    # The step to static friction is added to the coefficient before any product: where the two cancel, they must cancel exactly.
+    # The step to static friction is added to the coefficient before any product, so that the two cancel exactly if they cancel.
     coefficient = run.friction.coefficient + run.params.static_excess
     return run.params.normal * coefficient + run.params.stick_to
 
@@ -229,7 +229,7 @@ def leave_branch(run: Run, load: float) -> None:
 
 @kernel
 def branch_exit(run: Run) -> float:
-    """Return the xi, from the present one on, at which the load leaves the interval for which the rule keeps the branch.
+    """Return the next xi where the load leaves the interval of loads that keep the branch.
 
     The result is inf if this does not happen on the present piece of load.
     """
@@ -251,7 +251,7 @@ def branch_exit(run: Run) -> float:
 
 @kernel
 def end_branch(run: Run) -> None:
-    """Leave the branch for another one or for rest, because the load has left the interval in which the rule keeps it."""
+    """Leave the branch for another one or for rest, because the load has left the interval of loads that keep it."""
     branch, direction = run.branch_table[run.counts.branch], run.counts.mode
     seen = towards(run, evaluate(run.load, run.state.xi), direction)
     upper = abs(seen - branch.keep_to) < abs(seen - branch.keep_from)

@@ -1,7 +1,7 @@
-"""The far end of a slab, as the contact sees it: what the driver sends back of a wave. Kernels ask nowhere else.
+"""The far end of a slab, as the contact sees it: the share of a wave that the driver sends back. Kernels ask nowhere else.
 
-The segment of the loading that holds when a wave comes back has been entered (`counts.segment`) before it is asked for. A block has
-no far end: nothing comes back.
+Callers first enter the segment of the loading that holds when the wave comes back (`counts.segment`). A block has no far end:
+nothing comes back.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def is_dead_load(run: Run) -> bool:
 
 
 FADED = 1e-17
-"""Factor (1) at which the differences between round trips at rest have faded: below rounding."""
+"""The differences between round trips at rest have faded when they have shrunk to this factor (1), below rounding."""
 
 
 @kernel

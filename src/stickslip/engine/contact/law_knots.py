@@ -1,4 +1,4 @@
-"""Handle knots of a law in slip rate: the piece to which a rate belongs, and where a step passes from one piece to the next."""
+"""Handle knots of a law in slip rate: find the piece of a rate, and the place where a step passes from one piece to the next."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from stickslip.engine.state.workspace import Run
 def settle_piece(run: Run, rate: float) -> None:
     """Set the piece of the law that holds at the slip rate (m/s, magnitude).
 
-    At a knot the present piece is kept, because the way to the knot has chosen it. For an algebraic contact, where a branch
-    starts or ends at the knot, it is the piece on which g rises.
+    At a knot the present piece is kept, because the contact has reached the knot along it. If a branch of an algebraic contact
+    starts or ends at the knot, the piece with rising g is taken.
     """
     piece = run.counts.piece
     below = piece > 0 and rate < run.law[piece - 1].knot * (1.0 - NEAR_KNOT)

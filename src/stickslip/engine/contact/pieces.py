@@ -10,7 +10,7 @@ from stickslip.engine.series.polynomial import degree, fill
 from stickslip.engine.state.workspace import Run
 
 RESOLVED = 1e-12
-"""Shortest slip (duration as a share of a round trip, 1) of which double precision tells the ends apart well enough."""
+"""Shortest slip (duration as a share of a round trip, 1) whose two ends double precision separates well enough."""
 
 
 @kernel
@@ -21,7 +21,7 @@ def phase_at(run: Run, xi: float) -> float:
 
 @kernel
 def xi_at(run: Run, phase: float) -> float:
-    """Return the place xi in the present piece of load at which the phase (s) is the given one."""
+    """Return the place xi in the present piece of load that has the given phase (s)."""
     rest = phase - run.state.phase_from
     root = math.sqrt(max(run.state.speed * run.state.speed + 4.0 * run.state.bend * rest, 0.0))
     pace = run.state.speed + root
@@ -43,7 +43,7 @@ def note_degree(run: Run) -> None:
 def record(run: Run, xi_to: float) -> None:
     """Append the step from the present place to xi_to, and move xi there.
 
-    Its load and slip rate are already in the next free piece of the history. A step that takes no time is not kept, but counted as
+    Its load and slip rate are already in the next free piece of the history. A step that takes no time is not kept, but counts as
     stalled.
     """
     xi = run.state.xi
@@ -74,9 +74,9 @@ def record(run: Run, xi_to: float) -> None:
 
 @kernel
 def note_slip(run: Run, n: int, phase: float) -> None:
-    """Note where slip begins, and count the slips that were too short to be resolved, less the others (at least 0).
+    """Note where slip begins, and count the slips that were too short to be resolved, minus the others (at least 0).
 
-    n is the piece of the history that is being written, and `phase` (s) that at which it starts.
+    n is the piece of the history that is being written, and `phase` (s) the phase at its start.
     """
     slips, slipped = run.counts.mode != 0, n > 0 and run.history[n - 1].mode != 0
     if slips and not slipped:

@@ -1,4 +1,4 @@
-"""Judge from friction and its derivatives whether steps must be implicit, and when the states of a law at rest are forgotten."""
+"""Judge from friction and its derivatives whether steps must be implicit, and when a contact at rest has forgotten its states."""
 
 from __future__ import annotations
 
@@ -12,21 +12,21 @@ from stickslip.engine.state.layout import STATES, TERMS, Floats
 from stickslip.engine.state.workspace import Run
 
 STIFF, NOT_STIFF = 4.0, 1.5
-"""Number of settling times (1) in an explicit step above which the contact is stiff, because only stability can have kept the
-step so short; and in an implicit step, below which the contact is no longer stiff."""
+"""The contact becomes stiff if an explicit step spans more than STIFF settling times (1): only stability can have kept it so short.
+It is no longer stiff if an implicit step spans fewer than NOT_STIFF."""
 SETTLED, NOT_SETTLED = 1.0, 0.2
-"""The same two numbers for a massless contact: there the slip rate only decays, and explicit steps would follow the decay to the
-smallest number there is."""
+"""The same two numbers for a massless contact. Its slip rate only decays, and explicit steps would follow the decay down to the
+smallest float."""
 PATIENCE = 200
-"""Number of explicit steps (1) since slip last began before a massless contact may count as stiff: in fewer, none is."""
+"""A massless contact may count as stiff only after this many explicit steps (1) since slip last began."""
 CHECKED = 16
 """Number of explicit steps (1) between two checks of the stiffness."""
 
 
 HANGING = 100.0
-"""Error (1) of the force of bristles, in local tolerances, that a swinging contact may be left with when it counts as hanging."""
+"""A contact counts as hanging in its bristles if their force is within this many local tolerances (1) of balance."""
 FORGOTTEN = 1e-18
-"""Friction coefficient (1) below which what is left of the state at rest is dropped."""
+"""The remainder of a state at rest is dropped when it changes the friction coefficient (1) by less than this."""
 
 
 @kernel
@@ -47,7 +47,7 @@ def states_at_point(run: Run, i: int) -> Floats:
 
 @kernel
 def turn_states(run: Run, states: Floats) -> None:
-    """Change the sign of those states that do so where slip reverses."""
+    """Change the sign of the states that reverse with slip."""
     for n in range(run.counts.states):
         if (run.counts.reverses >> n) % 2 == 1:
             states[n] = -states[n]
@@ -103,8 +103,8 @@ def judge_stiffness(run: Run) -> None:
 def hanging_rate(run: Run) -> float:
     """Return the slip rate (m/s) below which a contact with bristles hangs in them: 0 for all other laws.
 
-    An error of the bristles' force by HANGING local tolerances makes such a slip rate in a contact that rests on them. Its sign
-    means nothing.
+    An error of HANGING local tolerances in the bristles' force alone makes a contact at rest on them slip at this rate. The sign of
+    such a slip rate means nothing.
     """
     if run.counts.reverses == 0:
         return 0.0
@@ -122,7 +122,7 @@ def hanging_rate(run: Run) -> float:
 
 @kernel
 def stiffness_of_states(run: Run) -> float:
-    """Return by how much friction grows (1/m) per slip through the states alone, which run.value describes."""
+    """Return how much friction grows per slip (1/m) through the states alone, from the derivatives in run.value."""
     found = 0.0
     for n in range(run.counts.states):
         found += run.value.by_state[n] * run.value.change_by_rate[n]
@@ -131,7 +131,7 @@ def stiffness_of_states(run: Run) -> float:
 
 @kernel
 def forgotten(run: Run) -> bool:
-    """Return True if friction no longer notices what is left of the states at rest, and set the states to zero then.
+    """Return True if the remainder of the states at rest no longer affects friction, and then set the states to zero.
 
     States that do not stay at zero at rest are never forgotten: they heal to other values.
     """

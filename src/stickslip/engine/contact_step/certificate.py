@@ -1,19 +1,19 @@
 """Prove every explicit step by Schwarz's lemma, and shorten the step where the proof needs it.
 
-Let g be what the contact equation lacks along a step, for the polynomials of the step themselves and xi on [0, 1]:
+Let g be the residual of the contact equation along a step, with the polynomials of the step put in, for xi on [0, 1]:
 
     g = Z v + S mu(u, v) - load, with inertia times dt/dxi / m, plus dv/dxi.
 
 The first n Taylor coefficients of g vanish, because the series of the step was made so: n is ORDER + 1, and ORDER with inertia. If
 g is analytic on the disc |xi| <= r, and |g| <= M there, then |g(xi)| <= M (xi / r)^n on the disc. M follows from one evaluation of
-the law's formula in ball arithmetic (`formula_code.balls`). Whatever a law hides, a singularity, a narrow feature, a number that
-overflows, makes M large or infinite, wherever it lies in the disc.
+the law's formula in ball arithmetic (`formula_code.balls`). Anything hidden in the law, such as a singularity, a narrow feature or
+an overflow, makes M large or infinite, wherever in the disc it lies.
 
-A bound counts as a share: the slip rate that it makes, in units of the tolerance times the slip rate of the step. That the first
-coefficients of g vanish is taken from the series. What g is where the step ends is measured and added to the bound: if one
-coefficient does not vanish, by rounding or by a fault, g is nowhere on the step larger than it is there. It is noted where it
-exceeds the tolerance. `observables.proof` proves finished steps without the series. Bounds are calculated in floats: the rounding
-of a few hundred operations is far below MARGIN.
+A bound is expressed as a share: the slip rate that the residual makes, in units of the tolerance times the slip rate of the step.
+The proof relies on the series for the vanishing of the first coefficients of g. As a check, g is measured at the end of the step
+and added to the bound: if a coefficient does not vanish, by rounding or by a fault, g is largest there. A value above the tolerance
+is noted. `observables.proof` proves finished steps without the series. Bounds are calculated in floats: the rounding of a few
+hundred operations is far below MARGIN.
 """
 
 from __future__ import annotations
@@ -33,36 +33,37 @@ from stickslip.engine.state.workspace import Run
 
 ALLOWED, ALLOWED_SLOPE = 100.0, 1000.0
 """Largest share of a step (1), in units of the local tolerance, which is a tenth of rtol. The second number is for a contact with
-inertia, where a bound is one of the error of the series' slope, which is larger than that of the series."""
+inertia: the bound then applies to the slope of the series, whose error is larger than that of the series."""
 ROUGH, ROUGH_SLOPE = 10.0, 300.0
-"""The same for rounding, which is noted from there on: what was measured on smooth laws is below 1, and below 33 with inertia."""
+"""Rounding above this share (1) is noted. Smooth laws were measured to stay below 1, and below 33 with inertia."""
 MARGIN = 1.01
 """Factor (1) that covers the rounding of bounds."""
 RATIOS = np.array([8.0, 6.4, 5.2, 4.4, 3.8, 3.3, 2.9, 2.5, 2.2, 1.9, 1.65, 1.45, 1.3, 1.2])
-"""Radii of the discs that are tried, in lengths of the step (1)."""
+"""Radii of the discs to try, in lengths of the step (1)."""
 SHRUNK, SHRUNK_SLOPE = RATIOS ** -float(TERMS), RATIOS ** -float(TERMS - 1)
 """Factors (1) by which g is smaller on the step than on each of the discs, without and with inertia."""
 SMALLEST = 1e-300
-"""Slip rate (m/s) below which errors are not measured relative to it: a contact may slip at a rate of exactly zero for a while."""
+"""Least slip rate times tolerance (m/s) in a share's denominator: a contact may slip at a rate of exactly zero for a while."""
 FIRST_RATIO, NEXT_RATIO, STRAIGHT_DISCS = 4.0, 8.0, 9
-"""Radius of the first disc for a bit next to a fold, in its lengths, factor from one disc to the next, and number of discs (1)."""
+"""Discs for a bit next to a fold (1): radius of the first in lengths of the bit, factor from one to the next, and their number."""
 ATTEMPTS = 60
 """Number of times (1) that a step is shortened before the run ends: each time at least to LONGEST of its length."""
 HOPELESS = 1e100
-"""Share (1) from which on a disc counts as too large for the law, which has a singularity on it."""
+"""A share above this (1) means that the law has a singularity on the disc, which is therefore too large."""
 SHORTEST, LONGEST = 0.2, 0.9
 """Smallest and largest factor (1) by which a step without a proof is shortened at a time."""
 SAFETY = 0.98
-"""Factor (1) for what that length is estimated too large."""
+"""Safety factor (1): the estimated length tends to be 2 % too long."""
 NEAR = LONGEST ** (1.0 - TERMS)
-"""Factor (1) by which a share falls at least if the step is shortened to LONGEST of its length: that costs one look at a disc, and
-the search for a better disc several."""
+"""A share falls at least by this factor (1) if the step is shortened to LONGEST of its length. A share that is nearly small enough
+is reduced in this way: it costs one evaluation on a disc, and the search for a better disc costs several."""
 TERM_ROUNDING = 1e-14
 """Rounding of the terms of the contact equation (1), relative to the largest of them."""
 NEGLIGIBLE = 1e-9
-"""Size of a friction coefficient (1) that may be below zero by rounding."""
+"""A friction coefficient (1) may be below zero by this much through rounding."""
 LOST = 1e-6
-"""Share of the terms of the contact equation (1) that is more than rounding in any law: a step cannot begin on such a law."""
+"""If a step begins with an imbalance above this share of the terms of the contact equation (1), the run ends: no law has so much
+rounding."""
 
 
 # ---- the bound: these functions work on lanes, too -------------------------------------------------------------------------
@@ -109,7 +110,7 @@ def load_on_disc(load: Floats, powers: Floats, degree: int) -> float:
 
 @inlined
 def force_on_disc(k: SeriesInput, ball: Ball, load: float) -> float:
-    """Return a bound (Pa or N) on a disc of what load, spring, radiation and friction add up to, less its value at the centre."""
+    """Return a bound (Pa or N) on how far the sum of load, spring, radiation and friction is from its value at a disc's centre."""
     return MARGIN * (k.damping * ball.rate + k.normal * ball.friction + k.stiffness * ball.slip + load)
 
 
@@ -131,14 +132,14 @@ def size_of_rate(jet: Floats, length: float) -> float:
 
 @inlined
 def shortened(length: float, share: float, largest: float) -> float:
-    """Return the length (in units) at which a step with a share that is too large may have the largest one."""
+    """Return the length (in units) that brings a step's share down to the largest allowed one."""
     root = quick_exp2((quick_log2(largest) - quick_log2(share)) * (1.0 / (TERMS - 1)))
     return length * min(max(SAFETY * root, SHORTEST), LONGEST)
 
 
 @inlined
 def imbalance(k: SeriesInput, load: float, value: LawValue, rate_end: float, unbalanced: float) -> float:
-    """Return load minus radiation and friction (Pa or N), less what was unbalanced from the start."""
+    """Return load minus radiation and friction (Pa or N), minus the force that was unbalanced at the start of the step."""
     return load - k.damping * rate_end - k.normal * (value.mu + k.offset) - unbalanced
 
 
@@ -163,7 +164,7 @@ def force_of_slope(k: SeriesInput, length: float) -> float:
 
 @inlined
 def size_at_end(rate: Floats, rate_end: float) -> float:
-    """Return a size of the slip rate (m/s) over a step, with which errors at its end are compared."""
+    """Return the size of the slip rate (m/s) over a step, for comparison with errors at its end."""
     return max(max(abs(rate[0]), abs(rate_end)), max(abs(rate[1]), max(abs(rate[2]), abs(rate[3]))))
 
 
@@ -193,7 +194,7 @@ def load_at_end(load: Floats, powers: Floats, degree: int) -> float:
 
 @kernel
 def share_on_disc(run: Run, length: float, disc: int) -> float:
-    """Return the share that a step of the given length (in units) may miss, by the disc with number `disc` of RATIOS."""
+    """Return the bound, as a share, on the residual of a step of the given length (in units), by disc number `disc` of RATIOS."""
     powers = run.spare
     powers_of(RATIOS[disc] * length, powers)
     piece = run.counts.piece
@@ -206,7 +207,7 @@ def share_on_disc(run: Run, length: float, disc: int) -> float:
     else:
         missed = force / resistance(run) * SHRUNK[disc]
     share = missed / max(run.params.tolerance * size_of_rate(run.jet, length), SMALLEST)
-    return min(HOPELESS, share)  # also where it is no number
+    return min(HOPELESS, share)  # also if it is not a number
 
 
 @inlined
@@ -223,16 +224,16 @@ def allowed(run: Run) -> float:
 
 @inlined
 def rough(run: Run) -> float:
-    """Return the share (1) from which on rounding is noted."""
+    """Return the share (1) above which rounding is noted."""
     return ROUGH_SLOPE if run.counts.has_inertia == 1 else ROUGH
 
 
 @kernel
 def proven_length(run: Run, length: float) -> float:
-    """Return a length (in units), at most the given one, for which the step is proven; note the bound in run.state.residual.
+    """Return a length (in units) of a proven step, at most the given one; note the bound in run.state.residual.
 
-    The disc that served the step before is tried first. A step that is nearly proven is shortened at once, and if that does not
-    help, a better disc is looked for. If no length is proven the run ends: `breach` is OFF_THE_LAW.
+    The disc of the step before is tried first. A step that is nearly proven is shortened at once; if that does not help, a better
+    disc is sought. If no length can be proven the run ends: `breach` is OFF_THE_LAW.
     """
     share = share_on_disc(run, length, run.counts.disc)
     attempt = 0
@@ -254,9 +255,9 @@ def proven_length(run: Run, length: float) -> float:
 def least_share(run: Run, length: float, share: float, enough: float) -> float:
     """Return the least share of the step on any disc, or the first that is at most `enough`; the present disc has `share`.
 
-    Radii have power series without negative coefficients, so that the share falls to its least and rises from there (Hadamard's
-    theorem of three circles): from disc to disc, on the side on which it falls. Where a disc reaches a singularity, go on to
-    smaller ones.
+    As a function of the disc, the share falls to a single minimum and then rises, because radii have power series without negative
+    coefficients (Hadamard's three circles theorem). So the search goes from disc to disc in the falling direction. If a disc
+    reaches a singularity, it goes on to smaller ones.
     """
     first = run.counts.disc
     for way in (1, -1):
@@ -274,7 +275,7 @@ def least_share(run: Run, length: float, share: float, enough: float) -> float:
 
 @inlined
 def note_residual(run: Run, length: float, share: float) -> None:
-    """Note the load (Pa or N) that a step of the given length (in units) may lack, from its share."""
+    """Note the bound on the residual load (Pa or N) of a step of the given length (in units), from its share."""
     load = run.k.inertia / (length * abs(run.k.speed)) if run.counts.has_inertia == 1 else resistance(run)
     run.state.residual = load * share * run.params.tolerance * size_of_rate(run.jet, length)
 
@@ -284,11 +285,11 @@ def note_residual(run: Run, length: float, share: float) -> None:
 
 @kernel
 def bound_straight_bit(run: Run, length: float, grown: float, rate_end: float) -> None:
-    """Note the bound of a bit next to a fold in which the slip rate is a straight line in the root of time.
+    """Note the bound of a bit next to a fold, where the slip rate is a straight line in the root of time.
 
-    The contact equation holds where the bit begins, and where it ends but for what is measured there. With two zeros, at 0 and 1,
-    Schwarz's lemma gives |g| <= M x (1 - x) / (r^2 - x), at most M / (4 (r^2 - 1)). The bit is `length`
-    units long, `grown` is the slip (m) in it and `rate_end` the slip rate (m/s) at its end.
+    The contact equation holds at the beginning of the bit, and at its end up to the residual measured there. With two zeros, at 0
+    and 1, Schwarz's lemma gives |g| <= M x (1 - x) / (r^2 - x), at most M / (4 (r^2 - 1)). The bit is `length` units long, `grown`
+    is the slip (m) in it and `rate_end` the slip rate (m/s) at its end.
     """
     piece, powers, least, ratio = run.counts.piece, run.spare, math.inf, FIRST_RATIO
     for _ in range(STRAIGHT_DISCS):
@@ -310,7 +311,7 @@ def bound_straight_bit(run: Run, length: float, grown: float, rate_end: float) -
 def begin_step(run: Run) -> None:
     """Note the force (Pa or N) that a step ignores at its start, because it leaves rest without a net force by definition.
 
-    A massless contact must balance: where it does not, no solution begins.
+    A massless contact must be in balance: otherwise no solution begins here.
     """
     run.state.unbalanced = 0.0
     if run.k.free != 0.0 or run.counts.is_algebraic == 1:  # An algebraic contact solves its equation at the start too.
@@ -325,10 +326,10 @@ def begin_step(run: Run) -> None:
 
 @inlined
 def missing_at_end(run: Run, grown: float, rate_end: float) -> float:
-    """Return the load (Pa or N) that the contact equation lacks at the end of a step, but for the force of inertia and of a spring.
+    """Return the residual (Pa or N) of the contact equation at the end of a step, without the forces of inertia and of a spring.
 
     `grown` is the slip (m) in the step and `rate_end` the slip rate (m/s) at its end; run.powers must hold the powers of its
-    length. Friction there is left in run.value.
+    length. Friction at the end is left in run.value.
     """
     piece, value = run.counts.piece, run.value
     call_value(run.law[piece].value_at, constants_of(run, piece), run.k.slip + run.k.chi * grown, rate_end, numbers_of(value))
@@ -337,10 +338,10 @@ def missing_at_end(run: Run, grown: float, rate_end: float) -> float:
 
 @inlined
 def measure_end(run: Run, rate: Floats, length: float, grown: float, rate_end: float) -> float:
-    """Put the end of a step into the contact equation, and return what it lacks there and ignores at its start (Pa or N).
+    """Return the residual of the contact equation at the end of a step plus the force ignored at its start (Pa or N, magnitudes).
 
-    A miss that exceeds the tolerance is noted. `rate` is the slip rate on [0, 1], `length` the length of the step (in units),
-    `grown` the slip in it (m) and `rate_end` the slip rate at its end (m/s). Friction there is left in run.value.
+    A residual above the tolerance is noted. `rate` is the slip rate on [0, 1], `length` the length of the step (in units), `grown`
+    the slip in it (m) and `rate_end` the slip rate at its end (m/s). Friction at the end is left in run.value.
     """
     missing, size = missing_at_end(run, grown, rate_end), size_at_end(rate, rate_end)
     if run.counts.has_inertia == 1:
@@ -355,9 +356,10 @@ def measure_end(run: Run, rate: Floats, length: float, grown: float, rate_end: f
 
 @kernel
 def note_rounding(run: Run, missed: float, size: float, length: float) -> None:
-    """Count a step if rounding (m/s) in the law hides more than the tolerance. Not every law can be blamed: its terms have a size.
+    """Count a step if rounding in the law hides more than the tolerance: a residual of `missed` (m/s) beyond ordinary rounding.
 
-    `size` is that of the slip rate (m/s). Rounding that slip rate and slip have by themselves is no fault of the law.
+    `size` is that of the slip rate (m/s). The rounding of terms of their size, and of slip rate and slip themselves, is ordinary
+    and no fault of the law.
     """
     params, value = run.params, run.value
     friction = value.mu + run.law[run.counts.piece].offset

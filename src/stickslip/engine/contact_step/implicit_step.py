@@ -25,14 +25,14 @@ from stickslip.engine.state.layout import Floats, StepEvent, Stop, Task
 from stickslip.engine.state.workspace import Run
 
 STILL = 1e-3
-"""Share (1) of the slip rate below which a contact hangs in bristles, below which its slip rate is rounding."""
+"""The slip rate of a contact hanging in bristles is only rounding if it is below this share (1) of the hanging slip rate."""
 TRIFLE = 2.0**-30
-"""Share of a step (1) that is so short that nothing happens in it."""
+"""A share of a step (1) so short that nothing happens in it."""
 
 
 @kernel
 def slip_implicitly(run: Run, xi_to: float) -> None:
-    """Slip for one implicit step, or up to what ends it: arrest, a knot of the law, or the place xi_to."""
+    """Slip for one implicit step, or up to an arrest, a knot of the law, or the place xi_to."""
     if run.counts.knots_in_rate == 1:
         settle_piece(run, abs(run.state.rate_now))
     length = call_part(run.implicit_steps, run, Task.COLLOCATE, xi_to - run.state.xi)
@@ -55,7 +55,7 @@ def slip_implicitly(run: Run, xi_to: float) -> None:
 def hangs(run: Run) -> bool:
     """Return True if a contact with bristles hangs in them over the whole step: its slip rate is negligible at all points.
 
-    Where it is rounding, it is set to zero, so that a slab does not ring with it.
+    A slip rate that is only rounding is set to zero, so that a slab does not ring with it.
     """
     if run.counts.reverses == 0:
         return False
@@ -72,7 +72,7 @@ def hangs(run: Run) -> bool:
 
 @kernel
 def end_above_zero(run: Run, rate: Floats, cut: Cut) -> Cut:
-    """Return the cut of a step before which friction stays above zero, and note a breach if it is below zero from the start.
+    """Return the cut that ends a step before friction falls below zero, and note a breach if it is below zero from the start.
 
     `rate` is cut accordingly.
     """
@@ -102,7 +102,7 @@ def keep_state(run: Run, length: float) -> None:
 
 @kernel
 def note_negative_friction(run: Run) -> None:
-    """Note a breach if friction is below zero where the step ends, or where it starts if there is no solution from there."""
+    """Note a breach if friction is below zero at the end of the step, or at its start if no solution begins there."""
     rate, states = run.state.rate_now, run.state.state_now
     if run.counts.reverses != 0:  # friction may drive slip
         return
@@ -121,9 +121,9 @@ def evolves_at_rest(run: Run) -> bool:
 
 @kernel
 def stick_with_state(run: Run, xi_to: float) -> None:
-    """Take one step at rest in which the state, and with it the strength, changes.
+    """Take one step at rest while the state changes, and with it the strength.
 
-    The step ends at xi_to at the latest, or where the load exceeds what friction can hold.
+    The step ends at xi_to at the latest, or when the load exceeds the strength.
     """
     width = call_part(run.implicit_steps, run, Task.COLLOCATE, xi_to - run.state.xi)
     if not math.isfinite(run.jet[0]):

@@ -49,8 +49,8 @@ def move(run: Run, length: float, grown: float, rate_end: float, to: float) -> N
 def note_gain(run: Run, rate: Floats) -> None:
     """Note the factor |2 Z / g'(v) - 1| by which slip multiplies an error of the load.
 
-    It follows from Z v + S mu(v) = load, and from 2 Z v - load, which goes back to the driver. The gain is NaN where slip,
-    inertia or a state decide too, because the fate of an error is then not a matter of its phase alone.
+    It follows from Z v + S mu(v) = load, and from the wave 2 Z v - load that goes back to the driver. The gain is NaN if friction
+    or motion also depends on slip, inertia or a state, because the fate of an error then depends on more than its phase.
     """
     if run.counts.is_algebraic == 1 and run.counts.folds_move == 0:
         friction_at(run, run.state.law_slip, abs(evaluate(rate, 0.5)))
@@ -72,13 +72,13 @@ def unload_spring(straight: float, bent: float, rate: Floats, load: Floats) -> N
 
 @inlined
 def unload_straight(straight: float, rate: Floats, load: Floats) -> None:
-    """Do the part of `unload_spring` that comes from A."""
+    """Do the part of `unload_spring` with A."""
     for k in range(1, at.TERMS):
         load[k] = load[k] - straight * RECIPROCAL[k] * rate[k - 1]
 
 
 @inlined
 def unload_bent(bent: float, rate: Floats, load: Floats) -> None:
-    """Do the part of `unload_spring` that comes from B."""
+    """Do the part of `unload_spring` with B."""
     for k in range(2, at.TERMS):
         load[k] = load[k] - bent * RECIPROCAL[k] * rate[k - 2]

@@ -15,21 +15,21 @@ from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.engine.state.workspace import Run
 
 PARTS_OF_STEP = 16
-"""Number of parts into which a step is divided to look for minima of friction: a step covers about one oscillation of a law at
-most, because its series must see it."""
+"""A step is divided into this many parts to look for minima of friction. It covers at most about one oscillation of a law, because
+the series must resolve it."""
 CLOSER = 8.0
-"""Factor by which the places around a minimum move together before the minimum is estimated once more (1)."""
+"""The places around a minimum move closer by this factor (1) before the minimum is estimated once more."""
 FLOOR = -0.5 * NEGLIGIBLE
-"""Friction coefficient (1) below which no step may go: below the rounding of zero, and above what ends a run where a step ends."""
+"""Least friction coefficient (1) inside a step: below the rounding of zero, but above the value that ends a run at a step's end."""
 CLEARLY = 1e-3
-"""Friction coefficient (1) that is clearly above zero: what the series of a step miss of friction is less."""
+"""A friction coefficient above this (1) is clearly above zero: it is larger than the error of friction in the series."""
 
 
 @kernel
 def goes_below_zero(run: Run, rate: Floats, length: float) -> bool:
     """Return True if friction falls below zero in an explicit step, whose series are in `rate`, run.load_along_slip and run.powers.
 
-    For most steps a bound tells that it does not: friction is the load less radiation, spring and inertia, all of them polynomials.
+    For most steps a bound excludes it: friction is the load minus radiation, spring and inertia, which are all polynomials.
     """
     if run.params.can_be_negative == 0.0:
         return False
@@ -58,10 +58,10 @@ def is_clearly_positive(run: Run, rate: Floats, duration: float) -> bool:
 
 @kernel
 def place_below_zero(run: Run, rate: Floats, length: float) -> float:
-    """Return a place on [0, 1] of a step at which friction is below zero, or NONE if there is none.
+    """Return a place on [0, 1] of a step with friction below zero, or NONE if there is none.
 
     `rate` is the magnitude of the slip rate (m/s) as a polynomial on [0, 1], and `length` the length of the step (in units). A
-    minimum between two places is found but for about a millionth of the change of friction between them.
+    minimum between two places is found to about a millionth of the change of friction between them.
     """
     if run.params.can_be_negative == 0.0:
         return NONE
@@ -81,7 +81,7 @@ def place_below_zero(run: Run, rate: Floats, length: float) -> float:
 
 @kernel
 def place_of_minimum(run: Run, rate: Floats, length: float, place: float) -> float:
-    """Return the place on [0, 1] of a step near `place` at which friction is lowest, by two parabolas."""
+    """Return the place of lowest friction near `place` on [0, 1] of a step, by two parabolas."""
     width = 1.0 / PARTS_OF_STEP
     for _ in range(2):
         here = friction_in_step(run, rate, length, place)
@@ -96,9 +96,9 @@ def place_of_minimum(run: Run, rate: Floats, length: float, place: float) -> flo
 
 @kernel
 def last_place_above_zero(run: Run, rate: Floats, length: float, below: float) -> float:
-    """Return the place on [0, 1] of a step at which friction falls below zero, if it is below zero at the place `below`.
+    """Return the place on [0, 1] of a step where friction falls below zero, given a place `below` with friction below zero.
 
-    It is 0 if friction is below zero already where the step begins.
+    It is 0 if friction is below zero already at the beginning of the step.
     """
     low, high = 0.0, below
     for _ in range(60):

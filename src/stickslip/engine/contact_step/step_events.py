@@ -1,4 +1,4 @@
-"""Find what ends a step of slip early, an arrest or a knot of the law, and do what that event requires."""
+"""Find the event that ends a step of slip early, an arrest or a knot of the law, and carry it out."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Cut(NamedTuple):
     """Say where a step is cut, and by what."""
 
     event: int  # as a code of `StepEvent`
-    turn: int  # direction in which a knot is passed: 1 upwards, -1 downwards, 0 where there is none
+    turn: int  # direction of passing a knot: 1 upwards, -1 downwards, 0 without a knot
     end: float  # share of the step up to the event, 1 without one
 
 
@@ -86,7 +86,7 @@ def pass_knot(run: Run, turn: int) -> None:
 
 @kernel
 def cut_at_first_event(run: Run, rate: Floats, length: float) -> Cut:
-    """Find what ends a step of the given length (in units) early, and cut its slip rate, a polynomial on [0, 1], there."""
+    """Find the first event in a step of the given length (in units), and cut its slip rate, a polynomial on [0, 1], there."""
     arrest = NONE
     if (run.counts.is_algebraic == 0 or run.counts.folds_move == 1) and rate[0] <= magnitude(rate):
         arrest = first_descent(rate, run.spare)
@@ -101,7 +101,7 @@ def cut_at_first_event(run: Run, rate: Floats, length: float) -> Cut:
 
 @kernel
 def resolve(run: Run, cut: Cut) -> None:
-    """Do what the event that has cut a step requires: come to rest, or pass a knot of the law."""
+    """Carry out the event that has cut a step: come to rest, or pass a knot of the law."""
     if cut.event == StepEvent.ARREST:
         come_to_rest(run)
     elif cut.event == StepEvent.KNOT:

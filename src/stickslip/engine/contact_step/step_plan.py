@@ -1,4 +1,4 @@
-"""Plan a step of slip: how far it may go before the branch of the contact equation ends, and how folds are approached."""
+"""Plan a step of slip: how far it may go before the branch of the contact equation ends, and how to approach folds."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from stickslip.engine.state.workspace import Run
 class StepPlan(NamedTuple):
     """Say how far a step of slip may go."""
 
-    target: float  # xi up to which to slip
+    target: float  # slip up to this xi
     ends_branch: bool  # True if the branch ends there
     is_over: bool  # True if there is nothing left to step: the branch has ended, or a side piece has replaced the piece of load
 

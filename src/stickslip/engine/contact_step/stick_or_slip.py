@@ -1,4 +1,4 @@
-"""Treat the contact at rest: what a new piece of load meets, how rest heals, how long it lasts, and how slip comes to rest."""
+"""Treat the contact at rest: its response to a new piece of load, healing, the end of rest, and the arrest of slip."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from stickslip.engine.state.layout import Cause, Floats
 from stickslip.engine.state.workspace import Run
 
 TOUCH = 10.0
-"""Number of local tolerances (1) whose root bounds a touch of rest in passing, in round trips: the root is that of `rtol`."""
+"""A rest shorter than sqrt(10 local tolerances) round trips, which is sqrt(rtol), is a brush with v = 0, not an arrest (1)."""
 
 
 @kernel
@@ -59,7 +59,7 @@ def arrive(run: Run) -> None:
 
 @kernel
 def end_of_rest(run: Run, load: Floats) -> tuple[float, int]:
-    """Return where on [0, 1] of an interval of load rest ends, and the direction of slip; the place is NONE if rest lasts."""
+    """Return the place on [0, 1] of an interval of load where rest ends, or NONE if rest lasts, and the direction of slip."""
     strength = run.jet
     fill(strength, 0.0)
     strength[0] = rest_limit(run)
@@ -68,10 +68,10 @@ def end_of_rest(run: Run, load: Floats) -> tuple[float, int]:
 
 @kernel
 def is_arrest(run: Run, lasting: float) -> bool:
-    """Return True if a rest that would last this long (s, without healing) is more than a touch of rest in passing.
+    """Return True if a rest that would last this long (s, without healing) is an arrest and not a brush with v = 0.
 
-    A block that creeps may touch v = 0 tangentially: the error of the rate, of the order of the tolerance, then makes a rest of
-    the order of the tolerance's root. A contact without mass stops because the load falls, and stays at rest.
+    A creeping block may touch v = 0 tangentially. The error of the rate is of the order of the tolerance and makes a rest whose
+    duration is of the order of the tolerance's root. A contact without mass stops because the load falls, and stays at rest.
     """
     return run.counts.has_inertia == 0 or lasting > math.sqrt(TOUCH * run.params.tolerance) * run.params.round_trip_time
 
@@ -102,7 +102,7 @@ def heal(run: Run, load: float) -> None:
 
 @kernel
 def stick(run: Run, xi_to: float) -> None:
-    """Stay at rest up to the place xi_to, or until the load exceeds what friction can hold."""
+    """Stay at rest up to the place xi_to, or until the load exceeds the strength."""
     width, load = xi_to - run.state.xi, run.history[run.counts.length].load
     restrict(run.load, run.state.xi, width, load)
     onset, direction = end_of_rest(run, load)

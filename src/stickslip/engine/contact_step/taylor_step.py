@@ -1,7 +1,7 @@
 """Advance the contact in slip by one Taylor step, cut at the first event in it.
 
-The step is written straight into the next free row of the history: series, length, events, and only then is the row kept. A
-"unit" is the length (in xi) in whose units the series is computed; lengths of steps are given in units.
+The step is written straight into the next free row of the history: series, length, events; only then is the row kept. The series
+is computed in powers of xi divided by a "unit", a length in xi; lengths of steps are given in units.
 """
 
 from __future__ import annotations
@@ -30,17 +30,17 @@ from stickslip.engine.state.workspace import Run
 LONGEST_GUESS = 2.0
 """Guess at the length of the next step, relative to the last one (1)."""
 SHORTEST_GUESS = 1e-16
-"""Least unit, as a share of the way to go (1): in units of a last step of next to no length, high orders would vanish or
-overflow."""
+"""Least unit, as a share of the way to go (1). After a last step of almost no length the unit would be so small that high orders
+vanish or overflow."""
 HALVINGS = 40
-"""Number of halvings of a step in which friction falls below zero (1): 2^-40 of a step is next to nothing."""
+"""A step with friction below zero is halved at most this many times (1): 2^-40 of a step is next to nothing."""
 
 
 @kernel
 def first_unit(run: Run, left: float) -> float:
-    """Return the length (in xi) in whose units the next series is computed, from the way (in xi) that is left.
+    """Return the unit (a length in xi) of the next series, from the way (in xi) that is left.
 
-    It is near the length of the step that will be taken, so that no coefficient overflows.
+    It is near the length of the coming step, so that no coefficient overflows.
     """
     speed = run.state.speed + 2.0 * run.state.bend * run.state.xi
     return unit_from(left, speed, run.state.last_step) if speed != 0.0 else left
@@ -54,7 +54,7 @@ def unit_from(left: float, speed: float, last_step: float) -> float:
 
 @kernel
 def prepare_series(run: Run, unit: float) -> None:
-    """Prepare what the series is made of: run.load_along_slip, in units of `unit` (in xi), and the numbers in run.k."""
+    """Prepare the input of the series: run.load_along_slip, in units of `unit` (in xi), and the numbers in run.k."""
     direction, params, k = run.counts.mode, run.params, run.k
     load_ahead(run, unit)
     k.rate = abs(run.state.rate_now)
@@ -77,7 +77,7 @@ def prepare_series(run: Run, unit: float) -> None:
 
 @kernel
 def slip(run: Run, xi_to: float) -> None:
-    """Slip for one explicit step, or up to what ends it: arrest, the end of a branch, a knot of the law, or the place xi_to."""
+    """Slip for one explicit step, or up to an arrest, the end of a branch, a knot of the law, or the place xi_to."""
     plan = plan_step(run, xi_to)
     if plan.is_over:
         return
@@ -118,7 +118,7 @@ def calculate_series(run: Run, unit: float) -> None:
 
 @kernel
 def note_shock(run: Run) -> None:
-    """Note a jump of the slip rate, if there is one, where a piece of load or slip itself begins."""
+    """Note a jump of the slip rate, if there is one, at the beginning of a piece of load or of slip."""
     if run.state.xi == 0.0 and run.counts.arriving != Cause.NO_CAUSE:
         note_jump(run, run.counts.mode * run.jet[0], run.counts.arriving)
     elif run.counts.leaving_rest != 0 and run.counts.has_inertia == 0:
@@ -129,8 +129,8 @@ def note_shock(run: Run) -> None:
 def take_planned_step(run: Run, plan: StepPlan, unit: float) -> None:
     """Take an explicit step: choose its length, prove it, cut it at the first event, and keep it.
 
-    `unit` (in xi) is the unit of the series. A step in which friction falls below zero is halved until it does not, or until
-    there is nothing left of it.
+    `unit` (in xi) is the unit of the series. If friction falls below zero in the step, it is halved until friction does not, or
+    until almost nothing of the step is left.
     """
     length, reached = choose_length(run, plan.target, unit, usable_length(run.jet, run.params.tolerance))
     kept = run.history[run.counts.length]
@@ -160,7 +160,7 @@ def take_planned_step(run: Run, plan: StepPlan, unit: float) -> None:
 
 @kernel
 def is_straight(run: Run) -> bool:
-    """Return True on the bits next to a fold that are straight lines in the root of time: what these miss is known."""
+    """Return True on the bits next to a fold that are straight lines in the root of time: their error is known."""
     return run.counts.at_fold != NearFold.NONE and run.jet[2] == 0.0 and run.jet[at.TERMS - 1] == 0.0
 
 

@@ -1,4 +1,4 @@
-"""Lead slip to and from folds, where a branch ends because g turns, and the slip rate goes as the square root of time."""
+"""Lead slip to and from folds. There a branch ends because g turns, and the slip rate goes as the square root of time."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ from stickslip.engine.state.layout import Cause, Floats, NearFold
 from stickslip.engine.state.workspace import Run
 
 SHORTEST_FOLD = 1e-9
-"""Way (in xi) below which the square root makes no difference, so that no side piece is made."""
+"""A way to a fold shorter than this (in xi) needs no side piece: the square root makes no difference."""
 AT_THE_FOLD = 1e-14
-"""Share of the reference strength (1) within which the load counts as being at the fold: the rounding of a load."""
+"""The load counts as being at the fold within this share of the reference strength (1), the rounding of a load."""
 SAME_LOAD = 1e-14
-"""Relative difference (1) at which two loads are certainly not the same one."""
+"""Two loads that differ by more than this (relative, 1) are certainly different."""
 LAST_TO_FOLD = 1e-4
-"""Share (1) of the root of time before a fold that does not move, taken as a straight line: a series in so short a bit is all
-rounding."""
+"""Before a fold that does not move, this last share (1) of the root of time is taken as a straight line: a series over so short a
+bit is all rounding."""
 DEPARTURE = 1e-10
-"""Share of the way (1) from a fold that is taken as a straight line in the root of time: the line misses this share of the rate's
-change."""
+"""This first share of the way (1) from a fold is taken as a straight line in the root of time. The error of the line is the same
+share of the rate's change."""
 
 
 @kernel
 def ends_at_fold(run: Run, way: float) -> bool:
     """Return True if the branch that ends after the given way (in xi) ends because g turns smoothly there.
 
-    The other ends are knots of the law, and loads at which the rule prefers another solution.
+    Otherwise it ends at a knot of the law, or at a load where the rule prefers another solution.
     """
     branch = run.branch_table[run.counts.branch]
     level = towards(run, evaluate(run.load, run.state.xi + way), run.counts.mode)
@@ -115,7 +115,7 @@ def starts_at_fold(run: Run) -> bool:
 
 @kernel
 def load_outruns_fold(run: Run) -> bool:
-    """Return True if the load grows faster than the friction at the fold does as the contact slips there."""
+    """Return True if the load grows faster than friction does at the moving fold."""
     fold, xi, direction = run.branch_table[run.counts.branch].rate_from, run.state.xi, run.counts.mode
     friction_at(run, run.state.law_slip, fold)
     restrict(run.load, xi, 1.0, run.trial)

@@ -20,7 +20,7 @@ REVERSED = 14
 ENOUGH = 1e-12
 """Largest sum of the last two terms (1), relative to the time to the fold, for the fold to count as found."""
 ALIKE = 0.03
-"""Relative difference (1) of two estimates of the time to the fold beyond which no fold is looked for."""
+"""If two estimates of the time to the fold differ by more than this (relative, 1), no fold is sought."""
 
 
 @kernel

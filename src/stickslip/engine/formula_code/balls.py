@@ -1,9 +1,9 @@
 """Write ball arithmetic for the nodes of a formula: how far each value can be from its centre, for complex arguments.
 
 Slip, slip rate and state are complex numbers in discs around real centres. For each node the text computes a radius: every value
-that the node takes on these discs lies within this distance of its value at the centres. Where an operation has no analytic
-continuation over the disc of its argument, as log around 0, or where numbers overflow, the radius is infinite or not a number, and
-nothing is known. `engine.contact_step.certificate` proves steps with these radii.
+that the node takes on these discs lies within this distance of its value at the centres. If an operation has no analytic
+continuation over the disc of its argument, as log around 0, or if numbers overflow, the radius is infinite or not a number: nothing
+is known. `engine.contact_step.certificate` proves steps with these radii.
 
 In the text, the value of node number i at the centre is n{i}_0 (see `order_zero`), its radius r{i}, a lower bound of its magnitude
 on the disc b{i}, and an upper bound of |log(value / centre)| there l{i}. The last two are written only where a denominator, a root,

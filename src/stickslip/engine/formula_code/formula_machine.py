@@ -26,7 +26,7 @@ llvm.initialize_native_target()
 llvm.initialize_native_asmprinter()
 
 FUSED = ("contract",)
-"""What instructions allow: a product and a sum may be fused into one operation, as in kernels (`kernels.OPTIONS`)."""
+"""Flags of instructions: a product and a sum may be fused into one operation, as in kernels (`kernels.OPTIONS`)."""
 NUMBER, PLACE, WHOLE, NOTHING = ir.DoubleType(), ir.IntType(32), ir.IntType(64), ir.VoidType()
 OF_LLVM = {"abs": "fabs", "sqrt": "sqrt", "floor": "floor"}
 """Functions that processors have, and LLVM's names of them."""
@@ -188,7 +188,7 @@ class _Body:
         raise NotImplementedError(ast.unparse(node))
 
     def _either(self, test: ast.expr, body: ast.expr, other: ast.expr) -> Any:
-        """Write a conditional expression, of which one side alone is worked out."""
+        """Write a conditional expression that evaluates only one of its sides."""
         yes, no, after = (self.function.append_basic_block() for _ in range(3))
         self.builder.cbranch(self.condition(test), yes, no)
         sides = []

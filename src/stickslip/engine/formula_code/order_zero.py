@@ -90,7 +90,7 @@ class OrderZero:
         return {"slip": "x_ref", "rate": "0.0", "state": "0.0"}.get(node.operation, repr(node.value))
 
     def largest_exponent(self, node: Expression) -> float:
-        """Return the exponent beyond which an exp node, and the node exp - 1 with the same exponent, no longer grow."""
+        """Return the largest exponent of an exp node: beyond it, exp and exp - 1 no longer grow."""
         alike = {Expression(one.name, node.arguments) for one in OPERATIONS.values() if one.overflows} & self._own
         return LARGEST_EXPONENT if alike <= self._only_below else NO_LIMIT
 
@@ -103,8 +103,8 @@ class OrderZero:
     def saturates(self, node: Expression) -> bool:
         """Return True for an exp whose overflow is harmless and whose argument is no straight line, such as another exp.
 
-        Beyond LARGEST_EXPONENT it is a constant with a series of zeros: the derivatives of its argument may be beyond numbers, and
-        those of the quotient or exp that it leads to are zero to rounding.
+        Beyond LARGEST_EXPONENT it is a constant with a series of zeros: the derivatives of its argument may overflow, and those of
+        the quotient or exp that contains it are zero to rounding.
         """
         overflows = bool(node.arguments) and operation_of(node).overflows
         return overflows and self.largest_exponent(node) == LARGEST_EXPONENT and not self._is_straight(node.arguments[0])

@@ -1,7 +1,7 @@
 """Write the Taylor recurrences of a formula's nodes as text, order by order, for the names of `order_zero`.
 
 Recurrences of elementary functions follow from their differential equations, such as (exp a)' = a' exp a; w{i}_{k} is k times the
-k-th coefficient of node number i. A series is a chain in which each coefficient waits for those before it. To keep the chain short,
+k-th coefficient of node number i. A series is a chain: each coefficient waits for those before it. To keep the chain short,
 constant factors are multiplied beforehand (`parts`), the weights of an argument that is linear in slip come straight from the slip
 rate (`direct`), sums are handed on before they are scaled (v{i}_{k}, see `series_of`), and divisors are inverted once.
 """
@@ -24,7 +24,7 @@ class Recurrences(OrderZero):
         self.direct = {a: found[SLIP] for a in arguments if set(found := self.parts(a)) == {SLIP}}
 
     def parts(self, node: Expression) -> dict[Expression, str]:
-        """Return the nodes of which a node is a linear combination, but for a constant, with their factors as texts."""
+        """Return a node as a linear combination of others, up to a constant: these nodes with their factors as texts."""
         taken_apart = operation_of(node).parts(self, node) if node.arguments else None
         if taken_apart is not None:
             return taken_apart
@@ -61,7 +61,7 @@ class Recurrences(OrderZero):
         return lines
 
     def before_orders(self, pace: str, bend: str) -> list[str]:
-        """Write what recurrences use at all orders: factors of weights, and reciprocals of what they would divide by.
+        """Write the numbers that recurrences use at all orders: factors of weights, and reciprocals of divisors.
 
         `pace` and `bend` are the texts of A and B, in terms of the law's slip.
         """
@@ -88,7 +88,7 @@ class Recurrences(OrderZero):
         return f"fused({last}, {sum_of(terms)})" if (terms := self._weighted_products(a, b, k)) else last.replace(",", " *")
 
     def weights(self, k: int) -> list[str]:
-        """Write k a_k for every series a for which recurrences of higher order need it; several may share it."""
+        """Write k a_k for every series a if recurrences of higher order need it; several may share it."""
         rules = {node: operation_of(node).recurrence for node in self.dynamic}
         weighted = {node.arguments[0] for node, rule in rules.items() if rule.weights_of_argument} - self.direct.keys()
         weighted |= {node for node, rule in rules.items() if rule.weights_of_result}

@@ -1,6 +1,6 @@
 """Write the source text of a friction formula: its value, and the Taylor series of a contact that slips under it.
 
-Each formula becomes straight-line code in C functions, each of which is compiled when it is first needed:
+Each formula becomes straight-line code in C functions, which are compiled one by one when first needed:
 
 prepare      fills `c` with the formula's constants and the values of its nodes at the reference point (slip x_ref, rate 0)
 value        mu(x, s) - mu(x_ref, 0), and its derivatives with respect to s and x
@@ -133,7 +133,7 @@ class FormulaWriter(Recurrences):
         return [f"f{n} = -({factor} * {unit})" for n, factor in enumerate(self.parts(self.formula).values())]
 
     def less_friction(self, rest: str, k: int) -> str:
-        """Write the k-th coefficient of what the contact equation gives: `rest` less friction."""
+        """Write the k-th coefficient of the contact equation's right-hand side: `rest` minus friction."""
         for n, part in enumerate(self.parts(self.formula)):
             factor, name = self.series_of(part, k)
             if name != "0.0":

@@ -1,7 +1,8 @@
-"""Bound what the polynomials of an implicit step lack of the governing equations anywhere in the step, by Schwarz's lemma.
+"""Bound the residual of the governing equations anywhere in an implicit step, by Schwarz's lemma.
 
-Let g be what an equation lacks, as a function of the place x on [0, 1], and y = x - 1/2. The polynomials obey the equations at
-Radau's points, where g is zero but for what Newton's method leaves. If g is analytic on the disc |y| <= R and |g| <= M there, then
+Let g be the residual of an equation for the polynomials of the step, at the place x on [0, 1], and y = x - 1/2. At Radau's points
+the polynomials obey the equations, so g is zero up to the error of Newton's method. If g is analytic on the disc |y| <= R and
+|g| <= M there, then
 
     |g(x)| <= M product of |R (y - y_i) / (R^2 - y_i y)|
 
@@ -28,13 +29,13 @@ from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.engine.state.workspace import Run
 
 DISCS = np.array([4.0, 2.8, 2.0, 1.5, 1.2, 1.0, 0.85, 0.75, 0.68, 0.62])
-"""Radii (1) of the discs around the middle of a step that are tried, in lengths of the step."""
+"""Radii (1) of the discs to try around the middle of a step, in lengths of the step."""
 PLACES_ON_STEP = 4001
-"""Number of places at which the largest product is looked for."""
+"""The largest product is sought among this many places."""
 MARGIN = 1.02
-"""Factor (1) that covers rounding, and what lies between those places."""
+"""Factor (1) that covers rounding, and larger products between those places."""
 NEAR_ZERO = 0.1
-"""Share (1) of the slip rate in the middle of a step by which it changes if zero counts as near."""
+"""Zero counts as near if the slip rate changes by this share (1) of its value in the middle of a step."""
 
 
 def _products(zeros: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -45,7 +46,7 @@ def _products(zeros: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 AT_STAGES, AT_POINTS = _products(POINT[1:]), _products(POINT)
-"""Largest products for functions that are zero at Radau's points, and for those that are zero at the start of the step, too."""
+"""Largest products for functions that are zero at Radau's points, and for functions that are also zero at the start of the step."""
 
 
 @kernel
@@ -83,10 +84,10 @@ def state_from_middle(run: Run, n: int) -> Floats:
 
 @kernel
 def prove_step(run: Run, h: float, force: float) -> float:
-    """Return a bound of what the step of h seconds lacks, as slip rate (m/s), and leave those of the states in run.state_error.
+    """Return a bound on the residual of a step of h seconds, as slip rate (m/s); leave those of the states in run.state_error.
 
-    The polynomials are in run.jet and run.state_jet. At rest, run.jet is the strength, and the bound is one of its error (Pa or N).
-    The bound of the load that the contact equation lacks is added to what was measured of it (`stages.defects`) in
+    The polynomials are in run.jet and run.state_jet. At rest, run.jet is the strength, and the bound is that of its error (Pa or
+    N). The bound on the residual load of the contact equation is added to the measured residual (`stages.defects`) in
     run.state.residual. `force` (Pa or N) is the force that the step ignores.
     """
     slips, rate, load = run.counts.mode != 0, run.trial, run.spare
@@ -134,5 +135,5 @@ def prove_step(run: Run, h: float, force: float) -> float:
 
 @kernel
 def passes_zero(run: Run) -> bool:
-    """Return True if the contact never sticks, and the slip rate is near zero on the smallest disc on which `prove_step` looked."""
+    """Return True if the contact never sticks, and the slip rate comes near zero on the smallest disc that `prove_step` tried."""
     return run.counts.sticks == 0 and run.ball.rate >= NEAR_ZERO * run.ball.at_rate

@@ -32,11 +32,11 @@ from stickslip.engine.state.layout import STATES, TERMS, Between, Floats
 from stickslip.engine.state.workspace import Run
 
 NUDGE = 1e-15
-"""Relative change of a number (1) that is rounding: 4 ulp or more."""
+"""A relative change (1) of 4 ulp or more, which counts as rounding."""
 ITERATIONS = 40
-"""Largest number of Newton iterations (1) before the step counts as unsolved."""
+"""After this many Newton iterations (1) the step counts as unsolved."""
 NEWTON_ROUNDING = 1e-15
-"""Rounding of the load (1), relative to its terms, as Newton's method meets it."""
+"""Rounding of the load in Newton's method, relative to its terms (1)."""
 WIDTH = (1 + STATES) * STAGES + 1
 """Length of a row of Newton's equations (1), with the right-hand side."""
 between_at: Any = record_at(Between)
@@ -156,7 +156,7 @@ def eliminate(m: Floats, size: int) -> bool:
 
 @kernel
 def size_of_load(run: Run) -> float:
-    """Return the size (Pa or N) of the terms that make up the load on this piece of it: their rounding is the load's."""
+    """Return the size (Pa or N) of the terms that make up the load on the present piece: the load is rounded relative to it."""
     size = run.params.reference
     for k in range(TERMS):
         size += abs(run.load[k])
@@ -165,19 +165,19 @@ def size_of_load(run: Run) -> float:
 
 @kernel
 def rounding_of_slip(run: Run) -> float:
-    """Return the friction (Pa or N) that a relative change of 1 in the law's slip makes, by the slope in run.value.
+    """Return the change of friction (Pa or N) per relative change of the law's slip, from the slope in run.value.
 
-    A contact that settles against a steep barrier ends with slips that are closer together than floats.
+    If a contact settles against a steep barrier, its last slips are closer together than floats.
     """
     return run.params.normal * abs(run.value.by_slip * (run.state.law_slip + run.law[run.counts.piece].slip_shift))
 
 
 @kernel
 def correct(run: Run, size: int, rounding: float) -> float:
-    """Add the solution of Newton's equations to the stages; return how large the change is, relative to the stages.
+    """Add the solution of Newton's equations to the stages; return the size of the change, relative to the stages.
 
-    `rounding` is that of the load (Pa or N); a change of the slip rate that it, or the rounding of slip, can explain counts as
-    none.
+    `rounding` is the rounding of the load (Pa or N). A change of the slip rate counts as none if the rounding of load or slip can
+    explain it.
     """
     v, m = run.stage_rate, run.matrix
     fastest, moved, evolved = run.state.hanging + 1e-300, 0.0, 0.0
@@ -197,7 +197,7 @@ def correct(run: Run, size: int, rounding: float) -> float:
                 return math.inf
         evolved = max(evolved, changed / farthest)
     if rounding > 0.0:
-        # run.value is still that of the last stage.
+        # run.value still belongs to the last stage.
         rounding += NEWTON_ROUNDING * rounding_of_slip(run)
         moved = max(moved - rounding / abs(run.params.damping + run.params.normal * run.value.by_rate), 0.0)
     return max(moved / fastest, evolved)
@@ -207,8 +207,8 @@ def correct(run: Run, size: int, rounding: float) -> float:
 def solve_stages(run: Run, h: float, force: float, share: float) -> bool:
     """Find slip rates and states at the points of a step of h seconds, from the values at its start; return False on failure.
 
-    Newton's method begins with the values at the start; or, if share > 0, with the polynomials of a longer step of which this one
-    is that share. On success `look_between` has been called.
+    Newton's method begins with the values at the start or, if share > 0, with the polynomials of a longer step; this step is the
+    given share of the longer one. On success `look_between` has been called.
     """
     for i in range(1, POINTS):
         run.stage_rate[i] = run.stage_rate[0]
@@ -273,9 +273,9 @@ def contact_between(run: Run, i: int, h: float, nudge: float) -> None:
 
 @kernel
 def yielding(run: Run, h: float) -> float:
-    """Return the error of slip rate per missing load over a step of h seconds.
+    """Return the error of slip rate per residual load over a step of h seconds.
 
-    What is missing of a derivative changes its sign at every point: it adds up over a share 1 / STAGES of the step, at most.
+    The residual of a derivative changes its sign at every point, so that it adds up over at most 1 / STAGES of the step.
     """
     resistance = abs(run.params.damping + run.params.normal * run.value.by_rate) + STAGES * run.params.inertia / h
     return 1.0 / resistance if run.counts.mode != 0 else 0.0
@@ -283,16 +283,16 @@ def yielding(run: Run, h: float) -> float:
 
 @kernel
 def yielding_of_state(run: Run, h: float, n: int) -> float:
-    """Return the error of state n per missing rate of change (s) over a step of h seconds, as `yielding` does for the slip rate."""
+    """Return the error of state n per residual of its rate of change (s) over a step of h seconds, like `yielding`."""
     return h / (STAGES + h * abs(run.value.change_by_state[STATES * n + n]))
 
 
 @kernel
 def defects(run: Run, h: float, force: float) -> float:
-    """Return by how much the polynomials through the stages miss the equations halfway between the points.
+    """Return the residual of the equations halfway between the points, for the polynomials through the stages.
 
-    The result is in units of slip rate; that of each state is left in run.state_error, in units of the state. The load (Pa or N)
-    that the contact equation lacks in slip is left in run.state.residual.
+    The result is in units of slip rate; the residual of each state is left in run.state_error, in units of the state. The residual
+    load (Pa or N) of the contact equation in slip is left in run.state.residual.
     """
     params, value, missed, lacking = run.params, run.value, 0.0, 0.0
     fill(run.state_error, 0.0)
@@ -312,10 +312,9 @@ def defects(run: Run, h: float, force: float) -> float:
 
 @kernel
 def rounding_of_law(run: Run, h: float) -> float:
-    """Return what rounding in the law's formulas makes of the slip rate (m/s), by nudging the arguments by a few ulp.
+    """Return the error of the slip rate (m/s) through rounding in the law's formulas, by nudging the arguments by a few ulp.
 
-    What it makes of each state is left in run.state_noise. A formula may lose any number of digits, and nothing but the formula
-    knows how many.
+    The error of each state is left in run.state_noise. A formula may lose any number of digits; only an evaluation shows how many.
     """
     value, lost = run.value, 0.0
     fill(run.state_noise, 0.0)

@@ -1,6 +1,6 @@
 """Take implicit steps, for contacts with a state of their own and for stiff contacts with mass.
 
-Such a contact settles far faster than anything else happens; an explicit series would have to follow every settling time.
+Such a contact settles far faster than anything else happens; explicit steps could not be longer than the settling time.
 """
 
 from __future__ import annotations
@@ -27,42 +27,44 @@ from stickslip.engine.state.layout import STATES, TERMS, Stop
 from stickslip.engine.state.workspace import Run
 
 ATTEMPTS = 80
-"""Largest number of attempts at an implicit step (1), each shorter, before it fails."""
+"""An implicit step fails after this many attempts (1), each shorter."""
 DOUBLINGS = 2000
-"""Largest number of doublings (1) that lead from any rate to any other."""
+"""Number of doublings (1) that lead from any rate to any other."""
 LONGEST_GROWTH = 4.0
 """Largest growth (as an exponent, 1) of a disturbance over a step."""
 NUMBER_ROUNDING = 1e-15
 """Rounding of a number in double precision (1), relative to its terms."""
 LOAD_ROUNDING = 1e-14
-"""Share (1) of the load's coefficients below which a load is zero: rounding where it passes through zero."""
+"""A load below this share (1) of its coefficients is zero: it is rounding at a passage through zero."""
 LITTLE = 2.0**-10
-"""Share (1) of the way to go after which the load is looked at where forces balance."""
+"""If forces balance now, the load after this share (1) of the way to go decides."""
 BALANCED = 1e-7
-"""Share (1) of the net force at that place below which forces balance: what moves until they do is lost in rounding."""
+"""Forces balance now if the net force is below this share (1) of the one at that place: motion until exact balance is lost in
+rounding."""
 DEFECT_ROUNDING = 1e-14
-"""Share (1) of the largest slip rate, or state, that rounding makes of the defect: derivatives of polynomials lose two digits."""
+"""Rounding of the defect, as a share (1) of the largest slip rate or state: derivatives of polynomials lose two digits."""
 ALLOWED = 0.1
-"""Share of the defect (1) that counts: it changes its sign at every point, and leaves hardly anything in slip and state."""
+"""Share of the defect (1) that counts: it changes its sign at every point, and its effect on slip and state nearly cancels."""
 UNPROVEN = 1e-4
-"""Share of the proven bound (1) that counts: it is larger than the defect by orders of magnitude, and still far below what a hidden
-feature of the law would make of it."""
+"""Share of the proven bound (1) that counts: the bound exceeds the defect by orders of magnitude, but a hidden feature of the law
+would make it far larger still."""
 LEAST_TREND = 0.7
-"""Least value (1) of the factor by which a step that had to be shortened limits the length of the next one."""
+"""After a step that had to be shortened, the next one may be longer by a factor of at most its own shortening, but at least this
+(1)."""
 LAW_ROUNDING = 5.0
-"""Rounding of the law that is allowed for, in units of the largest (1) that was seen in a few evaluations."""
+"""Allowance for rounding of the law, as a multiple (1) of the largest rounding seen in a few evaluations."""
 LARGEST_ROUNDING, PATIENCE = 1e3, 8
-"""Error, in units of the tolerance (1), above which a step is never kept; and number of attempts in a row, each shorter, whose
-error has not halved, after which the error is taken to be rounding."""
+"""The error of a step is taken to be rounding if it has not halved in PATIENCE consecutive attempts, each shorter (1). A step with
+an error above LARGEST_ROUNDING tolerances (1) is never kept."""
 UNSEEN = 1e-3
-"""Share (1) of a step below which the time in which mass settles is far shorter than the step."""
+"""The settling time of mass is far shorter than a step if it is below this share (1) of it."""
 
 
 @kernel
 def growth_rate(run: Run, least: float) -> float:
-    """Return the rate (1/s) at which a disturbance of slip rate and state grows at the start of the step; 0 where none grows.
+    """Return the growth rate (1/s) of a disturbance of slip rate and state at the start of the step; 0 if none grows.
 
-    Under a law of two states the result is above `least`, and at most twice the rate, or 0 where no disturbance grows faster.
+    Under a law of two states the result is at most twice the rate, and 0 if no disturbance grows faster than `least` (1/s).
 
     An implicit step much longer than 1 over that rate would follow an unstable solution as if it were stable. With mass the effect
     of slip is left out: such a contact takes explicit steps out of rest, and later the solution itself grows with the disturbance.
@@ -103,7 +105,7 @@ def grows_faster(run: Run, resistance: float, rate: float) -> bool:
     Theory of Matrices, vol. 2, ch. XV.
     """
     params, value = run.params, run.value
-    settling = resistance + params.inertia * rate  # 0 or less: the slip rate itself grows as fast
+    settling = resistance + params.inertia * rate  # 0 or less: the slip rate itself grows that fast
     if settling <= 0.0:
         return True
     push = params.normal / settling
@@ -152,7 +154,7 @@ def start_of_step(run: Run) -> float:
 def strength_ahead(run: Run) -> float:
     """Put the static strength (minus the reference) over a step at rest into run.jet, from the states at its points.
 
-    Returns by how much it misses the law between the points, or its last terms if they are larger, in units of the tolerance.
+    Returns its error between the points, or its last terms if they are larger, in units of the tolerance.
     """
     params = run.params
     largest, missed = NUMBER_ROUNDING / params.tolerance * params.reference + abs(run.load_along_slip[0]), 0.0
@@ -170,13 +172,13 @@ def strength_ahead(run: Run) -> float:
 
 @kernel
 def error_of(run: Run, force: float, lost: float) -> float:
-    """Return the error of the step's polynomials, in units of the tolerance and of what rounding makes of slip rate and state.
+    """Return the error of the step's polynomials, in units of the tolerance plus the rounding of slip rate and state.
 
-    The error is the larger of what more points would still change and of what the polynomials miss of the governing equation
-    between the points; where that is small enough, a share of the proven bound counts too (`proof`), which also sees a feature of
-    the law that lies between all places. Under a law that never sticks, a step past a slip rate of zero may do without: friction
-    need not be analytic there. `force` (Pa or N) is the force that the step ignores; `lost` (m/s), and of each state
-    run.state_noise, are known to be lost by rounding in the law itself.
+    Two errors are compared: the last terms of the polynomials, as an estimate of the change by further points, and the residual of
+    the governing equations between the points. The larger one counts. If it is small enough, a share of the proven bound (`proof`)
+    counts too, because the bound also sees features of the law between all these places. Under a law that never sticks, a step past
+    a slip rate of zero needs no proof: friction need not be analytic there. `force` (Pa or N) is the force that the step ignores;
+    `lost` (m/s) and run.state_noise are the known rounding of the law itself, in the slip rate and in each state.
     """
     params, value, h = run.params, run.value, run.k.speed
     fastest = max(params.rate_floor, run.state.hanging)
@@ -216,7 +218,7 @@ def error_of(run: Run, force: float, lost: float) -> float:
 
 @kernel
 def farthest_state(run: Run, n: int) -> float:
-    """Return the largest magnitude of state n at the points of the step, or the size below which it counts as that size."""
+    """Return the largest magnitude of state n at the points of the step, plus its smallest size that matters (`state_scale`)."""
     farthest = run.params.state_scale[n] + 1e-300
     for i in range(POINTS):
         farthest = max(farthest, abs(run.stage_state[TERMS * n + i]))
@@ -225,10 +227,10 @@ def farthest_state(run: Run, n: int) -> float:
 
 @kernel
 def settle_start(run: Run) -> bool:
-    """Return False if the polynomial of a slip rate that rises from rest falls at first: it is not good enough there.
+    """Return False if a slip rate rises from rest but its polynomial falls at first: the polynomial is not good enough.
 
-    Leading coefficients that are negative only by the rounding of the interpolation are set to zero: a contact with mass leaves
-    rest with a slip rate that grows as the square of time, or even later.
+    Leading coefficients that are negative only by the rounding of the interpolation are set to zero. The true ones may be zero: the
+    slip rate of a contact with mass leaves rest as the square of time, or as a higher power.
     """
     if run.counts.mode == 0 or run.stage_rate[0] != 0.0 or run.stage_rate[1] <= 0.0:
         return True
@@ -248,11 +250,11 @@ def settle_start(run: Run) -> bool:
 
 @kernel
 def turn_with_load(run: Run, left: float) -> float:
-    """Let a contact that never rests slip the way the load pulls it, and return for how long (in xi, at most `left`) it does so.
+    """Turn slip of a contact that never rests in the direction of the load; return how long it keeps it (in xi, at most `left`).
 
-    Friction is an odd function of the slip rate there, and zero at rest. Without mass the slip rate has the sign of the load at
-    every moment; a contact with mass is turned where its slip rate is zero. The sign is never taken from the polynomial of the
-    slip rate: near a load of zero that rate may lie far below the error of the polynomial.
+    Friction of such a contact is an odd function of the slip rate, zero at rest. Without mass the slip rate always has the sign of
+    the load; a contact with mass turns when its slip rate is zero. The sign is never taken from the polynomial of the slip rate:
+    near a load of zero the rate may be far smaller than the error of the polynomial.
     """
     part, direction, rounding = run.trial, 1, LOAD_ROUNDING * size_of_load(run)
     restrict(run.load, run.state.xi, left, part)
@@ -276,10 +278,10 @@ def turn_with_load(run: Run, left: float) -> float:
 
 @kernel
 def turn_with_bristles(run: Run, left: float) -> None:
-    """Let a contact whose state changes its sign where slip reverses slip the way the net force would pull it from rest.
+    """Turn slip of a contact with bristles (its state reverses with slip) in the direction of the net force at zero slip rate.
 
-    Friction is that of the state alone there. Where it balances the load, the load a little later decides. The slip rate of a
-    contact without mass has this direction at every moment; one with mass is turned where its slip rate is zero.
+    Friction at zero slip rate is that of the state alone. If it balances the load, the load a little later decides. Without mass
+    the slip rate always has this direction; a contact with mass turns when its slip rate is zero.
     """
     contact_at(run, run.state.law_slip, 0.0, run.state.state_now)
     load_ahead(run, left * LITTLE)
@@ -301,7 +303,7 @@ def turn_with_bristles(run: Run, left: float) -> None:
 def judged_error(run: Run, force: float, before: float) -> float:
     """Return the error of the step's polynomials like `error_of`, or infinity if they are no solution at all.
 
-    An error that has not halved since a longer step had the error `before` may be rounding in the law, which is then measured.
+    `before` is the error of a longer step. An error that has not halved since may be rounding in the law, which is then measured.
     """
     fill(run.state_noise, 0.0)
     error = error_of(run, force, 0.0)
@@ -315,7 +317,7 @@ def judged_error(run: Run, force: float, before: float) -> float:
 
 @kernel
 def first_length(run: Run, left: float) -> float:
-    """Return the length (in xi, at most `left`) with which to try an implicit step: short enough for a disturbance that grows."""
+    """Return the first length (in xi, at most `left`) to try for an implicit step: it must resolve a growing disturbance."""
     speed = abs(run.state.speed)
     trial = min(left, run.state.last_step / speed)
     if 0.5 * left < trial < left:
@@ -330,9 +332,8 @@ def first_length(run: Run, left: float) -> float:
 def collocate(run: Run, left: float) -> float:
     """Make polynomials of slip rate and state (run.jet, run.state_jet) for an implicit step, and return its length (in xi).
 
-    The step is repeated, shorter, until it is proven and its error is below the tolerance. After PATIENCE
-    attempts in a row in which the error did not shrink with the step, it is taken to be rounding. The polynomials are NaN if all
-    attempts fail.
+    The step is repeated, shorter, until it is proven and its error is below the tolerance. If the error has not halved in PATIENCE
+    consecutive attempts, it is taken to be rounding. The polynomials are NaN if all attempts fail.
     """
     speed = abs(run.state.speed)
     run.state.hanging = hanging_rate(run)
@@ -376,10 +377,11 @@ def collocate(run: Run, left: float) -> float:
 
 @kernel
 def settles_unseen(run: Run, error: float) -> bool:
-    """Return True if the error of a step, in units of the tolerance, is no more than mass makes of the slip rate at its start.
+    """Return True if the error of a step (in units of the tolerance) is only the lag of mass at its start.
 
-    Where the load bends, mass begins to lag behind it, by M v' over the slope of load against slip rate, within a time far shorter
-    than the step. No polynomial of the step follows that, however short the step; it is no rounding, and the bound contains it.
+    When the load bends, the slip rate of a mass lags behind by M v' over the slope of load against slip rate, and settles to this
+    lag in a time far shorter than the step. No polynomial of the step follows that, however short the step. It is no rounding, and
+    the bound contains it.
     """
     params, fastest = run.params, 0.0
     resistance = params.damping + params.normal * run.value.by_rate

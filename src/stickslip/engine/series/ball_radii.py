@@ -1,8 +1,8 @@
 """Functions that the ball arithmetic of formulas calls (see `engine.formula_code.balls`): radii of elementary functions on a disc.
 
 Each returns an upper bound, which may exceed the exact radius by some per cent: `engine.contact_step.certificate` takes the root of
-order 19 of what they add up to. All of them are huge, infinite or not a number where the disc reaches a singularity, free of
-decisions, and work on lanes, too.
+order 19 of their sum. If the disc reaches a singularity, the result is huge, infinite or not a number. None of the functions
+contains a decision, so they work on lanes, too.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ maths: Any = MATHS if UNCOMPILED else math
 TO_TWO = 1.0 / math.log(2.0)
 """log2(e)."""
 LARGEST_EXPONENT = 1000.0
-"""Exponent of 2 (1) above which `exp_above` is infinite."""
+"""`exp_above` is infinite above 2 to this power (1)."""
 TINIEST = 1e-300
 """Number that replaces zero where a disc reaches a singularity, or where a value underflows."""
 MARGIN = 1.005
@@ -80,7 +80,7 @@ def arcsinh_radius(size: float, radius: float) -> float:
 
 
 STRIP = 1.2
-"""Half the width (1) of the strip around the real axis on which |cosh| is at least COS_STRIP: its zeros are at i pi / 2."""
+"""Half-width (1) of a strip around the real axis with |cosh| >= COS_STRIP; the zeros of cosh are at i pi / 2."""
 COS_STRIP = 0.362
 """A lower bound of cos(STRIP)."""
 

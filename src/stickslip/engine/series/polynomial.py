@@ -34,23 +34,23 @@ BERNSTEIN = _bernstein(TERMS)
 LOW_BERNSTEIN = _bernstein(LOW)
 """Bernstein coefficients of the powers of x among polynomials of TERMS and of LOW terms (1)."""
 SMALLEST_INTERVAL = 1e-15
-"""Width (1) below which an interval is not bisected further: floats near 1 are not much denser."""
+"""Intervals narrower than this (1) are not bisected further: floats near 1 are not much denser."""
 NEGLIGIBLE = 1e-300
-"""Magnitude (any unit) up to which a polynomial on an interval counts as zero there: near the smallest normal number its
+"""A polynomial of at most this magnitude (any unit) on an interval counts as zero there: near the smallest normal number its
 coefficients lose their digits or vanish one after the other, and a bisection would never end."""
 UNCLEAR = -1
 """Number of sign changes if rounding may hide one."""
 SIGN_ROUNDING = 1e-14
 """Rounding of a Bernstein coefficient (1), as a share of the magnitude of the polynomial."""
 CONVERGED = 1e-10
-"""Last correction by Newton's method, relative to the root (1): the next one would be about its square."""
+"""Newton's method ends after a correction smaller than this, relative to the root (1): the next one would be about its square."""
 DOUBLINGS = 64
 """Largest number of doublings (1) that lead from the narrowest interval of a bisection to the whole of [0, 1], and more."""
 MOST_CROSSINGS = 32
-"""Largest number of crossings that are looked for: more than a polynomial of TERMS terms has, but for rounding."""
+"""Room for crossings: more than a polynomial of TERMS terms has, apart from rounding."""
 MOST_INTERVALS = 4096
-"""Largest number of intervals (1) of a bisection. Clusters of roots and roots of any order take at most some 400 of them; a
-polynomial that is not finite could be bisected for ever."""
+"""Largest number of intervals (1) of a bisection. Clusters of roots and roots of any order take at most some 400 of them. Without
+this limit, a polynomial that is not finite could be bisected for ever."""
 
 
 @inlined
@@ -215,7 +215,7 @@ def mean_of(c: Floats, speed: float, bend: float, width: float) -> float:
 
 @kernel
 def _falling_root(c: Floats, low: float = -1.0) -> float:
-    """Return the root in [low, 1] of a polynomial that falls through zero there, by Newton's method kept inside its bracket."""
+    """Return the root in [low, 1] of a polynomial that falls through zero in it, by Newton's method kept inside a bracket."""
     high, x = 1.0, -c[0] / c[1] if c[1] != 0.0 else low
     if not low < x < high:
         x = 0.5 * (low + high)
@@ -264,10 +264,10 @@ def clearly_positive(c: Floats) -> bool:
 
 @kernel
 def first_descent(c: Floats, spare: Floats) -> float:
-    """Return the first x in [0, 1] at which p falls below zero; NONE if it does not, 0 if it is negative right after 0.
+    """Return the first x in [0, 1] where p falls below zero; NONE if it does not, 0 if it is negative right after 0.
 
-    A zero at x = 0 from which p rises does not count: leading zero coefficients are divided out. Most calls end at a bound on
-    the coefficients or at the signs of the Bernstein coefficients, for which `spare` is room.
+    A zero at x = 0 does not count if p rises from it: leading zero coefficients are divided out. Most calls end at a bound on the
+    coefficients or at the signs of the Bernstein coefficients; `spare` is room for these.
     """
     lead = 0
     while lead < TERMS - 1 and c[lead] == 0.0:
@@ -312,10 +312,10 @@ def _next_interval(start: float, width: float) -> tuple[float, float]:
 
 @kernel
 def _isolate(q: Floats) -> float:
-    """Return the first x in [0, 1] at which a polynomial, positive at 0, falls below zero, or NONE; by bisection from the left.
+    """Return the first x in [0, 1] where a polynomial, positive at 0, falls below zero, or NONE; by bisection from the left.
 
-    It is NONE, too, for a polynomial that is not finite. If MOST_INTERVALS do not decide, it is the end of the part that has been
-    proven to be positive.
+    It is also NONE for a polynomial that is not finite. If MOST_INTERVALS do not decide, it is the end of the part that is proven
+    to be positive.
     """
     part, start, width = np.empty(TERMS), 0.0, 1.0
     for _ in range(MOST_INTERVALS):
@@ -402,7 +402,7 @@ def falls_through_zero(c: Floats, way: float, slope: Floats) -> bool:
 
 @kernel
 def crossings(c: Floats, out: Floats, part: Floats) -> int:
-    """Write every x in (0, 1) at which p changes sign into `out`, ascending, up to MOST_CROSSINGS; return their number.
+    """Write every x in (0, 1) where p changes sign into `out`, ascending, up to MOST_CROSSINGS; return their number.
 
     A polynomial that is not finite has none. Most calls end at a bound, or at the signs of Bernstein coefficients. `part` is room.
     """

@@ -104,7 +104,7 @@ def interpolate(values: Floats, out: Floats, rest: Floats) -> None:
 def last_terms(c: Floats) -> float:
     """Return the size of the last two Chebyshev terms on [0, 1] of a polynomial of degree STAGES, an estimate of its error.
 
-    The last but one counts a tenth: it shows an error that a last term hides if it vanishes by symmetry.
+    The last but one counts a tenth: it still shows an error if the last term vanishes by symmetry.
     """
     half = 2.0 ** (1 - 2 * STAGES)
     last = half * c[STAGES]

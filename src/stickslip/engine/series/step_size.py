@@ -15,7 +15,7 @@ UNITS = 2.0**52
 BIAS = 1023.0
 """Offset of the exponent in the bits of a float (1)."""
 FAR_FROM_GUESS = 0.2
-"""Length of a step, in units (1), below which the size of the slip rate is determined again: the unit was far too long."""
+"""For a step shorter than this, in units (1), the size of the slip rate is determined again: the unit was far too long."""
 
 
 @inlined

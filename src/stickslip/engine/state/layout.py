@@ -41,23 +41,23 @@ class Params(MemoryRecord):
     reflection: float  # 1: share of a wave that a slab's driver sends back, from -1 (rigid) to +1 (dead load)
     inflow: float  # Pa: load that a slab's steady driver sends, at t = 0; 0 for a loading that varies
     inflow_rate: float  # Pa/s: growth of that inflow
-    reference: float  # Pa or N: reference strength (static strength at the start), from which loads are differences
+    reference: float  # Pa or N: reference strength (static strength at the start); loads are measured from it
     largest_drop: float  # Pa or N: reference strength minus the least friction of the law, or 0 if that is negative
     can_be_negative: float  # 1 if the law is not known to stay above zero, else 0
     counts_net: float  # 1 if the law counts net slip, 0 if it counts the path
     static_excess: float  # 1: static friction coefficient minus that of sliding at slip rate 0
-    stick_to: float  # Pa or N: load at which rest ends, minus the static strength at the present slip; never above 0
+    stick_to: float  # Pa or N: load that ends rest, minus the static strength at the present slip; never above 0
     ramp: float  # Pa or N: growth of the load at rest in one round trip; 0 for a loading that varies
     tolerance: float  # 1: local error allowed to a step, relative to the slip rate
     smallest_jump: float  # m/s: changes of the slip rate up to this size are not noted as shocks
     relative_jump: float  # 1: nor are changes up to this share of the slip rate
-    rate_floor: float  # m/s: slip rate below which the errors of an implicit step are not measured relative to it
+    rate_floor: float  # m/s: errors of an implicit step are relative to the slip rate, or to this if it is larger
     healed_piece: float  # piece of the law that holds after healing, for a law that forgets slip at an arrest; else -1
     shortest: float  # s: pieces of load shorter than this are lumped while `Counts.lumps` is set
     tone: float  # Pa (slab) or N/s (block): amplitude of the tone in an inflow, tone sin(tone_frequency t + tone_phase)
     tone_frequency: float  # rad/s: angular frequency of the tone
     tone_phase: float  # rad: phase of the tone at t = 0
-    state_scale: Floats = floats_inside(STATES)  # units of the states: below these sizes, errors are not relative to the state
+    state_scale: Floats = floats_inside(STATES)  # units of the states: errors are relative to the state plus these sizes
 
 
 class State(MemoryRecord):
@@ -69,26 +69,26 @@ class State(MemoryRecord):
     rate_now: float  # m/s: slip rate, with its sign
     load_now: float  # N: load of a block at the end of the period before, minus the reference strength
     last_step: float  # s: length that the error allowed the last step to have
-    phase_from: float  # s: phase at which the piece of load begins; phase = phase_from + speed xi + bend xi^2
-    phase_to: float  # s: phase at which the piece of load ends
+    phase_from: float  # s: phase at the start of the piece of load; phase = phase_from + speed xi + bend xi^2
+    phase_to: float  # s: phase at the end of the piece of load
     speed: float  # s: dphase/dxi at xi = 0
     bend: float  # s: coefficient of xi^2 in the phase, 0 except next to folds
-    table_slip: float  # m: law slip (minus its initial value) at which the table of branches holds
+    table_slip: float  # m: law slip (minus its initial value) of the present table of branches
     fold_rate: float  # m/s: magnitude of the slip rate at the moving fold that the contact approaches
     state_now: Floats = floats_inside(STATES)  # units of the states: state variables of the law, as its formulas see them
-    new_since: float  # s: phase from which on the pieces of the present round trip are not in a tree of echoes yet
-    taken_to: float  # s: phase up to which the echoes of earlier round trips have been taken out of the tree that is ahead
+    new_since: float  # s: pieces of the present round trip from this phase on are in no tree of echoes yet
+    taken_to: float  # s: echoes of earlier round trips up to this phase have been taken out of the tree that is ahead
     amplified: float  # 1: size in the present piece of load of an error of 1 in the load at the start; NaN if not known
     gain: float  # 1: factor abs(2 Z / g' - 1) by which the last step of slip multiplies an error of the load; NaN if not known
-    slip_since: float  # s: phase at which slip began, in round trip `Counts.slip_trip`
-    taken: float  # 1: xi of the source of load up to which a loading that varies has delivered it; 0 if a new source is next
+    slip_since: float  # s: phase when slip began, in round trip `Counts.slip_trip`
+    taken: float  # 1: how far (xi) a varying loading has delivered the present source piece; 0 if a new source piece is next
     taken_to_phase: float  # s: phase that belongs to `taken`
-    target: float  # 1: xi up to which a run that waits for others may slip in the step that it takes beside them
+    target: float  # 1: in a step beside other runs, a waiting run may slip up to this xi
     unbalanced: float  # Pa or N: force that the step at hand ignores by definition, because it leaves rest
-    residual: float  # Pa or N: bound of what the contact equation lacks on the step at hand (`contact_step.certificate`)
+    residual: float  # Pa or N: bound on the residual of the contact equation in the step at hand (`contact_step.certificate`)
     largest_residual: float  # Pa or N: largest such bound of any step so far
-    roughest: float  # 1: largest share of the slip rate that rounding in the law has taken in any rough step (`Counts.rough`)
-    exit: float  # 1: xi at which an algebraic contact leaves its branch; inf if not on this piece, NaN if not known yet
+    roughest: float  # 1: largest error of the slip rate by rounding in the law, relative, in any rough step (`Counts.rough`)
+    exit: float  # 1: xi where an algebraic contact leaves its branch; inf if not on this piece, NaN if not known yet
     hanging: float  # m/s: slip rate below which a contact with bristles hangs in them; 0 under any other law
 
 
@@ -97,7 +97,7 @@ SAVED = State.places["taken"].first
 
 
 class Counts(MemoryRecord):
-    """Hold the part of the state that is whole numbers: places in the history, flags, codes."""
+    """Hold the whole numbers of the state: places in the history, flags, codes."""
 
     trip: int  # present round trip, from 0
     source: int  # index of the next piece of load: of the first load (round trip 0, block), else counted from `previous_from`
@@ -110,7 +110,7 @@ class Counts(MemoryRecord):
     previous_from: int  # first piece of the history in the last round trip that was recorded before this one
     previous_to: int  # first piece after that round trip
     moved: int  # 1 if there was slip in this round trip
-    ready: int  # what has become of the next piece of load, as a code of `Incoming`
+    ready: int  # progress of the next piece of load, as a code of `Incoming`
     jump: int  # 1 if load or slip rate jumps where the next piece of the history begins
     cause: int  # cause of the shock there, as a code of `Cause`; 0 if the slip rate does not jump
     echo_of: int  # piece of the history whose echo the present piece of load is; -1 if it is none
@@ -120,7 +120,7 @@ class Counts(MemoryRecord):
     is_block: int  # 1 for a block, 0 for a slab
     has_inertia: int  # 1 if the contact has mass, so that its slip rate cannot jump
     is_algebraic: int  # 1 if the slip rate is a root of the contact equation: no mass, a law of slip rate, no state
-    arriving: int  # cause of the jump with which the present piece of load begins, as a code of `Cause`; 0 without a jump
+    arriving: int  # cause of a jump at the start of the present piece of load, as a code of `Cause`; 0 without a jump
     states: int  # number of state variables of the law
     reverses: int  # sum of 2^n over the numbers n of the states that change their sign where slip reverses
     sticks: int  # 1 if the law knows rest
@@ -131,14 +131,14 @@ class Counts(MemoryRecord):
     branch_ended: int  # 1 if a moving branch has ended and the next one has not been chosen yet
     is_locked: int  # 1 if no load to come can move the contact
     to_the_end: int  # 1 if the end of the run may cut a piece or a leap, as it would not do in a longer run
-    sparse: int  # 1 if only echoes under which the contact may slip are met (`waves.echo_queue`)
+    sparse: int  # 1 if the contact meets only echoes that may make it slip (`waves.echo_queue`)
     behind: int  # root of the tree of echoes that the round trip has passed, or -1
     ahead: int  # root of the tree of echoes that it has yet to meet, or -1
     new_from: int  # first piece of the history that is in no tree yet
     lumped: int  # 1 if the present piece of load was replaced by its mean
     slip_trip: int  # round trip in which slip last began
     unresolved_slips: int  # number of slips too short to be resolved, less the number of other slips, never below 0
-    pause_at: int  # round trip before which `run_until` returns
+    pause_at: int  # `run_until` returns before this round trip
     pause_for: int  # number of round trips that the next pause waits, set by the caller
     creep_leaps: int  # number of leaps over creep so far
     varies: int  # 1 if the loading varies in time other than as a ramp
@@ -147,10 +147,10 @@ class Counts(MemoryRecord):
     waits: int  # 1 if explicit steps of slip are left to the caller
     creep_in: int  # number of round trips with slip before `run_until` pauses for a look at leaps over creep; none if not above 0
     lumps: int  # 1 if short pieces of load are lumped
-    lump_above: int  # number of pieces in a round trip above which lumping begins
-    lumped_since: int  # round trip from which on short pieces are lumped
+    lump_above: int  # lumping begins when a round trip has more pieces than this
+    lumped_since: int  # short pieces are lumped from this round trip on
     unproven: int  # number of implicit steps without a bound, because the law is not analytic where the slip rate passes zero
-    disc: int  # radius of the disc on which the last explicit step was proven, as an index of `contact_step.certificate.RATIOS`
+    disc: int  # disc of the last explicit step's proof, as an index of `contact_step.certificate.RATIOS`
     rough: int  # number of steps in which rounding in the law hides more than the tolerance
     breach: int  # OFF_THE_LAW, NEGATIVE_FRICTION or FAILED if no step can be made from here, else 0
     degree: int  # degree of the present piece of load: its coefficients beyond are zero
@@ -170,13 +170,13 @@ class SeriesInput(MemoryRecord):
     stiffness: float  # k[8], N/m: as in `Params`
     rate: float  # k[9], m/s: magnitude of the slip rate at the start of the step
     free: float  # k[10], 0 if the contact leaves rest exactly at its strength (no net force by definition), else 1
-    force: float  # k[11], Pa or N: the net force where `free` is 0, which is the step from static to sliding friction; else 0
+    force: float  # k[11], Pa or N: the net force if `free` is 0 (the step from static to sliding friction); else 0
 
 
 class Ball(MemoryRecord):
     """Hold the input and output of a law's compiled radii (`balls`); generated code reads it by number, k[0], k[1], ..."""
 
-    slip: float  # k[0], m: radius of the disc in which the law slip varies
+    slip: float  # k[0], m: radius of the disc of the law slip
     rate: float  # k[1], m/s: radius of that of the slip rate
     state: Floats = floats_inside(STATES)  # from k[2] on, units of the states: radii of those of the states
     friction: float  # 1: result, how far mu may be from its value at the centre
@@ -191,7 +191,7 @@ NEVER = 2**62
 
 
 class Incoming(IntEnum):
-    """State what has become of the next piece of load."""
+    """State the progress of the next piece of load."""
 
     NONE = 0
     """The last piece is used up, and the next one has not been brought yet."""
@@ -218,7 +218,7 @@ class Cause(IntEnum):
 
 
 class NearFold(IntEnum):
-    """Say on what kind of side piece next to a fold the contact slips (`folds.fold`)."""
+    """Name the kinds of side pieces next to a fold (`folds.fold`)."""
 
     NONE = 0
     APPROACHING = 1
@@ -230,7 +230,7 @@ class NearFold(IntEnum):
 
 
 class StepEvent(IntEnum):
-    """Say what ends a step of slip early. If two events coincide, the lower number counts."""
+    """Name the events that end a step of slip early. If two coincide, the lower number counts."""
 
     NONE = 0
     ARREST = 1
@@ -250,7 +250,7 @@ class EnginePart(IntEnum):
 
 
 class Task(IntEnum):
-    """Name what a part of the engine that is compiled apart (`on_demand`) is asked to do."""
+    """Name the tasks of the parts of the engine that are compiled apart (`on_demand`)."""
 
     COLLOCATE = 0
     """Make the polynomials of an implicit step."""
@@ -289,7 +289,7 @@ class Stop(IntEnum):
     NEED_BRANCHES = 6
     """The caller must put the branches at the present slip into the table."""
     PAUSED = 7
-    """The next round trip is the one before which the caller wants to look at the run, or a later one."""
+    """The caller wants to look at the run now: the next round trip is `pause_at` or a later one."""
     SLIPS = 8
     """An explicit step of slip is left to the caller, who takes it beside those of other runs."""
     OFF_THE_LAW = 9
@@ -333,7 +333,7 @@ class BranchRow(MemoryRecord):
 class FirstLoad(MemoryRecord):
     """Hold one piece of the load of the first round trip, which is linear; the last record only holds the end, in `phase`."""
 
-    phase: float  # s: phase at which the piece begins
+    phase: float  # s: phase at the start of the piece
     load: float  # Pa or N, minus the reference strength
     slope: float  # Pa/s or N/s
     jump: float  # 1 if the load jumps there, else 0
@@ -342,8 +342,8 @@ class FirstLoad(MemoryRecord):
 class LoadingSegment(MemoryRecord):
     """Hold one straight segment of a loading that varies: the inflow of a slab (Pa), the growth of a block's load (N/s)."""
 
-    trip: float  # round trip in which the segment arrives at the contact
-    offset: float  # s: phase at which it arrives
+    trip: float  # round trip of the segment's arrival at the contact
+    offset: float  # s: phase of its arrival
     value: float  # inflow there
     slope: float  # its growth per second
     jump: float  # 1 if the inflow jumps there, else 0
@@ -358,15 +358,15 @@ class HistoryPiece(MemoryRecord):
     jump: int  # 1 if load or slip rate jumps where the piece begins
     cause: int  # cause of the shock there, as a code of `Cause`; 0 if there is none
     echo_of: int  # piece whose echo is the load; -1 in the first round trip and on a block
-    phase_from: float  # s: phase at which it begins; phase = phase_from + speed xi + bend xi^2
-    phase_to: float  # s: phase at which it ends
+    phase_from: float  # s: phase at its start; phase = phase_from + speed xi + bend xi^2
+    phase_to: float  # s: phase at its end
     speed: float  # s
     bend: float  # s: zero except next to folds
     slip: float  # m: slip where it begins, minus the initial slip
     law_slip: float  # m: slip that the law counts there, minus its initial value
     amplified: float  # 1: size in this piece of an error of 1 in the load at the start of the run; NaN if not known (see `gain`)
     gain: float  # 1: factor from an error in its load to its echo; NaN if it depends on more than the phase
-    residual: float  # Pa or N: bound of what the contact equation lacks on the piece (`contact_step.certificate`)
+    residual: float  # Pa or N: bound on the residual of the contact equation on the piece (`contact_step.certificate`)
     load: Floats = floats_inside(TERMS)  # Pa or N, minus the reference strength
     rate: Floats = floats_inside(TERMS)  # m/s, with its sign
 
@@ -378,9 +378,9 @@ class EchoNode(MemoryRecord):
     right: int  # child whose pieces begin after it, or -1
     first_up: int  # piece of the subtree that breaks first in forward slip
     first_down: int  # piece of the subtree that breaks first in backward slip
-    trip: int  # round trip in which the piece was recorded
+    trip: int  # round trip of the piece
     rank: int  # priority in the tree
-    phase: float  # s: phase at which the piece begins
+    phase: float  # s: phase at the start of the piece
     high: float  # Pa: largest value of its echo, minus the reference strength, without the ramp
     low: float  # Pa: largest value of minus its echo
 
@@ -428,7 +428,7 @@ class Setup(NamedTuple):
 
     params: Params
     law: Integers  # table of LawPiece
-    constants: Floats  # (pieces of the law, size): constants that the formula's `prepare` has filled in
+    constants: Floats  # (pieces of the law, size): constants from the formula's `prepare`
     branches: Floats  # table of Branch
     first_load: Floats  # table of FirstLoad
     loading: Floats  # table of LoadingSegment

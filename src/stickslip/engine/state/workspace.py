@@ -57,12 +57,12 @@ class Run(MemoryRecord):
     branches: int  # number of branches in the table
     loads: int  # number of pieces of the first load, plus 1
     segments: int  # number of segments of the loading
-    capacity: int  # number of pieces for which the history has room
+    capacity: int  # number of pieces that fit into the history
     implicit_steps: int  # addresses of the parts that are compiled apart (see `on_demand`), 0 until the run needs them
     loading_history: int
     echo_queue: int
     moving_folds: int
-    missing: int  # the part for which the engine has asked, as a code of `Part`
+    missing: int  # the part that the engine has asked for, as a code of `Part`
 
     params: Params = inside(Params)
     state: State = inside(State)
@@ -74,10 +74,10 @@ class Run(MemoryRecord):
         TERMS
     )  # Pa or N: the same as seen in the direction of slip, minus the reference strength
     jet: Floats = floats_inside(TERMS)  # m/s: series of the magnitude of the slip rate, in units of the series
-    centres: Floats = floats_inside(TERMS)  # what the series writes right after itself, for `radii`
+    centres: Floats = floats_inside(TERMS)  # values that the series writes right after itself, for `radii`
     powers: Floats = floats_inside(TERMS)  # powers of the length of the step, in units of the series
     k: SeriesInput = inside(SeriesInput, TERMS)  # input of the series
-    value: LawValue = inside(LawValue, TERMS)  # what the law's formula returned last
+    value: LawValue = inside(LawValue, TERMS)  # latest result of the law's formula
     ball: Ball = inside(Ball, TERMS)  # discs of slip, slip rate and state, and the radius of friction on them
     friction: Friction = inside(Friction, TERMS)  # friction at the contact, as last evaluated
     saved_load: Floats = floats_inside(TERMS)  # Pa or N: the piece of load that is continued after a fold
@@ -88,8 +88,8 @@ class Run(MemoryRecord):
     stage_rate: Floats = floats_inside(TERMS)  # m/s: slip rate at Radau's points of an implicit step
     stage_state: Floats = floats_inside(STATES * TERMS)  # states of the law at these points
     some_state: Floats = floats_inside(TERMS)  # states of the law at one place
-    state_error: Floats = floats_inside(TERMS)  # units of the states: what an implicit step misses, or may miss, of each
-    state_noise: Floats = floats_inside(TERMS)  # units of the states: what rounding in the law makes of them in a step
+    state_error: Floats = floats_inside(TERMS)  # units of the states: residual of each in an implicit step, or its bound
+    state_noise: Floats = floats_inside(TERMS)  # units of the states: their errors in a step through rounding in the law
     matrix: Floats = floats_inside(MATRIX_ROWS * TERMS)  # equations of an implicit step
 
 
@@ -174,4 +174,4 @@ def lend_history(memory: Integers, store: Store, echoes: Integers) -> None:
 
 
 _START = c_char * 0
-"""The start of a table: from it an address is found in a quarter of the time, and only of a table that can be written to."""
+"""Type of the start of a table. It gives the address in a quarter of the time, and only if the table can be written to."""

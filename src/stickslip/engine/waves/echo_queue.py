@@ -1,13 +1,13 @@
 """The queue of echoes on a slab with a rigid driver: which of them will make the contact slip next, and when.
 
-A rigid driver sends back the wave that left the contact, round trip after round trip, and adds the same ramp to it each time. A
-piece of load under which the contact rests therefore need not be met again before it *breaks*, that is, before the contact may
-slip under it: that round trip is known. For each phase of the round trip, the last piece that was recorded there is a node of a
-tree, which is ordered by phase; each node knows which piece in its subtree breaks first.
+A rigid driver sends back the wave that left the contact, round trip after round trip, and adds the same ramp each time. If the
+contact rests under a piece of load, the piece need not be met again before it *breaks*: before the round trip, known in advance, in
+which the contact may slip under it. The pieces recorded last at each phase of the round trip are the nodes of a tree, ordered by
+phase; each node knows which piece in its subtree breaks first.
 
-The tree is a treap (Seidel & Aragon 1996, Algorithmica 16, 464). Its shape depends on the pieces in it and not on the order in
-which they were added, so that a run that is resumed builds the same one. During a round trip there are two trees: pieces that it
-has passed (`counts.behind`), and pieces that it has yet to meet (`counts.ahead`).
+The tree is a treap (Seidel & Aragon 1996, Algorithmica 16, 464). Its shape depends only on the pieces in it, not on the order of
+their insertion, so that a resumed run builds the same tree. During a round trip there are two trees: pieces already passed
+(`counts.behind`), and pieces yet to be met (`counts.ahead`).
 """
 
 from __future__ import annotations
@@ -25,13 +25,14 @@ from stickslip.engine.state.workspace import Run, borrow
 NOTHING = -1
 """Index of no piece and of an empty tree."""
 LONGEST_SEARCH = 4096
-"""Largest number of round trips (1) that are tried one by one: near 2^62, floats are 512 to 1024 apart."""
+"""At most this many round trips (1) are tried one by one: near 2^62, floats are 512 to 1024 apart."""
 NEARLY = 2e-15
-"""Share of the reference strength (1), for rounding of the load, by which a piece is met early rather than late."""
+"""A piece is met when its load is within this share of the reference strength (1) of breaking, so that rounding never makes it too
+late."""
 MOMENT_OF_REST = 1e-6
-"""Largest share of a round trip (1) that a contact may rest that slides throughout it: a swing of its slip rate may touch rest."""
+"""A contact counts as sliding in spite of rests up to this share of a round trip (1): a swing of its slip rate may touch rest."""
 LEAST_PIECES = 16
-"""Least number of pieces in a round trip with slip (1) for which the trees pay off; at most one in `LEAST_PIECES // 4` may slip."""
+"""The trees pay off if a round trip with slip has at least this many pieces (1); at most one in `LEAST_PIECES // 4` may slip."""
 
 
 # ---- trees ------------------------------------------------------------------------------------------------------------------
@@ -123,7 +124,7 @@ def rank(phase: float, trip: int) -> int:
 
 @kernel
 def room(run: Run, n: int, way: int, limit: float) -> float:
-    """Return the distance (Pa) of the echo of piece n from the limit at which rest ends, without the ramp.
+    """Return the distance (Pa) of the echo of piece n from the limit that ends rest, without the ramp.
 
     `way` is 1 for slip forwards, -1 for slip backwards; `limit` (Pa) is measured from the reference strength.
     """
@@ -146,7 +147,7 @@ def any_breaks(run: Run, n: int, limit: float, trip: int) -> bool:
 
 @kernel
 def first_to_break(run: Run, n: int, limit: float, trip: int) -> int:
-    """Return the first piece of tree n, in order of phase, under which the contact may slip in round trip `trip`, or NOTHING."""
+    """Return the first piece of tree n, in order of phase, that may break in round trip `trip`, or NOTHING."""
     if n == NOTHING or not any_breaks(run, n, limit, trip):
         return NOTHING
     for _ in range(run.counts.length):
@@ -162,7 +163,7 @@ def first_to_break(run: Run, n: int, limit: float, trip: int) -> int:
 
 @kernel
 def next_trip(run: Run, n: int, limit: float) -> int:
-    """Return the next round trip in which the contact may slip under any piece of tree n, or NEVER.
+    """Return the next round trip when any piece of tree n may break, or NEVER.
 
     The quotient of floats may be early by rounding: the search from there on ends after LONGEST_SEARCH round trips. To meet a piece
     too early is no fault.
@@ -188,9 +189,9 @@ def next_trip(run: Run, n: int, limit: float) -> int:
 
 @kernel
 def leave_out_ends(run: Run, piece: HistoryPiece) -> None:
-    """Restrict run.trial, the echo of a piece, to places further than `shortest` from its ends if short pieces are lumped.
+    """If short pieces are lumped, cut `shortest` off both ends of run.trial, the echo of a piece.
 
-    Slip near an end alone would be too short to be resolved. If nothing would be left, the load becomes its mean in time.
+    Slip only near an end would be too short to be resolved. If nothing would be left, the load becomes its mean in time.
     """
     width = piece.phase_to - piece.phase_from
     share = run.params.shortest / width if run.counts.lumps == 1 else 0.0
@@ -279,7 +280,7 @@ def start_of_slide(run: Run) -> int:
 
 @kernel
 def end_trip(run: Run) -> None:
-    """Close a round trip, and go to the next one in which the contact may slip; set `is_locked` if there is none."""
+    """Close a round trip, and go to the next one that may let the contact slip; set `is_locked` if there is none."""
     if run.counts.creep_in > 0:
         first = start_of_slide(run)
         run.counts.creep_in -= 1 if first != NOTHING else 0
@@ -312,8 +313,8 @@ def leave_queue(run: Run, first: int) -> None:
 def worth_building(run: Run) -> bool:
     """Return True if only echoes that break should be met from here on.
 
-    The round trip must have been at rest, or almost so if it had many pieces. The body must be a slab with a rigid driver, the
-    loading steady, the law one that knows rest and has no state variable, and no pause for leaps over creep may be due.
+    Conditions: the round trip was at rest, or almost so if it had many pieces; the body is a slab with a rigid driver; the loading
+    is steady; the law knows rest and has no state variable; no pause for leaps over creep is due.
     """
     if not is_rigid(run) or run.counts.states > 0:
         return False
@@ -337,7 +338,7 @@ def build_queue(run: Run) -> None:
 def rebuild_queue(table: Integers, pieces: Integers, past: int) -> None:
     """Build the trees of a resumed run from the given pieces, which are in order of phase.
 
-    The first `past` of them are those that the present round trip has passed. `table` comes from `workspace.lend`.
+    The present round trip has passed the first `past` of them. `table` comes from `workspace.lend`.
     """
     run = borrow(table)
     run.counts.behind = NOTHING

@@ -75,7 +75,7 @@ def bring_first(run: Run) -> None:
 
 @kernel
 def bring_echo(run: Run) -> None:
-    """Bring the echo that has been found by `find_echo`: what left the contact, as the driver sends it back."""
+    """Bring the echo that `find_echo` has found: the wave that left the contact, as the driver sends it back."""
     source, params, share = run.counts.echo_of, run.params, sent_back(run)
     left = run.history[source]
     rate, load = left.rate, left.load
@@ -102,7 +102,7 @@ def width_of(run: Run) -> float:
 
 @kernel
 def lump(run: Run) -> None:
-    """Replace the load of a piece that is too short to be resolved by its mean in time: it then slips as a whole or not at all."""
+    """If a piece is too short to be resolved, replace its load by the mean in time: it then slips as a whole or not at all."""
     mean = mean_of(run.load, run.state.speed, run.state.bend, run.state.phase_to - run.state.phase_from)
     fill(run.load, 0.0)
     run.load[0] = mean

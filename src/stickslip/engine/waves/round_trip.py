@@ -18,7 +18,7 @@ from stickslip.engine.waves.echo_queue import NOTHING, start_of_slide, worth_bui
 def trips_certain_at_rest(run: Run, limit: float) -> int:
     """Return the number of whole round trips for which a contact at rest is certain to stay there, judged from the one just past.
 
-    `limit` is the load (Pa or N, minus the reference strength) at which rest ends. NEVER means that it never ends.
+    `limit` is the load (Pa or N, minus the reference strength) that ends rest. NEVER means that rest never ends.
     """
     params = run.params
     ramp = params.ramp
@@ -52,16 +52,16 @@ def swings_for_ever(run: Run) -> bool:
 
 @kernel
 def creeps(run: Run) -> bool:
-    """Return True if slip is creep, under a law of slip alone; any other contact must slide throughout a round trip to leap."""
+    """Return True if slip is creep, under a law of slip alone; any other contact must slide for a whole round trip to leap."""
     return run.counts.is_algebraic == 0 and run.counts.has_inertia == 0 and run.counts.states == 0
 
 
 @kernel
 def close_round_trip(run: Run, last_trip: int) -> int:
-    """Close a round trip, and leap over the following ones in which nothing can happen.
+    """Close a round trip, and leap over the following ones if nothing can happen in them.
 
-    `last_trip` is the round trip in which the run ends. Return Stop.NONE, or the code of what the caller must do first: the round
-    trip is still open then. It is END_AHEAD if the end of the run would cut the leap and `to_the_end` is not set.
+    The run ends in round trip `last_trip`. Return Stop.NONE, or a code if the caller must do something first: the round trip is
+    then still open. The code is END_AHEAD if the end of the run would cut the leap and `to_the_end` is not set.
     """
     if run.counts.lumps == 0 and run.counts.length - run.counts.trip_from > run.counts.lump_above:
         run.counts.lumps, run.counts.lumped_since = 1, run.counts.trip + 1

@@ -2,7 +2,7 @@
 
 The inflow F (slab: Pa, block: N/s) is linear in time between breaks, plus a tone. A piece of load is cut where a new segment of F
 arrives; from then on the break is an edge between pieces, and so are its echoes. The load at rest grows by F from one round trip
-to the next on a slab, and by the integral of F on a block. Over round trips in which nothing but the tone changes, both sums are
+to the next on a slab, and by the integral of F on a block. As long as only the tone changes over some round trips, both sums are
 closed forms in F at their mean time.
 """
 
@@ -18,9 +18,9 @@ from stickslip.engine.state.layout import NEVER, TERMS
 from stickslip.engine.state.workspace import Run
 
 AT_EDGE = 1e-13
-"""Distance, as a share of a round trip (1), within which a break of the loading lies on the edge of a piece: it is rounding."""
+"""A break of the loading lies on the edge of a piece if it is closer to it than this share of a round trip (1), by rounding."""
 BISECTIONS = 64
-"""Largest number of bisections (1) of a number of round trips, which are at most 2^63."""
+"""Largest number of bisections (1) of a number of round trips, which is at most 2^63."""
 
 
 @kernel
@@ -75,7 +75,7 @@ def cut(run: Run, begin: float, end: float, phase: float, phase_to: float) -> No
 
 @kernel
 def add_loading(run: Run) -> None:
-    """Add to the piece of load what the driver has sent since the load that it comes from was recorded."""
+    """Add to the piece of load what the driver has sent since its source was recorded."""
     trip = float(run.counts.trip)
     if run.counts.is_block == 1:
         pull_block(run)
@@ -134,7 +134,7 @@ def tone_series(run: Run, amplitude: float, time: float) -> None:
 
 @kernel
 def pull_block(run: Run) -> None:
-    """Set a block's load: its value at the end of the history, plus what the pull has added to the spring's force since."""
+    """Set a block's load: its value at the end of the history, plus the force that the pull has added to the spring since."""
     n = run.counts.length - 1
     if n >= 0:
         run.load[0] = total(run.history[n].load)
@@ -172,10 +172,9 @@ def pulled_in_trips(run: Run, trips: float) -> float:
 
 @kernel
 def trips_withstood(run: Run, limit: float) -> int:
-    """Return the number of whole round trips, up to the next break of the loading, in which a contact at rest stays so.
+    """Return for how many whole round trips a contact at rest stays at rest, up to the next break of the loading.
 
-    `limit` is the load (Pa or N, minus the reference strength) at which rest ends. NEVER means that it
-    never ends.
+    `limit` is the load (Pa or N, minus the reference strength) that ends rest. NEVER means that rest never ends.
     """
     segment = run.counts.segment
     following = segment + 1
