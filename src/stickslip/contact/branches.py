@@ -1,6 +1,6 @@
 """Branches and folds of the resistance g(s) = Z s + S mu(u, s), and all slip rates s that solve g(s) = load.
 
-A branch is an interval of slip rates on which g rises; it ends at folds. A solution of g(s) = load is stable where g rises.
+A branch is an interval of slip rates with rising g; it ends at folds. A solution of g(s) = load is stable if g rises there.
 Source: Campillo et al. 1996, section 3 and Fig. 3.
 """
 
@@ -22,8 +22,8 @@ from stickslip.resistance import Branch, Resistance
 def resistance(problem: Problem, law_slip: float | None = None) -> Resistance:
     """Return the resistance of a slab's contact at a law slip (m; default: the initial one).
 
-    A contact mass does not enter: g is then the resistance at which the contact settles. Raises InputError for a block, whose slip
-    rate is a state and solves no contact equation.
+    A contact mass does not enter: a contact with mass settles to g. Raises InputError for a block, whose slip rate is a state and
+    solves no contact equation.
     """
     slab = as_slab(problem.body, "contact equation: a block has none, its slip rate follows from its inertia")
     slip = problem.law_slip if law_slip is None else float(law_slip)
@@ -31,7 +31,7 @@ def resistance(problem: Problem, law_slip: float | None = None) -> Resistance:
 
 
 def branches(problem: Problem, law_slip: float | None = None) -> tuple[Branch, ...]:
-    """Return the stable branches of a slab's contact equation, slowest first: intervals of slip rates on which g rises.
+    """Return the stable branches of a slab's contact equation, slowest first: intervals of slip rates with rising g.
 
     The law slip (m) is the initial one by default. Raises InputError for a block, and if friction falls at least as fast as Z s
     rises even at the fastest rate of the search.
@@ -53,7 +53,7 @@ def _branch(g: Resistance, low: float, high: float) -> Branch:
 
 
 def rate_on(g: Resistance, branch: Branch, excess: float) -> float:
-    """Return the slip rate (m/s) on a branch at which the resistance exceeds the static strength by `excess` (Pa), to rounding.
+    """Return the slip rate (m/s) on a branch whose resistance exceeds the static strength by `excess` (Pa), to rounding.
 
     Raises ValueError if the branch does not exist at that excess.
     """
@@ -85,7 +85,7 @@ def rates_at(g: Resistance, stable: tuple[Branch, ...], excess: float) -> tuple[
 
 @lru_cache(maxsize=256)  # jumps and loops ask for the same places
 def _root(g: Resistance, low: float, high: float, excess: float) -> float:
-    """Return the rate (m/s) between low and high at which g passes an excess (Pa); g must be monotone there."""
+    """Return the rate (m/s) between low and high where g passes an excess (Pa); g must be monotone there."""
 
     def miss(rate: float) -> tuple[float, float]:
         value, slope = g.excess_and_slope(rate)

@@ -1,7 +1,7 @@
-"""Critical values: the values of a parameter at which the contact equation changes from one solution to several.
+"""Critical values of a parameter: there the contact equation changes from one solution to several.
 
-Source: Campillo et al. 1996, section 3: alpha_c is where g'(0) = Z + S mu'(0) vanishes. In general the critical value is where the
-smallest g' over all slip rates vanishes. A law names the parameter of which `uniqueness` tells it (`critical`).
+Source: Campillo et al. 1996, section 3: g'(0) = Z + S mu'(0) vanishes at alpha_c. In general the smallest g' over all slip rates
+vanishes at a critical value. A law names the parameter whose critical value `uniqueness` reports (`critical`).
 """
 
 from __future__ import annotations
@@ -27,17 +27,17 @@ Regime = Literal["regular", "irregular"]
 _DECADES, _PER_DECADE = 9, 4
 """Decades that the search covers on either side of the present value, and its steps in each decade."""
 _STEPS = tuple(2.0**-k for k in range(50, 25, -4))
-"""Relative distances from a critical value at which a proof of the regimes is tried, the smallest first."""
+"""Relative distances from a critical value for a proof of the regimes on both sides, the smallest first."""
 _NEAR, _STRAIGHT = 1e-6, 1e-9
-"""Distances of a margin from a straight line with which it may still be one: from far away, where rounding moves the zero of the
-line, and beside that zero."""
+"""A margin may be a straight line if it differs from one by no more than this: at the zero of a line drawn from far away, where
+rounding moves the zero, and at the zero of a line drawn from nearby."""
 _ROUGH = 1e-2
-"""Tolerance of a search for the smallest g' that ends at the right minimum, unless another one is nearly as low."""
+"""Tolerance of a quick search for the smallest g': it finds the right minimum, unless another one is nearly as low."""
 
 
 @dataclass(frozen=True)
 class Critical(NamesAttributes):
-    """Values of one parameter of a problem at which the regime changes, with everything else fixed; in SI units, ascending.
+    """Critical values of one parameter of a problem, where the regime changes, with everything else fixed; SI units, ascending.
 
     `regimes` has one more entry than `values`: the regime below the first value, between neighbours, and above the last.
     """
@@ -54,7 +54,7 @@ class Critical(NamesAttributes):
     stated one at the present value. "not decided": interval arithmetic fails to show one of these. It is never proven that there
     are no further changes between the values that were examined."""
     enclosures: tuple[tuple[float, float] | None, ...] = ()
-    """For each of `values`, a number below it and one above it at which the regimes are proven to differ; None if that fails."""
+    """For each of `values`, a number below and one above it with provably different regimes; None if the proof fails."""
 
     __repr__ = brief_repr
 
@@ -65,7 +65,7 @@ class Critical(NamesAttributes):
 
 
 def steepest_fall(g: Resistance) -> tuple[float, float]:
-    """Return the slip rate (m/s) at which g' is smallest, and g' there (Pa s/m), to the rounding of g'."""
+    """Return the slip rate (m/s) with the smallest g', and this g' (Pa s/m), to the rounding of g'."""
     lowest = lowest_slope(g)
     return lowest.rate, lowest.slope
 
@@ -94,9 +94,9 @@ def check_no_contact_mass(problem: Problem, where: str) -> None:
 
 
 def critical_normal_stress(g: Resistance) -> float | None:
-    """Return the normal stress (Pa) above which the contact is irregular, Z / max(-dmu/dv), or None if there is none.
+    """Return the critical normal stress (Pa), Z / max(-dmu/dv), or None: above it the contact is irregular.
 
-    There is none if friction never falls with the slip rate, nor if it steps down as slip begins: the contact is then irregular
+    There is none if friction never falls with the slip rate, or if it steps down as slip begins: the contact is then irregular
     under every normal stress.
     """
     if g.law.static_excess > 0.0 or not g.law.depends_on_rate:
@@ -107,7 +107,7 @@ def critical_normal_stress(g: Resistance) -> float | None:
 
 @for_users
 def critical_value(problem: Problem, name: str, law_slip: float | None = None) -> Critical:
-    """Find the values of one parameter at which the contact equation changes between one solution and several, to rounding.
+    """Find the critical values of one parameter to rounding: there the contact equation changes between one solution and several.
 
     The problem's body is a slab without contact mass. The name is such as "alpha", "rate.alpha", "body.normal_stress" or
     "initial.slip"; `law_slip` (m) is the slip as the law counts it, the initial one by default. The search goes from the present
@@ -174,8 +174,8 @@ def nearest_critical(problem: Problem, name: str, law_slip: float | None = None)
 def _zeros_if_straight(here: tuple[float, float], margin_at: Callable[[float], float]) -> list[float] | None:
     """Return the zeros of a margin that is straight in a parameter or in its inverse, at most one; None if it is neither.
 
-    `here` is the present value and the margin there. A margin is straight if a third one lies on the line through two others. It is
-    not a number where the problem refuses the value.
+    `here` is the present value and the margin there. A margin is straight if a third one lies on the line through two others. If
+    the problem refuses a value, its margin is not a number.
     """
     if not (1e-100 < abs(here[0]) < 1e100 and math.isfinite(here[1])):
         return None

@@ -81,7 +81,7 @@ class Disturbed:
 def _all_left(equation: Polynomial) -> bool | None:
     """Return True if all roots of a polynomial have Re s < 0, False if one has Re s > 0, None if the farthest are on Re s = 0.
 
-    This is Routh's array, in which no root is worked out: roots of very different sizes do not spoil each other.
+    This is Routh's array. It needs no roots, so that roots of very different sizes do not spoil each other.
     """
     rows = equation[::-1][::2], equation[::-1][1::2]
     first = [float(rows[0][0])]

@@ -27,8 +27,8 @@ Verdict = Literal["proven", "not decided"]
 Interval = tuple[float, float]
 
 _TOLERANCE, _NEAR = 1e-12, 1e3
-"""Distance of the two bounds of the smallest g', relative to the larger of Z and |g'|, at which the search ends, and the multiple
-of it by which rounding may keep them apart while the smallest g' still counts as proven."""
+"""The search for the smallest g' ends when its two bounds differ by less than _TOLERANCE, relative to the larger of Z and |g'|. If
+rounding keeps them apart by at most _NEAR times that, the smallest g' still counts as proven."""
 _ROUNDING = 8.0 * float(np.finfo(float).eps)
 """Relative rounding error allowed for three operations."""
 MOST_FOLDS = 1024
@@ -44,7 +44,7 @@ class Fold:
     rate: float
     load: float
     enclosure: Interval | None = None
-    """Slip rates (m/s) between which g is proven to turn exactly once; None if that is not decided."""
+    """Interval of slip rates (m/s) where g is proven to turn exactly once; None if that is not decided."""
 
     units: ClassVar = {"rate": "m/s", "load": "Pa", "enclosure": "m/s"}
     __repr__ = brief_repr
@@ -56,17 +56,17 @@ class Certificate:
 
     verdict: Verdict
     rates: tuple[float, ...] = ()
-    """Slip rates at which g turns: those proven, and those at which g' changes its sign within an undecided interval."""
+    """Slip rates where g turns: proven turns, and changes of sign of g' within an undecided interval."""
     turns: tuple[Interval, ...] = ()
     """Intervals that hold exactly one change of sign of g' each; outside them and `undecided` there is none."""
     undecided: tuple[Interval, ...] = ()
-    """Intervals in which neither a turn nor its absence is proven."""
+    """Intervals without a proof of a turn or of its absence."""
     rises_at_rest: bool | None = None
     """True if g rises at 0+, None if that is not decided."""
     evaluations: int = 0
-    """Number of cells and single rates at which g' was bounded."""
+    """Number of bounds of g', on cells and at single rates."""
     reach: float = FASTEST
-    """Slip rate (m/s) up to which g was searched: 1e30, or less if it turns more than MOST_FOLDS times."""
+    """Largest slip rate (m/s) of the search: 1e30, or less if g turns more than MOST_FOLDS times."""
 
     @property
     def regime(self) -> Literal["regular", "irregular"] | None:
@@ -76,7 +76,7 @@ class Certificate:
         return "regular" if self.verdict == "proven" else None
 
     def enclosure(self, rate: float) -> Interval | None:
-        """Return the interval around a fold in which g is proven to turn exactly once; None if there is none."""
+        """Return the interval around a fold with a proof that g turns exactly once in it; None if there is none."""
         return next((one for one in self.turns if one[0] <= rate <= one[1]), None)
 
 
@@ -96,9 +96,9 @@ class LowestSlope:
 
 @lru_cache(maxsize=64)
 def certificate(g: Resistance, budget: int = MOST_EVALUATIONS) -> Certificate:
-    """Prove where g' changes its sign, with at most so many evaluations.
+    """Prove where g' changes its sign, with at most `budget` evaluations.
 
-    Raises InputError if the law has a state, under which the slip rate is no root of the contact equation, or if friction falls at
+    Raises InputError if the law has a state, because the slip rate is then no root of the contact equation, or if friction falls at
     least as fast as Z v rises even at the fastest rate of the search, unless Z is 0.
     """
     reach = FASTEST
@@ -124,7 +124,7 @@ def certificate(g: Resistance, budget: int = MOST_EVALUATIONS) -> Certificate:
 
 
 def panels(g: Resistance, low: float, high: float) -> Floats:
-    """Return the edges (m/s) of panels from one slip rate to another, in each of which a rule of Gauss integrates g to rounding.
+    """Return the edges (m/s) of panels from one slip rate to another; in each panel Gauss's rule integrates g to rounding.
 
     For one contact the same slip rates always give the same edges, so that areas which should cancel do.
     """
@@ -169,7 +169,7 @@ def critical_stress_between(g: Resistance) -> Interval | None:
 
 
 def sentence(g: Resistance, proof: Certificate, folds: tuple[Fold, ...]) -> str:
-    """Return a sentence on what is proven of the folds, with a leading space; "" if friction does not depend on the slip rate."""
+    """Return a sentence on the proof of the folds, with a leading space; "" if friction does not depend on the slip rate."""
     if not g.law.depends_on_rate:
         return ""
     if proof.verdict == "not decided":

@@ -14,13 +14,13 @@ from stickslip.contact.slopes import MOST_EVALUATIONS, NARROW, SLOWEST, Integers
 from stickslip.foundation.arrays import Floats
 
 CUTS = 8
-"""Number of parts into which a cell is cut."""
+"""A cell is cut into this many parts."""
 PARTS = np.linspace(0.0, 1.0, 257)
-"""Places in a cell at which the sign of g'' is asked for at once."""
+"""Places in a cell where the sign of g'' is determined at once."""
 
 
 class LowestOfEach(NamedTuple):
-    """Hold bounds (Pa s/m) of the smallest g' of each contact, and in which cell of slip rates (m/s) the upper one was found."""
+    """Hold bounds (Pa s/m) of the smallest g' of each contact, and the cell of slip rates (m/s) of the upper one."""
 
     at_least: Floats
     at_most: Floats
@@ -65,7 +65,7 @@ def _edges_in(low: Floats, high: Floats) -> Floats:
 
 
 def _lower(found: LowestOfEach, contact: Integers, at_most: Floats, piece: Integers, edges: Floats) -> None:
-    """Note that g' is at most this small at edges, where this is news; the smallest g' is then sought between their neighbours."""
+    """Lower the upper bounds of the smallest g' to its values at edges; it is then sought between the neighbours of these edges."""
     order = np.lexsort((at_most.ravel(), contact.ravel()))
     by_contact = contact.ravel()[order]
     best = order[np.append(True, by_contact[1:] != by_contact[:-1])]

@@ -1,8 +1,8 @@
-"""Panels of slip rates on which Gauss's rule integrates g = Z v + S mu to rounding, found from bounds of friction's derivatives.
+"""Panels of slip rates for Gauss's rule: bounds of friction's derivatives ensure that it integrates g = Z v + S mu to rounding.
 
-On a panel that is short beside |mu'| / |mu''| friction is as smooth as an exponential over a few of its lengths. A panel on
-which mu'' is so small that the area hardly depends on it is short enough, too. Any other panel is cut in two, so that no narrow
-feature of the law lies between two nodes unseen.
+On a panel that is short in comparison with |mu'| / |mu''|, friction is as smooth as an exponential over a few of its lengths. A
+panel is also short enough if mu'' is so small that the area hardly depends on it. Any other panel is cut in two, so that no narrow
+feature of the law is missed between two nodes.
 """
 
 from __future__ import annotations
@@ -15,12 +15,11 @@ from stickslip.foundation.arrays import Floats
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
 """Gauss's rule on [-1, 1]."""
 SMOOTH = 4.0
-"""Length of a panel in units of |mu'| / |mu''|, up to which 16 nodes are enough for rounding."""
+"""16 nodes reach rounding on panels up to this length, in units of |mu'| / |mu''|."""
 NEGLIGIBLE = 1e-16
-"""Share of S times the length of the whole integral (1) that a panel may miss."""
+"""Error allowed on a panel, as a share (1) of S times the length of the whole integral."""
 MOST_PANELS = 4096
-"""Largest number of panels of one integral, beside one for each piece of the law; when they are reached, panels are as long as
-they are."""
+"""Largest number of panels of one integral, besides one for each piece of the law. When it is reached, no more panels are cut."""
 
 
 def panels_between(of: Pieces, low: float, high: float) -> Floats:

@@ -22,14 +22,14 @@ from stickslip.problem.parameters import Parameter, put_many
 from stickslip.problem.problem import Problem
 
 _POINTS = 65
-"""Number of equally spaced slips at which the regime is sampled; each sample costs a search over all slip rates."""
+"""Number of equally spaced slips for samples of the regime; each sample costs a search over all slip rates."""
 _UNKNOWN = 10.0
 """Longest slip (m) assumed for a law whose parameters name none; user expressions are checked up to the same slip."""
 
 
 @dataclass(frozen=True)
 class RegimeInterval:
-    """An interval of law slip (m) on which the regime does not change."""
+    """An interval of law slip (m) with one regime."""
 
     slip_from: float
     slip_to: float

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Generator, Sequence
 
 _NEAR = 1e-8
-"""Relative step below which Newton's method, which converges quadratically, is done after one more step."""
+"""After a relative step smaller than this, Newton's method needs only one more: it converges quadratically."""
 
 
 def bracketed_newton(
@@ -35,9 +35,9 @@ def bracketed_newton(
 
 
 def sign_change(function: Callable[[float], float], low: float, high: float) -> float:
-    """Return the place, to rounding, at which a function changes between negative and not negative.
+    """Return the place, to rounding, where a function changes between negative and not negative.
 
-    The function may jump there, or be infinite. The result is the end of the last bracket at which the function is not negative.
+    The function may jump there, or be infinite. The result is the end of the last bracket with a value that is not negative.
     Chandrupatla's method (1997, Adv. Eng. Softw. 28, 145) interpolates by an inverse quadratic where the function is nearly
     straight, and bisects elsewhere.
     """
@@ -66,7 +66,7 @@ def sign_changes(
 
 
 def _sign_change(low: float, high: float) -> Generator[float, float, float]:
-    """Yield the places at which the search needs the function, receive its value there, and return the place of the change."""
+    """Yield places where the search needs the function, receive its values there, and return the place of the change."""
     a, b, c = high, low, high
     fa, fb = (yield a), (yield b)
     fc, t = fa, 0.5

@@ -1,4 +1,4 @@
-"""What is found about steady sliding: each steady motion, where its stability changes, and all of it in sentences."""
+"""Results on steady sliding: each steady motion, the changes of its stability, and sentences about them."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from stickslip.problem.problem import Problem
 
 RATES = np.geomspace(1e-15, 1e3, 73)
-"""Slip rates (m/s) at which the stability of a law with states is examined, four a decade; changes are then found to rounding.
-Slower ones, below 30 nm a year, are left out: there the slip law is made smooth, which would look like a change."""
+"""Slip rates (m/s) for examining the stability of a law with states, four a decade; changes are then found to rounding. Slower
+rates, below 30 nm a year, are left out: there the slip law is made smooth, which would look like a change."""
 NEVER = 1e-20
-"""Growth rate (1/s) up to which a disturbance grows by less than half a per cent in the age of the universe."""
+"""At this growth rate (1/s) a disturbance grows by less than half a per cent in the age of the universe."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ class Sliding:
 
 @dataclass(frozen=True)
 class StabilityChange:
-    """A slip rate (m/s) at which steady sliding gains or loses its stability, and the pull rate (m/s) that leads to it."""
+    """A slip rate (m/s) where steady sliding gains or loses its stability, and the pull rate (m/s) that leads to it."""
 
     rate: float
     pull_rate: float | None
@@ -82,7 +82,7 @@ class StabilityChange:
     stable_above: bool
     """True if sliding a little faster is stable."""
     enclosure: tuple[float, float] | None = None
-    """Slip rates (m/s) between which the change is proven to lie; None if that is not proven."""
+    """Interval of slip rates (m/s) with a proof that it holds the change; None without a proof."""
 
     units: ClassVar = {"rate": "m/s", "pull_rate": "m/s", "enclosure": "m/s"}
     __repr__ = brief_repr
@@ -90,12 +90,12 @@ class StabilityChange:
 
 @dataclass(frozen=True)
 class FromRest:
-    """What exact runs from rest do at pull rates at which steady sliding is stable; rates (m/s) without their sign."""
+    """Outcome of exact runs from rest at pull rates with stable steady sliding; rates (m/s) without their sign."""
 
     sticks_at: float | None
-    """The highest pull rate (m/s) at which a run still stuck; None if the run just above the critical rate slid already."""
+    """The highest pull rate (m/s) of a run that still stuck; None if the run just above the critical rate slid already."""
     slides_at: float | None
-    """The lowest pull rate (m/s) at which a run came to slide without rest; None if none did."""
+    """The lowest pull rate (m/s) of a run that came to slide without rest; None if none did."""
     runs: int
     duration: float
     """Duration of each run (s)."""
@@ -115,12 +115,12 @@ class FromRest:
 
 
 FROM_REST_WITHIN = 0.02
-"""Width, as a share of the rate, to which the highest pull rate is found at which a contact sticks that starts from rest."""
+"""The highest pull rate that lets a contact stick from rest is found to this relative width."""
 
 
 @dataclass(frozen=True, repr=False)
 class SteadySlidings:
-    """All steady sliding motions of a problem at its pull rate, and the rates at which their stability changes."""
+    """All steady sliding motions of a problem at its pull rate, and the rates where their stability changes."""
 
     pull_rate: float
     """The (first) pull rate V (m/s)."""
@@ -137,25 +137,25 @@ class SteadySlidings:
     sticks: bool = False
     """True if the law lets the contact rest."""
     varies: bool = False
-    """True if the pull rate or the far stress varies in time: all this is then about its value at the start."""
+    """True if the pull rate or the far stress varies in time: all results are then for its value at the start."""
     is_damped: bool = True
     """False if neither body nor driver takes energy from a disturbance, so that only friction can."""
     why_none: str = ""
-    """Why nothing slides steadily; "" if something does."""
+    """Reason why there is no steady sliding; "" if there is."""
     traction_at_pull_rate: float = math.nan
     """Friction (Pa or N) in steady sliding at the pull rate: the far stress with which a driver that gives way keeps its rate."""
     unit: str = "Pa"
     """Unit of tractions."""
     is_calm: bool = False
-    """True if nothing at the start keeps the contact from the slow motion that ends in `settled`, if no slower rate is unstable."""
+    """True if the contact can come slowly from its start to `settled`, provided that no slower rate is unstable."""
     problem: Problem | None = field(default=None, compare=False)
     """The problem that was asked about."""
     from_rest: FromRest | None = None
-    """What the contact does from rest where steady sliding is stable; None if that was not looked for."""
+    """Motion from rest at pull rates with stable steady sliding; None if it was not examined."""
 
     @property
     def regained(self) -> float | None:
-        """The size of the critical pull rate (m/s) above which sliding is stable, though a contact from rest may stick; or None."""
+        """The critical pull rate (m/s, magnitude) if sliding is stable above it, though a contact from rest may stick; or None."""
         last = self.changes[-1] if self.changes else None
         if not self.sticks or self.varies or last is None or not last.stable_above or last.pull_rate is None:
             return None
@@ -164,7 +164,7 @@ class SteadySlidings:
 
     @property
     def settled(self) -> Sliding | None:
-        """The steady sliding that lasts, if there is exactly one, and rest is not possible: what every slow motion ends in."""
+        """The end of every slow motion: the steady sliding that lasts, if there is exactly one and rest is not possible."""
         lasting = [one for one in self.slidings if one.lasts]
         return lasting[0] if len(lasting) == 1 and not self.can_rest else None
 
@@ -216,7 +216,7 @@ class SteadySlidings:
         )
 
     def _changes(self) -> str:
-        """Return a sentence on the critical rates, and on what is proven of them."""
+        """Return a sentence on the critical rates and their proof."""
         if not self.changes and self.proven and self.slidings:
             return f"{self.slidings[0].verdict} at any other slip rate, too (proven{self._searched})" * (len(self.slidings) == 1)
         if not self.changes:
@@ -230,7 +230,7 @@ class SteadySlidings:
 
     @property
     def _searched(self) -> str:
-        """The words for the slip rates that were looked at, where that is not all of them."""
+        """The words for the slip rates that were examined, if not all were."""
         has_states = self.problem is not None and self.problem.friction.states
         return f" between {RATES[0]:g} and {RATES[-1]:g} m/s" if has_states or not self.proven else ""
 

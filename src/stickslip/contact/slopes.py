@@ -22,19 +22,19 @@ from stickslip.resistance import Resistance
 Integers = NDArray[np.int64]
 
 FASTEST = 1e30
-"""Slip rate (m/s) up to which g' is bounded; no contact is that fast."""
+"""Bounds of g' cover slip rates up to this (m/s); no contact is that fast."""
 SLOWEST = 1e-100
-"""Slip rate (m/s) below which a cell is not cut any more."""
+"""Cells below this slip rate (m/s) are not cut any more."""
 BELOW, ABOVE = 1e-4, 1e4
 """The first cells have ends in the ratio RATIO between these multiples of the slowest and the fastest scale of a contact."""
 RATIO, FAR = 16.0, 1e12
 """Ratio of the ends of the first cells, and of those beyond the fastest scale, where g' hardly changes."""
 NARROW = 1e-15
-"""Width of a cell, relative to its upper end, below which it is not cut any more."""
+"""Cells narrower than this, relative to their upper end, are not cut any more."""
 MOST_EVALUATIONS = 200_000
-"""Largest number of cells and single rates at which g' is bounded for one contact; cells that remain are left undecided."""
+"""Largest number of bounds of g' (on cells and at single rates) for one contact; remaining cells are left undecided."""
 AT_ONCE = 10_000
-"""Number of cells whose bounds are worked out at once, which limits the memory that this takes."""
+"""Number of cells to bound at once; it limits the memory needed."""
 
 
 class Slopes(NamedTuple):
@@ -77,7 +77,7 @@ class Pieces:
     normal: Floats  # S, Pa
     slowest: Floats  # slowest and fastest scale of the contact, m/s
     fastest: Floats
-    begin: Floats  # m/s: slip rates from and up to which the piece applies
+    begin: Floats  # m/s: smallest and largest slip rate of the piece
     end: Floats
 
     def friction(self, piece: Integers, low: Floats, high: Floats) -> Floats:
@@ -128,7 +128,7 @@ class Pieces:
 
 
 def pieces_of(contacts: Sequence[Resistance], reach: float = FASTEST) -> Pieces:
-    """Return what bounds of g' are worked out from, up to a slip rate (m/s), for contacts under laws of one kind."""
+    """Return the input for bounds of g' up to a slip rate (m/s), for contacts under laws of one kind."""
     formulas: dict[Expression, int] = {}
     rows, values = [], []
     for n, g in enumerate(contacts):

@@ -1,4 +1,4 @@
-"""Steady sliding: the slip rates at which a contact can slide steadily, whether they are stable, and where stability changes.
+"""Steady sliding: the possible slip rates of a contact in steady sliding, their stability, and where it changes.
 
 A contact that slides at a constant rate v, at the traction S mu(v) of its steady states, balances a driver of impedance Zd and
 far stress s if
@@ -6,9 +6,9 @@ far stress s if
     Zd v + S mu(v) = s + Zd V
 
 so it slides at the pull rate V if the driver is rigid, or moves a block's spring, and in general at another rate if the driver
-gives way. Without states a disturbance fades if and only if friction falls with the slip rate by less than the body takes away,
+gives way. Without states a disturbance fades if and only if friction falls with the slip rate less steeply than the body damps,
 S mu'(v) > -D: D is the damping of a block, 0 under a rigid driver, and min(Zd, Z^2/Zd) of any other driver under a contact without
-mass. The critical rates are then the turns of D v + S mu(v), all of which are found, with proof.
+mass. The critical rates are then the turns of D v + S mu(v). All of them are found, with proof.
 
 Source: Rice & Ruina 1983, J. Appl. Mech. 50, 343; Campillo et al. 1996, eqs (7)-(13), for the slab.
 """
@@ -38,24 +38,24 @@ from stickslip.problem.problem import Problem
 from stickslip.resistance import Resistance
 
 FAR = (0.0, 0.37, 1e3)
-"""Distances (m) over which friction must not change with slip if the contact is to slide steadily."""
+"""Steady sliding requires that friction does not change with slip over these distances (m)."""
 CANCELLED = 1e-14
 """Rounding of a slope of a state's rate by the slip rate, relative to its terms."""
 SURE = 1e-12
-"""Relative change of the normal load by which stability must not change at a rate where it is called known."""
+"""Stability at a rate counts as known if this relative change of the normal load does not change it."""
 CRAWL, SAME = 1e-300, 1e-9
-"""A slip rate (m/s) that is next to rest; and the relative difference of two tractions that counts as none."""
+"""A slip rate (m/s) next to rest; tractions that differ by less than this (relative) are equal."""
 
 
 @lru_cache(maxsize=64)
 def steady_slidings(problem: Problem) -> SteadySlidings:
-    """Find how a contact can slide steadily under the loading of a problem, at the start if it varies, and what is stable."""
+    """Find the steady sliding of a contact under the loading of a problem (at the start if it varies), and its stability."""
     return _Steady(problem).found()
 
 
 @lru_cache(maxsize=64)
 def proven_slidings(problem: Problem) -> SteadySlidings:
-    """Find the same, with a proof under a law with a state where there is one, which takes from 0.3 s to some seconds."""
+    """Find the same, with a proof for laws with a state if there is one; a proof takes from 0.3 s to some seconds."""
     return _Steady(problem, proves=True).found() if problem.friction.states else steady_slidings(problem)
 
 
@@ -182,7 +182,7 @@ class _Steady:
 
     @cached_property
     def slip(self) -> float:
-        """A slip (m) of the law at which steady sliding is on its piece."""
+        """A slip (m) of the law in the piece of steady sliding."""
         law = self.problem.friction
         if law.knot_variable == "rate" or not law.knots:
             return self.problem.law_slip
@@ -213,7 +213,7 @@ class _Steady:
             return Response(slopes[1:2], np.ones(1))
         evolve = np.array([value_and_slopes(tree, numbers, *at)[1] for tree in law.state_trees()])
         matrix, forced, felt = evolve[:, 2:], evolve[:, 1], slopes[2:]
-        # what two terms leave of each other is rounding, as for friction that is the same at any rate
+        # a difference of nearly equal terms is rounding, as for friction that is the same at any rate
         forced = np.where(np.abs(forced) * rate > CANCELLED * np.abs(np.diag(matrix) * states), forced, 0.0)
         below = np.real(np.poly(matrix))[::-1]
         above = np.zeros(many)
@@ -307,12 +307,12 @@ class _Steady:
         return Disturbed(self.problem.body, self.problem.normal, response).is_stable() is True
 
     def _searched(self) -> list[tuple[float, bool]]:
-        """Return the slip rates (m/s) at which stability changes under a law with states, and whether it is stable above each."""
+        """Return the slip rates (m/s) where stability changes under a law with states, and whether sliding is stable above each."""
         known = [(rate, stable) for rate in RATES.tolist() if (stable := self._surely_stable(rate)) is not None]
         return [(self._edge(low, high, after), after) for (low, before), (high, after) in pairwise(known) if before != after]
 
     def _surely_stable(self, rate: float) -> bool | None:
-        """Return whether sliding is stable; None if a little more or less normal load decides, which is a matter of rounding."""
+        """Return whether sliding is stable; None if rounding decides: a little more or less normal load changes the answer."""
         body, response = self.problem.body, self.response(rate)
         more, less = (
             Disturbed(body, self.problem.normal * share, response).is_stable() is True for share in (1.0 + SURE, 1.0 - SURE)
@@ -320,7 +320,7 @@ class _Steady:
         return more if more == less else None
 
     def _edge(self, low: float, high: float, stable_above: bool) -> float:
-        """Return the slip rate (m/s) between two others at which stability changes."""
+        """Return the slip rate (m/s) between two others where stability changes."""
         return sign_change(lambda rate: 1.0 if self._is_stable(rate) == stable_above else -1.0, low, high)
 
     def _is_stable(self, rate: float) -> bool:
@@ -330,7 +330,7 @@ class _Steady:
         return StabilityChange(rate, self._pull_rate(rate), stable_above, enclosure)
 
     def _pull_rate(self, rate: float) -> float | None:
-        """Return the pull rate (m/s) at which the contact slides steadily at a slip rate, None if there is none."""
+        """Return the pull rate (m/s) that makes the contact slide steadily at a slip rate, None if there is none."""
         if self.far_stress is None:
             return rate
         driver = self.problem.body.driver_impedance
@@ -341,7 +341,7 @@ class _Steady:
 
 
 def _largest(holds: Callable[[float], bool], high: float) -> float:
-    """Return the largest number between 0 and `high` up to which something holds, by bisection."""
+    """Return the largest number between 0 and `high` that satisfies a condition, by bisection; all smaller ones satisfy it."""
     low = 0.0
     while True:
         middle = 0.5 * (low + high)

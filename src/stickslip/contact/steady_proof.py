@@ -1,8 +1,8 @@
 """Prove where steady sliding gains or loses its stability under a law with states, over a whole range of slip rates.
 
 The range is cut into cells. In each, bounds of the slopes of f in w' = f(v, w) enclose the steady states w(v) of all its rates, and
-then those of friction mu(v, w) and of f. They say whether all of the cell is stable, or none of it. A cell in which that is not
-certain is halved, until only narrow ones are left: there stability changes. `wave_proof` decides cells of a slab.
+then those of friction mu(v, w) and of f. They say whether all of the cell is stable, or none of it. A cell without a certain answer
+is halved, until only narrow ones are left: there stability changes. `wave_proof` decides cells of a slab.
 
 A disturbance exp(s t) of a block under a law with one or two states solves, with n = D + S mu_v,
 
@@ -37,20 +37,20 @@ from stickslip.friction.law import FrictionLaw
 CELLS = 64
 """Number of cells in a decade of slip rates, before any is halved."""
 NARROW = 1e-9
-"""Relative width of a cell that is not halved any more."""
+"""Cells narrower than this (relative) are not halved any more."""
 MOST_CELLS = 80_000
 """Largest number of cells that are examined at a time, a second of work; beyond it nothing is proven."""
 NEWTON_STEPS = 3
 """Number of Newton's steps from the law's steady state to that of its formula."""
 LEAST_CHANGE = 1e-3
-"""Relative change of the state that is allowed for while the slip rate doubles, where it changes less."""
+"""Least relative change of the state, while the slip rate doubles, that discs of the state allow for."""
 WIDER = 1.5
 """How much wider the disc of the state is than its change in a cell."""
 _Variables = dict[Expression, Disc]
 
 
 class ProvenChange(NamedTuple):
-    """Slip rates (m/s) between which stability changes, and whether it is stable above them."""
+    """An interval of slip rates (m/s) with a change of stability, and whether sliding is stable above it."""
 
     low: float
     high: float
@@ -102,7 +102,7 @@ def _changes(cells: Floats) -> list[ProvenChange] | None:
 
 @lru_cache
 def _conditions(many: int) -> tuple[Expression, ...]:
-    """Return what is positive if and only if a block is stable, as formulas of the slopes and of the body's numbers."""
+    """Return formulas of the slopes and of the body's numbers that are all positive if and only if a block is stable."""
     stiffness, damping, mass, normal = (Parameter(name) for name in ("K", "D", "m", "S"))
     (mu_v, *mu_w), *change = slope_symbols(many)
     f_v, f_w = [row[0] for row in change], [row[1:] for row in change]
@@ -163,7 +163,7 @@ class _Contact:
         return self.law.state_trees()
 
     def _cells(self, low: Floats, high: Floats) -> tuple[_Variables, Any]:
-        """Return the discs of cells, and in which of them each rate is proven to have one steady state in the discs of the states.
+        """Return the discs of cells, and True for cells if each rate provably has one steady state in the discs of the states.
 
         Newton's step w - Y f(v, w), with Y close to the inverse of f_w, maps the discs of radius q into themselves if
         |Y f(centre)| + |Y f_v| r + |1 - Y f_w| q < q, with bounds of the slopes on discs of the radii r and q.
@@ -210,7 +210,7 @@ class _Contact:
         return np.array([one[0] for one in found]), slopes[:, 0], inverse
 
     def _steady(self, rate: Floats) -> Floats:
-        """Return the states, as formulas use them, in which the formulas of their rates are zero."""
+        """Return the states, as formulas use them, that make the formulas of their rates zero."""
         seen = np.asarray(self.law.steady_state(rate), float).reshape(-1, len(rate))
         states = np.array([self.law.inner_states(one) for one in seen.T.tolist()]).T
         for _ in range(NEWTON_STEPS):

@@ -1,4 +1,4 @@
-"""All slip rates at which g' = Z + S dmu/dv changes its sign, with proof, for many contacts side by side.
+"""Find all slip rates where g' = Z + S dmu/dv changes its sign, with proof, for many contacts side by side.
 
 A cell (an interval of slip rates) holds no turn if the bounds of g' on it leave out 0, and exactly one if g'' keeps its sign there
 while g' has opposite signs at its ends. Any other cell is cut in two. Cells that rounding keeps open are undecided.
@@ -20,12 +20,12 @@ from stickslip.foundation.arrays import Floats
 NOISE = 4.0
 """A cell is not worth cutting if g' changes on it by no more than this multiple of the rounding of its bounds."""
 NUDGES = 4
-"""Number of places tried for a cut at which the sign of g' is known."""
+"""Number of places to try for a cut, until the sign of g' is known there."""
 MOST_WAITING = 256
-"""Largest number of cells of one contact that are looked at together: the slowest come first, as there may be no end of turns."""
+"""Largest number of cells of one contact to examine together: the slowest come first, as there may be no end of turns."""
 UNDECIDED, PROVEN, FLAT = 0, 1, 2
-"""What is known of an interval: nothing; that it holds exactly one turn; that it holds a whole piece of the law, on which friction
-falls exactly as fast as Z v rises."""
+"""Knowledge about an interval: none; that it holds exactly one turn; that it holds a whole piece of the law and friction falls on
+this piece exactly as fast as Z v rises."""
 
 
 class Cells(NamedTuple):
@@ -47,7 +47,7 @@ class Cells(NamedTuple):
 
 
 class Turns(NamedTuple):
-    """Hold where g' changes its sign: intervals in which this is proven or not decided, by contact and ascending."""
+    """Hold intervals where g' changes its sign, proven or undecided, by contact and ascending."""
 
     cells: Cells
     known: Integers
@@ -56,7 +56,7 @@ class Turns(NamedTuple):
     """Sign of g' at 0+ and at the fastest rate for each piece, or 0 if that is not known."""
     at_end: Integers
     evaluations: int
-    """Number of cells and single rates at which g' was bounded."""
+    """Number of bounds of g', on cells and at single rates."""
 
     @property
     def changes(self) -> NDArray[np.bool_]:
@@ -65,9 +65,9 @@ class Turns(NamedTuple):
 
 
 def find_turns(of: Pieces, budget: int = MOST_EVALUATIONS, most: int = MOST_EVALUATIONS) -> Turns:
-    """Find all turns of g, with about so many evaluations for each contact at most.
+    """Find all turns of g, with at most about `budget` evaluations for each contact.
 
-    That of a contact ends early once it is known to turn more than `most` times.
+    The search for a contact ends early once it is known to turn more than `most` times.
     """
     search = _TurnSearch(of, budget, most)
     waiting, at_rest, at_end = search.first_cells()
@@ -113,9 +113,9 @@ class _TurnSearch:
         self.turns += self.count(cells.piece[each == PROVEN])
 
     def slowest(self, cells: Cells) -> tuple[Cells, Cells]:
-        """Return the cells of each contact that are to be looked at next, the slowest of them, and those that wait.
+        """Return the slowest cells of each contact, to be examined next, and those that wait.
 
-        What remains of a contact whose search is over is noted as undecided.
+        The remaining cells of a contact are noted as undecided if its search is over.
         """
         room = np.where(self.turns > self.most, 0, np.clip(self.left // 2, 0, MOST_WAITING))
         if (self.count(cells.piece) > room).any():
@@ -133,7 +133,7 @@ class _TurnSearch:
         return self.of.slopes(piece, rate, rate).sign
 
     def known_places(self, piece: Integers, low: Floats, place: Floats, high: Floats, sign: Integers) -> tuple[Floats, Integers]:
-        """Return places in cells at which the sign of g' is known, if there are such, and these signs."""
+        """Return places in cells where the sign of g' is known, if there are any, and these signs."""
         place, sign = place.copy(), sign.copy()
         for k in range(1, NUDGES):
             open_ = np.flatnonzero(sign == 0)
@@ -158,7 +158,7 @@ class _TurnSearch:
         return cells.some(edges[:-1] < edges[1:]), sign[0], sign[-1]
 
     def halves(self, cells: Cells) -> Cells:
-        """Return the halves of those cells about which more is to be found out; note what is known of the others."""
+        """Return the halves of the cells that are still open; note the results for the others."""
         low, high = cells.low, cells.high
         middle = cut_between(low, high)
         seen, there = self.of.seen(cells.piece, low, middle, high)
@@ -225,10 +225,10 @@ def _narrowed(of: Pieces, cells: Cells) -> tuple[Floats, Floats]:
 
 
 def folds_of(turns: Turns, slope: Callable[[Floats, Integers], Floats], parts: int = 64) -> tuple[Floats, Integers]:
-    """Return the slip rates at which branches begin or end, by contact and ascending, and the piece of each.
+    """Return the slip rates of the ends of branches, by contact and ascending, and the piece of each.
 
     `slope` returns g' at slip rates under pieces, for arrays whose last axis has an entry for each piece; the interval of a fold is
-    cut into so many parts again and again. No branch lies in a flat interval.
+    cut into `parts` parts again and again. No branch lies in a flat interval.
     """
     cells, flat = turns.cells, turns.known == FLAT
     rates = np.array([cells.low, cells.high])
@@ -240,7 +240,7 @@ def folds_of(turns: Turns, slope: Callable[[Floats, Integers], Floats], parts: i
 
 
 def _refined(slope: Callable[[Floats], Floats], low: Floats, high: Floats, parts: int) -> Floats:
-    """Return the last, or the first, slip rates at which g still rises within intervals over which g' changes its sign."""
+    """Return the last, or the first, slip rate with rising g in each interval over which g' changes its sign."""
     low, high = low.copy(), high.copy()
     rising = slope(low[None])[0] > 0.0
     for _ in range(100):

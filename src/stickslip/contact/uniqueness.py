@@ -38,11 +38,11 @@ if TYPE_CHECKING:
 MOST_SHOWN = 6
 """Largest number of folds, and of jumps, that `repr` and `summary` show."""
 MOST_LEFT = 16
-"""Number of branches whose jumps are worked out if there is no end of folds."""
+"""If there is no end of folds, only the jumps of this many branches are worked out."""
 
 
 Regime = Literal["regular", "irregular", "continuum"]
-"""What `Uniqueness.regime` can be."""
+"""Possible values of `Uniqueness.regime`."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -61,32 +61,32 @@ class Uniqueness(NamesAttributes):
     """Name of the parameter that has a critical value, as `critical_value` takes it: the one that the law names, otherwise the
     normal stress."""
     critical_value: float | None = None
-    """Value of that parameter at which the regime changes, in SI units."""
+    """Value of that parameter where the regime changes, in SI units."""
     critical_unit: str = ""
     """Unit of the critical value, "1" for a pure number; empty if there is none."""
     critical_stress_between: tuple[float, float] | None = None
-    """Bounds between which the critical normal stress (Pa) is proven to lie; None if friction is not proven to fall anywhere."""
+    """Proven bounds of the critical normal stress (Pa); None if friction is not proven to fall anywhere."""
     certificate: Verdict = "proven"
     """"proven": `folds` is complete, by interval arithmetic or because the slip rate is a state. "not decided": it is complete
-    except for the slip rates in `undecided`, of which only changes of sign of g' count as folds."""
+    except for the slip rates in `undecided`; there only changes of sign of g' count as folds."""
     undecided: tuple[tuple[float, float], ...] = ()
-    """Intervals of slip rates (m/s) in which rounding hides whether g turns or touches a slope of 0."""
+    """Intervals of slip rates (m/s) where rounding hides whether g turns or touches a slope of 0."""
     folds: tuple[Fold, ...] = ()
     jumps: tuple[Jump, ...] = ()
     window: tuple[float, float] | None = None
-    """Range of loads at which more than one slip rate is admissible, as excess over the static strength (Pa)."""
+    """Range of loads with more than one admissible slip rate, as excess over the static strength (Pa)."""
     resistance: Resistance | None = None
     """The contact equation; None if the slip rate depends on inertia or on a state of the law, and not on the load alone."""
     branches: tuple[Branch, ...] = ()
     known_to: float | None = None
-    """Largest load (Pa) at which all solutions are known, under a law whose friction rises and falls with the slip rate for ever:
-    `jumps` are then those from stick and from the slowest branches. None if all solutions are known at any load."""
+    """Largest load (Pa) with all solutions known, under a law whose friction rises and falls with the slip rate for ever: `jumps`
+    are then those from stick and from the slowest branches. None if all solutions are known at any load."""
     loop: Loop | None = None
     """Loop that the rule follows as the load slowly rises past all folds and comes back; None if the slip rate is a state, or if
     there is no end of folds (`known_to`)."""
     problem: Problem | None = None
     law_slip: float | None = None
-    """The problem, and the slip (m) of its law at which this holds; None stands for that at the start."""
+    """The problem, and the slip (m) of its law for these results; None stands for the slip at the start."""
 
     def __str__(self) -> str:
         return self.summary
@@ -98,7 +98,7 @@ class Uniqueness(NamesAttributes):
         return html_table("stickslip Uniqueness", [*self._lines(), ("summary", self.summary)])
 
     def _lines(self) -> Iterator[tuple[str, str]]:
-        """Yield name and text of what the result consists of."""
+        """Yield name and text of each part of the result."""
         yield "regime", f"{self.regime}, {self.certificate}"
         if self.critical_parameter is not None and self.critical_value is not None:
             yield "critical", f"{self.critical_parameter} = {brief(self.critical_value, self.critical_unit)}"
@@ -135,7 +135,7 @@ class Uniqueness(NamesAttributes):
 
     @property
     def plateaus(self) -> tuple[Plateau, ...]:
-        """The intervals on which g is flat: at one load all their slip rates solve the equation, and no rule picks one."""
+        """The intervals with flat g: at one load all their slip rates solve the equation, and no rule picks one."""
         return self.resistance.plateaus if self.resistance else ()
 
     def g(self, rate: ArrayLike) -> NDArray[np.float64]:
@@ -202,14 +202,14 @@ class Uniqueness(NamesAttributes):
 
 
 def uniqueness_of(problem: Problem, law_slip: float | str | WithUnit | None = None) -> Uniqueness:
-    """Determine the uniqueness of the slip rate of a problem: see `stickslip.uniqueness`, where all is described."""
+    """Determine the uniqueness of the slip rate of a problem: see `stickslip.uniqueness`."""
     slip = None if law_slip is None else quantities_of(Problem)["initial_slip"].check("uniqueness", "law_slip", law_slip)
     # A rule of the user can be registered again under its name, and its result must then not be an old one.
     return (_kept if problem.selection in SELECTION_RULES else _determined)(problem, slip)
 
 
 def regime_of(problem: Problem) -> Regime:
-    """Return the `regime` of `uniqueness_of`, without what the rule makes of the branches: a sweep asks it of each of its runs."""
+    """Return the `regime` of `uniqueness_of` without the jumps and loop of the rule: a sweep asks for it in each of its runs."""
     if problem.body.has_inertia or problem.friction.states:
         return "regular"
     return regime_at(resistance(problem, None))

@@ -1,9 +1,9 @@
 """Modes of a slab on a contact: the roots s of A(s) + Z (1 - r E) / (1 + r E) = 0 with E = exp(-s R) and polynomials A and Z in s.
 
 This reads 1 + L(s) = 0 with L = r E (A - Z) / (A + Z). The number of its roots to the right of any vertical line follows from
-Nyquist's criterion: between the frequencies at which abs(L) = 1, which are roots of a polynomial, the phase of L is known in
-closed form, and it says how often L winds around -1. So no root is missed, however high its frequency, and a bisection over the
-line finds the growth rate of the fastest growing disturbance.
+Nyquist's criterion. The frequencies with abs(L) = 1 are roots of a polynomial; between them the phase of L is known in closed form,
+and it says how often L winds around -1. So no root is missed, however high its frequency, and a bisection over the line finds the
+growth rate of the fastest growing disturbance.
 
 Source: Nyquist 1932, Bell Syst. Tech. J. 11, 126; Campillo et al. 1996, eqs (7)-(13), for the waves.
 """
@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 Polynomial = NDArray[Any]
 """Coefficients of a polynomial in s, lowest order first."""
 _HALVINGS = 200
-"""Largest number of halvings of an interval of growth rates, after which its ends are neighbours."""
+"""Largest number of halvings of an interval of growth rates: its ends are then neighbouring floats."""
 MOST_STEPS = 50
 """Largest number of Newton's steps to a root from the place where it was found to lie."""
 _DOUBLINGS = 2000
@@ -117,7 +117,7 @@ class WaveModes:
 
     @staticmethod
     def _edges(ring: Polynomial) -> Polynomial:
-        """Return the frequencies (rad/s, > 0) at which abs(L) = 1, ascending."""
+        """Return the frequencies (rad/s, > 0) with abs(L) = 1, ascending."""
         trimmed = np.trim_zeros(ring, "b")
         if len(trimmed) < 2:
             return np.zeros(0)
@@ -170,7 +170,7 @@ class WaveModes:
         return high if high <= 0.0 else low
 
     def _frequencies(self, line: float) -> list[float]:
-        """Return frequencies (rad/s) near which a root may lie on a line that bounds them all."""
+        """Return frequencies (rad/s) that may be close to a root, on a line that bounds all roots."""
         p: Polynomial = poly.polyadd(self.a, self.z)
         q: Polynomial = poly.polysub(self.a, self.z)
         found = [0.0, *self._edges(self._ring(line)), *np.abs(roots_of(poly.polytrim(p)).imag)]

@@ -8,15 +8,15 @@ At a frequency w the echo r exp(-s R) Q is larger than P if and only if y = w^2 
 
     c2 y^2 + c1 y + c0 < 0,   c2 = q m^2,   c1 = n + q (m^2 p^2 + n^2 - 2 m l + Z^2),   c0 = p k + q (k^2 + Z^2 p^2)
 
-with q = Zd/(Z^2 + Zd^2), which is 0 under a rigid driver. So there are three cases, in which N roots have Re s > 0:
+with q = Zd/(Z^2 + Zd^2), which is 0 under a rigid driver. So there are three cases with N roots of Re s > 0:
 
     nowhere         N is the number of such roots of P
     0 < y < y2      (c0 < 0) N = 2 (1 - j2) if r < 0; if r > 0, a real root lies there
     y1 < y < y2     N = 2 (j1 - j2); if k + Z p < 0, a real root lies there
 
 Here j is the whole number next to psi/(2 pi), with the phase psi = arg r - w R + arg Q - arg P of the echo relative to P, taken at
-y1 and y2. A cell of slip rates in which several cases occur is stable if it is in each of them: they meet where psi = 2 pi or
-j1 = j2. All lies in closed form, for echoes of any number of round trips.
+y1 and y2. If several cases occur in a cell of slip rates, the cell is stable if it is stable in each of them: they meet where
+psi = 2 pi or j1 = j2. Everything is in closed form, for echoes of any number of round trips.
 
 Source: Nyquist 1932, Bell Syst. Tech. J. 11, 126; Rice & Ruina 1983, J. Appl. Mech. 50, 343, for the response of friction.
 """
@@ -37,7 +37,7 @@ from stickslip.friction.formula.expression import Expression, Parameter
 from stickslip.friction.formula.operations.sets import Disc
 
 OUT = 4e-15
-"""Relative rounding of a few operations and of an arc tangent, by which bounds are moved outward."""
+"""Bounds are moved outward by this relative rounding of a few operations and of an arc tangent."""
 SHARE, SQUARE = Parameter("q"), Parameter("y")
 
 
@@ -81,7 +81,7 @@ EQUATION = _equation()
 def of_slab(body: BodyOnCharacteristics, normal: float, slopes: Mapping[Expression, Disc]) -> tuple[Floats, Floats]:
     """Return for each cell whether sliding is proven to be stable, and whether it is proven to be unstable.
 
-    `slopes` holds the discs of the slopes by their symbols, in which f_w < 0, and `normal` is the normal load (Pa).
+    `slopes` holds the discs of the slopes by their symbols, with f_w < 0, and `normal` is the normal load (Pa).
     """
     slab = _Slab(body, normal, slopes)
     c0, c1, c2, still, damped = (slab.range(name) for name in ("c0", "c1", "c2", "P(0)", "P"))
@@ -94,7 +94,7 @@ def of_slab(body: BodyOnCharacteristics, normal: float, slopes: Mapping[Expressi
     y1, y2, exist, never = _edges(c0, c1, c2)
     j1, j2 = slab.turns(y1, p_turns=False), slab.turns(y2, p_turns=True)
     below = (j2.low >= 1.0, j2.high < 1.0) if body.reflection < 0.0 else (False, True)
-    # what is true in the cases that occur, the others being left out
+    # true in all cases that occur; the others are left out
     not_nowhere, not_below = (c0.high < 0.0) | ((c1.high < 0.0) & exist), c0.low > 0.0
     not_between = (c0.high < 0.0) | (c1.low >= 0.0) | never
     stable = (not_nowhere | stable) & (not_below | below[0]) & (not_between | ((still.low > 0.0) & (j1.high <= j2.low)))

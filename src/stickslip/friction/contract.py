@@ -45,9 +45,9 @@ class StateVariable:
     unit: str
     meaning: str
     scale: float = 0.0
-    """Size below which the error of the state, in the form that the formulas use, is measured absolutely.
+    """For a state smaller than this, in the form that the formulas use, the error is absolute and not relative.
 
-    With 0 the error is relative to the state itself.
+    With 0 the error is always relative to the state itself.
     """
     reverses: bool = False
     """True if the state has a direction, as the bending of bristles has, and changes its sign where slip reverses.
@@ -86,9 +86,9 @@ class LawContract(Declared, ABC):
     The magnitude of initial_slip is included in the path.
     """
     memory: ClassVar[Literal["all", "since-arrest"]] = "all"
-    """The time from which slip is counted: the start of the run, or the last arrest (see `RemembersSlip`)."""
+    """The time when counting of slip begins: the start of the run, or the last arrest (see `RemembersSlip`)."""
     knot_variable: ClassVar[Literal["slip", "rate"]] = "slip"
-    """The variable in which `knots` are given: slip (m) or slip rate (m/s)."""
+    """The variable of `knots`: slip (m) or slip rate (m/s)."""
     state: ClassVar[StateVariable | tuple[StateVariable, ...] | None] = None
     """The state variable, if the law has one, or a tuple of two.
 
@@ -96,7 +96,7 @@ class LawContract(Declared, ABC):
     states, whatever is said of "the state" below is an array with one more axis in front, for the states.
     """
     sticks: ClassVar[bool] = True
-    """True if there is a static strength below which the contact rests; False if friction passes smoothly through v = 0."""
+    """True if the contact rests below a static strength; False if friction passes smoothly through v = 0."""
     start: ClassVar[Mapping[str, Any]] = {}
     """Initial values for the example of a law that never sticks: `coefficient` (load / normal load), `state` and `second_state`."""
     many: ClassVar[bool] = False
@@ -149,7 +149,7 @@ class LawContract(Declared, ABC):
 
     @property
     def reverses(self) -> tuple[int, ...]:
-        """The numbers of the states that change their sign where slip reverses."""
+        """The numbers of the states that change their sign when slip reverses."""
         return tuple(i for i, state in enumerate(self.states) if state.reverses)
 
     @property
@@ -164,7 +164,7 @@ class LawContract(Declared, ABC):
 
     @property
     def knots(self) -> tuple[float, ...]:
-        """The ascending places (m or m/s) at which one piece ends and the next begins: one fewer than `pieces`."""
+        """The ascending places (m or m/s) between consecutive pieces: one fewer than `pieces`."""
         return ()
 
     # ---- state ----------------------------------------------------------------------------------------------------------------

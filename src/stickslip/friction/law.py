@@ -1,4 +1,4 @@
-"""Define the base class of all friction laws, what laws of one family share, and the check of what a class states about itself.
+"""Define the base class of all friction laws, the common parts of families of laws, and the check of a law's own statements.
 
 Runs, proofs and searches for folds believe the statements of a law: its knots, its step at rest, and its range. Tests check those
 of the package's laws. Those of a user's class are compared with its formula, by samples, when the law is made.
@@ -46,8 +46,8 @@ def hull(*values: Any) -> tuple[Any, Any]:
 class RemembersSlip(FrictionLaw):
     """A law of slip that lets users choose from when slip is counted, by its field `memory`.
 
-    "all" counts slip from the start of the run, initial slip included. "since-arrest" counts slip from the last arrest, at which
-    the contact heals at once. The class attribute `counts` says which slip is counted: net slip with its sign, or the path.
+    "all" counts slip from the start of the run, initial slip included. "since-arrest" counts slip from the last arrest; the contact
+    heals at once when it is arrested. The class attribute `counts` says which slip is counted: net slip with its sign, or the path.
 
     An arrest is rest for a positive time: the contact can stay at rest under the friction that it has at that moment, before it
     heals. The counted slip is then set back to 0. If the healed strength is below the load, the contact slips again at once.
@@ -84,7 +84,7 @@ class SlipWeakening(RemembersSlip):
 
     @staticmethod
     def weakened(law: Any, u: Any, v: Any) -> Any:
-        """Return the constant mu of a piece in which weakening is complete."""
+        """Return the constant mu of the piece after complete weakening."""
         return law.dynamic + 0.0 * u
 
     @override
@@ -111,13 +111,13 @@ class Stribeck(FrictionLaw):
 # ---- the check of statements -----------------------------------------------------------------------------------------------
 
 RATES = np.append(0.0, np.geomspace(1e-9, 1e3, 73))
-"""Slip rates (m/s) at which every law is sampled, beside multiples of its own scales."""
+"""Every law is sampled at these slip rates (m/s), and at multiples of its own scales."""
 SLIPS = np.append(0.0, np.geomspace(1e-6, 1e2, 73))
-"""Slips (m) at which a law of slip is sampled, beside multiples of its own scales."""
+"""A law of slip is sampled at these slips (m), and at multiples of its own scales."""
 SOME = 12
 """Every such slip is sampled at all slip rates, and every such slip rate at all slips."""
 MULTIPLES = np.array([0.01, 0.03, 0.1, 0.2, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 5.0, 10.0, 30.0])
-"""Multiples of the scales of a law at which it is sampled."""
+"""A law is sampled at these multiples of its own scales."""
 SLACK = 1e-7
 """Relative difference between a statement and the formula that counts as rounding."""
 
@@ -237,14 +237,14 @@ def _beside(law: LawValues, variable: str) -> Floats:
 
 
 def _rates(law: LawValues) -> Floats:
-    """Return the slip rates (m/s) at which a law is sampled, ascending from 0."""
+    """Return the slip rates (m/s) for samples of a law, ascending from 0."""
     if not law.depends_on_rate and not law.states:
         return np.zeros(1)
     return np.unique(np.concatenate((RATES, np.outer(law.rate_scales, MULTIPLES).ravel(), _beside(law, "rate"))))
 
 
 def _slips(law: LawValues) -> Floats:
-    """Return the slips (m) at which a law is sampled; negative ones, too, if it counts net slip."""
+    """Return the slips (m) for samples of a law; negative ones, too, if it counts net slip."""
     if not law.depends_on_slip:
         return np.zeros(1)
     scales = [size if unit == "m" else 1.0 / size for unit, size in _sizes(law) if unit in ("m", "1/m")]

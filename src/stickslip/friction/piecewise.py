@@ -47,7 +47,7 @@ class PiecewiseLaw(FrictionLaw):
     coefficient_names: ClassVar[tuple[str, ...]] = _CUBIC
     """Parameters of the formula of every piece."""
     least_distance: ClassVar[float] = 1e-100
-    """Distance of two points (m or m/s) at which all coefficients are finite: the last one has its third power below it."""
+    """Least distance of two points (m or m/s) that keeps all coefficients finite: the last one is divided by its third power."""
 
     @property
     @abstractmethod
@@ -149,14 +149,14 @@ def note_percent(friction: Sequence[float] | NDArray[np.float64], where: str) ->
 
 
 MOST_CHANGES = 0.55
-"""Share of sign changes between neighbouring differences (no unit) above which points look noisy.
+"""Points look noisy if more than this share (no unit) of neighbouring differences change sign.
 
 It lies between 0.73 +- 0.07 (noise, 50 points) and 0.4 (a sine with five points in each wavelength).
 """
 FEWEST_REVERSALS = 5
-"""Number of turns of friction from rise to fall or back, from which noise matters."""
+"""Noise matters if friction turns from rise to fall, or back, at least this often."""
 SMALLEST = 1e-6
-"""Standard deviation (no unit) below which noise is ignored: no apparatus resolves it, and single precision rounds by more."""
+"""Noise with a smaller standard deviation (no unit) is ignored: no apparatus resolves it, and single precision rounds by more."""
 
 
 class Noise(NamedTuple):

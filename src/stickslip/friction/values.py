@@ -45,7 +45,7 @@ class LawValues(LawContract):
     # ---- the numbers in the formulas ----------------------------------------------------------------------------------------
 
     def parameters(self) -> tuple[str, ...]:
-        """Return the names of the numbers in the formulas, in the order in which compiled code receives their values."""
+        """Return the names of the numbers in the formulas, in the order of their values in compiled code."""
         return tuple(quantities_of(type(self)))
 
     def piece_values(self, i: int) -> tuple[float, ...]:
@@ -197,7 +197,7 @@ class LawValues(LawContract):
 
     @cached_property
     def variation(self) -> float:
-        """The finite size by which the friction coefficient changes (no unit).
+        """A finite size of the friction coefficient's changes (no unit).
 
         It is the upper minus the lower bound of `range`. For friction without an upper bound it is the change between slip rates
         0+ and 1 m/s, at slip 0.

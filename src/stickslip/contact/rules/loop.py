@@ -58,7 +58,7 @@ class Loop:
 def jumps_of(g: Resistance, stable: tuple[Branch, ...], table: SelectionTable, slowest: int) -> tuple[Jump, ...]:
     """Return every jump that the rule can make from stick and from each of the slowest branches that it keeps.
 
-    A change of branch at which the slip rate is continuous does not count as a jump.
+    A change of branch with a continuous slip rate does not count as a jump.
     """
     found: list[Jump] = []
     for i in range(-1, slowest):
@@ -100,7 +100,7 @@ def loop_of(g: Resistance, stable: tuple[Branch, ...], table: SelectionTable) ->
         levels.append(table.keep_from[walked[-1]])
         walked.append(table.descend(walked[-1], math.nextafter(levels[-1], -math.inf)))
     jumps = [_jump(g, stable, way, level) for way, level in zip(pairwise(walked), levels, strict=True)]
-    enclosed = math.fsum(_against(g, jump, level) for jump, level in zip(jumps, levels, strict=True))  # what cancels, cancels
+    enclosed = math.fsum(_against(g, jump, level) for jump, level in zip(jumps, levels, strict=True))  # areas cancel exactly
     return Loop(tuple(walked), tuple(jump for jump in jumps if jump.rate_before != jump.rate_after), enclosed)
 
 

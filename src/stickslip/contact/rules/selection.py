@@ -1,12 +1,13 @@
 """Selection rules as data: the branch that the slip rate takes if several solve the contact equation.
 
-A rule receives the branches of one resistance and returns a table of the loads at which each of them is kept; the engine only
-reads this table. Source: Campillo et al. 1996, section 3 (perfect delay: paths ODABE and EBCDO of Fig. 4; Maxwell: equal areas).
+A rule receives the branches of one resistance and returns a table with the interval of loads that keeps each of them; the engine
+only reads this table.
+Source: Campillo et al. 1996, section 3 (perfect delay: paths ODABE and EBCDO of Fig. 4; Maxwell: equal areas).
 
 Maxwell's rule takes at each load the stable slip rate with the smallest phi(s) = integral from 0 to s of (g - load) ds. Source:
 Campillo et al. 1996, section 3. Stick has phi = 0. The faster a branch, the faster its phi falls as the load grows. Therefore each
-branch has the smallest phi on a single interval of loads, and the change between two neighbours is at the load at which the areas
-between g and the load line are equal. Loads are excesses over the static strength, in Pa.
+branch has the smallest phi on a single interval of loads. Two neighbours change places at the load that makes the areas between g
+and the load line equal. Loads are excesses over the static strength, in Pa.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ _STICK = Branch(0.0, 0.0, -math.inf, 0.0)
 
 
 def best_branches(g: Resistance, stable: tuple[Branch, ...]) -> dict[int, tuple[float, float]]:
-    """Return the interval of excess (Pa) on which each branch has the smallest phi, keyed by its index (-1: stick).
+    """Return the interval of excess (Pa) where each branch has the smallest phi, keyed by its index (-1: stick).
 
     Branches that never have the smallest phi are left out.
     """
@@ -65,7 +66,7 @@ def _winner(g: Resistance, candidates: dict[int, Branch], excess: float) -> int:
 
 
 def equal_area_level(g: Resistance, slower: Branch, faster: Branch) -> float | None:
-    """Return the excess (Pa) at which two branches have the same phi, to rounding; None if there is no such excess."""
+    """Return the excess (Pa) that gives two branches the same phi, to rounding; None if there is no such excess."""
     low, high = max(slower.excess_from, faster.excess_from), min(slower.excess_to, faster.excess_to)
     if not low < high or _gap(g, slower, faster, low)[0] <= 0.0 or _gap(g, slower, faster, high)[0] >= 0.0:
         return None
@@ -96,10 +97,10 @@ Branches = tuple[Branch, ...]
 
 
 def levels(rule: str, start: Floats, end: Floats) -> tuple[Floats, Floats, Floats]:
-    """Return up to which load a rule keeps stick, and from and up to which load each branch, for any number of contacts.
+    """Return the largest load of stick, and the smallest and largest load of each branch under a rule, for any number of contacts.
 
-    A branch exists at loads from `start` to `end`; branches are along the last axis, slowest first. Where a contact has fewer of
-    them than others, the rest start at inf and end at -inf.
+    A branch exists at loads from `start` to `end`; branches are along the last axis, slowest first. If a contact has fewer branches
+    than others, the rest start at inf and end at -inf.
     """
     stick_to, last = np.zeros(start.shape[:-1]), start.shape[-1]
     if rule == "minimal":
@@ -165,8 +166,8 @@ def rule_of(problem: Problem) -> SelectionRule:
 def selection_table(problem: Problem, law_slip: float | None = None) -> tuple[Branches, SelectionTable]:
     """Return the branches of the problem's contact at a law slip (m; default: the initial one), and the table of its rule.
 
-    Raises InputError for a block, which has no contact equation, for a rule whose table cannot be followed, and for loads at which
-    not all branches are known.
+    Raises InputError for a block, which has no contact equation, for a rule whose table cannot be followed, and if the load may
+    reach values where not all branches are known.
     """
     g = resistance(problem, law_slip)
     stable = branches_of(g)
@@ -205,11 +206,11 @@ def table_of(problem: Problem, g: Resistance, stable: Branches) -> SelectionTabl
 
 
 def flaw(table: SelectionTable, stable: Branches) -> str:
-    """Return a description of what is wrong with a table, "" if nothing is.
+    """Return a description of the fault of a table, "" if it has none.
 
-    Stick cannot be kept beyond the static strength, nor a branch at loads at which it does not exist. At each load at which a
-    branch is left, the branch taken next must be kept; otherwise the contact would have no branch to take, or would switch back
-    and forth.
+    Stick cannot be kept beyond the static strength, nor a branch at loads where it does not exist. When the load leaves the
+    interval of a branch, the branch taken next must be kept; otherwise the contact would have no branch to take, or would switch
+    back and forth.
     """
     if not isinstance(table, SelectionTable):
         return f"it must return a SelectionTable, got {type(table).__name__}"
@@ -233,7 +234,7 @@ def _dead_end(branch: int, up: bool) -> str:
 
 
 def _leads_on(table: SelectionTable, branch: int, up: bool) -> bool:
-    """Return True if at all loads above (or below) those at which a branch is kept, the branch that is taken next is kept."""
+    """Return True if, at all loads above (or below) the interval of a branch, the branch that is taken next is kept."""
     if up:
         level = table.stick_to if branch < 0 else table.keep_to[branch]
         for low, high in zip(table.keep_from[branch + 1 :], table.keep_to[branch + 1 :], strict=True):

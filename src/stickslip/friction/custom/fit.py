@@ -21,21 +21,21 @@ from stickslip.friction.custom.points import Points
 from stickslip.friction.law import FrictionLaw
 
 EXACT = 1e-9
-"""Residual (no unit) below which points lie on a law but for the errors of calculation."""
+"""With a residual below this (no unit), points lie on a law up to the errors of calculation."""
 AT_LIMIT = 1e-9
-"""Distance from its limit, relative to the change of a parameter that the points would notice, at which it is at the limit."""
+"""A parameter is at its limit if it is closer than this share of the change that the points would notice."""
 
 
 @dataclass(frozen=True, eq=False)
 class Fit(NamesAttributes):
     """The result of `fit`: the law that fits best, and how well the points determine it.
 
-    `points` have the variables on which the law depends, and `residual` is their standard deviation about the law (no unit), with
-    the number of fitted parameters taken into account. `values` are the parameters in SI by their names in scenario files,
-    `uncertainty` their standard uncertainties, infinite where the points do not determine one, and `correlation` is in the order of
-    these. `bic` is the Bayesian information criterion (Schwarz 1978): of several laws for the same points, the law with the
-    smallest value fits best for its number of parameters; a difference above 10 is decisive. `notes` are sentences on what the
-    points do not determine, and on trends that the law misses.
+    `points` have the variables of the law, and `residual` is their standard deviation about the law (no unit), corrected for the
+    number of fitted parameters. `values` are the parameters in SI by their names in scenario files. `uncertainty` are their
+    standard uncertainties, infinite if the points do not determine one, and `correlation` has the same order. `bic` is the Bayesian
+    information criterion (Schwarz 1978): of several laws for the same points, the law with the smallest value fits best for its
+    number of parameters; a difference above 10 is decisive. `notes` are sentences on undetermined parameters, and on trends that
+    the law misses.
     """
 
     law: FrictionLaw
@@ -61,7 +61,7 @@ class Fit(NamesAttributes):
 
     @property
     def title(self) -> str:
-        """What was done, in one line."""
+        """One line: which law was fitted to which points."""
         return f"{self.law.kind} fitted to {len(self.points)} points along {' and '.join(self.points.has)}"
 
     @property
@@ -89,12 +89,12 @@ def fit(points: Any, law: Any, *, start: Mapping[str, Any] | None = None, fixed:
     Parameters
     ----------
     points : Points, str, Path, DataFrame or mapping
-        The points; `Points.read` says what is understood.
+        The points, in a form that `Points.read` understands.
     law : str, FrictionLaw or class
         The law: its name in scenario files, such as "hyperbolic-rate"; the names of a law of slip and a law of slip rate, joined by
-        "+" or "*"; or a law with parameters, such as `FromExpression`, at whose values the search begins where points give no hint.
+        "+" or "*"; or a law with parameters, such as `FromExpression`: its values are the start if points give no better hint.
     start : mapping, optional
-        Values of parameters at which the search begins, in SI or as text with a unit. By default they follow from the points.
+        Starting values of parameters, in SI or as text with a unit. By default they follow from the points.
     fixed : mapping, optional
         Values of known parameters, which are not fitted.
 
@@ -131,8 +131,8 @@ def fit(points: Any, law: Any, *, start: Mapping[str, Any] | None = None, fixed:
 def fit_each(points: Any) -> list[Fit]:
     """Fit every law that suits the points, and return the fits, best first by `Fit.bic`.
 
-    These are the laws with parameters and without a state that depend on nothing but what the points have; `Points.read` says what
-    is understood as points. Raises InputError if they cannot be used.
+    These are the laws with parameters and without a state that depend only on variables of the points; for the forms of points see
+    `Points.read`. Raises InputError if they cannot be used.
     """
     from stickslip.friction import LAWS
 
@@ -146,7 +146,7 @@ def fit_each(points: Any) -> list[Fit]:
 
 
 def _points_for(law: FrictionLaw, points: Points) -> Points:
-    """Return the points with the variables on which a law depends. Raises InputError if they lack one."""
+    """Return the points with the variables of a law. Raises InputError if they lack one."""
     needs = [name for name, needed in (("slip", law.depends_on_slip), ("slip_rate", law.depends_on_rate)) if needed]
     for name in needs:
         if name not in points.has:
@@ -157,7 +157,7 @@ def _points_for(law: FrictionLaw, points: Points) -> Points:
 
 
 def _result(law: FrictionLaw, points: Points, values: dict[str, float], total: float, *, free: list[str], whole: list[str]) -> Fit:
-    """Return the fit with all that follows from its parameters. Raises InputError if they are no law."""
+    """Return the fit with the results that follow from its parameters. Raises InputError if they are no law."""
     known, n, variables = leaves(law), len(points), points.variables
     variance = total / max(n - len(free) - len(whole), 1)
     by = slopes(rebuilt(law, values, checked=False), free, *variables)
@@ -185,7 +185,7 @@ def _result(law: FrictionLaw, points: Points, values: dict[str, float], total: f
 
 
 def _at_limit(leaf: Leaf, value: float, slopes_by: Floats, variance: float) -> bool:
-    """Return True if a parameter that may be 0 but not less is there, to what the points would notice."""
+    """Return True if a parameter with the lower limit 0 is there, as closely as the points would notice."""
     least = leaf.declared.at_least
     size = float(np.linalg.norm(slopes_by))
     if least is None or leaf.is_scale or size == 0.0:

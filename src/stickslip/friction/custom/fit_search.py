@@ -1,4 +1,4 @@
-"""Search for the parameters of a law: which can be fitted, with what values a search begins, and the least squares."""
+"""Search for the parameters of a law: choose the parameters to fit and their starting values, and minimise the sum of squares."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from stickslip.friction.custom.points import Points
 from stickslip.friction.law import FrictionLaw
 
 STEP = 1e-100
-"""Imaginary step by which a formula is differentiated; it loses no digit (Squire & Trapp 1998, SIAM Rev. 40, 110)."""
+"""Imaginary step for derivatives of a formula; it loses no digit (Squire & Trapp 1998, SIAM Rev. 40, 110)."""
 
 
 class Leaf(NamedTuple):
@@ -45,7 +45,7 @@ class Leaf(NamedTuple):
 
 
 def template(law: Any) -> FrictionLaw:
-    """Return the law whose parameters are to be fitted, with the values at which a search may begin.
+    """Return the law to fit, with values where a search may begin.
 
     `law` is a law, the class of one, or its name in scenario files; two names may be joined by + or *. Raises InputError for
     anything else, and for laws that no points determine.
@@ -156,17 +156,17 @@ def numbers_of(given: Mapping[str, Any] | None, known: Mapping[str, Leaf], what:
 PER_SCALE = 9
 """Number of starts along a slip or a slip rate of the law, evenly spaced in the logarithm over the points and a factor 3 beyond."""
 MOST_WAVES = 100
-"""Largest number of half waves in the range of the points with which a search begins."""
+"""Searches begin with at most this many half waves in the range of the points."""
 MOST_STARTS = 600
 """Largest number of starts; of more, every second, third and so on is taken."""
 FARTHEST = 1e6
-"""Factor by which a slip or a slip rate of the law may lie beyond all starts; farther out it has no effect on the points."""
+"""A slip or a slip rate of the law may be beyond all starts by this factor; farther out it has no effect on the points."""
 FOLLOWED = 4
-"""Number of starts, the best ones, from which the search is carried to its end."""
+"""The search is carried to its end from this many of the best starts."""
 FEW = 2000
-"""Number of points with which starts are compared."""
+"""Starts are compared on this many points."""
 WHOLE = (1.0, 2.0, 3.0, 4.0)
-"""Exponents that are tried."""
+"""Exponents to try."""
 
 
 class _Model:
@@ -209,9 +209,9 @@ class _Model:
 
 
 def search(law: FrictionLaw, free: list[str], points: Points, start: Mapping[str, float]) -> tuple[float, dict[str, float]]:
-    """Return the smallest sum of squares that was found, and the free parameters there.
+    """Return the smallest sum of squares found, and the free parameters there.
 
-    `start` has values of some free parameters with which all searches begin; the others begin at values that follow from points.
+    `start` has the starting values of some free parameters for all searches; those of the others follow from the points.
     Raises InputError if the law is not finite at any start.
     """
     every = slice(None, None, -(-len(points) // FEW))
@@ -245,7 +245,7 @@ def _with_linear_part(model: _Model, searched: Floats) -> tuple[float, Floats]:
 
 
 def _starts(model: _Model, given: Mapping[str, float]) -> Iterator[Floats]:
-    """Yield searched numbers at which searches begin: all combinations of sizes that slips and slip rates of the law may have."""
+    """Yield the starts of searches, as searched numbers: all combinations of possible sizes of the law's slips and slip rates."""
     choices = [[given[name]] if name in given else sizes for name, sizes in zip(model.free, model.sizes, strict=True)]
     combined = list(product(*choices))
     for one in combined[:: -(-len(combined) // MOST_STARTS)]:
@@ -253,7 +253,7 @@ def _starts(model: _Model, given: Mapping[str, float]) -> Iterator[Floats]:
 
 
 def _ends(leaf: Leaf, sizes: Sequence[float]) -> tuple[float, float]:
-    """Return the smallest and the largest value of a parameter for which a search may begin with some sizes."""
+    """Return the smallest and the largest value of a parameter in a search that begins with some sizes."""
     if leaf.is_scale:
         return min(sizes) / FARTHEST, max(sizes) * FARTHEST
     least = leaf.declared.at_least
@@ -261,7 +261,7 @@ def _ends(leaf: Leaf, sizes: Sequence[float]) -> tuple[float, float]:
 
 
 def _sizes(leaf: Leaf, points: Points) -> Sequence[float]:
-    """Return values at which a search for a parameter may begin, by its unit."""
+    """Return starting values for a parameter, by its unit."""
     slip, rate = points.variables
     unit = leaf.declared.unit
     if unit == "1":

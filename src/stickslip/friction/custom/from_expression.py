@@ -26,13 +26,13 @@ from stickslip.friction.law import RemembersSlip
 MOST_PARAMETERS = 50
 """Largest number of parameters of an expression, which comes from an untrusted scenario file."""
 AtReversal = Literal["keeps-sign", "changes-sign", "first-changes-sign"]
-"""What states do where slip reverses; in the last case the first of two changes its sign, and the second keeps it."""
+"""Behaviour of states when slip reverses; in the last case the first of two changes its sign, and the second keeps it."""
 STATE_UNITS = {"s": "s", "m": "m", "m/s": "m s^-1", "1/s": "s^-1", "1/m": "m^-1"}
 """Units that a state often has, as they are typed and as `si_base` writes them."""
 LONGEST_NAME = 40
 """Largest number of characters in the name of a parameter, so that messages and tables stay readable."""
 UNKNOWN_VARIATION = 0.1
-"""Size by which friction is taken to change (no unit) if the samples do not tell."""
+"""Assumed size of friction's changes (no unit) if the samples do not show it."""
 
 
 @dataclass(frozen=True)
@@ -46,10 +46,10 @@ class FromExpression(RemembersSlip):
     as soon as the contact slips.
 
     The expression must not be negative and must have all derivatives, also where slip begins, at v = 0. Both are checked on
-    samples up to 10 m/s at the slip at which a problem starts. A run ends where it reaches a slip at which friction is negative.
+    samples up to 10 m/s at the initial slip of a problem. A run ends if it reaches a slip with negative friction.
     Units are checked if at least one value has a unit; a value without one is then a pure number.
 
-    A law may have a state of its own, whose rate of change `evolution` gives: `FromExpression("mu_0 + a*log(1 + v/v_0) + z",
+    A law may have a state of its own; `evolution` gives its rate of change: `FromExpression("mu_0 + a*log(1 + v/v_0) + z",
     {"mu_0": 0.6, "a": 0.01, "v_0": "1 um/s", "b": 0.02, "tau": "1 s", "d": "10 um"}, evolution="dz/dt = (b - z)/tau - v*z/d")`. The
     state changes at rest, too, where v = 0. Friction must be finite at state 0. If it is zero at v = 0 in every state, or if the
     state changes its sign at reversal, the contact never sticks. A law may have two states: a semicolon separates their equations
@@ -122,7 +122,7 @@ class FromExpression(RemembersSlip):
                 raise InputError(f"FromExpression: parameters: {name} does not occur in the expression; {hint}")
 
     def _check_state(self) -> None:
-        """Check what a law with a state needs, and what only such a law may have."""
+        """Check the fields that a law with a state needs, and those that only such a law may have."""
         needless = "state_unit" if self.state_unit else "at_reversal" if self.at_reversal != "keeps-sign" else ""
         if needless and not self.evolution:
             raise InputError(f"FromExpression: {needless}: the law has no state: give its rate of change as evolution")
@@ -132,7 +132,7 @@ class FromExpression(RemembersSlip):
             raise InputError("FromExpression: static: a law with a state has the static coefficient of its expression at v = 0")
 
     def _check_formula(self, which: Literal["expression", "evolution"], number: int = 0) -> None:
-        """Check units, exponents and samples of a formula, in which states are parameters like any other."""
+        """Check units, exponents and samples of a formula; states are parameters like any other there."""
         names, is_change = tuple(self._equations), which == "evolution"
         units = {value.name: value.unit for value in self.values} | dict(zip(names, self._units, strict=True))
         text = tuple(self._equations.values())[number] if is_change else self.expression
@@ -264,7 +264,7 @@ class FromExpression(RemembersSlip):
 
     @cached_property
     def sticks(self) -> bool:  # type: ignore[override] # of the instance here
-        """False for a law with a state under which friction passes smoothly through v = 0."""
+        """False for a law with a state if friction passes smoothly through v = 0."""
         if not self.evolution:
             return True
         with np.errstate(all="ignore"):
@@ -280,7 +280,7 @@ class FromExpression(RemembersSlip):
     def steady_state(self, v: ArrayLike) -> NDArray[np.float64] | None:
         """Return the state of steady sliding at slip rates v >= 0 (m/s) and slip 0; None where none is found.
 
-        It is the state nearest 0 to which the state returns after a disturbance, between 1e-18 and 1e18 in magnitude.
+        It is the stable steady state nearest 0: a disturbed state returns to it. The search covers magnitudes from 1e-18 to 1e18.
         """
         if not self.evolution:
             return None
@@ -315,7 +315,7 @@ class FromExpression(RemembersSlip):
     @property
     @override
     def variation(self) -> float:
-        """The finite size by which friction changes (no unit).
+        """A finite size of friction's changes (no unit).
 
         If the bounds are not finite, it is the range of the values at slips up to 10 m and slip rates up to 10 m/s, as far as they
         are numbers.

@@ -1,4 +1,4 @@
-"""Make a friction law from what users give: a law, a text, or a Python function, which is called once with symbols and recorded."""
+"""Make a friction law from a law, a text, or a Python function, which is called once with symbols and recorded."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from stickslip.friction.formula.text import UNDECLARED, to_text
 from stickslip.friction.law import FrictionLaw
 
 VARIABLES = {"u": SLIP, "v": RATE}
-"""Symbols of the arguments of which friction may be a function."""
+"""Symbols of the possible arguments of friction."""
 OPTIONS = ("static", "counts", "memory", "state", "state_unit", "at_reversal")
 """Options of the law itself, given together with the values of the function's parameters."""
 NUMPY = "sin, cos, exp, log, sqrt, tanh, arcsinh, expm1, log1p"

@@ -4,7 +4,7 @@ The spline f on x in [0, 1] minimises mean((y - f(x))^2) + strength * integral o
 the natural cubic spline through its own values at the places of the points, so that these are all that has to be found. One
 singular value decomposition gives them for all strengths (Demmler & Reinsch 1975, Numer. Math. 24, 375).
 `scipy.interpolate.make_smoothing_spline` is the same spline, but gives neither the strength that it chooses nor degrees of freedom,
-and loses all digits at the strengths at which the curve is nearly a straight line.
+and loses all digits if the curve is nearly a straight line.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from stickslip.foundation.arrays import Floats
 
 BINS = 256
-"""Number of equal parts of [0, 1] in each of which points are replaced by their mean: a curve does not follow shorter features."""
+"""Points in each of this many equal parts of [0, 1] are replaced by their mean: a curve does not follow shorter features."""
 WEAKEST, STRONGEST = 1e-14, 1e3
 """Range of strengths among which cross-validation chooses: from interpolation in rounding to a straight line."""
 INFLATION = 1.4
@@ -95,7 +95,7 @@ class PenalisedSpline:
 
 
 def _parts(places: Floats) -> NDArray[np.intp]:
-    """Return the part of [0, 1] in which each place lies, counted over the parts that are not empty.
+    """Return the part of [0, 1] that holds each place, counted over the parts that are not empty.
 
     Two neighbouring parts whose mean places are too close to each other, because both lie at their common end, are one.
     """

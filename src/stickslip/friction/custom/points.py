@@ -23,7 +23,7 @@ from stickslip.friction.law import RemembersSlip
 from stickslip.friction.piecewise import PiecewiseLaw, note_percent
 
 Along = Literal["slip", "slip_rate"]
-"""The two variables on which friction can depend, as columns of files are called."""
+"""The two possible variables of friction, by the names of columns in files."""
 
 LARGEST_FILE = 100_000_000
 """Size (bytes) of the largest file of points that is read."""
@@ -265,7 +265,7 @@ def _read(source: Any, along: str | None) -> tuple[Any, Any, Any]:
 
 
 def monotone_slopes(places: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return slopes at the points with which Hermite cubics preserve every rise, fall and extremum of the data.
+    """Return slopes at the points so that Hermite cubics preserve every rise, fall and extremum of the data.
 
     At an inner point the slope is the weighted harmonic mean of the two secants, or 0 if they differ in sign or one is 0 (Fritsch
     & Butland 1984, SIAM J. Sci. Stat. Comput. 5, 300). At the two ends it comes from a three-point formula, limited to preserve

@@ -18,17 +18,17 @@ from stickslip.friction.custom.points import FromTable, Points
 from stickslip.friction.piecewise import SMALLEST, reversals
 
 SCALES = ("auto", "linear", "log")
-"""Scales of slip or slip rate in which points can be smoothed."""
+"""Scales of slip or slip rate for smoothing."""
 LARGEST = 1e6
 """Largest strength: it makes a straight line of any points."""
 CLOSE = 0.3
-"""Degrees of freedom, as a share of the number of points, above which a curve follows almost every point."""
+"""A curve follows almost every point if its degrees of freedom exceed this share of the number of points."""
 DIGITS = 12
 """Number of decimals of the law, so that rounding makes no reversals."""
 FINEST = 1025
-"""Largest number of points by which the law follows the smooth curve."""
+"""The law follows the smooth curve with at most this many points."""
 FINE = 4 * (FINEST - 1) + 1
-"""Number of points at which the smooth curve is compared with the law."""
+"""Number of points for the comparison of the smooth curve with the law."""
 FOLLOWS = 0.01
 """Largest distance between the law and the smooth curve, as a share of the residual."""
 
@@ -74,7 +74,7 @@ class Smooth(NamesAttributes):
 
     @property
     def notes(self) -> list[str]:
-        """Sentences on what the result does not say."""
+        """Sentences on the limits of the result."""
         found = ["a reversal that survives depends on the strength: try a stronger and a weaker one"] if self.reversals[1] else []
         if self.freedom > CLOSE * len(self.points) and self.residual > SMALLEST:
             found.append("the curve follows almost every point: the noise of neighbouring points may not be independent")
@@ -138,16 +138,16 @@ def smooth(
     points : Points, str, Path, DataFrame or mapping
         The points; `Points.read` says what is understood. They may be in any order, and repeat a slip or a slip rate.
     strength : float or "auto"
-        Strength of smoothing: the weight of the mean squared second derivative of the curve, along an axis on which the points
-        reach from 0 to 1, beside the mean squared difference from the points. By default cross-validation chooses it.
+        Strength of smoothing: the weight of the curve's mean squared second derivative (along an axis that is scaled so that the
+        points reach from 0 to 1) relative to the mean squared difference from the points. By default cross-validation chooses it.
     monotone : bool
         If True, the law rises throughout or falls throughout, whichever the points do on the whole: it follows the curve of this
         kind that is closest to the smooth curve.
     along : {"slip", "slip_rate"}, optional
         The variable of the law, for points that have both.
     scale : {"auto", "linear", "log"}
-        Scale along which the curve is smooth: slip or slip rate x itself, or ln(1 + x / smallest x above 0). By default the scale
-        on which the curve predicts left-out points better.
+        Scale for smoothing: slip or slip rate x itself, or ln(1 + x / smallest x above 0). By default the scale that predicts
+        left-out points better.
 
     Raises
     ------
@@ -186,7 +186,7 @@ def _checked(strength: Any) -> float | None:
 
 
 def _axes(points: Points, scale: str) -> list[_Axis]:
-    """Return the axes on which points may be smoothed. Raises InputError for points and scales that do not go together."""
+    """Return the possible axes for smoothing. Raises InputError if points and scale do not match."""
     places = points.places
     if scale not in SCALES:
         raise InputError(f"smooth: scale {ascii(scale)[:40]} is unknown; {nearest(str(scale), SCALES)}")

@@ -25,16 +25,16 @@ _EQUATION = re.compile(r"\s*d\s*([A-Za-z_]\w{0,39})\s*/\s*dt\s*=(?!=)(.*)", re.D
 _NEXT = re.compile(r",\s*d\s*[A-Za-z_]\w*\s*/\s*dt\s*=")
 """The beginning of a second equation after a comma."""
 SIZES = np.geomspace(1e-18, 1e18, 145)
-"""Magnitudes between which a steady state is looked for, in the unit of the state."""
+"""A steady state is sought between these magnitudes, in the unit of the state."""
 STATES = np.concatenate((-SIZES[::-1], [0.0], SIZES))
 ROUNDS, SETTLED = 200, 1e-14
-"""Largest number of rounds in which two states settle, and the relative change of both (1) with which they have."""
+"""Two states must settle within this many rounds; they have settled when neither changes by more than this (relative, 1)."""
 HALVINGS = 200
-"""Number of halvings after which an interval between two floats cannot be smaller."""
+"""After this many halvings an interval between two floats cannot be smaller."""
 
 
 def split(text: str) -> tuple[str, ...]:
-    """Return the parts of a text, one for each state, between which there are semicolons or line breaks."""
+    """Return the parts of a text, one for each state, separated by semicolons or line breaks."""
     return tuple(part.strip() for part in re.split(r"[;\n]", text) if part.strip())
 
 
@@ -59,7 +59,7 @@ def read_evolution(text: str, taken: tuple[str, ...]) -> dict[str, str]:
 def steady(changes: Sequence[Callable[..., Floats]]) -> tuple[float, ...] | None:
     """Return the steady values of one or two states, whose rates of change are functions of all states, or None.
 
-    Each state in turn takes the value at which it is steady while the other is held, until nothing changes any more.
+    Each state in turn takes its steady value while the other is held, until nothing changes any more.
     """
     states = [0.0] * len(changes)
     for _ in range(ROUNDS):
@@ -80,9 +80,9 @@ def _with_others(change: Callable[..., Floats], states: list[float], n: int, one
 
 
 def _steady(change: Callable[[Floats], Floats]) -> float | None:
-    """Return the state nearest 0 at which the rate of change of the state passes through zero as the state grows, or None.
+    """Return the stable steady state nearest 0, or None: its rate of change falls through zero as the state grows.
 
-    The state returns there after a disturbance. Where the rate of change is zero at every state, that is 0.
+    The state returns there after a disturbance. If the rate of change is zero at every state, the result is 0.
     """
     with np.errstate(all="ignore"):
         sign = np.sign(np.broadcast_to(change(STATES), STATES.shape))
@@ -104,9 +104,9 @@ def _steady(change: Callable[[Floats], Floats]) -> float | None:
 
 
 LARGEST_RATE = 10.0
-"""Largest slip rate (m/s) at which a formula is checked: earthquakes and machines hardly exceed it."""
+"""Formulas are checked up to this slip rate (m/s): earthquakes and machines hardly exceed it."""
 TOLERANCE = 1e-12
-"""Size of a negative friction coefficient that still counts as rounding of zero (no unit)."""
+"""A friction coefficient below zero by no more than this (no unit) counts as rounding of zero."""
 
 
 def check_samples(
@@ -156,7 +156,7 @@ def samples(largest: float) -> NDArray[np.float64]:
 def _check_constants(found: Mapping[Expression, Any], states: Sequence[str]) -> None:
     """Raise InputError for a part without u and v that is not finite, such as 0/0, even if the formula's value is finite.
 
-    Parts that depend on states have the values of the state 0, from which a law must be able to start.
+    Parts that depend on states have their values at state 0, because a law must be able to start there.
     """
     for node, value in found.items():
         if np.ndim(value) == 0 and not np.isfinite(value):

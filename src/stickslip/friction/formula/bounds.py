@@ -119,10 +119,10 @@ def bends_one_way(tree: Expression, numbers: Mapping[str, Any], slip: Interval) 
 def on_discs(tree: Expression, numbers: Mapping[str, ArrayLike], variables: Mapping[Expression, Disc]) -> Disc:
     """Return a formula on the discs of its variables, which broadcast; `numbers` holds the law's parameters by name.
 
-    A disc of complex numbers lies around a real centre. That of a node contains every value that it takes for arguments in their
-    own discs, the rounding of this evaluation included. With radii of next to nothing it is the formula at a point, and how far
-    rounding may have moved it; with the radii of a step it bounds the formula around all of it. A disc on which an operation has no
-    analytic continuation gets an infinite radius, or one that is not a number. Source: Rump 2010, Acta Numerica 19.
+    A disc of complex numbers lies around a real centre. The disc of a node contains every value that the node takes for arguments
+    in their own discs, the rounding of this evaluation included. With tiny radii it is the formula at a point, with a bound on its
+    rounding; with the radii of a step it bounds the formula around all of the step. If an operation has no analytic continuation on
+    a disc, the radius is infinite or not a number. Source: Rump 2010, Acta Numerica 19.
     """
     found = dict(variables)
     with np.errstate(all="ignore"):

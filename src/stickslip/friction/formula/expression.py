@@ -2,7 +2,7 @@
 
 A law states its formula once, with ordinary operators and the functions of `functions`. Called with numbers or arrays, the
 formula returns a number or an array. Called with the symbols `SLIP`, `RATE`, `STATE` and `Parameter`, it returns an `Expression`
-tree, from which `stickslip.engine.formula_code.taylor_series` generates compiled code. No text is ever evaluated as Python here.
+tree, and `stickslip.engine.formula_code.taylor_series` turns the tree into compiled code. No text is ever evaluated as Python here.
 """
 
 from __future__ import annotations
@@ -152,7 +152,7 @@ class Magnitude:
 
 
 def instead(*parts: Any) -> str:
-    """Return the laws to use in place of a formula with a kink, by the variable on which the given parts of it depend."""
+    """Return the laws to use instead of a formula with a kink, for the variables of the given parts of it."""
     nodes = [part for part in parts if isinstance(part, Expression)]
     found = {variable.name for variable in (SLIP, RATE) for node in nodes if depends_on(node, variable)}
     laws = {

@@ -1,4 +1,4 @@
-"""Read a formula tree from text, check its units, and write it as text from which the same tree is read.
+"""Read a formula tree from text, check its units, and write it as text that reads back as the same tree.
 
 It is read by a whitelist over Python's syntax tree; no text is ever evaluated. Allowed are numbers, the variables u (slip, m) and v
 (slip rate, m/s), pi, declared parameters, + - * /, ** with an exponent that does not depend on u or v, and the functions in

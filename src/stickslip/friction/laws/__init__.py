@@ -1,1 +1,1 @@
-"""Hold the built-in friction laws, by what friction depends on; `LAWS` in `stickslip.friction` lists them."""
+"""Hold the built-in friction laws, grouped by the variables of friction; `LAWS` in `stickslip.friction` lists them."""

@@ -26,7 +26,7 @@ MAKES_LAWS = "FromFunction makes one of a function, FromExpression of a text"
 
 @dataclass(frozen=True)
 class LawOfParts(FrictionLaw):
-    """A law with other laws as parts, at most one of which has knots.
+    """A law with other laws as parts; at most one of them has knots.
 
     The formulas know a parameter of a part by the name of its field and its own name, such as "rate_alpha", so that names of two
     parts cannot collide.

@@ -20,7 +20,7 @@ from stickslip.friction.piecewise import PiecewiseLinearLaw
 class ExponentialSlipWeakening(SlipWeakening):
     """mu(d) = dynamic + (static - dynamic) exp(-d / distance), with d the slip path.
 
-    The slip-weakening distance D_w of the source, at which 95 % of the decrease is complete, is `distance` times ln 20.
+    The slip-weakening distance D_w of the source is the slip at 95 % of the decrease: `distance` times ln 20.
     """
 
     kind = "exponential-slip-weakening"

@@ -188,7 +188,7 @@ class TwoStateRateAndState(DirectEffect):
         return np.asarray(np.exp(w) * self._renewal(np.ndim(w)))
 
     def _renewal(self, axes: int) -> NDArray[np.float64]:
-        """Return the times L_i / rate (s) as an array of so many axes, the first of which counts the states."""
+        """Return the times L_i / rate (s) as an array with `axes` axes; the first counts the states."""
         return np.reshape([self.distance / self.rate, self.second_distance / self.rate], (2,) + (1,) * (axes - 1))
 
     @override

@@ -1,4 +1,4 @@
-"""The operations of which formulas consist: one record each, and nothing else in the package knows them by name."""
+"""The operations in formulas: one record each, and nothing else in the package knows them by name."""
 
 from __future__ import annotations
 

@@ -35,7 +35,7 @@ from stickslip.friction.formula.operations.operation import (
 from stickslip.friction.formula.operations.sets import Disc, known, multiplied, squared, unless
 
 MOST_PARTS = 3
-"""Largest number of terms in which a linear combination is taken apart (see `Operation.parts`): longer sums are added as a tree."""
+"""A linear combination of at most this many terms is taken apart (see `Operation.parts`); longer sums are added as a tree."""
 
 # ---- sums and differences -----------------------------------------------------------------------------------------------------
 
@@ -50,7 +50,7 @@ def _same(node: Expression, a: Dimension, b: Dimension) -> Dimension:
 
 
 def _apart(a: Disc, b: Disc) -> Any:
-    """Return a lower bound of a sum or difference one of whose terms is the larger one everywhere."""
+    """Return a lower bound on the magnitude of a sum or difference if one of its terms is the larger one everywhere."""
     return np.maximum(a.least - b.most, b.least - a.most)
 
 

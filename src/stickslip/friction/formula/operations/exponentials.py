@@ -25,10 +25,10 @@ from stickslip.friction.formula.operations.operation import (
 from stickslip.friction.formula.operations.sets import OF_FUNCTION, Disc, growing
 
 STAYS_LARGE = LARGEST_EXPONENT - 10.0
-"""Exponent that a harmless overflow must not fall below while it counts as constant: lower than where it begins to count, so that
-a step may end there."""
+"""A harmless overflow counts as constant as long as its exponent stays above this. It begins to count at a larger exponent, so that
+a step may end in between."""
 KNOWN = 700.0
-"""Exponent (1) beyond which nothing is known of exp on a disc but that it is larger than e^700, enough below a fraction bar."""
+"""For exponents above this (1), exp on a disc is only known to be larger than e^700, which is enough below a fraction bar."""
 
 
 def exp_of(node: Expression) -> Expression:

@@ -70,7 +70,7 @@ class Levels(Protocol):
         """Return True if a node is 0 for any parameters at the reference point."""
 
     def largest_exponent(self, node: Expression) -> float:
-        """Return the exponent beyond which an exp node no longer grows."""
+        """Return the largest exponent of an exp node; beyond it, exp no longer grows."""
 
     def saturates(self, node: Expression) -> bool:
         """Return True for an exp that counts as a constant where it is huge."""
@@ -92,7 +92,7 @@ class SeriesWriter(Levels, Protocol):
         """Return True for an argument whose weights come straight from the slip rate."""
 
     def parts(self, node: Expression) -> dict[Expression, str]:
-        """Return the nodes of which a node is a linear combination, but for a constant, with their factors as texts."""
+        """Return a node as a linear combination of others, up to a constant: these nodes with their factors as texts."""
 
 
 class BallsWriter(Protocol):
@@ -126,7 +126,7 @@ class BallsWriter(Protocol):
 
 @dataclass(frozen=True)
 class Scaled:
-    """A series that is known before that of a node, from which it differs by a factor."""
+    """A series that differs from that of a node by a factor, and is known earlier."""
 
     where: Callable[[SeriesWriter, Expression], bool]
     """True for nodes that have it."""
@@ -214,7 +214,7 @@ class Operation:
     called: tuple[Callable[..., Any], ...] = ()
     """Functions of numbers that its lines call by their names, in plain Python with `math`; the engine compiles them."""
     unit: Callable[..., Dimension] = pure
-    """The dimension of its value: from the node and the dimension of each argument. Raises InputError with what is wrong."""
+    """The dimension of its value: from the node and the dimension of each argument. Raises InputError if they do not match."""
     bounded: Callable[[Expression], Expression] = lambda node: node
     """The node as `taylor` should see it."""
     sign: str = ""
@@ -228,15 +228,15 @@ class Operation:
     companions: Callable[[Expression], Sequence[Expression]] = lambda node: (node,)
     """The node and those that its rules need beside it, such as cos for sin, in order of computation."""
     parts: Callable[[SeriesWriter, Expression], dict[Expression, str] | None] = lambda writer, node: None
-    """The nodes of which a node is a linear combination, but for a constant, with their factors as texts; None if it is none."""
+    """A node as a linear combination of others, up to a constant: these nodes with their factors as texts; None if it is none."""
     linear: tuple[tuple[int, ...], ...] = ()
-    """Places of arguments in which it is linear together, where the others do not vary."""
+    """Groups of places of arguments: it is linear in each group together if the other arguments do not vary."""
     zeros: tuple[int, ...] = ()
     """Places of arguments that make the value 0 where they are 0."""
     settles: tuple[int, ...] = ()
-    """Places of arguments beyond e^150 of which the value no longer changes, or is infinite already."""
+    """Places of arguments whose growth beyond e^150 no longer changes the value, or has made it infinite already."""
     carries: tuple[int, ...] = ()
-    """Places of arguments with which the value is large, if no other argument is small."""
+    """Places of arguments that make the value large if they are large and no other argument is small."""
     scales: bool = False
     """True if it multiplies or divides by other arguments, which may be small."""
     shrinks: bool = False

@@ -1,4 +1,4 @@
-"""Sets of values, on which operations have rules: intervals of numbers, and discs of complex numbers."""
+"""Sets of values for the rules of operations: intervals of numbers, and discs of complex numbers."""
 
 from __future__ import annotations
 

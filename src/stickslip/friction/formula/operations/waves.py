@@ -1,4 +1,4 @@
-"""Sine and cosine, each of which needs the other."""
+"""Sine and cosine; each needs the other."""
 
 from __future__ import annotations
 
