@@ -16,12 +16,10 @@ from matplotlib.colors import ListedColormap
 from matplotlib.patches import Patch
 
 import stickslip as ss
-from stickslip.bodies import as_slab
 from stickslip.figures.style import LINE_COLOURS
-from stickslip.problem.problem import Problem
 from stickslip.schemes.contract import Series
 from stickslip.schemes.run import SCHEMES, run_scheme
-from stickslip.studies.regularisations import regularised
+from stickslip.studies.regularisations import LAB
 from stickslip.studies.verdict import RulePaths, exact_runs
 
 FIGURE = Path(__file__).with_name("figures") / "scheme-verdicts.png"
@@ -42,15 +40,6 @@ def rows_of_schemes() -> list[tuple[str, float]]:
     ]
 
 
-def regularised_series(problem: Problem, kind: str, cells: int) -> Series:
-    """Return the exact run of a regularisation as large as a grid makes it, at the steps of that grid."""
-    slab = as_slab(problem.body)
-    travel = slab.thickness / cells / slab.wave_speed
-    run = ss.simulate(regularised(problem, kind, 0.5 * travel), DURATION)
-    time = np.append(np.arange(0.0, DURATION, 0.5 * travel), DURATION)
-    return Series(time, run.slip(time), run.slip_rate(time), run.traction(time), kind, cells)
-
-
 def verdicts(search: str, meshes: tuple[int, ...] = CELLS) -> dict[str, str]:
     """Return a letter of LETTERS for each mesh: the rule that each scheme, and each regularisation, follows."""
     problem = ss.load_scenario("fig4-loop").problem
@@ -59,7 +48,7 @@ def verdicts(search: str, meshes: tuple[int, ...] = CELLS) -> dict[str, str]:
     for name, courant in rows_of_schemes():
         runs = [run_scheme(problem, DURATION, SCHEMES[name], cells, search=search, courant=courant) for cells in meshes]
         found[f"{name} {courant:g}"] = runs
-    found |= {kind: [regularised_series(problem, kind, cells) for cells in meshes] for kind in KINDS}
+    found |= {kind: [run_scheme(problem, DURATION, LAB[kind], cells) for cells in meshes] for kind in KINDS}
     return {label: "".join(LETTERS.get(paths.followed(run), LETTERS["several"]) for run in runs) for label, runs in found.items()}
 
 

@@ -103,9 +103,9 @@ ROOMS = {
     ),
     "studies": (
         ("separation",),
-        ("analogy", "compare", "ensemble", "find", "inference", "verdict"),
-        ("one_run", "regularisations", "scheme_shocks"),
-        ("regularise", "scheme_measures"),
+        ("analogy", "compare", "ensemble", "find", "inference", "regularisations", "verdict"),
+        ("one_run", "scheme_shocks"),
+        ("scheme_measures",),
         ("judgement",),
         ("schemes",),
         ("benchmarks",),

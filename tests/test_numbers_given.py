@@ -342,14 +342,9 @@ def test_studies_take_times_with_units(problem: ss.Problem) -> None:
     assert (found.reference.duration, found.event_rate) == (10.0, 1e-3)
     compared = ss.studies.compare("fig6-slab", "fig6-slab", duration="0.1 min")
     assert {run.duration for run in compared.runs.values()} == {6.0}
-    softened = ss.studies.regularise(problem, "2 s", sizes=["50 ms", 0.02, 10 * UREG.ms], rules=["perfect-delay"])
-    assert softened.sizes.tolist() == [0.05, 0.02, 0.01]
-    assert {run.duration for run in softened.runs} == {2.0}
-    with pytest.raises(
-        ss.InputError, match=r"^regularise: sizes\[1\] must be a number in s .*, got '1 m': 'm' does not convert to s$"
-    ):
-        ss.studies.regularise(problem, "2 s", sizes=["1 s", "1 m", "1 ms"])
-    for study in (ss.studies.ensemble, ss.studies.regularise):
+    softened = ss.studies.schemes(problem, "2 s", "contact-mass", 50)
+    assert {run.duration for run in softened.exact.values()} == {2.0}
+    for study in (ss.studies.ensemble, ss.studies.schemes):
         with pytest.raises(ss.InputError, match=rf"^{study.__name__}: duration must be a number in s .*, got '2 m': 'm' does not"):
             study(problem, "2 m")
 

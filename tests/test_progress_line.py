@@ -23,7 +23,6 @@ CALLS: dict[str, Callable[..., Any]] = {
     "sweep": lambda **how: ss.sweep(PROBLEM, {"alpha": [0.1, 1.0]}, duration=1.0, quantities=["slip"], **how),
     "ensemble": lambda **how: ss.studies.ensemble(PROBLEM, 12.0, members=1, **how),
     "compare": lambda **how: ss.studies.compare("fig6-slab", "fig6-slab", **how),
-    "regularise": lambda **how: ss.studies.regularise(PROBLEM, 1.0, sizes=[0.1, 0.05, 0.02], rules=["minimal"], **how),
     "schemes": lambda **how: ss.studies.schemes(PROBLEM, 1.0, "theta", [20, 40], **how),
     "analogy": lambda **how: ss.studies.analogy(
         PROBLEM, 12.0, Axis("friction.alpha", 0.1, 1.0, 2), Axis("body.thickness", 1e4, 2e4, 2), **how
@@ -35,7 +34,6 @@ SAYS = {
     "sweep": "sweep: 2 of 2 members",
     "ensemble": "ensemble: member 1 of 1",
     "compare": "compare: fig6-slab (2)",
-    "regularise": "regularise: size 0.02 s, 3 of 3",
     "schemes": "schemes: theta, 40 cells",
     "analogy": "analogy: 4 of 4 points",
 }

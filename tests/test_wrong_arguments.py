@@ -49,7 +49,6 @@ TAKE_A_SCENARIO: dict[str, Callable[[Any], Any]] = {
     "catalogue": lambda problem: ss.catalogue(problem, 1.0),
     "uniqueness": lambda problem: ss.uniqueness(problem),
     "ensemble": lambda problem: ss.studies.ensemble(problem, 1.0),
-    "regularise": lambda problem: ss.studies.regularise(problem, 1.0),
     "schemes": lambda problem: ss.studies.schemes(problem, 1.0),
     "infer": lambda problem: ss.studies.infer(problem, {}, ["alpha"]),
     "analogy": lambda problem: ss.studies.analogy(problem, 1.0, None, None),  # type: ignore[arg-type] # refused before

@@ -19,7 +19,6 @@ from stickslip.cli.options import (
     STARTERS,
     complete_law,
     complete_pull,
-    complete_regularisation,
     complete_rule,
     complete_scenario,
     complete_source,
@@ -30,6 +29,7 @@ from stickslip.figures.runs import animation
 from stickslip.io import catalogue_rows
 from stickslip.scenarios import library, templates
 from stickslip.scenarios.scenario import load_scenario
+from stickslip.schemes.run import SCHEMES
 from tests.limits import limit_of_process
 
 COMMANDS = [
@@ -44,7 +44,6 @@ COMMANDS = [
     "sweep",
     "analogy",
     "ensemble",
-    "regularise",
     "schemes",
     "benchmark",
     "paper",
@@ -59,7 +58,7 @@ def test_help_says_what_it_does_with_an_example(command, name):
     assert f"stickslip {name} " in shown.out.partition("Usage")[2].partition("\n")[2]
 
 
-OPTIONS = [("run", "selection"), ("new", "friction"), ("new", "pull"), ("regularise", "by")]
+OPTIONS = [("run", "selection"), ("new", "friction"), ("new", "pull")]
 OPTIONS += [("sweep", name) for name in ("quantity", "design", "series")]
 
 
@@ -281,32 +280,26 @@ def test_run_writes_what_it_is_asked_for_and_nothing_else(command, tmp_path: Pat
     assert (tmp_path / "a.svg").read_text().lstrip().startswith("<?xml")
 
 
-def test_regularise_says_which_rule_and_how_fast(command, tmp_path: Path):
-    shown = command("regularise", "fig4-loop", "--by", "lag", "--count", "4", "--out", "a.csv", "--figure", "a.svg")
+def test_schemes_says_which_rule_physics_tends_to_and_how_fast(command, tmp_path: Path):
+    chosen = ("--scheme", "lag,contact-mass", "--nx", "50,200,800")
+    shown = command("schemes", "fig4-loop", *chosen, "--out", "a.csv", "--figure", "a.svg")
     assert shown.code == 0
     assert shown.err == ""
-    for text in (
-        "lagged friction, 4 sizes",
-        "2.2426553",
-        "5.2128406",
-        "1 (log)",
-        "2/3",
-        "The runs tend to perfect-delay: order 0.",
-    ):
+    for text in ("2.24266", "5.21284", "Rule perfect-delay: lag.", "Rule perfect-delay, from 200 cells on: contact-mass."):
         assert text in shown.out
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.csv", "a.svg"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a-shocks.csv", "a.csv", "a.svg"]
     table = pandas.read_csv(tmp_path / "a.csv", comment="#")
-    assert len(table) == 4
-    assert float(table["size"].iloc[0]) == pytest.approx(20000 / 3500 / 30, rel=1e-12, abs=0.0)
-    assert f"{table.mean_maxwell.iloc[-1]:.4g}" in shown.out
+    assert table.scheme.tolist() == ["lag"] * 3 + ["contact-mass"] * 3
+    assert float(table["step"].iloc[0]) == pytest.approx(20000 / 3500 / 200, rel=1e-9, abs=0.0)
+    assert f"{table.slip_error.iloc[-1]:.3g}" in shown.out
+    assert f"{table.slip_order.iloc[-1]:.2f}" in shown.out
 
 
-def test_regularise_takes_sizes_with_units(command):
-    shown = command("regularise", "fig6-slab", "--largest", "10 ms", "--smallest", "1e-4", "--count", "3", "--duration", "3 s")
+def test_all_names_the_numerical_schemes_and_others_may_follow(command):
+    shown = command("schemes", "fig4-loop", "--scheme", "all,lag", "--nx", "20")
     assert shown.code == 0
-    for size in ("0.01", "0.001", "0.0001"):
-        assert re.search(rf"^ *{size} ", shown.out, re.MULTILINE)
-    assert "All rules have the same answer here" in shown.out
+    named = re.findall(r"^([a-z0-9-]+) +20 ", shown.out, re.MULTILINE)
+    assert set(named) == {*SCHEMES, "lag"}
 
 
 def test_ensemble_says_what_members_share_and_how_they_part(command, tmp_path: Path):
@@ -353,11 +346,6 @@ def test_an_interrupted_ensemble_shows_and_saves_what_is_finished(command, tmp_p
     assert "Interrupted: 2 of 8 members." in shown.out
     assert "All 2 members have the same 7 slip events." in shown.out
     assert [path.name for path in tmp_path.iterdir()] == ["a.csv"]
-
-
-def test_the_shell_completes_regularisations():
-    assert complete_regularisation("") == ["contact-mass", "lag", "direct-effect"]
-    assert complete_regularisation("l") == ["lag"]
 
 
 def test_the_shell_completes_laws_pulls_and_rules():

@@ -25,7 +25,6 @@ IN_1D = {
     "export": ("planar-patch", "out.txt"),
     "find": ("planar-patch", "--along", "friction.static=0.6..0.8"),
     "infer": ("planar-patch", "record.csv", "--free", "friction.static=0.6..0.8"),
-    "regularise": ("planar-patch",),
     "schemes": ("planar-patch",),
     "sweep": ("planar-patch", "--vary", "friction.static=0.6,0.7"),
 }

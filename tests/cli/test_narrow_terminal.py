@@ -5,9 +5,9 @@ from collections.abc import Callable
 
 import pytest
 
-from stickslip.cli.output.studies import show_regularisation
+from stickslip.cli.output.studies import show_schemes
 from stickslip.scenarios.scenario import load_scenario
-from stickslip.studies.regularise import regularise
+from stickslip.studies.schemes import schemes
 from tests.cli.conftest import Outcome
 
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?")
@@ -47,13 +47,13 @@ def test_numbers_do_not_break_and_lines_fit(
 
 
 @pytest.mark.parametrize("width", [60, 40])
-def test_the_table_of_regularised_runs_fits(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, width: int):
+def test_the_table_of_schemes_fits(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, width: int):
     scenario = load_scenario("fig4-loop")
-    study = regularise(scenario.problem, scenario.duration, "lag", (0.1, 0.03, 0.01))
-    show_regularisation(scenario, study)
+    study = schemes(scenario, scheme=["lag", "central-differences-cfl1"], cells=[20, 40])
+    show_schemes(scenario, study)
     wide = capsys.readouterr().out
     monkeypatch.setenv("COLUMNS", str(width))
-    show_regularisation(scenario, study)
+    show_schemes(scenario, study)
     check_fits(capsys.readouterr().out, wide, width)
 
 

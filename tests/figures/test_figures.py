@@ -19,7 +19,6 @@ from stickslip.contact.regime_map import regime_map
 from stickslip.figures.contact import admissible, regimes, resistance, systems
 from stickslip.figures.runs import comparison
 from stickslip.figures.runs.run import draw
-from stickslip.figures.studies import regularise
 from stickslip.figures.style import BLUE, INK, STYLE, image
 from stickslip.foundation.axis import Axis
 from tests.figures.legible import BLOCK, BLOCK_PROBLEM, LAW, SLAB, SLAB_PROBLEM, has_unit, labels, size_of
@@ -237,24 +236,16 @@ def test_a_dataset_read_back_draws_the_same(side_by_side: xr.Dataset, tmp_path: 
     assert image(comparison.draw(side_by_side), "svg") == image(comparison.draw(again), "svg")
 
 
-@pytest.mark.parametrize("rules", [("perfect-delay", "maxwell"), ("maxwell",)])
-def test_a_study_draws_errors_and_runs(rules: tuple[str, ...]) -> None:
-    """Around a jump where the runs tend to a rule, all the way where they do not."""
-    study = ss.studies.regularise(LOOP, 5.7, sizes=[1e-2, 1e-3, 1e-4], rules=rules)
-    dataset = regularise.data(study)
-    assert list(dataset.error[0].values) == list(study.errors(rules[0]))
-    assert ("jump_time" in dataset.attrs) == (len(rules) == 2)
-    figure = regularise.draw(dataset)
+def test_schemes_draw_errors_of_all_and_curves_of_the_finest_meshes() -> None:
+    study = ss.studies.schemes("fig4-loop", scheme=["contact-mass", "lag"], cells=[100, 400])
+    figure = study.plot()
     assert len(labels(figure)) == 6
     assert all(has_unit(text) for text in labels(figure))
+    for line, (_, own) in zip(figure.axes[0].lines, study.table.groupby("scheme"), strict=True):
+        assert np.ptp(np.log(line.get_xdata() / own.step)) == pytest.approx(0.0, abs=1e-12)
+        assert np.ptp(np.log(line.get_ydata() / own.slip_error)) == pytest.approx(0.0, abs=1e-12)
     key = [text.get_text() for text in figure.legends[0].get_texts()]
-    runs = [text for text in key if text.startswith("(b, c)")]
-    assert len(runs) == len(np.atleast_1d(dataset.attrs["drawn"])) + 1
-    assert runs[-1] == f"(b, c) exact: {dataset.attrs['target']}"
-    assert sum(text.startswith("(a)") for text in key) == len(rules) + 1
-    if "jump_time" in dataset.attrs:
-        assert dataset.attrs["jump_time"] == pytest.approx(5.212841, rel=1e-6, abs=0.0)
-        assert f"{study.verdict.order.power:.2f}" in {text.get_text() for text in figure.axes[0].texts}
+    assert {"(a) contact-mass", "(b, c) lag, 400 cells", "(b, c) exact, perfect-delay"} <= set(key)
 
 
 def test_an_ensemble_draws_what_members_share_and_how_they_separate() -> None:

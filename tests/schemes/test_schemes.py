@@ -13,9 +13,10 @@ from stickslip.foundation.errors import InputError
 from stickslip.io.series import read_series
 from stickslip.schemes.contract import Meeting, Series
 from stickslip.schemes.implicit import Elements
-from stickslip.schemes.run import SCHEMES, SEARCHES, GridContact, grid_of, run_scheme, scheme_of
+from stickslip.schemes.run import SCHEMES, SEARCHES, GridContact, grid_of, run_scheme
 from stickslip.schemes.sbp import NORMS, difference
 from stickslip.studies.benchmarks import judge_series
+from stickslip.studies.regularisations import LAB
 from stickslip.studies.scheme_measures import arrest_in, period_of, pulses_in
 from stickslip.studies.schemes import schemes
 
@@ -173,7 +174,9 @@ def test_interrupted_studies_keep_the_rows_that_were_finished() -> None:
         (lambda: schemes("fig6-slab", cells=[3]), "schemes: cells must be a whole number from 12 to 100000, got 3"),
         (lambda: schemes("fig6-slab", courant=2.0), "schemes: central-differences: the Courant number must lie in"),
         (lambda: schemes("fig6-slab", 1e6, cells=[1000]), "schemes: .* steps of"),
-        (lambda: scheme_of(object()), "schemes: a scheme needs name, title"),
+        (lambda: schemes("fig6-slab", scheme=object()), "schemes: a scheme needs name, title"),
+        (lambda: schemes("fig6-slab", scheme=["theta", "sbp2", "theta"]), "^schemes: the scheme 'theta' is given twice$"),
+        (lambda: schemes("fig6-slab", scheme=["lag", LAB["lag"]]), "^schemes: the scheme 'lag' is given twice$"),
         (lambda: read_series("no-such-file.csv"), "no-such-file.csv: no such file"),
         (lambda: Series(np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3)), "series: times must ascend, but 0 s"),
     ],
@@ -199,7 +202,7 @@ def test_backward_euler_stops_where_its_effective_impedance_says() -> None:
 def test_finite_elements_have_the_effective_impedance_of_the_closed_form(name: str, courant: float) -> None:
     """A chain without end: 1/(12 theta^2 nu^2) + 1, where Newmark's method is theta = 1/2."""
     theta = {"newmark": 0.5, "theta": 0.6, "backward-euler": 1.0}[name]
-    motion = SCHEMES[name].begin(grid_of(SMOOTH, 200, courant))
+    motion = SCHEMES[name].begin(grid_of(SMOOTH, 4.0, 200, courant))
     assert isinstance(motion, Elements)
     kappa = 1.0 / float(motion.reply[0]) / SLAB.impedance
     assert kappa == pytest.approx(np.sqrt(1.0 + 1.0 / (12.0 * theta**2 * courant**2)), rel=1e-9, abs=0.0)

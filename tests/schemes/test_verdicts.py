@@ -13,7 +13,7 @@ import pytest
 import stickslip as ss
 from stickslip.schemes.contract import Series
 from stickslip.studies.benchmarks import judge_series
-from stickslip.studies.schemes import Schemes, schemes
+from stickslip.studies.schemes import SETTLES, Schemes, schemes
 from stickslip.studies.verdict import NONE, STRICT, UNTOLD
 
 LOOP = ss.load_scenario("fig4-loop")
@@ -95,6 +95,44 @@ def test_verdicts_on_several_meshes() -> None:
     off = replace(right, slip=0.97 * right.slip, rate=0.97 * right.rate)
     assert STRICT > judged(off).table["miss_perfect-delay"].iloc[0] > 0.02
     assert verdict(off, off, off).startswith("none: near perfect-delay, without coming closer")
+
+
+def settling(*left: float, by: str = "both") -> str:
+    """Return the verdict on meshes that are so far from a path halfway between two rules; what `by` leaves out is at the first."""
+    one, other = exact("perfect-delay"), exact("minimal")
+    runs = []
+    for k, share in enumerate(left):
+        slip, rate = (share + 0.5 * (by in ("both", name)) for name in ("slip", "rate"))
+        moved = replace(one, slip=one.slip + slip * (other.slip - one.slip), rate=one.rate + rate * (other.rate - one.rate))
+        runs.append(replace(moved, time=moved.time * (1.0 - 1e-9 * k), cells=20 * 2**k, name="scheme"))
+    return judged(*runs).verdicts["scheme"]
+
+
+@pytest.mark.parametrize("by", ["both", "slip", "rate"])
+def test_finer_meshes_that_come_together_between_two_rules_have_an_answer_of_their_own(by: str) -> None:
+    assert settling(0.16, 0.08, 0.04, by=by) == SETTLES
+
+
+@pytest.mark.parametrize("left", [(0.1, -0.1, 0.1), (0.3, 0.2, 0.1), (0.1, 0.05), (0.1, 0.05, 0.05, 0.0)])
+def test_meshes_that_do_not_come_together_or_too_slowly_or_too_few_of_them_have_none(left: tuple[float, ...]) -> None:
+    """Swings; equal changes; two meshes only; a last change that is larger than the one before."""
+    assert settling(*left) == NONE
+
+
+def test_a_distance_that_the_changes_can_still_cover_is_no_answer_of_its_own() -> None:
+    """At shares 0.5 + 0.35, + 0.18 and + 0.06 the changes left may sum up to 3 times 0.12: less than 3/4 of 0.44, not of 0.56."""
+    assert settling(-0.35, -0.18, -0.06) == NONE
+
+
+def test_changes_between_meshes_have_their_closed_form() -> None:
+    """Both slide at (beta - muD S)/Z for one round trip R, then rest: |difference of slip| = dv t up to R, then dv R."""
+    time = np.linspace(0.0, 8.0, 80_001)
+    problems = [ss.Problem(SLAB, ss.friction.Coulomb(0.8, dynamic), initial_load=80e6 * (1 + 8e-15)) for dynamic in (0.3, 0.5)]
+    study = judge_series([exact("minimal", problem, time, "one") for problem in problems], problems[0])
+    gap, trip = 0.2 * SLAB.normal_stress / SLAB.impedance, SLAB.two_way_time
+    assert study.table.slip_change.iloc[1] == pytest.approx(gap * trip * (8.0 - trip / 2) / 8.0, rel=1e-8, abs=0.0)
+    assert study.table.rate_change.iloc[1] == pytest.approx(gap * trip / 8.0, rel=1e-4, abs=0.0)
+    assert np.isnan(study.table.slip_change.iloc[0])
 
 
 def test_each_shock_stands_beside_the_exact_one_and_others_are_the_schemes_own() -> None:

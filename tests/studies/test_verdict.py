@@ -1,8 +1,9 @@
-"""Verdicts on made-up errors whose order is known, and the map of where a block stands for a slab."""
+"""Orders of made-up errors, groups of rules, and the map of where a block stands for a slab."""
 
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -11,9 +12,9 @@ import pytest
 import stickslip as ss
 from stickslip.figures.studies import analogy as figure
 from stickslip.foundation.axis import Axis
+from stickslip.scenarios.scenario import Scenario
 from stickslip.studies.analogy import QUANTITIES, Analogy, _stands, analogy, block_for, weakening
-from stickslip.studies.regularisations import difference, passage
-from stickslip.studies.verdict import Errors, Verdict, groups, judge, local_orders, order_of
+from stickslip.studies.verdict import groups, local_orders
 
 CASE = ss.load_scenario("block-or-slab")
 WAVELENGTH, ALPHA = "friction.parameters.wavelength", "friction.parameters.alpha"
@@ -112,60 +113,12 @@ def test_the_figure_shows_the_ratios_and_both_lines(found: Analogy) -> None:
     assert key[:2] == ["(d) all three ratios within 10 %, same pulses", "(d) not so"]
 
 
-SIZES = 0.1 / 4.0 ** np.arange(8)
-NEAR, FAR = ("perfect-delay",), ("maxwell",)
-
-
-def verdict(near: object, far: object, changes: object, apart: float = 1.0, floor: float = 1e-9) -> Verdict:
-    fill = np.ones(8)
-    return judge(Errors(SIZES, {NEAR: near * fill, FAR: far * fill}, changes * fill, {NEAR: apart, FAR: apart}, floor))
-
-
-@pytest.mark.parametrize("power", [0.5, 2 / 3, 1.0])
-def test_a_power_is_found(power: float) -> None:
-    found = verdict(0.3 * SIZES**power, 1.0, SIZES**power)
-    assert found.rules == NEAR
-    for order in (found.order.power, found.order.first, found.order.last):
-        assert order == pytest.approx(power, rel=1e-9, abs=0.0)
-    assert found.order.points == 4
-    assert f"order {power:.2f}" in found.text
-
-
-def test_the_order_is_that_of_the_smallest_sizes() -> None:
-    errors = SIZES + 0.02 * SIZES**0.5
-    order = order_of(SIZES, errors)
-    assert order.last < order.power < order.first < 1.0
-    assert local_orders(SIZES, errors)[1:] == pytest.approx(np.diff(np.log(errors)) / np.diff(np.log(SIZES)), rel=1e-12, abs=0.0)
-    assert math.isnan(local_orders(SIZES, errors)[0])
-
-
-def test_errors_below_the_accuracy_are_left_out() -> None:
-    errors = np.maximum(SIZES**2, 1e-6) * np.where(np.arange(8) % 2, 1.0, 0.9)
-    order = order_of(SIZES, np.maximum(SIZES**2, 1e-6), floor=2e-6)
-    assert order.power == pytest.approx(2.0, rel=1e-9, abs=0.0)
-    assert math.isnan(order_of(SIZES, errors, floor=1.0).power)
-
-
-def test_errors_at_the_accuracy_are_an_answer_without_an_order() -> None:
-    found = verdict(1e-12, 1.0, 1e-12)
-    assert found.rules == NEAR
-    assert "cannot be measured" in found.text
-
-
-def test_a_limit_far_from_every_rule_is_no_rule() -> None:
-    found = verdict(0.5 + SIZES, 0.6, SIZES)
-    assert found.rules == ()
-    assert "an answer of their own, order 1.00" in found.text
-
-
-def test_runs_that_do_not_settle_are_no_rule() -> None:
-    found = verdict(0.5 + 0.1 * np.sin(np.arange(8)), 0.6, 0.2)
-    assert found.rules == ()
-    assert found.text.startswith("no rule yet")
-
-
-def test_near_a_rule_but_not_falling_is_no_rule() -> None:
-    assert verdict(0.2, 1.0, 1e-12).rules == ()
+def test_the_order_is_that_between_two_sizes() -> None:
+    sizes = 0.1 / 4.0 ** np.arange(8)
+    orders = local_orders(sizes, sizes + 0.02 * sizes**0.5)
+    assert math.isnan(orders[0])
+    assert orders[1:] == pytest.approx(np.diff(np.log(sizes + 0.02 * sizes**0.5)) / np.diff(np.log(sizes)), rel=1e-12, abs=0.0)
+    assert local_orders(sizes, 0.3 * sizes ** (2 / 3))[1:] == pytest.approx(2 / 3, rel=1e-9, abs=0.0)
 
 
 def test_rules_with_the_same_answer_are_one_group() -> None:
@@ -173,29 +126,16 @@ def test_rules_with_the_same_answer_are_one_group() -> None:
     assert groups("axb", apart, 0.1) == [("a", "b"), ("x",)]
 
 
-SLAB = ss.ElasticSlab(density=2800, wave_speed=3500, thickness=1e4, normal_stress=1e8)
-
-
-def coulomb(dynamic: float) -> ss.Solution:
-    return ss.simulate(ss.Problem(SLAB, ss.friction.Coulomb(0.8, dynamic), initial_load=80e6 * (1 + 1e-15 * 8)), 8.0)
-
-
-def test_the_difference_of_two_coulomb_runs_has_its_closed_form() -> None:
-    """Both slide at (beta - muD S)/Z for one round trip R, then rest: |difference| = dv t up to R, then dv R."""
-    one, other = coulomb(0.3), coulomb(0.5)
-    found = difference(one, other, 8.0)
-    gap, trip = 0.2 * SLAB.normal_stress / SLAB.impedance, SLAB.two_way_time
-    assert found.largest == pytest.approx(gap * trip, rel=1e-12, abs=0.0)
-    assert found.end == pytest.approx(gap * trip, rel=1e-12, abs=0.0)
-    assert found.mean == pytest.approx(gap * trip * (8.0 - trip / 2) / 8.0, rel=1e-9, abs=0.0)
-    assert difference(other, one, 8.0).end == -found.end
-
-
-def test_passage_has_its_closed_form() -> None:
-    """v = v0 (1 - exp(-Z t / m)) under Coulomb friction on a contact with mass."""
-    slab = ss.ElasticSlab(2800, 3500, 1e4, 1e8, contact_mass=9.8e6)
-    run = ss.simulate(ss.Problem(slab, ss.friction.Coulomb(0.8, 0.3), initial_load=81e6), 5.0)
-    fastest = 51e6 / slab.impedance
-    assert passage(run, 0.5 * fastest, True, 0.0, (0.0, 5.0)) == pytest.approx(math.log(2.0), rel=1e-9, abs=0.0)
-    assert math.isnan(passage(run, 0.5 * fastest, False, 0.0, (0.0, 5.0)))
-    assert math.isnan(passage(run, 2.0 * fastest, True, 0.0, (0.0, 5.0)))
+def test_studies_take_a_scenario_and_its_duration(tmp_path: Path) -> None:
+    problem = ss.Problem(ss.ElasticSlab(2800, 3500, 1e4, 1e8), ss.friction.HyperbolicRate(0.8, 0.3, 1.0), initial_excess=1.0)
+    file = tmp_path / "one.toml"
+    file.write_text(Scenario(problem, 3.0).to_toml())
+    found = ss.studies.schemes(file, scheme="lag", cells=20, rtol=1e-6)
+    assert found.exact["perfect-delay"].duration == 3.0
+    assert found.problem == problem
+    pushed = ss.studies.ensemble(file, members=1, rtol=1e-6)
+    assert (pushed.reference.duration, pushed.reference.problem) == (3.0, problem)
+    axes = Axis("body.thickness", 1e4, 2e4, 2), Axis("friction.alpha", 0.5, 1.0, 2)
+    assert len(analogy(file, None, *axes, rtol=1e-6).table) == 4
+    with pytest.raises(ss.InputError, match="ensemble: duration"):
+        ss.studies.ensemble(problem)

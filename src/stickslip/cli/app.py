@@ -23,7 +23,6 @@ from stickslip.cli.commands.fit import fit
 from stickslip.cli.commands.infer import infer
 from stickslip.cli.commands.new import new
 from stickslip.cli.commands.paper import paper
-from stickslip.cli.commands.regularise import regularise
 from stickslip.cli.commands.run import run
 from stickslip.cli.commands.schemes import schemes
 from stickslip.cli.commands.show import show
@@ -106,7 +105,7 @@ What happens at a frictional contact once inertia and waves matter: how it slips
 GROUPS: dict[str, tuple[Callable[..., None], ...]] = {
     "A scenario and its run": (new, check, run, show, export, explore),
     "Measured friction": (fit, infer),
-    "Questions that need many runs": (compare, find, sweep, analogy, ensemble, regularise, schemes),
+    "Questions that need many runs": (compare, find, sweep, analogy, ensemble, schemes),
     "For other programs": (benchmark,),
     "The source paper": (paper,),
     "This installation": (doctor,),

@@ -38,7 +38,6 @@ CHOICES: dict[str, Names] = {
     "friction": _table("friction", "LAWS"),
     "pull": _table("loading", "HISTORIES"),
     "selection": _table("problem.selection_rule", "SELECTION_RULES"),
-    "by": _table("studies.regularisations", "KINDS"),
     "quantity": _table("sweeps.design.quantities", "QUANTITIES"),
     "design": _table("sweeps.design.design", "KINDS"),
     "series": _table("solution.evaluation", "CURVES"),
@@ -48,7 +47,6 @@ CHOICES: dict[str, Names] = {
 complete_law = _completion(CHOICES["friction"])
 complete_pull = _completion(CHOICES["pull"])
 complete_rule = _completion(CHOICES["selection"])
-complete_regularisation = _completion(CHOICES["by"])
 complete_quantity = _completion(CHOICES["quantity"])
 complete_design = _completion(CHOICES["design"])
 

@@ -17,11 +17,12 @@ import numpy as np
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.problem.problem import Problem
 
 
 @dataclass(frozen=True)
 class Grid:
-    """A slab cut into equal cells, with its driver and its start; every number in SI.
+    """A slab cut into equal cells, with its driver and its start, for a run; every number in SI.
 
     Displacements count from the start, at which the slab has the uniform stress `stress` and the velocity V x/h.
     """
@@ -47,6 +48,10 @@ class Grid:
     """Slip at t = 0, m."""
     courant: float
     """Courant number c dt / dx."""
+    problem: Problem
+    """The problem itself, for a scheme that takes more from it."""
+    duration: float
+    """s; the last step ends there or just beyond it."""
 
     @property
     def dx(self) -> float:

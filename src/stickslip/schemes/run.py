@@ -41,18 +41,6 @@ SCHEMES: dict[str, Scheme] = {scheme.name: scheme for scheme in _ALL}
 """The schemes by name."""
 
 
-def scheme_of(scheme: str | Scheme) -> Scheme:
-    """Return the scheme of a name, or a scheme as it is. Raises InputError for an unknown name and for what is no scheme."""
-    if isinstance(scheme, str):
-        if scheme not in SCHEMES:
-            raise InputError(f"schemes: there is no scheme {ascii(scheme)[:60]}; {nearest(scheme, SCHEMES)}")
-        return SCHEMES[scheme]
-    missing = [name for name in ("name", "title", "order", "courant", "largest_courant", "begin") if not hasattr(scheme, name)]
-    if missing:
-        raise InputError(f"schemes: a scheme needs {', '.join(missing)}: see stickslip.schemes.contract.Scheme")
-    return scheme
-
-
 # ---- the contact and the run --------------------------------------------------------------------------------------------
 
 SEARCHES = {
@@ -188,8 +176,8 @@ def check_suitable(problem: Problem) -> None:
     GridContact(problem)
 
 
-def grid_of(problem: Problem, cells: int, courant: float) -> Grid:
-    """Return the grid of a problem. Raises InputError if it has too few or too many cells."""
+def grid_of(problem: Problem, duration: float, cells: int, courant: float) -> Grid:
+    """Return the grid of a run of some duration (s). Raises InputError if it has too few or too many cells."""
     check_whole("schemes: cells", cells, FEWEST_CELLS, LARGEST_CELLS)
     slab = as_slab(problem.body, "schemes: a block has no grid")
     far = problem.load if problem.far_stress is None else float(problem.far_stress)  # type: ignore[arg-type]
@@ -205,6 +193,8 @@ def grid_of(problem: Problem, cells: int, courant: float) -> Grid:
         far_stress_rate=problem.far_stress_rate,
         slip=problem.initial_slip,
         courant=courant,
+        problem=problem,
+        duration=duration,
     )
 
 
@@ -216,7 +206,7 @@ def _grid_and_steps(problem: Problem, duration: float, scheme: Scheme, cells: in
         raise InputError(f"schemes: {scheme.name}: the Courant number must lie in (0, {scheme.largest_courant:g}], got {number:g}")
     if scheme.name == "characteristics" and number != 1.0:
         raise InputError("schemes: characteristics: the Courant number is 1, because waves move by one cell in a step")
-    grid = grid_of(problem, cells, number)
+    grid = grid_of(problem, duration, cells, number)
     steps = math.ceil(duration / grid.dt * (1.0 - 1e-12))
     if steps > LARGEST_STEPS:
         raise InputError(
@@ -239,7 +229,8 @@ def check_runs(
     GridContact(problem, search)
     for scheme in schemes:
         for cells in meshes:
-            _grid_and_steps(problem, duration, scheme, cells, courant)
+            grid, _ = _grid_and_steps(problem, duration, scheme, cells, courant)
+            scheme.begin(grid)
 
 
 def run_scheme(

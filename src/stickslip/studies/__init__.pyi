@@ -5,7 +5,6 @@ from .ensemble import Ensemble, ensemble
 from .find import Edge, find
 from .inference import Inference, Record, infer, ranking
 from .one_run import catalogue_statistics, critical_value, predictability, steady
-from .regularise import Regularisation, regularise
 from .schemes import Schemes, schemes
 
 __all__ = [
@@ -15,7 +14,6 @@ __all__ = [
     "Ensemble",
     "Inference",
     "Record",
-    "Regularisation",
     "Schemes",
     "analogy",
     "catalogue_statistics",
@@ -27,7 +25,6 @@ __all__ = [
     "judge_series",
     "predictability",
     "ranking",
-    "regularise",
     "schemes",
     "steady",
 ]

@@ -29,6 +29,8 @@ COLUMNS = {
     "rest_error": ("Pa", "mean magnitude of the difference in traction while the exact contact rests; NaN if it never does"),
     "slip_order": ("", "order of convergence of slip_error, from the mesh before"),
     "rate_order": ("", "order of convergence of rate_error, from the mesh before"),
+    "slip_change": ("m", "mean magnitude of the slip difference from the mesh before"),
+    "rate_change": ("m/s", "mean magnitude of the difference in slip rate from the mesh before"),
     "final_slip": ("m", "slip at the end, since t = 0"),
     "peak_rate": ("m/s", "largest slip rate"),
     "pulses": ("", "maxima of |v| separated by minima below half the lower one; ringing of the scheme makes some, too"),

@@ -9,25 +9,28 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
 import pandas as pd
 
 import stickslip
 from stickslip.foundation.arguments import check_whole, for_users
 from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.conversion import WithUnit
-from stickslip.foundation.errors import InputError
+from stickslip.foundation.errors import InputError, nearest
 from stickslip.problem.problem import Problem
 from stickslip.scenarios.source import read_duration_and_problem
 from stickslip.schemes.contract import Scheme, Series
-from stickslip.schemes.run import FEWEST_CELLS, LARGEST_CELLS, check_runs, run_scheme, scheme_of
+from stickslip.schemes.run import FEWEST_CELLS, LARGEST_CELLS, check_runs, run_scheme
 from stickslip.solution.solution import Solution
 from stickslip.studies.judgement import TOLERANCE, Judgement
+from stickslip.studies.regularisations import LAB
 from stickslip.studies.scheme_measures import COLUMNS, MeasuredSeries
 from stickslip.studies.scheme_shocks import SHOCK_COLUMNS
-from stickslip.studies.verdict import NONE, UNTOLD, RulePaths, exact_runs, local_orders
+from stickslip.studies.verdict import NONE, SAME, UNTOLD, RulePaths, change, exact_runs, local_orders
 from stickslip.study import Study, TextProgress, telling
 
 if TYPE_CHECKING:
@@ -37,6 +40,8 @@ CELLS = (25, 50, 100, 200)
 """Meshes that are taken if none are given."""
 FEWEST, FALLING, NEGLIGIBLE = 3, 0.75, 0.02
 """On three meshes or more, a distance from a rule that stays above 2 % must fall below 3/4 of the coarsest mesh's."""
+SETTLES = f"{NONE}, but tends to an answer of its own"
+"""Verdict on a scheme whose ever finer meshes come together far from the path of every rule."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -90,13 +95,17 @@ class Schemes(Study):
         rows = []
         for one in self.measured:
             own = {"scheme": one.series.name, "cells": one.series.cells, "step": one.series.step}
-            misses = {f"miss_{rule}": miss for rule, miss in self.paths.misses(one.series).items()}
-            rows.append(own | one.row() | misses | {"rule": self.paths.followed(one.series)})
+            misses = self.paths.misses(one.series)
+            named = {f"miss_{rule}": miss for rule, miss in misses.items()}
+            rows.append(own | one.row() | named | {"rule": self.paths.followed(one.series, misses)})
         table = pd.DataFrame(rows, columns=list(self.columns))
         for _, meshes in table.groupby("scheme", sort=False):
             for name in ("slip", "rate"):
                 errors = meshes[f"{name}_error"].to_numpy(float)
                 table.loc[meshes.index, f"{name}_order"] = local_orders(meshes.step.to_numpy(float), errors)
+            for before, after in pairwise(meshes.index):
+                found = change(self.series[before], self.series[after], self.until)
+                table.loc[after, ["slip_change", "rate_change"]] = list(found)
         return table
 
     @property
@@ -122,7 +131,9 @@ class Schemes(Study):
         found = rows.rule.tolist()
         last = found[-1]
         if last in (NONE, UNTOLD):
-            return last if len(set(found)) == 1 else _depends(found)
+            if len(set(found)) > 1:
+                return _depends(found)
+            return SETTLES if last == NONE and self._settles(rows) else last
         misses = rows[f"miss_{last.split(' or ')[0]}"].tolist()
         stays = misses[-1] > NEGLIGIBLE and misses[-1] > FALLING * misses[0]
         if len(found) >= FEWEST and stays:
@@ -132,6 +143,18 @@ class Schemes(Study):
             return _depends(found)
         cells = int(rows.cells.iloc[first])
         return f"{last}, from {cells} cells on" if first and cells else last
+
+    def _settles(self, rows: pd.DataFrame) -> bool:
+        """Return whether the changes from mesh to mesh fall so fast, and are so small, that they lead to the path of no rule.
+
+        If each is at most FALLING = 3/4 of the one before, all that are left together are at most three times the last one. This
+        must be less than FALLING of the distance from each path, in slip or in slip rate.
+        """
+        changes = rows[["slip_change", "rate_change"]].to_numpy(float)[1:]
+        left = changes[-1:] * FALLING / (1.0 - FALLING)
+        gaps = np.array([self.paths.gap(self.series[int(rows.index[-1])], rule) for rule in self.exact])
+        falls = (changes[1:] <= FALLING * changes[:-1]) | (changes[1:] <= SAME * np.array(self.paths.size))
+        return len(changes) >= FEWEST - 1 and bool(falls.all() and (left < FALLING * gaps).any(axis=1).all())
 
     def shocks_to_csv(self, path: str | Path) -> Path:
         """Write the table of shocks as CSV, with the meaning of its columns in comment lines (#), and return its path."""
@@ -160,6 +183,18 @@ def _depends(found: list[str]) -> str:
     return f"depends on the mesh ({'; '.join(dict.fromkeys(found))})"
 
 
+def _scheme_of(scheme: str | Scheme) -> Scheme:
+    """Return the scheme of a name, or a scheme as it is. Raises InputError for an unknown name and for what is no scheme."""
+    if isinstance(scheme, str):
+        if scheme not in LAB:
+            raise InputError(f"schemes: there is no scheme {ascii(scheme)[:60]}; {nearest(scheme, LAB)}")
+        return LAB[scheme]
+    missing = [name for name in ("name", "title", "order", "courant", "largest_courant", "begin") if not hasattr(scheme, name)]
+    if missing:
+        raise InputError(f"schemes: a scheme needs {', '.join(missing)}: see stickslip.schemes.contract.Scheme")
+    return scheme
+
+
 @for_users
 def schemes(
     problem: Problem | Scenario | str | Path,
@@ -182,7 +217,7 @@ def schemes(
     duration : float or str, optional
         Duration of each run (s, or a text with a unit); by default the scenario's.
     scheme : str, Scheme or sequence of them
-        Names in `stickslip.schemes.run.SCHEMES`, or objects like `stickslip.schemes.contract.Scheme`.
+        Names in `stickslip.studies.regularisations.LAB`, each once, or objects like `stickslip.schemes.contract.Scheme`.
     cells : int or sequence of int
         Number of cells in the thickness, for each mesh.
     search : str
@@ -221,7 +256,10 @@ def schemes(
     """
     lasts, given = read_duration_and_problem("schemes", problem, duration)
     several = [scheme] if isinstance(scheme, str) or not isinstance(scheme, Sequence) else scheme
-    chosen = [scheme_of(one) for one in several]
+    chosen = [_scheme_of(one) for one in several]
+    twice = next((one.name for i, one in enumerate(chosen) if one.name in {other.name for other in chosen[:i]}), None)
+    if twice is not None:
+        raise InputError(f"schemes: the scheme {ascii(twice)[:60]} is given twice")
     counts = cells if isinstance(cells, Iterable) and not isinstance(cells, str) else [cells]
     meshes = sorted({check_whole("schemes: cells", count, FEWEST_CELLS, LARGEST_CELLS) for count in counts})
     if not meshes or not chosen:

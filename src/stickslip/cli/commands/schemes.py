@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario
     from stickslip.studies.schemes import Schemes
 
+CHOSEN = "Schemes, separated by commas: all for the numerical ones (if not given), contact-mass, lag, or other names."
 SEARCH = "How the contact looks for a slip rate: stick-first, continue, newton or fastest; stick-first if not given."
 
 
@@ -20,7 +21,7 @@ def schemes(
     scenario: ScenarioName,
     *,
     changes: Changes = None,
-    scheme: Annotated[str | None, option("Schemes, separated by commas; all of them if not given.")] = None,
+    scheme: Annotated[str | None, option(CHOSEN)] = None,
     nx: Annotated[str | None, option("Cells in the thickness, separated by commas; 25,50,100,200 if not given.")] = None,
     search: Annotated[str | None, option(SEARCH)] = None,
     courant: Annotated[float | None, option("Courant number, in place of each scheme's own.")] = None,
@@ -36,13 +37,16 @@ def schemes(
     The slab is cut into cells and moved by schemes of differences and finite
     elements, on several meshes. Where several slip rates solve the contact
     equation, a scheme takes one of them; the comparison with the exact solution
-    of every selection rule shows which rule it follows, if any. With --series
-    the slip, slip rate and traction that another program has written get the
-    same report.
+    of every selection rule shows which rule it follows, if any. contact-mass and
+    lag are no numerical schemes: they show which rule physics chooses, by exact
+    runs with an inertia, or a lag of friction, as small as the step of the mesh.
+    With --series the slip, slip rate and traction that another program has
+    written get the same report.
 
     \b
       stickslip schemes fig4-loop
       stickslip schemes fig5-slab-u0-1e-2 --scheme newmark,hht --nx 50,100,200
+      stickslip schemes fig4-loop --scheme contact-mass,lag --nx 50,200,800
       stickslip schemes fig6-slab --series mine.csv --figure mine.png
 
     Exit code: 0 done, 2 unusable input, 130 interrupted.
@@ -79,7 +83,8 @@ def _study(scenario: Scenario, scheme: str, cells: list[int], search: str, coura
     from stickslip.schemes.run import SCHEMES
     from stickslip.studies.schemes import schemes as study
 
-    names = list(SCHEMES) if scheme == "all" else [name.strip() for name in scheme.split(",") if name.strip()]
+    typed = [name.strip() for name in scheme.split(",") if name.strip()]
+    names = [one for name in typed for one in (SCHEMES if name == "all" else [name])]
     how = {"search": search, "rtol": scenario.rtol}
     with progress_line("schemes") as tell:
         return study(scenario, None, names, cells, courant=courant, progress=tell, **how)  # type: ignore[arg-type]

@@ -1,4 +1,4 @@
-"""Show the results of studies: comparisons, block against slab, ensembles, regularised contacts, schemes, inferences."""
+"""Show the results of studies: comparisons, block against slab, ensembles, schemes, inferences."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 from stickslip.cli.output.show import console, print_numbers, print_sentences, print_words, say, titled
 from stickslip.foundation.show import clean, number, with_unit
-from stickslip.studies.regularisations import kind_of
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -20,7 +19,6 @@ if TYPE_CHECKING:
     from stickslip.studies.analogy import Analogy
     from stickslip.studies.compare import Comparison
     from stickslip.studies.ensemble import Ensemble
-    from stickslip.studies.regularise import Regularisation
     from stickslip.studies.schemes import Schemes
 
 FIRST = 12
@@ -93,45 +91,6 @@ def _show_events(screen: Console, study: Ensemble) -> None:
     print_numbers(screen, headings, rows)
 
 
-def show_regularisation(scenario: Scenario, study: Regularisation) -> None:
-    """Print on standard output how far the regularised runs are from the answer of each rule, and to which rule they tend."""
-    screen, kind = titled(scenario), kind_of(study.by)
-    say(screen, f"{kind.title}, {len(study.sizes)} sizes; mean |slip difference| from the exact answer of each rule")
-    say(screen, f"(change: difference from the previous size; order: of the difference from {study.target})\n")
-    rules = ["\n".join(group) + "\nm" for group in study.groups]
-    ends = ("change\nm", "\norder", "\npieces", "computed\nms")
-    headings, rows = ("size\ns", f"{kind.parameter}\n{kind.unit}", *rules, *ends), []
-    order = study.local_orders(study.target)
-    for i, size in enumerate(study.sizes.tolist()):
-        errors = [number(float(study.errors(group[0])[i]), 4) for group in study.groups]
-        run = (number(float(study.changes[i]), 3), _order(float(order[i])), str(len(study.runs[i].history)))
-        own = number(kind.value(study.problem, size), 4)
-        rows.append([number(size, 4), own, *errors, *run, f"{1e3 * study.seconds[i]:.2f}"])
-    print_numbers(screen, headings, rows)
-    if not study.jumps.empty:
-        _show_jumps(screen, study)
-    for line in filter(None, (study.stopped, study.verdict.text)):
-        screen.print()
-        print_sentences(screen, line)
-
-
-def _show_jumps(screen: Console, study: Regularisation) -> None:
-    say(screen, f"\njumps under {study.target}, and how much later they come")
-    ends, delays = (0, -1), study.delays
-    headings = [f"delay at\n{number(float(study.sizes[i]), 3)} s" for i in ends]
-    headings = ["time\ns", "\ncause", "rate before\nm/s", "rate after\nm/s", *headings, "\norder", "\nexpected"]
-    rows = []
-    for j, jump in enumerate(study.jumps.to_dict("records")):
-        late = [number(float(delays[i, j]), 4) for i in ends]
-        rates = (number(jump["rate_before"], 6), number(jump["rate_after"], 6))
-        rows.append([number(jump["time"], 8), jump["cause"], *rates, *late, _order(float(jump["order"])), str(jump["expected"])])
-    print_numbers(screen, headings, rows)
-
-
-def _order(value: float) -> str:
-    return "-" if math.isnan(value) else f"{value:.2f}"
-
-
 def show_inference(scenario: Scenario, found: Inference) -> None:
     """Print the numbers with their intervals, and what the record does not determine."""
     screen = titled(scenario)
@@ -192,7 +151,7 @@ def show_schemes(scenario: Scenario, study: Schemes) -> None:
     )
     rows = []
     for row in study.table.to_dict("records"):
-        errors = [number(row["slip_error"], 3), _short(row["slip_order"]), number(row["rate_error"], 3)]
+        errors = [number(row["slip_error"], 3), _order(row["slip_order"]), number(row["rate_error"], 3)]
         of_slip = [number(row["periods"], 3)] * is_periodic
         results = [str(row["pulses"]), *of_slip, number(row["arrest"], 6), number(row["final_slip"], 6), str(row["own_shocks"])]
         damped = row["damped"] / row["heat"] if row["heat"] else math.nan
@@ -213,7 +172,7 @@ def show_schemes(scenario: Scenario, study: Schemes) -> None:
         print_sentences(screen, *(clean(text) for one in study.judgements for text in (one.text, one.reasons, *one.hints)))
 
 
-def _short(value: float) -> str:
+def _order(value: float) -> str:
     return "-" if math.isnan(value) else f"{value:.2f}"
 
 

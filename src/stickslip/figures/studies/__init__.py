@@ -1,4 +1,4 @@
-"""Figures of studies: several runs side by side, analogies, ensembles and regularisations."""
+"""Figures of studies: several runs side by side, analogies, ensembles and schemes."""
 
 from __future__ import annotations
 
