@@ -38,7 +38,7 @@ LAYERS = (
 ROOMS = {
     "foundation": (
         ("arrays", "constants", "errors", "place"),
-        ("arguments", "atomic_write", "axis", "determined", "units"),
+        ("arguments", "atomic_write", "axis", "determined", "names", "units"),
         ("conversion", "headings", "netcdf_file"),
         ("columns", "quantities"),
         ("other_values", "show", "text_columns"),

@@ -27,9 +27,7 @@ class Body(Protocol):
     kind: ClassVar[str]
     """Name in scenario files."""
     load_unit: ClassVar[str]
-    """Unit of loads and tractions."""
-    energy_unit: ClassVar[str]
-    """Unit of energies, in the form that files store."""
+    """SI unit of loads and tractions, which decides the other units: a row of `foundation.names.KINDS`."""
 
     @property
     def normal_load(self) -> float:
@@ -118,7 +116,6 @@ class SpringBlock(Declared):
     kind: ClassVar[str] = "spring-block"
     source: ClassVar[str] = "Campillo et al. 1996, eqs (4)-(6); the damping is an addition"
     load_unit: ClassVar[str] = "N"
-    energy_unit: ClassVar[str] = "J"
     has_waves: ClassVar[bool] = False
     has_inertia: ClassVar[bool] = True
     driver_impedance: ClassVar[float] = math.inf
@@ -173,7 +170,6 @@ class ElasticSlab(Declared):
     kind: ClassVar[str] = "elastic-slab"
     source: ClassVar[str] = "Campillo et al. 1996, eqs (7)-(13)"
     load_unit: ClassVar[str] = "Pa"
-    energy_unit: ClassVar[str] = "J m-2"
     has_waves: ClassVar[bool] = True
 
     density: Number = quantity("kg/m^3", "density rho", above=0)

@@ -98,7 +98,7 @@ def test_wide_ranges_are_logarithmic() -> None:
 def test_a_window_is_drawn_in_local_time() -> None:
     figure = draw(ss.simulate(rate_law_slab(), 480 * ss.YEAR).window(1))
     assert figure.axes[-1].get_xlabel() == "time since the event began (s)"
-    assert figure.axes[0].get_ylabel() == "slip in the event (m)"
+    assert figure.axes[0].get_ylabel() == r"slip in the event $\Delta u$ (m)"
     time, slip = figure.axes[0].lines[0].get_xydata().T
     assert (time[0], slip[0]) == (pytest.approx(-0.1 * 5.714285714, rel=1e-9), 0.0)
 

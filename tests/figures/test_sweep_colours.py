@@ -21,10 +21,11 @@ from numpy.typing import NDArray
 import stickslip as ss
 from stickslip.figures.names import parameter_name, plain_name, symbol
 from stickslip.figures.panels import letter_panels, set_title
-from stickslip.figures.style import UNITS, image, unit_of
+from stickslip.figures.style import image
 from stickslip.figures.sweeps.colours import FEW, colours_of, shades
 from stickslip.figures.sweeps.curves import jumps
 from stickslip.figures.sweeps.varied import ShownQuantity
+from stickslip.foundation.names import readable_unit, sizes_of
 from stickslip.scenarios.library import names
 from stickslip.scenarios.parameter_paths import ParameterPath, parameter_paths
 from tests.figures.legible import SIZES, SLAB_PROBLEM
@@ -104,20 +105,23 @@ mpl.use("Agg")
     ],
 )
 def test_the_largest_value_chooses_the_unit(units: str, values: list[float], name: str) -> None:
-    assert unit_of(units, values)[0] == name
+    assert readable_unit(units, values)[0] == name
 
 
 def test_a_logarithmic_axis_of_many_decades_is_in_si() -> None:
-    assert unit_of("m/s", [1e-15, 0.3], log=True) == ("m/s", 1.0)
-    assert unit_of("m/s", [1e-8, 1e-4], log=True) == ("µm/s", 1e-6)
+    assert readable_unit("m/s", [1e-15, 0.3], log=True) == ("m/s", 1.0)
+    assert readable_unit("m/s", [1e-8, 1e-4], log=True) == ("µm/s", 1e-6)
 
 
-@given(st.sampled_from(sorted(UNITS)), st.lists(st.floats(1e-9, 1e14), min_size=1, max_size=3))
+@given(
+    st.sampled_from(["s", "m", "m/s", "Pa", "Pa/m", "N", "N/m", "J", "J/m²"]),
+    st.lists(st.floats(1e-9, 1e14), min_size=1, max_size=3),
+)
 def test_the_unit_has_its_size_and_the_largest_value_is_readable_in_it(units: str, values: list[float]) -> None:
-    name, size = unit_of(units, *values)
+    name, size = readable_unit(units, *values)
     if name in SIZES:
         assert size == SIZES[name]
-    sizes = [one for one, _ in UNITS[units]]
+    sizes = [one for one, _ in sizes_of(units)]
     top = max(values) / size
     assert top >= 0.49 or size == min(sizes)
     assert size == max(sizes) or top < 1.01 * sizes[sizes.index(size) - 1] / size

@@ -191,7 +191,7 @@ def test_static_and_dynamic_friction_and_stiffness_come_out_of_levels_alone() ->
 
 def test_the_figure_has_a_panel_for_each_feature_with_record_and_run_in_readable_units(slab: Inference) -> None:
     figure = slab.plot()
-    titles = ["peak stress", "stress at rest", "recurrence", "duration", "slip of an event"]
+    titles = ["peak stress", "stress at rest", "recurrence", "duration", "slip in the event"]
     units = ["(MPa)", "(MPa)", "(ms)", "(µs)", "(µm)"]
     panels = [next(axes for axes in figure.axes if axes.get_title(loc="left").endswith(title)) for title in titles]
     for axes, name, unit in zip(panels, slab.features.feature, units, strict=True):

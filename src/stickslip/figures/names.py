@@ -8,11 +8,8 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 
-GREEK = {
-    **{"alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "eta": "η", "theta": "θ", "kappa": "κ", "lambda": "λ"},
-    **{"mu": "μ", "nu": "ν", "xi": "ξ", "pi": "π", "rho": "ρ", "sigma": "σ", "tau": "τ", "phi": "φ", "psi": "ψ", "omega": "ω"},
-}
-"""Greek letters by the names under which declarations and formulas write them."""
+from stickslip.foundation.names import GREEK
+
 _SYMBOL = re.compile(rf"(?P<letter>{'|'.join(GREEK)}|[A-Z]|[b-df-z](?!\w)|[a-z](?=\d|_))_?(?P<index>\d|(?<=_)[a-z]|(?<!_)[A-Zcd]|)")
 _CONNECTED = ("of", "in", "per", "at", "that")
 """Words before a symbol that is not the parameter's own, as in "exponent of v"."""

@@ -13,9 +13,9 @@ Rules that all figures follow:
    axes of the user. No names of classes or of laws.
 3. **Letters.** Several panels have letters, `panels.letter_panels(axes, texts)`: "(a) text" above the panel, at its left end. A
    figure of one panel has no letter.
-4. **Units.** `unit_of(units, *values)` alone chooses a readable unit, from all values that share an axis; the values are divided by
-   its size. Panels that show the same quantity share the unit too. `label` and `curve_label` name quantity, symbol and unit.
-   Stress of a slab and force of a block have names of their own (`FORCES`).
+4. **Units.** `readable_unit(unit, *values)` alone chooses a readable unit, from all values that share an axis; the values are
+   divided by its size. Panels that show the same quantity share the unit too. `label` and `curve_label` name quantity, symbol and
+   unit, as `foundation.names` has them.
 5. **Parameters** have the words and the symbol of their declared meaning (`names.parameter_name`) and their unit.
 6. **Legends.** Every line, band, marker and colour is explained in the figure, in a key (`panels.add_legend`) or by a text beside
    it. A panel without data is left out.
@@ -33,7 +33,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.constants import YEAR
+from stickslip.foundation.names import QUANTITIES, name_of, readable_unit, si_unit
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -86,32 +86,6 @@ STYLE: Any = {
     "svg.hashsalt": "stickslip",
 }
 
-_PREFIXES = ((1e12, "T"), (1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"))
-UNITS: dict[str, tuple[tuple[float, str], ...]] = {
-    "s": ((YEAR, "year"), (86_400.0, "day"), (1.0, "s"), (1e-3, "ms"), (1e-6, "µs")),
-    "m": ((1e3, "km"), (1.0, "m"), (1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm")),
-    "m/s": ((1.0, "m/s"), (1e-3, "mm/s"), (1e-6, "µm/s"), (1e-9, "nm/s")),
-    **{unit: tuple((size, prefix + unit) for size, prefix in _PREFIXES) for unit in ("Pa", "N", "J", "J/m²", "N/m")},
-}
-"""Readable units of each SI unit, the largest first: size in SI units and name."""
-SPELLED = {"m s-1": "m/s", "J m-2": "J/m²", "m^-1 s": "s/m", "1/m": "m⁻¹", "kg/m^3": "kg/m³", "kg/m^2": "kg/m²"}
-"""SI units as readers expect to see them."""
-LEAST = {"s": 0.5, "m": 0.5, "m/s": 0.5}
-"""A unit is taken if the largest value is at least this number of it; 1 where none is given."""
-DECADES = 1e6
-"""A logarithmic axis that spans more than this factor has the SI unit: a prefix would not make its powers of ten more readable."""
-CURVES = {
-    "time": ("time", "t", "s"),
-    "slip": ("slip", "u", "m"),
-    "event_slip": ("slip in the event", "", "m"),
-    "slip_rate": ("slip rate", "v", "m/s"),
-    "traction": ("traction", r"\tau", "Pa"),
-    "load": ("load", r"\beta", "Pa"),
-    "friction": ("friction coefficient", r"\mu", "1"),
-}
-"""Name, symbol and unit of the curves of a run, as `Solution.curve` names them."""
-FORCES = {"traction": "friction force", "load": "spring force"}
-"""Names of curves that are forces (N), not stresses, on a block."""
 FLAT = 0.02
 """Stresses whose range is less than this share of their largest magnitude are drawn as changes: else the line looks flat."""
 WIDE = 100.0
@@ -152,35 +126,14 @@ def quantity(dims: str | Sequence[str], values: Any, name: str, symbol: str, uni
     return xr.Variable(dims, values, {"long_name": name, "symbol": symbol, "units": units})
 
 
-def curve_quantity(dims: str | Sequence[str], values: Any, curve: str, force_unit: str = "Pa") -> xr.Variable:
-    """Return a variable for one of `CURVES`; traction and load are stresses, or forces if `force_unit` is "N"."""
-    name, symbol, unit = CURVES[curve]
-    if curve in FORCES and force_unit == "N":
-        name, unit = FORCES[curve], "N"
-    return quantity(dims, values, name, symbol, unit)
-
-
-def unit_of(units: str, *values: Any, log: bool = False) -> tuple[str, float]:
-    """Return the readable unit (name, size in SI units) of values (SI) that share an axis: the largest of `UNITS` that fits.
-
-    The largest magnitude is at least one in it (s, m and m/s: a half). If all are 0 or the unit has no others, and on a logarithmic
-    axis for values that span more than `DECADES`, it is the SI unit.
-    """
-    units = SPELLED.get(units, units)
-    known = np.concatenate([np.abs(np.ravel(np.asarray(one, float))) for one in values]) if values else np.zeros(0)
-    known = known[np.isfinite(known) & (known > 0.0)]
-    choice = UNITS.get(units, ())
-    if not choice or not known.size or (log and known.max() > DECADES * known.min()):
-        return units, 1.0
-    least = LEAST.get(units, 1.0)
-    # A hair less than the bound, so that rounding does not decide about round numbers.
-    found = next(((name, size) for size, name in choice if known.max() >= least * size * (1.0 - 1e-9)), None)
-    return found or (choice[-1][1], choice[-1][0])
+def curve_quantity(dims: str | Sequence[str], values: Any, curve: str, load_unit: str = "Pa") -> xr.Variable:
+    """Return a variable for one of `foundation.names.QUANTITIES`, of a body whose loads have the unit given."""
+    return quantity(dims, values, name_of(curve, load_unit), QUANTITIES[curve].symbol, si_unit(curve, load_unit))
 
 
 def unit_shown(*variables: xr.DataArray | Numbers) -> tuple[str, float]:
     """Return the unit (name, size in SI units) in which variables that share an axis are drawn."""
-    return unit_of(variables[0].attrs["units"], *(variable.values for variable in variables))
+    return readable_unit(variables[0].attrs["units"], *(variable.values for variable in variables))
 
 
 def shown(variable: xr.DataArray | Numbers, unit: tuple[str, float] | None = None) -> Floats:
@@ -199,12 +152,9 @@ def label(variable: xr.DataArray | Numbers, unit: tuple[str, float] | None = Non
     return axis_text(variable.attrs["long_name"], variable.attrs.get("symbol", ""), (unit or unit_shown(variable))[0])
 
 
-def curve_label(curve: str, unit: str = "", force_unit: str = "Pa") -> str:
-    """Return the axis label of one of `CURVES`, in its own unit or in the one given; a block's (N) has the name of a force."""
-    name, symbol, own = CURVES[curve]
-    if force_unit == "N":
-        name = FORCES.get(curve, name)
-    return axis_text(name, symbol, unit or own)
+def curve_label(curve: str, unit: str = "", load_unit: str = "Pa") -> str:
+    """Return the axis label of one of `foundation.names.QUANTITIES`, in its SI unit or in the unit given."""
+    return axis_text(name_of(curve, load_unit), QUANTITIES[curve].symbol, unit or si_unit(curve, load_unit))
 
 
 def narrow(text: str) -> str:
@@ -224,7 +174,7 @@ def clock(readings: Readings) -> str:
 
 def time_unit(span: float) -> tuple[str, float]:
     """Return the unit (name, size in s) in which times over the given span (s) are readable."""
-    return unit_of("s", span)
+    return readable_unit("s", span)
 
 
 def nearly_flat(*stresses: Floats) -> bool:

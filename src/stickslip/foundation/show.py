@@ -14,20 +14,11 @@ import numpy as np
 
 from stickslip.foundation.arguments import CheckedArguments
 from stickslip.foundation.constants import YEAR
+from stickslip.foundation.names import has_prefixes, readable_unit, short_units
 from stickslip.foundation.quantities import Choice, Field, LawField, NamedNumbers, NumberSeries, Quantity, fields_of, in_units
 
-_PREFIXES = ((1e12, "T"), (1e9, "G"), (1e6, "M"), (1e3, "k"))
-"""SI prefixes with their factors, largest first."""
-_SCALED = ("Pa", "Pa/m", "Pa s/m", "Pa m/s", "N", "N/m", "N s/m")
-"""Units that are shown with a prefix."""
 _TIMES = ((YEAR, "years"), (86_400.0, "days"), (3_600.0, "hours"), (60.0, "min"), (1.0, "s"))
 """Units of time with their lengths in s, longest first."""
-_ALTERNATIVES = {
-    "m": (("km", 1e3), ("mm", 1e-3), ("um", 1e-6)),
-    "s": (("years", YEAR), ("ms", 1e-3)),
-    "m/s": (("km/s", 1e3), ("mm/s", 1e-3), ("um/s", 1e-6), ("m/year", 1.0 / YEAR)),
-}
-"""Further units in which `brief` may show a quantity, with their factors to SI."""
 DIGITS = 6
 """Number of significant digits of `brief`."""
 UNHANDY = 2
@@ -43,23 +34,13 @@ def with_unit(value: float, unit: str) -> str:
     """Format a quantity for users: 34.3 GPa, 1.5147648e+10 s (480 years); slow rates are also given per year."""
     if unit == "1":
         return number(value)
-    if unit in _SCALED and math.isfinite(value):
-        factor, scaled = readable_unit(value, unit)
-        return f"{number(value / factor)} {scaled}"
-    plain = f"{number(value)} {unit}"
+    shown, size = readable_unit(unit, value, plain=True)
+    plain = f"{number(value / size)} {shown}"
     if unit == "s" and 1e5 <= abs(value) < math.inf:
         return f"{plain} ({number(value / YEAR, 6)} years)"
-    if unit.endswith("/s") and 0 < abs(value) < 1e-4:
+    if unit.endswith("/s") and not has_prefixes(unit) and 0 < abs(value) < 1e-4:
         return f"{plain} ({number(value * YEAR, 6)} {unit.removesuffix('/s')}/year)"
     return plain
-
-
-def readable_unit(largest: float, unit: str) -> tuple[float, str]:
-    """Return the unit in which numbers up to `largest` are short, such as MPa for 8e7 Pa, after its factor to the unit given."""
-    if unit not in _SCALED or not math.isfinite(largest):
-        return 1.0, unit
-    factor, prefix = next(((f, p) for f, p in _PREFIXES if abs(largest) >= f), (1.0, ""))
-    return factor, f"{prefix}{unit}"
 
 
 def brief(value: float, unit: str, digits: int = DIGITS) -> str:
@@ -69,9 +50,7 @@ def brief(value: float, unit: str, digits: int = DIGITS) -> str:
     """
     if unit in ("1", ""):
         return f"{value:.{digits}g}"
-    units = ((unit.removeprefix("1"), 1.0), *_ALTERNATIVES.get(unit, ()))
-    if unit in _SCALED:
-        units = (*units, *((prefix + unit, factor) for factor, prefix in reversed(_PREFIXES)))
+    units = ((unit.removeprefix("1"), 1.0), *short_units(unit))
     sizes = ((f"{value / factor:.{digits}g}", name, abs(value / factor)) for name, factor in units)
     shown, name, _ = min(sizes, key=lambda one: len(one[0] + one[1]) + (0 if 0.1 <= one[2] < 1000.0 else UNHANDY))
     return f"{shown} {name.removesuffix('s') if (shown, name) == ('1', 'years') else name}"

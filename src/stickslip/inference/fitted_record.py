@@ -14,13 +14,14 @@ from numpy.typing import NDArray
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.names import si_unit
 from stickslip.inference.certainty.certainty import Certainty, Profile
 from stickslip.inference.certainty.sampling import PosteriorWalk
 from stickslip.inference.fit.by_features import FeatureModel
 from stickslip.inference.fit.estimate import Estimate
 from stickslip.inference.fit.free import Free
 from stickslip.inference.fit.memory import WHITE
-from stickslip.inference.fit.model import OF_NO_ZERO, Model, unit_of
+from stickslip.inference.fit.model import OF_NO_ZERO, Model
 from stickslip.inference.fit.part import Part
 from stickslip.problem.problem import Problem
 from stickslip.solution.solution import Solution
@@ -199,5 +200,6 @@ class FittedRecord(StudyWithDataset):
         table, rows = self.curves[self.curves.fitted], {}
         for name, size in self.model.sizes.items():
             rest = table.residual[table.quantity == name].dropna().to_numpy()
-            rows[name] = (len(rest), size, self.model.memory.get(name, WHITE).time, float(np.sqrt(np.mean(rest**2))), unit_of(name))
+            unit = si_unit(name, self.model.problem.load_unit)
+            rows[name] = (len(rest), size, self.model.memory.get(name, WHITE).time, float(np.sqrt(np.mean(rest**2))), unit)
         return pd.DataFrame.from_dict(rows, orient="index", columns=["samples", "noise", "memory", "rms", "unit"])

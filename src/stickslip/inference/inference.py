@@ -16,6 +16,7 @@ from stickslip.foundation.arguments import check_whole, for_users, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.atomic_write import write_atomically, write_table
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.names import si_unit
 from stickslip.foundation.netcdf_file import write
 from stickslip.foundation.quantities import Choice, fields_of
 from stickslip.foundation.show import brief, with_uncertainty
@@ -23,7 +24,6 @@ from stickslip.friction.law import FrictionLaw
 from stickslip.inference.certainty.sampling import MOST_SAMPLES, sample
 from stickslip.inference.fit.free import DELAY, TREND
 from stickslip.inference.fit.memory import EVEN, LONGEST, WHITE
-from stickslip.inference.fit.model import unit_of
 from stickslip.inference.fit.part import first_sizes
 from stickslip.inference.fit.search import SearchProgress
 from stickslip.inference.fitted_record import FittedRecord
@@ -105,7 +105,9 @@ class Inference(FittedRecord):
     def headline(self) -> str:
         """One line: how many numbers were found from how many samples, and the noise."""
         shared = sum(one.part is None for one in self.free)
-        sizes = ", ".join(f"{name} {brief(size, unit_of(name), 3)}" for name, size in self.model.sizes.items())
+        sizes = ", ".join(
+            f"{name} {brief(size, si_unit(name, self.model.problem.load_unit), 3)}" for name, size in self.model.sizes.items()
+        )
         what = "scatter" if self.model.of_means else "noise"
         return f"{shared} number{'' if shared == 1 else 's'} from {self.model.counted}, {what}: {sizes}; intervals of 95 %"
 

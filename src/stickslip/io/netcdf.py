@@ -17,13 +17,15 @@ from stickslip.foundation import netcdf_file
 from stickslip.foundation.arguments import as_path, for_users
 from stickslip.foundation.constants import PAPER
 from stickslip.foundation.errors import InputError, printable
+from stickslip.foundation.names import QUANTITIES, in_files, si_unit
 from stickslip.foundation.netcdf_file import FullDiskError, Variable, write_variables
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.io.soundness import check_history, history_table, number
 from stickslip.loading import HISTORIES, LoadingHistory
-from stickslip.observables.event_table import EVENT_COLUMNS, event_columns, unit_for
+from stickslip.observables.event_table import EVENT_COLUMNS, event_columns
 from stickslip.observables.predictability import attributes_of, is_followed, predictability
 from stickslip.problem.fields import MAY_VARY
+from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import names as rule_names
 from stickslip.scenarios import read_scenario
 from stickslip.solution.evaluation import Curve, Readings
@@ -55,23 +57,15 @@ DRAWN_POINTS = 2000
 AXES = (("numbers",), ("counts",), ("rows", "terms"), ("branches", "levels"), ("one",))
 """Names of the dimensions of a checkpoint's arrays, in the order of `checkpoint.ARRAYS`."""
 
-LONG_NAMES = {
-    "slip": "slip of the contact, u",
-    "event_slip": "slip of the contact since the start of the event",
-    "slip_rate": "slip rate of the contact, v",
-    "traction": "friction on the contact, tau",
-    "load": "load on the contact, beta",
-    "state": "state of the friction law",
-    "second_state": "second state of the friction law",
-}
-"""Meaning of each curve, for the attribute long_name."""
 
-
-def units(solution: Readings) -> dict[str, str]:
-    """Return the unit of each curve of a solution."""
-    load, states = solution.problem.load_unit, solution.problem.friction.states
-    known = {"slip": "m", "event_slip": "m", "slip_rate": "m s-1", "traction": load, "load": load}
-    return known | {name: state.unit for name, state in zip(STATE_NAMES, states, strict=False)}
+def about_curves(problem: Problem) -> dict[str, dict[str, str]]:
+    """Return the attributes units and long_name of each curve of a run, and of its time."""
+    found = {
+        name: {"units": in_files(si_unit(name, problem.load_unit)), "long_name": one.meaning} for name, one in QUANTITIES.items()
+    }
+    for name, state in zip(STATE_NAMES, problem.friction.states, strict=False):
+        found[name]["units"] = state.unit
+    return found
 
 
 def provenance(solution: Solution) -> dict[str, Any]:
@@ -153,11 +147,9 @@ def _field(readings: Readings, t: NDArray[np.float64], x: NDArray[np.float64]) -
 
 
 def _curves(solution: Readings, t: NDArray[np.float64], values: Mapping[Curve, NDArray[np.float64]]) -> dict[str, Variable]:
-    unit = units(solution)
-    known = {
-        name: Variable(("time",), value, {"units": unit[name], "long_name": LONG_NAMES[name]}) for name, value in values.items()
-    }
-    return known | {"time": Variable(("time",), t, {"units": "s", "long_name": "time since the start of the run"})}
+    about = about_curves(solution.problem)
+    found = {name: Variable(("time",), value, about[name]) for name, value in values.items()}
+    return found | {"time": Variable(("time",), t, about["time"])}
 
 
 def write_solution(solution: Solution, path: str | Path) -> Path:
@@ -194,8 +186,11 @@ def save_checkpoint(solution: Solution, path: Path, about: dict[str, Any] | None
 
 HISTORY_AXES = {name: ("piece", "term") if place.inside else ("piece",) for name, place in HistoryPiece.places.items()}
 """Dimensions of the variable of each field of the history's pieces."""
-HISTORY_UNITS = dict.fromkeys(("phase_from", "phase_to", "speed", "bend"), "s") | {"slip": "m", "law_slip": "m", "rate": "m s-1"}
-"""Units of these variables, unless they are pure numbers or loads."""
+HISTORY_UNITS = {
+    **dict.fromkeys(("phase_from", "phase_to", "speed", "bend"), "s"),
+    **{"slip": "slip", "law_slip": "slip", "rate": "slip_rate", "load": "load", "residual": "load"},
+}
+"""Units of these variables, unless they are pure numbers, as `names.si_unit` understands them."""
 
 
 def history_variables(solution: Solution) -> dict[str, Variable]:
@@ -216,11 +211,12 @@ def history_variables(solution: Solution) -> dict[str, Variable]:
 
 def _history(solution: Solution) -> dict[str, Variable]:
     store, history, load = solution.history.store, solution.history, solution.problem.load_unit
-    units, known = HISTORY_UNITS | {"load": load, "residual": load}, {"load": "load minus reference", "rate": "slip rate"}
+    known = {"load": "load minus reference", "rate": "slip rate"}
     variables = {}
     for name, axes in HISTORY_AXES.items():
         meaning = f"{known[name]}, Taylor coefficients" if name in known else f"{name} of a piece of the history"
-        variables[f"history_{name}"] = Variable(axes, getattr(store, name), {"units": units.get(name, "1"), "long_name": meaning})
+        unit = in_files(si_unit(HISTORY_UNITS.get(name, "1"), load))
+        variables[f"history_{name}"] = Variable(axes, getattr(store, name), {"units": unit, "long_name": meaning})
     end = "end of the run, less than the duration asked for if it ended early"
     variables |= {
         "reached": Variable((), history.duration, {"units": "s", "long_name": end}),
@@ -228,7 +224,11 @@ def _history(solution: Solution) -> dict[str, Variable]:
         "ramp": Variable((), history.ramp, {"units": load, "long_name": "load gained in a row at rest"}),
     }
     if len(history.creep):
-        about = {"columns": "start_row round_trips error time_error", "units": "1 1 m s", "long_name": "leaps over creep"}
+        about = {
+            "columns": "start_row round_trips error time_error",
+            "units": f"1 1 {si_unit('slip', load)} s",
+            "long_name": "leaps over creep",
+        }
         variables["history_creep"] = Variable(("creep_leap", "creep_column"), history.creep, about)
     if solution.problem.friction.states:
         about = {"long_name": "states as the law's formulas see them, Taylor coefficients"}
@@ -253,7 +253,7 @@ def _tables(solution: Solution) -> dict[str, Variable]:
     for prefix, table, columns in (("event", events, event), ("shock", shocks, shock)):
         for name, values in table.items():
             unit, meaning = columns[name]
-            about = {"units": unit_for(unit, load)} | ({"long_name": meaning} if meaning else {})
+            about = {"units": in_files(si_unit(unit, load))} | ({"long_name": meaning} if meaning else {})
             found = np.asarray(values, str) if name in ("cause", "rule") else np.asarray(values)
             variables[f"{prefix}_{name}"] = Variable((prefix,), found, about)
     return variables

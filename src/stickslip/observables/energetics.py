@@ -46,7 +46,7 @@ ENERGETICS_COLUMNS = {
     "efficiency": ("1", "seismic efficiency: waves / (waves + heat)"),
     "radiation_efficiency": ("1", "waves / (waves + fracture)"),
 }
-"""Columns of `Solution.energetics`: unit ("load" is Pa or N, "energy" J m-2 or J) and meaning."""
+"""Columns of `Solution.energetics`: unit, as `names.si_unit` understands it, and meaning."""
 
 DROP_ROUNDING = 1e-12
 """Rounding of a stress drop, relative to the normal stress (block: force)."""

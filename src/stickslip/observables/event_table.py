@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from stickslip.engine.state.layout import Floats, Integers
 from stickslip.foundation.arguments import check_type, for_users
+from stickslip.foundation.names import in_files, si_unit
 from stickslip.observables.energy.balance import event_energies
 from stickslip.trajectory.history import History, Positions
 from stickslip.trajectory.slip_events import NOT_YET, SlipEvents
@@ -126,10 +127,10 @@ class FoundEvents:
 
 @dataclass(frozen=True)
 class Column:
-    """A column of the table of slip events: its SI unit as files spell it, what it holds, and what computes it for each event.
+    """A column of the table of slip events: its SI unit, what it holds, and what computes it for each event.
 
-    The unit "load" stands for Pa (slab) or N (block), "energy" for J m-2 or J. `place` is its place in summaries on a terminal,
-    counted from 1; 0 if they do not show it.
+    The units "slip", "slip_rate", "load" and "energy" stand for those of the body (`names.si_unit`). `place` is its place in
+    summaries on a terminal, counted from 1; 0 if they do not show it.
     """
 
     unit: str
@@ -157,8 +158,8 @@ EVENT_COLUMNS = {
         2,
     ),
     "recurrence": Column("s", "start - start of the previous event, without the rounding of either", FoundEvents.recurrence),
-    "slip": Column("m", "slip within the event, positive in either direction", lambda e: e.slip, 4),
-    "peak_rate": Column("m s-1", "largest |v|", lambda e: e.events.peak_rate, 5),
+    "slip": Column("slip", "slip within the event, positive in either direction", lambda e: e.slip, 4),
+    "peak_rate": Column("slip_rate", "largest |v|", lambda e: e.events.peak_rate, 5),
     "peak_time": Column("s", "time of the largest |v|", lambda e: e.history.seconds(*e.history.placed(e.events.peak))),
     "peak_after": Column(
         "s",
@@ -210,15 +211,10 @@ NEEDED = ("start", "end", "recurrence", "slip")
 """Columns without which a table is no catalogue. Others may be missing from the file of another version."""
 
 
-def unit_for(unit: str, load_unit: str) -> str:
-    """Return a unit in which "load" and "energy" are replaced by the units of a body whose load is in Pa or N."""
-    return {"load": load_unit, "energy": "J m-2" if load_unit == "Pa" else "J"}.get(unit, unit)
-
-
 def column_unit(name: str, load_unit: str) -> str:
     """Return the unit of a column of the table of slip events, as files spell it; "" for a column that is not known."""
     known = EVENT_COLUMNS | ENERGY_COLUMNS
-    return unit_for(known[name].unit, load_unit) if name in known else ""
+    return in_files(si_unit(known[name].unit, load_unit)) if name in known else ""
 
 
 def shown_columns() -> list[str]:

@@ -27,6 +27,7 @@ from scipy.special import comb
 
 from stickslip.engine.state.layout import TERMS
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.names import KINDS
 from stickslip.foundation.show import brief, brief_repr
 from stickslip.friction.formula.bounds import largest, on_discs
 from stickslip.friction.formula.expression import VARIABLES, Expression
@@ -81,7 +82,7 @@ class Proof:
     @property
     def text(self) -> str:
         """One line on the bound."""
-        share = f"{self.relative:.1g} of the normal {'stress' if self.unit == 'Pa' else 'force'}"
+        share = f"{self.relative:.1g} of the normal {KINDS[self.unit].loads}"
         found = f"the contact equation holds to {brief(self.residual, self.unit)} at every moment, {share}"
         if self.steps:
             found += f"; proven from the law's formula alone: {self.anew} of {self.steps} steps"

@@ -14,6 +14,7 @@ import pandas as pd
 from stickslip.bodies import as_block, as_slab
 from stickslip.contact.uniqueness import uniqueness_of
 from stickslip.foundation.constants import YEAR
+from stickslip.foundation.names import si_unit
 from stickslip.friction import HyperbolicRate, SinusoidalSlip
 from stickslip.observables.event_table import EVENT_COLUMNS
 from stickslip.paper.cases import READINGS, Runs, problem, typed
@@ -56,7 +57,7 @@ def cases_table(runs: Runs) -> pd.DataFrame:
 
 
 def _stacked(runs: Runs, table: str, units: Mapping[str, str]) -> pd.DataFrame:
-    shown = {name: {"m s-1": "m/s", "load": "Pa or N"}.get(unit, unit) for name, unit in units.items() if unit not in ("", "1")}
+    shown = {name: si_unit(unit) for name, unit in units.items() if unit not in ("", "1")}
     parts: dict[str, pd.DataFrame] = {name: getattr(runs.case(name), table) for name in READINGS}
     # Leave out cases without a row: they would make the types of the columns ambiguous.
     whole = pd.concat([part.assign(case=name) for name, part in parts.items() if len(part)], ignore_index=True)

@@ -13,6 +13,7 @@ from stickslip.bodies import BODIES, BodyOnCharacteristics
 from stickslip.foundation.arguments import CheckedArguments, check_type, is_number, shown
 from stickslip.foundation.conversion import Converted, Number, OptionalNumber, WithUnit
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.names import si_unit
 from stickslip.foundation.quantities import Quantity, check_fields, quantities_of, quantity
 from stickslip.friction import FrictionLaw
 from stickslip.friction.contract import STATE_NAMES
@@ -24,7 +25,7 @@ MAY_VARY = ("pull_rate", "far_stress")
 """Fields of a problem that may be a loading history instead of a number."""
 A_HISTORY = "; what varies in time is one of stickslip.loading, such as Steps([0.0, 10.0], [1e-6, 1e-5])"
 """Hint for a value that is no number."""
-LOAD = "Pa or N"
+LOAD = si_unit("load")
 """Unit of a load: Pa on a slab, N on a block."""
 STEADY = "steady"
 """Initial state, or initial rate, that stands for the one of steady sliding at the pull rate."""

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.names import si_unit
 from stickslip.foundation.quantities import quantities_of
 from stickslip.foundation.show import brief, brief_repr, fields_in, html_table, shown_fields
 from stickslip.friction.contract import one_argument
@@ -148,8 +149,9 @@ class Problem(ProblemFields):
                 f"Problem: initial_rate: {why}: leave it out, or leave out load and state, so that it starts in steady sliding"
             )
         if self.has_initial_rate and resistance_slope(self) <= 0.0:
+            rate = brief(self.rate, si_unit("slip_rate", self.load_unit))
             raise InputError(
-                f"Problem: initial_rate: at {brief(self.rate, 'm/s')} friction falls faster with the slip rate than waves carry"
+                f"Problem: initial_rate: at {rate} friction falls faster with the slip rate than waves carry"
                 " away, so that a contact without mass leaves this rate at once: give another rate, or the contact a mass"
             )
 
@@ -159,8 +161,8 @@ class Problem(ProblemFields):
         return {
             name: f"{value.kind}, {brief(value.first, unit)} at first" if isinstance(value, LoadingHistory) else brief(value, unit)
             for name, value, unit in (
-                ("pull_rate", self.pull_rate, "m/s"),
-                ("far_stress", self.far_stress, "Pa"),
+                ("pull_rate", self.pull_rate, si_unit("slip_rate", self.load_unit)),
+                ("far_stress", self.far_stress, self.load_unit),
                 ("far_stress_rate", self.far_stress_rate or None, "Pa/s"),
             )
             if value is not None

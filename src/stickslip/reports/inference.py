@@ -11,6 +11,7 @@ import numpy as np
 
 import stickslip as ss
 from stickslip.figures.studies import inference as figures
+from stickslip.foundation.names import name_of
 from stickslip.foundation.show import about_time, number, sentence
 from stickslip.inference.inference import Inference, minima_of, noise_of, ranking, record_of, warnings_of
 from stickslip.reports.page import DIGITS, picture, rendered, save_figure, save_text, superscript, with_unit
@@ -67,7 +68,7 @@ def _figures(study: Inference, dataset: Any) -> Iterator[tuple[str, str, str, An
         caption = "What was measured of each slip event, the mean with its interval of 95 %, and the run with the best numbers."
         yield "figure-features", "Features of slip events, record and best run", caption, figures.draw_features(dataset)
     for name in study.model.sizes if study.features is None else ():
-        title = f"{figures.NAMES[name][0].capitalize()}, record and best run"
+        title = f"{name_of(name).capitalize()}, record and best run"
         caption = (
             "Above: the samples of the record, and the run with the best numbers. Middle: what is left, which should look like "
             "noise; a pattern is what the model lacks. Below: the slip rate of that run."

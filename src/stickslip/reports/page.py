@@ -14,6 +14,7 @@ from markupsafe import Markup, escape
 
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.constants import YEAR
+from stickslip.foundation.names import readable_unit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -80,11 +81,11 @@ def number(value: float) -> str:
 
 
 def with_unit(value: float | None, unit: str) -> str:
-    """Return a number with a unit in which it can be read: large stresses in MPa or GPa, times in years, days or seconds."""
+    """Return a number with a unit in which it can be read: loads and energies with a prefix, times in years, days or seconds."""
     if value is None:
         return "–"
-    if unit == "Pa" and abs(value) >= 1e5:
-        value, unit = (value / 1e6, "MPa") if abs(value) < 1e9 else (value / 1e9, "GPa")
+    unit, size = readable_unit(unit, value, plain=True)
+    value /= size
     if unit == "year" or (unit == "s" and abs(value) >= YEAR):
         value, unit = _long_time(value * YEAR if unit == "year" else value)
     return f"{number(value)} {unit.removeprefix('1') if unit.startswith('1/') else unit}".strip()

@@ -15,6 +15,7 @@ from stickslip.contact.sliding import SteadySlidings
 from stickslip.contact.steady import proven_slidings
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
 from stickslip.engine_input.limits import MOST_PIECES, PATIENCE, automatic_length, creep_tolerance, leaps_over, lumps_by_itself
+from stickslip.foundation.names import si_unit
 from stickslip.foundation.quantities import Choice, LawField, NamedNumbers, NumberSeries, Quantity, Text, fields_of, in_units
 from stickslip.foundation.show import brief
 from stickslip.friction import FrictionLaw, RateAndState, SinusoidalSlip
@@ -154,7 +155,7 @@ def _derived(problem: Problem) -> list[Fact]:
         start.insert(0, Fact("strength", problem.strength, unit, "static strength S mu at the start"))
         start.append(Fact("excess", problem.excess, unit, "load minus static strength"))
     if problem.has_initial_rate:
-        start.append(Fact("v0", problem.rate, "m/s", "slip rate at the start"))
+        start.append(Fact("v0", problem.rate, si_unit("slip_rate", unit), "slip rate at the start"))
     start += _steady(problem)
     first = ", at first" if problem.varies else ""
     if not body.has_waves:

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip.foundation.arguments import NamesAttributes
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.names import in_files, si_unit
 from stickslip.foundation.show import brief
 from stickslip.observables.energy.balance import LONG_NAMES
 from stickslip.observables.planar import pulses, rupture_speed, rupture_times
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
     from stickslip.planar.solver import PlanarSolver
     from stickslip.planar.step import PlanarMotion
 
-FIELDS = {"slip": "m", "slip_rate": "m s-1", "traction": "Pa", "heat": "J m-2"}
+FIELDS = {name: in_files(si_unit(name, "Pa")) for name in ("slip", "slip_rate", "traction", "heat")}
 """Unit of each field of a frame."""
 MOTION = {"slip": "slip", "slip_rate": "rate", "traction": "traction", "heat": "heat"}
 """Name in the solver's `PlanarMotion` of each field of a frame."""

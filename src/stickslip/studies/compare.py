@@ -15,6 +15,7 @@ from stickslip.foundation.arguments import for_users
 from stickslip.foundation.constants import PAPER
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.names import si_unit
 from stickslip.io.netcdf import read_solution
 from stickslip.observables.energetics import extreme_tractions
 from stickslip.observables.energy.pulses import Pulses
@@ -33,8 +34,8 @@ COLUMNS = {
     "regime": ("", "whether the contact equation has one solution (regular), several (irregular), or a continuum"),
     "events": ("", "slip events, see `Solution.events`"),
     "pulses": ("", "maxima of the slip rate in the largest event, see `Solution.events`"),
-    "slip": ("m", "slip of the largest event"),
-    "peak_rate": ("m/s", "largest slip rate of the run"),
+    "slip": ("slip", "slip of the largest event"),
+    "peak_rate": ("slip_rate", "largest slip rate of the run"),
     "static_drop": ("load", "stiffness (G/h, or K) times the slip of the largest event"),
     "dynamic_drop": ("load", "traction at rest before the largest event minus the smallest one while it slips"),
     "duration": ("s", "duration of the first event; NaN if it is not over"),
@@ -42,7 +43,7 @@ COLUMNS = {
     "load_unit": ("", "unit of the drops: Pa (slab) or N (block)"),
     "status": ("", "what ended the run"),
 }
-"""Columns of the table, each with its unit and meaning; the unit "load" stands for the one in the column `load_unit`."""
+"""Columns of the table, each with its unit, as `names.si_unit` understands it, and its meaning."""
 
 
 class RunSource(NamedTuple):
@@ -103,8 +104,8 @@ class Comparison(Study):
     def _about(self) -> Iterator[str]:
         """Yield the version, the columns with their units, and every scenario in SI units, for the file of the table."""
         yield f"stickslip {stickslip.__version__}: runs side by side. Method: {PAPER}"
-        for name, (unit, meaning) in COLUMNS.items():
-            yield f"{name}{f' ({unit})' if unit else ''}: {meaning}"
+        for name, (_, meaning) in COLUMNS.items():
+            yield f"{self._headings[name]}: {meaning}"
         for name, solution in self.runs.items():
             yield f"\n---- {name}: {solution.status}"
             yield Scenario(solution.problem, solution.asked_duration, solution.rtol, max_events=solution.max_events).to_toml()
@@ -116,9 +117,12 @@ class Comparison(Study):
         yield f"of {', '.join(self.runs)}"
 
     def _shown_table(self) -> pd.DataFrame:
-        units = {name: "Pa or N" if unit == "load" else unit for name, (unit, _) in COLUMNS.items()}
-        with_units = {name: f"{name} ({unit})" for name, unit in units.items() if unit}
-        return self.table.set_index("name").rename(columns=with_units).T.rename_axis(columns=None)
+        return self.table.set_index("name").rename(columns=self._headings).T.rename_axis(columns=None)
+
+    @property
+    def _headings(self) -> dict[str, str]:
+        """Each column with its unit: that of all bodies, since the table may hold several kinds."""
+        return {name: f"{name} ({si_unit(unit)})" if unit else name for name, (unit, _) in COLUMNS.items()}
 
 
 @for_users

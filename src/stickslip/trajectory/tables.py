@@ -27,13 +27,13 @@ CAUSES = ("", "start", "fold", "echo", "loading", "healing")
 SHOCK_COLUMNS = {
     "time": "s",
     "cause": "",
-    "rate_before": "m s-1",
-    "rate_after": "m s-1",
+    "rate_before": "slip_rate",
+    "rate_after": "slip_rate",
     "traction_before": "load",
     "traction_after": "load",
     "rule": "",
 }
-"""Units of the columns of the table of shocks; "load" is Pa or N. `Solution.shocks` says what they mean."""
+"""Units of the columns of the table of shocks, as `names.si_unit` understands them. `Solution.shocks` says what they mean."""
 
 
 def shocks_table(history: History, first: float = -np.inf, last: float = np.inf) -> pd.DataFrame:

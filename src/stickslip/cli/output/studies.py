@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stickslip.cli.output.show import console, print_numbers, print_sentences, print_words, say, titled
+from stickslip.foundation.names import si_unit
 from stickslip.foundation.show import clean, number, with_unit
 
 if TYPE_CHECKING:
@@ -35,8 +36,9 @@ def show_comparison(found: Comparison) -> None:
     words = ("rule", "regime", "status")
     print_numbers(screen, ("", *words), [[clean(row["name"]), *(str(row[name]) for name in words)] for row in rows], text=4)
     screen.print()
-    headings = ("events", "largest\nslip\nm", "its\npulses", "peak\nrate\nm/s", "static\ndrop", "dynamic\ndrop", "first\nlasts\ns")
-    print_numbers(screen, ("", *headings, "shocks"), [_sizes(row) for row in rows], text=1)
+    slip, rate = (si_unit(name, *found.table.load_unit) for name in ("slip", "slip_rate"))
+    sizes = (f"largest\nslip\n{slip}", "its\npulses", f"peak\nrate\n{rate}", "static\ndrop", "dynamic\ndrop", "first\nlasts\ns")
+    print_numbers(screen, ("", "events", *sizes, "shocks"), [_sizes(row) for row in rows], text=1)
 
 
 def _sizes(row: Mapping[Hashable, Any]) -> list[str]:

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 from stickslip.cli.output.files import announce
 from stickslip.cli.output.show import console, fits, print_numbers, say, titled
 from stickslip.engine_input.limits import creep_tolerance
-from stickslip.foundation.show import clean, how_long, number, readable_unit, with_unit
+from stickslip.foundation.names import readable_unit, si_unit
+from stickslip.foundation.show import clean, how_long, number, with_unit
 from stickslip.scenarios.scenario import doubts, read_scenario
 
 if TYPE_CHECKING:
@@ -66,7 +67,7 @@ def show_catalogue(scenario: Scenario, found: Catalogue) -> None:
     if found.events > MANY_EVENTS:
         say(screen, "mean recurrence and slip: `stickslip show` on the catalogue works them out")
     elif found.events > 2:
-        say(screen, *(line.rstrip() for line in statistics(dict(found.read().items()))))
+        say(screen, *(line.rstrip() for line in statistics(dict(found.read().items()), _unit("slip", scenario.problem))))
     announce(*found.files)
 
 
@@ -98,15 +99,13 @@ def _print_events(screen: Console, events: Mapping[Any, Any], problem: Problem |
     names = [name for name in shown_columns() if name in events and (rigid or name != "static_drop")]
     units = [_unit(EVENT_COLUMNS[name].unit, problem) for name in names]
     _print(screen, "slip event", {name: events[name] for name in names}, units)
-    say(screen, *statistics(events))
+    say(screen, *statistics(events, _unit("slip", problem)))
 
 
 def _unit(unit: str, problem: Problem | None) -> str:
     """Return the unit of a column as readers expect to see it, for a problem or for one that is not known."""
-    from stickslip.observables.event_table import unit_for
-
-    found = unit_for(unit, "Pa or N" if problem is None else problem.load_unit)
-    return {"m s-1": "m/s", "1": ""}.get(found, found)
+    found = si_unit(unit) if problem is None else si_unit(unit, problem.load_unit)
+    return "" if found == "1" else found
 
 
 def _slides_throughout(events: Mapping[Any, Any], problem: Problem) -> bool:
@@ -115,14 +114,14 @@ def _slides_throughout(events: Mapping[Any, Any], problem: Problem) -> bool:
     return not problem.friction.sticks and len(starts) == 1 and float(starts[0]) == 0.0 and math.isnan(float(ends[0]))
 
 
-def statistics(events: Mapping[Any, Any]) -> list[str]:
-    """Return a line with the mean and the scatter of slips and recurrence times, if there are three of these or more."""
+def statistics(events: Mapping[Any, Any], slip: str = "m") -> list[str]:
+    """Return a line with mean and scatter of slips (unit `slip`) and recurrence times, if there are three of these or more."""
     import numpy as np
 
     from stickslip.observables.event_table import that_count
 
     lines = []
-    for name, unit in (("recurrence", "s"), ("slip", "m")):
+    for name, unit in (("recurrence", "s"), ("slip", slip)):
         values = that_count(events, name)
         if len(values) > 2:
             mean, scatter = float(values.mean()), float(values.std(ddof=1))
@@ -172,7 +171,7 @@ def _print(screen: Console, what: str, columns: Mapping[str, Sequence[Any]], uni
 def _readable(column: Sequence[Any], unit: str) -> tuple[str, Sequence[Any]]:
     """Return the unit in which a column of numbers is short, and the column in that unit."""
     sizes = [abs(value) for value in column if isinstance(value, float) and math.isfinite(value)]
-    factor, name = readable_unit(max(sizes, default=0.0), unit)
+    name, factor = readable_unit(unit, *sizes, plain=True)
     return (name, column) if factor == 1.0 else (name, [value / factor for value in column])
 
 

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stickslip.cli.output.show import console, print_numbers, say, titled
-from stickslip.foundation.show import about_time, clean, number, readable_unit, with_unit
+from stickslip.foundation.names import for_readers, readable_unit
+from stickslip.foundation.show import about_time, clean, number, with_unit
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -165,7 +166,7 @@ def _show_quantities(dataset: xr.Dataset) -> None:
         values = dataset[name].to_numpy()
         values = values[np.isfinite(values)]
         numbers = (values.min(), np.median(values), values.max()) if values.size else (np.nan,) * 3
-        factor, unit = readable_unit(float(np.abs(values).max(initial=0.0)), str(dataset[name].attrs["units"]))
+        unit, factor = readable_unit(for_readers(str(dataset[name].attrs["units"])), values, plain=True)
         rows.append((name, "" if unit == "1" else unit, str(values.size), *(number(float(x) / factor, 6) for x in numbers)))
     screen = console()
     print_numbers(screen, ("quantity", "unit", "members", "smallest", "median", "largest"), rows, text=2)

@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from stickslip.explorer.model.words import short
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.names import si_unit
 from stickslip.inference.fit.model import OF_NO_ZERO, measured
 from stickslip.inference.fit.setup import SENSORS
-from stickslip.inference.record.record import SHEAR, UNITS, Record
+from stickslip.inference.record.record import SHEAR, Record
 from stickslip.inference.record.resample import resampled
 from stickslip.problem.problem import Problem
 from stickslip.scenarios.scenario import Scenario
@@ -88,7 +89,7 @@ class BodyCurves:
     slip_rate: Floats
     traction: Floats
     load: Floats
-    load_unit: Literal["Pa", "N"]
+    load_unit: str
     normal_load: float = 1.0
     """Normal stress (Pa) or force (N) of this body: traction over it can be compared between slab and block."""
     states: tuple[StateCurve, ...] = ()
@@ -237,7 +238,7 @@ class Backdrop:
             zero = float(np.mean((data - model)[known])) if name in OF_NO_ZERO and known.any() else 0.0
             away = (data - zero - model)[known]
             size = float(np.sqrt(np.mean(away**2))) if known.any() else float("nan")
-            misfits.append(KeyNumber(f"misfit of {name.replace('_', ' ')}", size, UNITS[name]))
+            misfits.append(KeyNumber(f"misfit of {name.replace('_', ' ')}", size, si_unit(name, run.problem.load_unit)))
             shift = run.problem.initial_slip - zero if name == "slip" else 0.0
             scale = run.problem.normal if name == "friction" else 1.0
             curves[DRAWN_AS[name]] = data * scale + shift

@@ -12,6 +12,7 @@ import pandas as pd
 from stickslip.contact.uniqueness import Uniqueness
 from stickslip.explorer.model.answer import BodyCurves, KeyNumber, Mark, MarkKind
 from stickslip.explorer.model.words import several, short
+from stickslip.foundation.names import si_unit
 from stickslip.observables.energy.pulses import PULSE_COLUMNS
 from stickslip.observables.rule_influence import RuleInfluence
 from stickslip.problem.problem import Problem
@@ -49,6 +50,12 @@ class Findings:
         return float("nan") if self.largest is None else float(self.largest.end)
 
     @property
+    def units(self) -> tuple[str, str]:
+        """The SI units of slip and slip rate."""
+        loads = self.solution.problem.load_unit
+        return si_unit("slip", loads), si_unit("slip_rate", loads)
+
+    @property
     def total_slip(self) -> float:
         """The slip from the start to the end of the run, m."""
         first, last = self.solution.slip(np.array(self.solution.history.span))
@@ -68,32 +75,32 @@ def marks_of(found: Findings, motion: BodyCurves) -> tuple[Mark, ...]:
 
 
 def _events(found: Findings) -> list[Mark]:
-    marks = []
+    marks, length = [], found.units[0]
     for _, event in found.events.nlargest(MOST_MARKS // 4, "slip").iterrows():
         marks.append(Mark(float(event.start), "start", f"a slip event begins at {short(event.start, 's')}"))
         if not np.isnan(event.end):
-            text = f"arrest at {short(event.end, 's')}, after {short(event.slip, 'm')} of slip"
+            text = f"arrest at {short(event.end, 's')}, after {short(event.slip, length)} of slip"
             marks.append(Mark(float(event.end), "arrest", text))
     return marks
 
 
 def _pulses(found: Findings, motion: BodyCurves) -> list[Mark]:
     """Return a mark for each pulse, where its slip rate is largest on the curve."""
-    marks = []
+    marks, (length, rate) = [], found.units
     for _, pulse in found.pulses.nlargest(MOST_MARKS // 4, "slip").iterrows():
         inside = np.flatnonzero((motion.time >= pulse.start) & (motion.time <= pulse.start + pulse.duration))
         if len(inside):
             peak = float(motion.time[inside[np.argmax(np.abs(motion.slip_rate[inside]))]])
-            text = f"pulse of {short(pulse.slip, 'm')}, fastest with {short(pulse.peak_rate, 'm/s')} at {short(peak, 's')}"
+            text = f"pulse of {short(pulse.slip, length)}, fastest with {short(pulse.peak_rate, rate)} at {short(peak, 's')}"
             marks.append(Mark(peak, "pulse", text))
     return marks
 
 
 def _jumps(found: Findings) -> list[Mark]:
     shocks = found.shocks.assign(size=(found.shocks.rate_after - found.shocks.rate_before).abs())
-    marks = []
+    marks, rate = [], found.units[1]
     for _, shock in shocks.nlargest(MOST_MARKS // 4, "size").iterrows():
-        step = f"from {short(shock.rate_before, 'm/s')} to {short(shock.rate_after, 'm/s')}"
+        step = f"from {short(shock.rate_before, rate)} to {short(shock.rate_after, rate)}"
         text = f"the slip rate jumps {step} at {short(shock.time, 's')} ({shock.cause})"
         marks.append(Mark(float(shock.time), KINDS.get(shock.cause, "jump"), text))
     return marks
@@ -102,17 +109,18 @@ def _jumps(found: Findings) -> list[Mark]:
 def key_numbers(found: Findings, contact: Uniqueness, motion: BodyCurves) -> tuple[KeyNumber, ...]:
     """Return the numbers of a run; NaN for one that it does not have, such as the arrest of a contact that never slips."""
     event, unit = found.largest, motion.load_unit
+    length, rate = found.units
     of_event = {} if event is None else event.to_dict()
 
     def of(name: str) -> float:
         return float(of_event.get(name, np.nan))
 
     return (
-        KeyNumber("slip in all", found.total_slip, "m"),
+        KeyNumber("slip in all", found.total_slip, length),
         KeyNumber("slip events", float(len(found.events)), "1"),
-        KeyNumber("slip of the largest event", of("slip"), "m"),
+        KeyNumber("slip of the largest event", of("slip"), length),
         KeyNumber("pulses of the largest event", of("pulses"), "1"),
-        KeyNumber("largest slip rate", float(np.abs(motion.slip_rate).max()), "m/s"),
+        KeyNumber("largest slip rate", float(np.abs(motion.slip_rate).max()), rate),
         KeyNumber("arrest", found.arrest, "s"),
         KeyNumber("duration of the largest event", of("duration"), "s"),
         KeyNumber("drop of the traction", of("traction_drop"), unit),
@@ -179,14 +187,14 @@ def _against_critical(problem: Problem, contact: Uniqueness) -> str:
 
 def _motion(found: Findings) -> str:
     """Return what moved: slip, pulses and arrest of the largest event."""
-    event, span = found.largest, found.solution.history.span
+    event, span, (length, rate) = found.largest, found.solution.history.span, found.units
     if event is None:
         moved = found.total_slip
         lasts = short(span[1] - span[0], "s")
-        return f"it slips {short(moved, 'm')} in {lasts}, too slowly for a slip event" if moved else f"nothing slips in {lasts}"
+        return f"it slips {short(moved, length)} in {lasts}, too slowly for a slip event" if moved else f"nothing slips in {lasts}"
     number = len(found.events)
     head = f"{several(number, 'slip event')}{', the largest' if number > 1 else ''} of"
-    text = f"{head} {short(event.slip, 'm')} in {several(int(event.pulses), 'pulse')}, at up to {short(event.peak_rate, 'm/s')}"
+    text = f"{head} {short(event.slip, length)} in {several(int(event.pulses), 'pulse')}, at up to {short(event.peak_rate, rate)}"
     if np.isnan(event.end):
         return f"{text}, which goes on at the end of the run"
     return f"{text}, {'arrested at ' + short(event.end, 's') if number == 1 else 'lasting ' + short(event.duration, 's')}"
@@ -200,13 +208,13 @@ def _jumped(found: Findings) -> str:
     if shocks.empty:
         return "the slip rate never jumps"
     if len(shocks) <= FEW:
-        return f"the slip rate jumps {' and '.join(_jump(shock) for shock in shocks.itertuples())}"
+        return f"the slip rate jumps {' and '.join(_jump(shock, found.units[1]) for shock in shocks.itertuples())}"
     largest = int(np.argmax(np.abs(shocks.rate_after - shocks.rate_before)))
-    return f"the slip rate jumps {len(shocks)} times, most {_jump(list(shocks.itertuples())[largest])}"
+    return f"the slip rate jumps {len(shocks)} times, most {_jump(list(shocks.itertuples())[largest], found.units[1])}"
 
 
-def _jump(shock: Any) -> str:
-    before, after = (short(rate, "m/s") if rate else "rest" for rate in (shock.rate_before, shock.rate_after))
+def _jump(shock: Any, unit: str) -> str:
+    before, after = (short(rate, unit) if rate else "rest" for rate in (shock.rate_before, shock.rate_after))
     when = "" if shock.cause == "start" else f" at {short(shock.time, 's')}"
     return f"from {before} to {after} {CAUSES[shock.cause]}{when}"
 

@@ -11,6 +11,7 @@ from stickslip.contact.uniqueness import Uniqueness
 from stickslip.explorer.model.answer import BodyCurves, ContactPicture, CurveName, EnergyPicture, LawPicture, SlabPicture
 from stickslip.explorer.model.sampled_waves import SampledWaves, ShownInterval
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.names import si_unit
 from stickslip.friction import FrictionLaw, LaggedFriction
 from stickslip.friction.contract import one_argument
 from stickslip.observables.energy.balance import energies, heat
@@ -222,16 +223,17 @@ SLAB_PLACES = 240
 def energy_picture(shown: ShownInterval, waves: SampledWaves | None) -> EnergyPicture:
     """Return the parts of the energy; none where the waves in a slab are not known because the run leaped over creep."""
     body = shown.readings.problem.body
+    unit = si_unit("energy", body.load_unit)
     time = np.linspace(shown.start, shown.end, SLAB_TIMES if body.has_waves else BLOCK_TIMES)
     if body.has_waves and waves is None:
-        return EnergyPicture(time + shown.begin, {}, body.energy_unit)
+        return EnergyPicture(time + shown.begin, {}, unit)
     found = _of_block(shown, time) if waves is None else _of_slab(waves, time)
     elastic = found["stored"] - found["kinetic"]
     parts = {"elastic": elastic - elastic.min(), "kinetic": found["kinetic"]}
     parts |= {name: found[name] - found[name][0] for name in ("heat", "radiated", "damped")}
     drawn = {name: values for name, values in parts.items() if values.any()}
     total = parts["elastic"][0] + parts["kinetic"][0] + found["work"] - found["work"][0] + parts["radiated"]
-    return EnergyPicture(time + shown.begin, drawn | {"total": total}, body.energy_unit)
+    return EnergyPicture(time + shown.begin, drawn | {"total": total}, unit)
 
 
 def _of_block(shown: ShownInterval, time: Floats) -> dict[str, Floats]:

@@ -192,7 +192,7 @@ def motion(solution: Solution, name: str = "") -> BodyCurves:
         slip_rate=rate,
         traction=traction,
         load=load,
-        load_unit="Pa" if has_waves else "N",
+        load_unit=solution.problem.load_unit,
         normal_load=solution.problem.normal,
         states=tuple(StateCurve(one.meaning, one.unit, values) for one, values in zip(known, states, strict=True)),
     )

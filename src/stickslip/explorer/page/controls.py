@@ -12,9 +12,9 @@ from stickslip.explorer.model.exchange import with_kind
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.page.components import ControlRows
 from stickslip.explorer.page.explorer import Explorer
-from stickslip.figures.names import GREEK, symbol
-from stickslip.figures.style import SPELLED
+from stickslip.figures.names import symbol
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.names import GREEK, for_readers
 from stickslip.friction import FromExpression
 from stickslip.friction.formula.text import RESERVED
 from stickslip.scenarios import library
@@ -215,7 +215,7 @@ def symbol_of(control: Control) -> tuple[str, str]:
 
 def spelled(unit: str) -> str:
     """Return a unit as readers expect to see it."""
-    unit = SPELLED.get(unit, unit)
+    unit = for_readers(unit)
     return re.sub(r"\bu(?=[mNPs])", "µ", unit).replace("/ m", "1/m") if unit.startswith(("u", "/")) else unit
 
 

@@ -20,6 +20,7 @@ from stickslip.explorer.model.fault import FaultAnswer
 from stickslip.explorer.model.setting import Setting
 from stickslip.foundation.atomic_write import write_table
 from stickslip.foundation.errors import InputError, gathered
+from stickslip.foundation.names import si_unit
 from stickslip.friction.custom.points import table_in_text
 from stickslip.scenarios import library
 from stickslip.scenarios.scenario import read_scenario
@@ -134,8 +135,11 @@ def curves_file(setting: Setting, answer: Answer) -> bytes:
         )
         for motion in answer.motions
     ]
-    units = ", ".join(f"{motion.load_unit} ({motion.name})" for motion in answer.motions)
-    about = _about(setting, f"curves; time in s, slip in m, slip_rate in m/s, traction and load in {units}; a jump has two rows")
+    loads = ", ".join(f"{motion.load_unit} ({motion.name})" for motion in answer.motions)
+    slip, rate = (si_unit(name, *(motion.load_unit for motion in answer.motions)) for name in ("slip", "slip_rate"))
+    about = _about(
+        setting, f"curves; time in s, slip in {slip}, slip_rate in {rate}, traction and load in {loads}; a jump has two rows"
+    )
     return _written(".csv", lambda path: write_table(path, pd.concat(tables, ignore_index=True), about))
 
 

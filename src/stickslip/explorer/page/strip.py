@@ -28,9 +28,9 @@ from stickslip.explorer.page.components import Markup, asset, paint
 from stickslip.explorer.page.explorer import Explorer
 from stickslip.explorer.page.stage import Stage
 from stickslip.explorer.page.view import LegendKey, View, axis_label, heading, limits
-from stickslip.figures.style import SPELLED, unit_of
 from stickslip.foundation.axis import Axis
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.names import for_readers, readable_unit
 from stickslip.foundation.quantities import Quantity
 from stickslip.scenarios.entries import typed_number
 from stickslip.scenarios.parameter_paths import ParameterPath
@@ -66,14 +66,14 @@ def _plot(stage: Stage, name: str) -> Any:
 
 def view_of_strip(strip: Strip, shown_in: tuple[str, float] | None = None) -> View:
     """Return what the plots show of a strip; its parameter is shown in a unit (name, size in SI), by default a readable one."""
-    unit, size = shown_in or unit_of(strip.unit, strip.values, log=strip.log)
+    unit, size = shown_in or readable_unit(strip.unit, strip.values, log=strip.log)
     x = place_of(strip, strip.values, size)
     view = View(columns={"strip": {"x": x}, "strip_facts": {"log": [strip.log]}}, limits={"strip_x": (float(x[0]), float(x[-1]))})
     for name in SHOWN:
-        shown, scale = unit_of(strip.units[name], strip.results[name])
+        shown, scale = readable_unit(strip.units[name], strip.results[name])
         values = view.columns["strip"][name] = strip.results[name] / scale
         view.limits[f"strip_{name}_y"] = limits(values, 0.0, floor=0.0)
-        view.titles[f"strip_{name}"] = axis_label(NAMES[name], "", SPELLED.get(shown, shown))
+        view.titles[f"strip_{name}"] = axis_label(NAMES[name], "", for_readers(shown))
     view.keys[f"strip_{SHOWN[0]}"] = (LegendKey("irregular", "unstable", "area"),) if strip.results["irregular"].any() else ()
     view.labels = {f"axis:strip_x@strip_{name}": axis_label(strip.parameter, "", unit) for name in SHOWN}
     view.columns["strip_bands"] = dict(zip(("x0", "x1"), _bands(x, strip.results["irregular"]), strict=True))
@@ -227,9 +227,9 @@ def unit_shown(setting: Setting, where: Axis) -> tuple[str, float]:
     controls = (control for group in controls_of(setting) for control in group.controls)
     found = next((control for control in controls if control.path == where.parameter), None)
     if found is not None:
-        return SPELLED.get(found.unit, found.unit), found.size
+        return for_readers(found.unit), found.size
     try:
-        unit, size = unit_of(numeric(setting.scenario(), where.parameter).unit, [where.low, where.high], log=where.log)
+        unit, size = readable_unit(numeric(setting.scenario(), where.parameter).unit, [where.low, where.high], log=where.log)
     except InputError:
         return "", 1.0
     return "" if unit == "1" else unit, size

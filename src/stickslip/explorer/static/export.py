@@ -29,9 +29,9 @@ from stickslip.explorer.page.strip import place_of, view_of_strip
 from stickslip.explorer.page.strip import plots as strip_plots
 from stickslip.explorer.page.view import View, headings_of
 from stickslip.explorer.page.words import told_steps, words_of
-from stickslip.figures.style import unit_of
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.names import readable_unit
 from stickslip.foundation.show import number
 
 SHORT = 8
@@ -160,7 +160,7 @@ def content_of(step: TourStep, places: int) -> dict[str, Any]:
     assert step.strip is not None
     strip = strip_of(setting.scenario(), step.strip)
     kept = np.union1d(replace(step.strip, points=places).values, [strip.here])
-    unit, size = unit_of(strip.unit, strip.values, log=strip.log)
+    unit, size = readable_unit(strip.unit, strip.values, log=strip.log)
     shown = view_of_strip(strip)
     return {
         "parameter": strip.parameter,

@@ -17,21 +17,10 @@ from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
 from stickslip.figures.contact.resistance import BRANCHES, draw_branches
 from stickslip.figures.panels import finish
 from stickslip.figures.sheet import one_panel
-from stickslip.figures.style import (
-    GREEN,
-    GREY,
-    INK,
-    axis_text,
-    curve_quantity,
-    label,
-    quantity,
-    styled,
-    title_of,
-    unit_of,
-    unit_shown,
-)
+from stickslip.figures.style import GREEN, GREY, INK, curve_label, curve_quantity, label, quantity, styled, title_of, unit_shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.names import readable_unit
 from stickslip.foundation.place import Place
 from stickslip.problem.problem import Problem
 from stickslip.resistance import Resistance
@@ -103,7 +92,7 @@ def _path(solution: Solution | None, strength: float) -> dict[str, xr.Variable]:
     return {
         "path_slip_rate": quantity("path", rate, "slip rate of the run", "v", "m/s"),
         "path_excess": quantity("path", load - strength, "load of the run minus static strength", r"\beta - S\mu_s", "Pa"),
-        "path_law_slip": quantity("path", slip, "slip", "u", "m"),
+        "path_law_slip": curve_quantity("path", slip, "slip"),
     }
 
 
@@ -119,7 +108,7 @@ def _moved(problem: Problem, start: Resistance, rates: Floats, slips: Floats) ->
     excess = np.array([g.excess(rates) for g in sets]).reshape(shape) + strength[:, None]
     kind = np.sign(np.array([g.slope(rates) for g in sets]).reshape(shape)).astype(int)
     return {
-        "set_slip": quantity("set", chosen, "slip", "u", "m"),
+        "set_slip": curve_quantity("set", chosen, "slip"),
         "set_strength": quantity("set", strength, "static strength minus that at the start", "", "Pa"),
         "set_excess": quantity(("set", "slip_rate"), excess, "load minus static strength at the start", "", "Pa"),
         "set_kind": xr.Variable(("set", "slip_rate"), kind, {"long_name": "1 stable, -1 unstable, 0 continuum"}),
@@ -176,7 +165,7 @@ class _Scales:
         self.strength = float(dataset["strength"])
         near = np.ptp(inside) < _TINY * self.strength
         self.origin = self.strength if near else 0.0
-        self.load = unit_of("Pa", inside + (self.strength - self.origin))
+        self.load = readable_unit("Pa", inside + (self.strength - self.origin))
         self.rate = unit_shown(dataset["slip_rate"])
         self.label = rf"load $\beta$ {'minus static strength ' if near else ''}({self.load[0]})"
         room = 0.08 * float(np.ptp(inside)) or 1.0
@@ -245,7 +234,7 @@ def _draw_path(axes: Axes, dataset: xr.Dataset, scales: _Scales) -> None:
         steps = list(np.stack([points[:-1], points[1:]], axis=1))
         axes.add_collection(LineCollection(steps, colors=hues, linewidths=1.5, zorder=4.1), autolim=False)
         bar = axes.figure.colorbar(colour, ax=axes, pad=0.02)
-        bar.set_label(axis_text("slip", "u", unit))
+        bar.set_label(curve_label("slip", unit))
         bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value / size:.4g}"))
     _draw_arrows(axes, rate, load)
     look: dict[str, Any] = {"color": INK, "linestyle": "", "clip_on": False}

@@ -11,10 +11,11 @@ from matplotlib.axes import Axes
 
 from stickslip.figures.panels import letter_panels, set_title, zero_line
 from stickslip.figures.sheet import sheet, shown_or_saved
-from stickslip.figures.style import BLUE, GREY, INK, axis_text, quantity, spans_decades, styled, unit_shown
+from stickslip.figures.style import BLUE, GREY, INK, axis_text, curve_quantity, quantity, spans_decades, styled, unit_shown
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.names import QUANTITIES, name_of, si_unit
 from stickslip.foundation.place import Place
 from stickslip.friction import Fit, Smooth
 
@@ -60,10 +61,11 @@ def data(result: Fit | Smooth) -> xr.Dataset:
     mu = along if both else law.coefficient(*at)
     if isinstance(result, Fit) and not both:
         mu, error = result.band(*at)
-    named = ("friction coefficient of the law", "", "1") if both else ("slip", "u", "m") if slip else ("slip rate", "v", "m/s")
+    of = "slip" if slip else "slip_rate"
+    named = ("friction coefficient of the law", "", "1") if both else (name_of(of), QUANTITIES[of].symbol, si_unit(of, "Pa"))
     contents = {
         "place": quantity("point", place, *named),
-        "friction": quantity("point", points.friction, "friction coefficient", r"\mu", "1"),
+        "friction": curve_quantity("point", points.friction, "friction"),
         "difference": quantity("point", points.friction - calculated, "measured minus law", "", "1"),
         "law": quantity("along", mu, "friction coefficient of the law", r"\mu", "1"),
         "standard_error": quantity("along", error, "standard error of the law", "", "1"),

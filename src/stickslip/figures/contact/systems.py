@@ -142,8 +142,8 @@ def laws_data(
     along_slip = [law.coefficient(slip) for law in slip_laws.values()]
     along_rate = [law.coefficient(0.0, rate) for law in rate_laws.values()]
     contents = {
-        "coefficient_along_slip": quantity(("slip_law", "slip"), along_slip, "friction coefficient", r"\mu", "1"),
-        "coefficient_along_rate": quantity(("rate_law", "slip_rate"), along_rate, "friction coefficient", r"\mu", "1"),
+        "coefficient_along_slip": curve_quantity(("slip_law", "slip"), along_slip, "friction"),
+        "coefficient_along_rate": curve_quantity(("rate_law", "slip_rate"), along_rate, "friction"),
     }
     along = {"slip": curve_quantity("slip", slip, "slip"), "slip_rate": curve_quantity("slip_rate", rate, "slip_rate")}
     laws = {"slip_law": list(slip_laws), "rate_law": list(rate_laws)}

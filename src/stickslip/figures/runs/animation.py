@@ -17,9 +17,10 @@ from matplotlib.figure import Figure
 
 from stickslip.figures.panels import add_legend, set_title, zero_line
 from stickslip.figures.runs.inside import Scales, about, contact_variables, field_variables, places
-from stickslip.figures.style import BLUE, GREEN, GREY, INK, VERMILLION, narrow, styled, unit_of, unit_shown
+from stickslip.figures.style import BLUE, GREEN, GREY, INK, VERMILLION, narrow, styled, unit_shown
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.names import readable_unit
 from stickslip.solution.interval import choose_interval
 
 if TYPE_CHECKING:
@@ -174,7 +175,7 @@ def _draw_profile(panel: Any, dataset: xr.Dataset, values: np.ndarray, colour: s
 def _draw_contact(panels: list[Any], dataset: xr.Dataset, scales: Scales) -> list[Any]:
     """Draw the curves of the contact, and return the vertical lines that mark the present moment in each panel."""
     time, slip = dataset.contact_time.values / scales.time, dataset.contact_slip.values - dataset.contact_slip.values[0]
-    (unit, size), (rate_unit, rate_size) = unit_of("m", slip), unit_shown(dataset.contact_slip_rate)
+    (unit, size), (rate_unit, rate_size) = readable_unit("m", slip), unit_shown(dataset.contact_slip_rate)
     curves = (
         (slip / size, f"slip ({unit})", BLUE),
         (dataset.contact_slip_rate.values / rate_size, f"slip rate\n({rate_unit})", GREEN),

@@ -32,10 +32,10 @@ from stickslip.figures.style import (
     styled,
     time_unit,
     title_of,
-    unit_of,
 )
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.names import readable_unit
 from stickslip.foundation.place import Place
 from stickslip.observables.event_table import that_count
 from stickslip.observables.predictability import is_followed, predictability
@@ -199,7 +199,7 @@ def _draw_time_line(axes: Axes, dataset: xr.Dataset, *, ring: bool) -> None:
     slip, wide = dataset["slip"].values, spans_decades(dataset["slip"].values)
     last = float(dataset["run_time"].values[-1]) if "run_time" in dataset else float(dataset["start"].values[-1])
     unit, size = time_unit(last)
-    length, metres = unit_of("m", slip, log=wide)
+    length, metres = readable_unit("m", slip, log=wide)
     start, end = dataset["start"].values / size, last / size
     low = 0.5 * slip.min() / metres if wide else 0.0
     axes.vlines(start, low, slip / metres, color=BLUE, linewidth=0.9)
@@ -224,7 +224,7 @@ def _draw_zooms(panels: Mapping[str, Axes], dataset: xr.Dataset) -> None:
             continue
         axes = panels[panel]
         time, slip = dataset[f"{name}_time"].values, dataset[f"{name}_slip"].values
-        (unit, size), (length, metres) = time_unit(float(np.ptp(time))), unit_of("m", np.ptp(slip))
+        (unit, size), (length, metres) = time_unit(float(np.ptp(time))), readable_unit("m", np.ptp(slip))
         axes.plot(time / size, slip / metres, color=GREEN)
         if name == "run":
             axes.axvline(float(dataset["start"][int(dataset["chosen"])]) / size, color=VERMILLION, linewidth=0.8, zorder=0)
@@ -235,7 +235,7 @@ def _draw_zooms(panels: Mapping[str, Axes], dataset: xr.Dataset) -> None:
 
 def _draw_distribution(axes: Axes, slip: Floats) -> None:
     many, wide = len(slip) > WIDE, spans_decades(slip)
-    unit, size = unit_of("m", slip, log=wide)
+    unit, size = readable_unit("m", slip, log=wide)
     ordered = np.sort(slip) / size
     smallest = ordered[0] if wide else 0.0
     axes.step([smallest, *ordered, ordered[-1]], [len(slip), *range(len(slip), 0, -1), 1 if many else 0], where="pre", color=BLUE)

@@ -10,19 +10,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from stickslip.figures.panels import letter_panels, panels, zero_line
-from stickslip.figures.style import (
-    GREY,
-    INK,
-    LINE_COLOURS,
-    curve_quantity,
-    label,
-    nearly_flat,
-    quantity,
-    shown,
-    styled,
-    unit_of,
-    unit_shown,
-)
+from stickslip.figures.style import GREY, INK, LINE_COLOURS, curve_quantity, label, nearly_flat, quantity, shown, styled, unit_shown
+from stickslip.foundation.names import readable_unit
 from stickslip.foundation.place import Place
 
 if TYPE_CHECKING:
@@ -100,7 +89,7 @@ def _draw_stress(panel: Axes, dataset: xr.Dataset, name: str, colour: str, clock
     time, friction, load = (dataset[f"{name}_{row}"] for row in ("time", "traction", "load"))
     about, change = friction.attrs, nearly_flat(friction.values, load.values)
     start = float(load[0]) if change else 0.0
-    unit, size = unit_of(about["units"], friction.values - start, load.values - start)
+    unit, size = readable_unit(about["units"], friction.values - start, load.values - start)
     dashed: dict[str, Any] = {"color": INK, "linewidth": 0.9, "linestyle": (0, (4, 2))}
     for variable, look in ((load, dashed), (friction, {"color": colour})):
         panel.plot(shown(time, clock), (variable.values - start) / size, label=variable.attrs["long_name"], **look)

@@ -14,7 +14,6 @@ from stickslip.figures.panels import add_legend, finish, set_log_ticks, zero_lin
 from stickslip.figures.sheet import one_panel
 from stickslip.figures.style import (
     BLUE,
-    FORCES,
     GREEN,
     GREY,
     INK,
@@ -27,11 +26,11 @@ from stickslip.figures.style import (
     styled,
     time_unit,
     title_of,
-    unit_of,
 )
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.names import name_of, readable_unit, si_unit
 from stickslip.foundation.place import Place
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.solution.evaluation import Curve, Readings, times_of
@@ -87,9 +86,9 @@ def draw_curve(axes: Axes, readings: Readings, name: Curve, span: Span) -> None:
         values = np.where(settled, values, np.nan)
     if name in STATE_NAMES:
         state = readings.problem.friction.states[STATE_NAMES.index(name)]
-        size, text = 1.0, axis_text(name.replace("_", " "), "", state.unit)
+        size, text = 1.0, axis_text(name_of(name), "", state.unit)
     else:
-        unit, size = unit_of(_unit(readings, name), values, log=log)
+        unit, size = readable_unit(si_unit(name, readings.problem.load_unit), values, log=log)
         text = curve_label(name, unit, readings.problem.load_unit)
     draw_line(axes, time / time_unit(span[1] - span[0])[1], values / size, log=log, color=COLOURS[name])
     axes.set_ylabel(text)
@@ -99,11 +98,6 @@ def draw_curve(axes: Axes, readings: Readings, name: Curve, span: Span) -> None:
         set_log_ticks(axes, "y")
     elif name in ("slip", "event_slip", "slip_rate"):
         zero_line(axes)
-
-
-def _unit(readings: Readings, name: Curve) -> str:
-    known = {"slip": "m", "event_slip": "m", "slip_rate": "m/s"}
-    return known.get(name, readings.problem.load_unit)
 
 
 def after_start(readings: Readings, time: Floats, span: Span) -> Floats:
@@ -190,16 +184,17 @@ def _packed(times: Floats, longest: float) -> Iterator[tuple[int, int]]:
 def draw_stress(axes: Axes, readings: Readings, span: Span) -> None:
     """Draw traction and load against time, as changes from the problem's initial load if they hardly change."""
     units = readings.problem.load_unit
-    names = [FORCES[name] if units == "N" else name for name in ("traction", "load")]
+    names = [name_of(name, units) for name in ("traction", "load")]
     time, (load, traction) = readings.curves_together(("load", "traction"), *span)
     change = nearly_flat(load, traction)
     offset = readings.problem.load if change else 0.0
-    unit, size = unit_of(units, load - offset, traction - offset)
+    unit, size = readable_unit(units, load - offset, traction - offset)
     seconds = time_unit(span[1] - span[0])[1]
     dashes: dict[str, Any] = {"color": INK, "linewidth": 1.0, "linestyle": "--"}
     draw_line(axes, time / seconds, (load - offset) / size, label=rf"{names[1]} $\beta$", **dashes)
     draw_line(axes, time / seconds, (traction - offset) / size, label=rf"{names[0]} $\tau$", color=VERMILLION)
-    text = f"{names[0]}, {names[1]}".replace("force, ", "and\n")
+    shared = " " + names[1].rpartition(" ")[2]
+    text = f"{names[0].removesuffix(shared)} and\n{names[1]}" if names[0].endswith(shared) else ", ".join(names)
     axes.set_ylabel(f"change of\n{text.replace(chr(10), ' ')} ({unit})" if change else f"{text} ({unit})")
     if change or min(load.min(), traction.min()) < 0.5 * max(load.max(), traction.max()):
         zero_line(axes)
@@ -216,11 +211,11 @@ def draw_friction(axes: Axes, readings: Readings, span: Span, against: Literal["
     if against != "time":
         moving: Curve = slip if against == "slip" else "slip_rate"
         moved = getattr(readings, moving)(time)
-        unit, size = unit_of(_unit(readings, moving), moved)
+        unit, size = readable_unit(si_unit(moving, readings.problem.load_unit), moved)
         across = moved / size
-        axes.set_xlabel(curve_label(moving, unit))
+        axes.set_xlabel(curve_label(moving, unit, readings.problem.load_unit))
     else:
-        name = "spring force" if readings.problem.load_unit == "N" else "load"
+        name = name_of("load", readings.problem.load_unit)
         dashes: dict[str, Any] = {"color": INK, "linewidth": 1.0, "linestyle": "--"}
         draw_line(axes, across, load / normal, label=rf"{name} over normal load, $\beta/S$", **dashes)
     look: dict[str, Any] = {"color": VERMILLION, "label": r"friction coefficient $\mu=\tau/S$"}

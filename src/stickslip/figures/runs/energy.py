@@ -22,8 +22,8 @@ from stickslip.figures.style import (
     styled,
     time_unit,
     title_of,
-    unit_of,
 )
+from stickslip.foundation.names import for_readers, name_of, readable_unit, si_unit
 from stickslip.foundation.place import Place
 from stickslip.observables.energy.balance import energies
 from stickslip.solution.interval import choose_interval
@@ -42,7 +42,7 @@ PARTS = {
     "kinetic": ("kinetic", GREEN),
     "radiated": ("radiated through the driver", SKY),
     "damped": ("damped", PURPLE),
-    "heat": ("friction heat", VERMILLION),
+    "heat": (name_of("heat"), VERMILLION),
 }
 """The parts that are stacked, from below: name of the variable, text and colour."""
 
@@ -59,7 +59,7 @@ def data(readings: Readings, start: float | None = None, end: float | None = Non
     breaks = readings.breaks[(readings.breaks > start) & (readings.breaks < end)]
     time = np.union1d(np.linspace(start, end, TIMES), breaks if len(breaks) <= TIMES else [])
     found = energies(readings.history, readings.history.find(time, "right"))
-    unit = "J/m²" if readings.problem.body.has_waves else "J"
+    unit = for_readers(si_unit("energy", readings.problem.load_unit))
     parts = {name: found[name] - found[name][0] for name in ("radiated", "damped", "heat")}
     parts |= {"elastic": found["elastic"] - found["elastic"].min(), "kinetic": found["kinetic"]}
     work = found["work"] - found["work"][0]
@@ -74,7 +74,7 @@ def data(readings: Readings, start: float | None = None, end: float | None = Non
 def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure | Axes:
     """Draw the parts stacked, without those that are zero throughout, and the total as a dashed line."""
     axes = one_panel((6.4, 3.8), **place)
-    unit, size = unit_of(dataset.total.attrs["units"], dataset.total.values)
+    unit, size = readable_unit(dataset.total.attrs["units"], dataset.total.values)
     time_name, second = time_unit(float(np.ptp(dataset.time.values)))
     time = dataset.time.values / second
     drawn = {name: look for name, look in PARTS.items() if dataset[name].values.any()}

@@ -33,10 +33,10 @@ from stickslip.figures.style import (
     styled,
     time_unit,
     title_of,
-    unit_of,
     unit_shown,
 )
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.names import readable_unit
 from stickslip.foundation.place import Place
 from stickslip.observables.field import slab_of
 from stickslip.solution.interval import choose_interval, fronts_of
@@ -228,9 +228,9 @@ class Scales:
     def __init__(self, dataset: xr.Dataset) -> None:
         time, stress = dataset.time.values, dataset.stress.values
         self.time_unit, self.time = time_unit(float(np.ptp(time)))
-        self.place_unit, self.place = unit_of("m", dataset.attrs["thickness"])
+        self.place_unit, self.place = readable_unit("m", dataset.attrs["thickness"])
         self.offset = float(stress[0, 0]) if nearly_flat(stress.ravel()) else 0.0
-        self.stress_unit, self.stress = unit_of("Pa", stress - self.offset)
+        self.stress_unit, self.stress = readable_unit("Pa", stress - self.offset)
         self.clock = f"{dataset.attrs['clock']} ({self.time_unit})"
 
     def name_stress(self, name: str) -> str:

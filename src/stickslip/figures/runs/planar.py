@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from stickslip.figures.panels import letter_panels, zero_line
 from stickslip.figures.runs.animation import FRAMES, Stage, Told, film
 from stickslip.figures.sheet import sheet
-from stickslip.figures.style import GREEN, INK, axis_text, styled, unit_of
+from stickslip.figures.style import GREEN, INK, axis_text, styled
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.names import readable_unit
 from stickslip.foundation.place import Place
 from stickslip.solution.planar import PlanarSolution
 
@@ -33,8 +34,8 @@ def draw(solution: PlanarSolution, **place: Unpack[Place]) -> Figure:
     """Draw the slip rate over y and time (for a plane at the middle of z), and below it slip and slip rate in the middle."""
     figure = sheet((7.2, 6.4), **place)
     axes: Any = figure.subplots(3, 1, sharex=True, height_ratios=(2.6, 1.0, 1.0))
-    time_name, time_size = unit_of("s", solution.times)
-    place_name, place_size = unit_of("m", solution.slab.y)
+    time_name, time_size = readable_unit("s", solution.times)
+    place_name, place_size = readable_unit("m", solution.slab.y)
     times, size = solution.times / time_size, np.abs(solution.middle_line(solution.slip_rate))
     largest = float(size.max()) or 1.0
     image = axes[0].pcolormesh(
@@ -55,7 +56,7 @@ def draw(solution: PlanarSolution, **place: Unpack[Place]) -> Figure:
         axes[1:], ("slip", "slip rate"), (solution.slip, solution.slip_rate), (INK, GREEN), strict=True
     ):
         history = solution.middle_line(field)[:, solution.slab.shape[0] // 2]
-        unit, scale = unit_of("m" if name == "slip" else "m/s", history)
+        unit, scale = readable_unit("m" if name == "slip" else "m/s", history)
         axis.plot(times, history / scale, color=color)
         axis.set_ylabel(f"{name} in the\nmiddle ({unit})")
         _mark_echoes(axis, solution, time_size)
@@ -96,7 +97,7 @@ def animate(
 
 def stage(solution: PlanarSolution, shown: NDArray[np.intp]) -> Stage:
     """Return the `Stage` of a film of some frames, which are given by their numbers."""
-    plane, (name, size) = solution.slab.is_plane, unit_of("s", solution.times)
+    plane, (name, size) = solution.slab.is_plane, readable_unit("s", solution.times)
 
     def draw_stage(figure: Figure) -> tuple[Callable[[int], None], list[Artist]]:
         axes: Any = figure.subplots(*((1, 2) if plane else (2, 1)), sharex=True, sharey=plane)
@@ -116,11 +117,11 @@ def _draw_profiles(
     _: Figure, axes: Any, solution: PlanarSolution, shown: NDArray[np.intp]
 ) -> tuple[Callable[[int], None], list[Artist]]:
     """Draw slip rate and slip along a line in axes whose limits hold every frame."""
-    place_name, place_size = unit_of("m", solution.slab.y)
+    place_name, place_size = readable_unit("m", solution.slab.y)
     drawn = []
     fields = (("slip rate", solution.slip_rate, GREEN), ("slip", solution.slip, INK))
     for axis, (name, field, color) in zip(axes, fields, strict=True):
-        unit, scale = unit_of("m/s" if name == "slip rate" else "m", field[shown])
+        unit, scale = readable_unit("m/s" if name == "slip rate" else "m", field[shown])
         (line,) = axis.plot(solution.slab.y / place_size, field[shown[0]] / scale, color=color)
         low, high = float(field[shown].min()) / scale, float(field[shown].max()) / scale
         margin = 0.05 * (high - low) or 1.0
@@ -140,7 +141,7 @@ def _draw_maps(
     figure: Figure, axes: Any, solution: PlanarSolution, shown: NDArray[np.intp]
 ) -> tuple[Callable[[int], None], list[Artist]]:
     """Draw slip rate and slip over a plane in colours that hold for every frame."""
-    place_name, place_size = unit_of("m", solution.slab.y)
+    place_name, place_size = readable_unit("m", solution.slab.y)
     edges = [0.5 * sign * size / place_size for size in solution.slab.extent for sign in (-1.0, 1.0)]
     extent = np.array(edges) - np.repeat(solution.slab.spacing, 2) / (2.0 * place_size)
     fastest = float(np.abs(solution.slip_rate[shown]).max()) or 1.0

@@ -20,8 +20,9 @@ from stickslip.figures.runs.curves import (
     set_time,
 )
 from stickslip.figures.sheet import sheet
-from stickslip.figures.style import GREY, INK, PALE, styled, time_unit, title_of, unit_of
+from stickslip.figures.style import GREY, INK, PALE, styled, time_unit, title_of
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.names import readable_unit, si_unit
 from stickslip.foundation.place import Place
 from stickslip.loading import LoadingHistory
 from stickslip.problem.fields import MAY_VARY
@@ -107,7 +108,8 @@ def _draw_loading(panel: Axes, readings: Readings, start: float, end: float) -> 
     if not is_band:
         values = values + tone.amplitude * np.sin(tone.frequency * time + tone.phase)
     spread, what = swing if is_band else 0.0, name.replace("_", " ")
-    unit, scale = unit_of("m/s" if name == "pull_rate" else "Pa", np.abs(values) + spread)
+    si = si_unit("slip_rate" if name == "pull_rate" else "load", readings.problem.load_unit)
+    unit, scale = readable_unit(si, np.abs(values) + spread)
     time = (time - begun) / size
     if is_band:
         panel.fill_between(

@@ -9,8 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from stickslip.figures.panels import add_legend, letter_panels, panels, set_log_ticks, zero_line
-from stickslip.figures.style import CURVES, FORCES, LINE_COLOURS, axis_text, nearly_flat, styled, time_unit, unit_of
+from stickslip.figures.style import LINE_COLOURS, axis_text, nearly_flat, styled, time_unit
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.names import QUANTITIES, name_of, readable_unit, si_unit
 from stickslip.foundation.place import Place
 from stickslip.solution.evaluation import Curve, Readings
 
@@ -133,13 +134,12 @@ def _lasting(length: float) -> str:
 
 def _meaning(study: Comparison, row: str, *, mixed: bool) -> tuple[str, str, str]:
     """Return the name, the symbol and the SI unit of what the panel of a row shows."""
+    loads = [run.problem.load_unit for run in study.runs.values()]
     if row == "slip":
-        return "slip", "u-u_0", "m"
+        return name_of(row), "u-u_0", si_unit(row, *loads)
     if row == "traction" and mixed:
         return "friction", r"\tau/S", "1"
-    name, symbol, unit = CURVES[row]
-    of_block = row in FORCES and next(iter(study.runs.values())).problem.load_unit == "N"
-    return (FORCES[row], symbol, "N") if of_block else (name, symbol, unit)
+    return name_of(row, loads[0]), QUANTITIES[row].symbol, si_unit(row, *loads)
 
 
 def _draw_row(axes: Axes, study: Comparison, found: RunLines, row: str, size: float) -> None:
@@ -148,7 +148,7 @@ def _draw_row(axes: Axes, study: Comparison, found: RunLines, row: str, size: fl
     heights = [values - values[np.isfinite(values)][0] if flat else values for _, values in lines]
     tops = [top for values in heights if (top := float(np.nanmax(np.abs(values)))) > 0.0]
     log = row != "traction" and len(tops) > 1 and max(tops) > FAR_APART * min(tops)
-    unit, scale = (units, 1.0) if log else unit_of(units, *heights)
+    unit, scale = (units, 1.0) if log else readable_unit(units, *heights)
     for k, ((time, _), values) in enumerate(zip(lines, heights, strict=True)):
         look = {"color": LINE_COLOURS[k % len(LINE_COLOURS)], "linestyle": DASHES[k // len(LINE_COLOURS) % len(DASHES)]}
         magnitudes = np.where(values != 0.0, np.abs(values), np.nan) if log else values / scale

@@ -20,7 +20,20 @@ from matplotlib.ticker import MaxNLocator
 from stickslip.figures.names import parameter_name, symbol
 from stickslip.figures.panels import add_legend, letter_panels, set_title, zero_line
 from stickslip.figures.sheet import sheet
-from stickslip.figures.style import BLUE, GREY, INK, SKY, VERMILLION, axis_text, quantity, spans_decades, styled, time_unit, unit_of
+from stickslip.figures.style import (
+    BLUE,
+    GREY,
+    INK,
+    SKY,
+    VERMILLION,
+    curve_label,
+    curve_quantity,
+    quantity,
+    spans_decades,
+    styled,
+    time_unit,
+)
+from stickslip.foundation.names import QUANTITIES, name_of, readable_unit, si_unit
 from stickslip.foundation.place import Place
 
 if TYPE_CHECKING:
@@ -30,27 +43,6 @@ MANY, FEW = 200, 50
 """Number of points from which they are drawn small, and of events up to which they are drawn large."""
 MOST_PAIRED = 4
 """Largest number of parameters that are drawn against each other."""
-NAMES = {
-    "friction": ("friction", r"\mu", "1"),
-    "shear_stress": ("shear stress", r"\tau", "Pa"),
-    "shear_force": ("shear force", "F", "N"),
-    "slip": ("slip", "u", "m"),
-    "slip_rate": ("slip rate", "v", "m/s"),
-    "friction_peak": ("peak friction", r"\mu_p", "1"),
-    "shear_stress_peak": ("peak stress", r"\tau_p", "Pa"),
-    "shear_force_peak": ("peak force", "F_p", "N"),
-    "friction_rest": ("friction at rest", r"\mu_r", "1"),
-    "shear_stress_rest": ("stress at rest", r"\tau_r", "Pa"),
-    "shear_force_rest": ("force at rest", "F_r", "N"),
-    "friction_drop": ("drop of friction", r"\Delta\mu", "1"),
-    "shear_stress_drop": ("stress drop", r"\Delta\tau", "Pa"),
-    "shear_force_drop": ("drop of force", r"\Delta F", "N"),
-    "recurrence": ("recurrence", "T", "s"),
-    "duration": ("duration", r"\delta t", "s"),
-    "event_slip": ("slip of an event", r"\Delta u", "m"),
-    "peak_rate": ("peak slip rate", "v_{max}", "m/s"),
-}
-"""Names, symbols and units of what is measured."""
 JOINT = 2.4477468306808166
 """Half width, in standard uncertainties, of an ellipse that holds two numbers with a probability of 95 %."""
 TWO = 1.96
@@ -67,12 +59,12 @@ def data(study: Inference) -> xr.Dataset:
     begins = np.array([part.record.time[0] for part in study.parts])  # the first sample, or the first event
     of = table.part.to_numpy()
     contents: dict[str, Any] = {
-        "time": quantity("sample", table.time.to_numpy() + begins[of], "time", "t", "s"),
+        "time": curve_quantity("sample", table.time.to_numpy() + begins[of], "time"),
         "part": xr.Variable("sample", of, {"long_name": "part of the record"}),
         "quantity": xr.Variable("sample", table.quantity.to_numpy(str), {"long_name": "what was measured"}),
         "fitted": xr.Variable("sample", table.fitted.to_numpy(np.int8), {"long_name": "1 for samples that were fitted"}),
     }
-    units = {NAMES[name][2] for name in table.quantity.unique()}
+    units = {si_unit(name, study.model.problem.load_unit) for name in table.quantity.unique()}
     unit = units.pop() if len(units) == 1 else "SI"
     for name, text in (("data", "measured"), ("model", "best run"), ("residual", "measured minus best run")):
         contents[name] = quantity("sample", table[name].to_numpy(), text, "", unit)
@@ -82,6 +74,7 @@ def data(study: Inference) -> xr.Dataset:
         "notes": "\n".join(study.notes),
         "title": line,
         "factor": study.certainty.factor,
+        "load_unit": study.model.problem.load_unit,
     }
     return xr.Dataset(contents, attrs=attributes)
 
@@ -96,8 +89,8 @@ def _rates(study: Inference) -> dict[str, xr.Variable]:
         times += [at + part.begins, [math.nan]]
         rates += [run.slip_rate(at), [math.nan]]
     return {
-        "run_time": quantity("frame", np.concatenate(times), "time", "t", "s"),
-        "slip_rate": quantity("frame", np.concatenate(rates), "slip rate", "v", "m/s"),
+        "run_time": curve_quantity("frame", np.concatenate(times), "time"),
+        "slip_rate": curve_quantity("frame", np.concatenate(rates), "slip_rate", study.model.problem.load_unit),
     }
 
 
@@ -137,7 +130,7 @@ def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw record and best run, the residual and the slip rate below each other, and beside them pairs of numbers."""
     paired = _paired(dataset)
     count = max(len(paired) - 1, 0)
-    shown = PANELS if "feature" not in dataset else {name: NAMES[name][0] for name in _features(dataset)}
+    shown = PANELS if "feature" not in dataset else {name: name_of(name) for name in _features(dataset)}
     figure = sheet((7.2 if count else 5.0, max(5.4, 1.2 * len(shown) + 1.0)), **place)
     axes: Any = figure.subplot_mosaic(_layout(list(shown), count), width_ratios=[2.2, *[1.0] * count] if count else None)
     if "feature" in dataset:
@@ -160,7 +153,7 @@ def draw_features(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     figure = sheet((6.4, 1.2 * len(shown) + 1.0), **place)
     axes: Any = figure.subplot_mosaic([[name] for name in shown])
     _draw_features(axes, dataset)
-    letter_panels([axes[name] for name in shown], [NAMES[name][0] for name in shown])
+    letter_panels([axes[name] for name in shown], [name_of(name) for name in shown])
     add_legend(axes[shown[0]], _marks(dataset))
     return figure
 
@@ -171,7 +164,7 @@ def draw_curves(dataset: xr.Dataset, name: str, **place: Unpack[Place]) -> Figur
     figure = sheet((6.4, 5.4), **place)
     axes: Any = figure.subplot_mosaic([["record"], ["residual"], ["rate"]])
     _draw_curves(axes, dataset, name)
-    letter_panels(list(axes.values()), [f"{NAMES[name][0]}, record and best run", "residual", "slip rate of the best run"])
+    letter_panels(list(axes.values()), [f"{name_of(name)}, record and best run", "residual", "slip rate of the best run"])
     add_legend(axes["record"], _marks(dataset))
     return figure
 
@@ -237,9 +230,9 @@ def _draw_features(axes: Mapping[str, Axes], dataset: xr.Dataset) -> None:
     time_name, size = time_unit(float(np.nanmax(dataset["time"].values)))
     names = _features(dataset)
     for name in names:
-        _, letter, si = NAMES[name]
+        letter, si = QUANTITIES[name].symbol, si_unit(name, dataset.attrs["load_unit"])
         of = dataset["quantity"].values == name
-        unit, scale = unit_of(si, dataset["data"].values[of])
+        unit, scale = readable_unit(si, dataset["data"].values[of])
         for row in np.flatnonzero(dataset["feature"].values == name).tolist():
             chosen = of & (dataset["part"].values == dataset["part_of_mean"].values[row])
             time = dataset["time"].values[chosen] / size
@@ -256,9 +249,9 @@ def _draw_features(axes: Mapping[str, Axes], dataset: xr.Dataset) -> None:
 
 
 def _draw_record(axes: Axes, dataset: xr.Dataset, name: str, size: float) -> None:
-    title, letter, si = NAMES[name]
+    si = si_unit(name, dataset.attrs["load_unit"])
     of = dataset["quantity"].values == name
-    unit, scale = unit_of(si, dataset["data"].values[of])
+    unit, scale = readable_unit(si, dataset["data"].values[of])
     dots = 2 if of.sum() > MANY else 5
     for part in np.unique(dataset["part"].values):
         chosen = of & (dataset["part"].values == part)
@@ -269,14 +262,14 @@ def _draw_record(axes: Axes, dataset: xr.Dataset, name: str, size: float) -> Non
     if left_out.any():
         times = dataset["time"].values[left_out] / size
         axes.axvspan(times.min(), times.max(), color=GREY, alpha=0.15, linewidth=0.0, zorder=0)
-    axes.set_ylabel(axis_text(title, letter, unit))
+    axes.set_ylabel(curve_label(name, unit))
 
 
 def _draw_residual(axes: Axes, dataset: xr.Dataset, name: str, size: float) -> None:
-    _, letter, si = NAMES[name]
+    letter, si = QUANTITIES[name].symbol, si_unit(name, dataset.attrs["load_unit"])
     of = dataset["quantity"].values == name
     rest = dataset["residual"].values[of]
-    unit, scale = unit_of(si, rest)
+    unit, scale = readable_unit(si, rest)
     power = 10.0 ** math.floor(math.log10(np.nanmax(np.abs(rest)) or 1.0)) if si == "1" else 1.0
     axes.plot(
         dataset["time"].values[of] / size,
@@ -295,18 +288,18 @@ def _draw_rate(axes: Axes, dataset: xr.Dataset, size: float) -> None:
     rate = dataset["slip_rate"].values
     positive = rate[np.isfinite(rate) & (rate > 0.0)]
     log = bool(positive.size and spans_decades(positive))
-    unit, scale = unit_of("m/s", rate[np.isfinite(rate)], log=log)
+    unit, scale = readable_unit(dataset["slip_rate"].attrs["units"], rate[np.isfinite(rate)], log=log)
     shown = np.where(rate > 0.0, rate, np.nan) if log else rate
     axes.plot(dataset["run_time"].values / size, shown / scale, color=VERMILLION, linewidth=1.0)
     if log:
         axes.set_yscale("log")
         axes.set_ylim(bottom=max(float(positive.min()), 1e-12 * float(positive.max())) / scale)
-    axes.set_ylabel(axis_text("slip rate", "v", unit))
+    axes.set_ylabel(curve_label("slip_rate", unit))
 
 
 def _draw_pair(axes: Axes, dataset: xr.Dataset, x: int, y: int, edges: tuple[bool, bool]) -> None:
     """Draw samples of two numbers, and the ellipse of 95 % that the curvature gives; `edges` tells if labels are due."""
-    units = [unit_of(str(dataset["unit"].values[i]), dataset["value"].values[i]) for i in (x, y)]
+    units = [readable_unit(str(dataset["unit"].values[i]), dataset["value"].values[i]) for i in (x, y)]
     if "samples" in dataset:
         drawn = dataset["samples"].values[:, [x, y]] / [units[0][1], units[1][1]]
         axes.plot(

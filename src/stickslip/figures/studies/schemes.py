@@ -11,8 +11,9 @@ from matplotlib.lines import Line2D
 
 from stickslip.figures.panels import add_legend, letter_panels, set_log_ticks, set_title, zero_line
 from stickslip.figures.sheet import sheet
-from stickslip.figures.style import CURVES, GREY, INK, LINE_COLOURS, axis_text, curve_label, styled, unit_of
+from stickslip.figures.style import GREY, INK, LINE_COLOURS, axis_text, curve_label, styled
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.names import readable_unit, si_unit
 from stickslip.foundation.place import Place
 
 if TYPE_CHECKING:
@@ -77,7 +78,7 @@ def draw(study: Schemes, **place: Unpack[Place]) -> Figure:
 
 def _draw_errors(axes: Axes, study: Schemes) -> list[Line2D]:
     table = study.table
-    clock, length = unit_of("s", table.step), unit_of("m", table.slip_error)
+    clock, length = readable_unit("s", table.step), readable_unit("m", table.slip_error)
     for i, (name, own) in enumerate(table.groupby("scheme", sort=False)):
         errors = np.where(own.slip_error > 0.0, own.slip_error / length[1], np.nan)
         look: Any = {"color": LINE_COLOURS[i % len(LINE_COLOURS)], "linestyle": STYLES[i // len(LINE_COLOURS) % len(STYLES)]}
@@ -91,8 +92,8 @@ def _draw_errors(axes: Axes, study: Schemes) -> list[Line2D]:
 
 
 def _draw_curves(axes: Axes, drawn: list[SchemeCurve], name: str) -> None:
-    clock = unit_of("s", *(one.time for one in drawn))
-    unit = unit_of(CURVES[name][2], *(one.values[name] for one in drawn))
+    clock = readable_unit("s", *(one.time for one in drawn))
+    unit = readable_unit(si_unit(name, "Pa"), *(one.values[name] for one in drawn))
     for one in drawn:
         heights = one.values[name] / unit[1]
         axes.plot(one.time / clock[1], heights, one.style, color=one.colour, linewidth=one.width)

@@ -11,8 +11,9 @@ from matplotlib.axes import Axes
 
 from stickslip.figures.names import parameter_name, plain_name, symbol
 from stickslip.figures.panels import cell_edges, set_log_ticks
-from stickslip.figures.style import axis_text, unit_of
+from stickslip.figures.style import axis_text
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.names import readable_unit
 
 SPREAD = 3.0
 """Values that span less than this factor are drawn on a linear axis: the two spreads could not be told apart."""
@@ -70,7 +71,7 @@ def scaled(variable: xr.DataArray) -> ScaledNumbers:
         return ScaledNumbers(np.array([words.index(word) for word in given], float), name, words=words)
     values = np.asarray(variable.values, float)
     log = bool(variable.attrs.get("log")) or is_logarithmic(values)
-    unit, size = unit_of(variable.attrs.get("units", "1"), values, log=log)
+    unit, size = readable_unit(variable.attrs.get("units", "1"), values, log=log)
     return ScaledNumbers(values / size, axis_text(name, "", unit), size, log)
 
 
@@ -111,7 +112,7 @@ def names_of(variable: xr.DataArray) -> Names:
     if not np.issubdtype(variable.dtype, np.number):
         values = [str(value) for value in variable.values.tolist()]
     else:
-        unit, size = unit_of(variable.attrs.get("units", "1"), variable.values)
+        unit, size = readable_unit(variable.attrs.get("units", "1"), variable.values)
         values = [f"{value:.4g}" + ("" if unit == "1" else f" {unit}") for value in variable.values / size]
     return Names(parameter_name(*about), plain_name(*about), symbol(*about), tuple(values))
 
@@ -157,7 +158,7 @@ def shown(dataset: xr.Dataset) -> ShownQuantity:
     values = dataset[dataset.attrs["quantity"]]
     known = values.values[np.isfinite(values.values)]
     wide = bool(known.size and known.min() > 0.0 and known.max() > WIDE * known.min())
-    unit, size = unit_of(values.attrs.get("units", "1"), known, log=wide)
+    unit, size = readable_unit(values.attrs.get("units", "1"), known, log=wide)
     title = axis_text(values.attrs.get("long_name", str(values.name)), "", unit)
     return ShownQuantity(
         values / size, dataset["state"], title, "flag_meanings" in values.attrs, tuple(values.attrs.get("ends", ()))

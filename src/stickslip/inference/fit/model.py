@@ -14,7 +14,6 @@ from stickslip.foundation.errors import InputError
 from stickslip.inference.fit.free import DELAY, LOAD, SERVO, STATE, TREND, Free
 from stickslip.inference.fit.memory import Memory, ResidualBlock, independent
 from stickslip.inference.fit.part import Part, approached, changed
-from stickslip.inference.record.record import UNITS
 from stickslip.inference.record.resample import RAMP, Jumps, jumps_in, spread, unsure
 from stickslip.problem.problem import Problem
 from stickslip.run.simulate import simulate
@@ -349,8 +348,3 @@ def averaged(rest: Floats, width: int) -> Floats:
     ends = np.clip(np.arange(len(rest)) + width // 2 + 1, 0, len(rest))
     begins = np.clip(np.arange(len(rest)) - (width - 1) // 2, 0, len(rest))
     return np.asarray((sums[ends] - sums[begins]) / np.sqrt(ends - begins))
-
-
-def unit_of(name: str) -> str:
-    """Return the unit of an observed quantity."""
-    return UNITS[name]

@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.names import si_unit
 from stickslip.foundation.show import brief
 from stickslip.inference.record.noise import noise_of, saturated, spikes
-from stickslip.inference.record.record import HIGHEST, LOADING, LOWEST, SHEAR, UNITS, Record
+from stickslip.inference.record.record import HIGHEST, LOADING, LOWEST, SHEAR, Record
 
 BACKWARD = 0.9
 """The sign of shear is turned if more than this share of it is negative."""
@@ -37,7 +38,7 @@ def checked(record: Record) -> Record:
     _check_signs(measured, record.load_point, notes)
     for name in SHEAR:
         if name in measured and (lone := spikes(measured[name])).any():
-            worst = brief(float(measured[name][lone][0]), UNITS[name])
+            worst = brief(float(measured[name][lone][0]), si_unit(name, "Pa"))
             measured[name] = np.where(lone, np.nan, measured[name])
             notes.append(f"{name} is far beyond the rest in {_samples(lone, 'lone ')}, as at {worst}: left out")
     if "friction" in measured:
@@ -46,7 +47,7 @@ def checked(record: Record) -> Record:
         flat = saturated(values)
         if flat.any():
             measured[name] = np.where(flat, np.nan, values)
-            at = f"{_samples(flat)} at {brief(float(values[flat][0]), UNITS[name])}"
+            at = f"{_samples(flat)} at {brief(float(values[flat][0]), si_unit(name, 'Pa'))}"
             notes.append(f"{name} is constant at the end of its range in {at}: the sensor was saturated there; they are left out")
     made = replace(record, measured=measured)
     _check_load_point(made)

@@ -12,15 +12,15 @@ from stickslip.foundation.arguments import CheckedArguments, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief
+from stickslip.inference.record.features import FEATURES, LEVELS
 
 SHEAR = ("friction", "shear_stress", "shear_force")
 """Possible measures of the resistance; the first of them that a record has is fitted."""
 MEASURED = (*SHEAR, "slip", "slip_rate")
 """All quantities that can be fitted."""
 LOADING = ("load_point", "load_rate")
-UNITS = {"friction": "1", "shear_stress": "Pa", "shear_force": "N", "slip": "m", "slip_rate": "m/s"}
-UNITS |= {f"{name}_{level}": UNITS[name] for name in SHEAR for level in ("peak", "rest", "drop")}
-UNITS |= {"recurrence": "s", "duration": "s", "event_slip": "m", "peak_rate": "m/s"}
+OF_EVENTS = (*(f"{name}_{level}" for name in SHEAR for level in LEVELS), *FEATURES)
+"""What may be known of each slip event."""
 HIGHEST, LOWEST = 3.0, 1e-2
 """A record with a friction coefficient above HIGHEST is refused, one below LOWEST raises a doubt."""
 
@@ -45,7 +45,7 @@ class Record(CheckedArguments):
     relative: Floats | None = None
 
     def __post_init__(self) -> None:
-        if not isinstance(self.measured, Mapping) or not set(self.measured) <= set(UNITS):
+        if not isinstance(self.measured, Mapping) or not set(self.measured) <= {*MEASURED, *OF_EVENTS}:
             names = f"a mapping of arrays by name ({', '.join(MEASURED)})"
             example = 'Record.read({"time": t, "friction": x}) makes a record of columns'
             raise InputError(f"Record: measured must be {names}, got {shown(self.measured)}; {example}")

@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike
 
 from stickslip.bodies import as_slab
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.names import in_files, si_unit
 from stickslip.observables.quadrature import FULL, NODES, WEIGHTS, Integrand, between, up_to
 from stickslip.observables.waves import Radiation, Waves
 from stickslip.trajectory.history import Epoch, History, Positions
@@ -62,7 +63,7 @@ def energy(history: History, t: ArrayLike, origin: float | None = None) -> xr.Da
     parts = energies(history, history.find(np.append(begin, time), "right"))
     since = {name: values[1:] - (values[0] if name != "trapped" else 0.0) for name, values in parts.items()}
     since["balance"] = since["work"] - since["stored"] - since["heat"] - since["damped"]
-    unit = history.problem.body.energy_unit
+    unit = in_files(si_unit("energy", history.problem.load_unit))
     variables = {name: ("time", since[name], {"units": unit, "long_name": text}) for name, text in LONG_NAMES.items()}
     return xr.Dataset(variables, coords={"time": ("time", time, {"units": "s"})})
 

@@ -27,13 +27,13 @@ PULSE_COLUMNS = {
     "start": ("s", "start of the event, or where |v| is smallest since the pulse before"),
     "start_after": ("s", "time from the start of the event to that of the pulse, without rounding"),
     "duration": ("s", "time until the next pulse, or the end of the event"),
-    "slip": ("m", "slip during the pulse, positive in either direction"),
-    "peak_rate": ("m s-1", "largest |v|"),
+    "slip": ("slip", "slip during the pulse, positive in either direction"),
+    "peak_rate": ("slip_rate", "largest |v|"),
     "smallest_traction": ("load", "smallest traction of the pulse while it slips, against the slip"),
-    "weakening_slip": ("m", "slip until the smallest traction"),
+    "weakening_slip": ("slip", "slip until the smallest traction"),
     "fracture": ("energy", "fracture energy: work of friction above the smallest traction until that is reached"),
 }
-"""Columns of `Solution.pulses`: unit ("load" is Pa or N, "energy" J m-2 or J) and meaning."""
+"""Columns of `Solution.pulses`: unit, as `names.si_unit` understands it, and meaning."""
 
 GRID = 17
 """Number of places on a piece at which the traction is compared to find the smallest one."""

@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.foundation.errors import InputError, nearest_and_all
-from stickslip.problem.problem import Problem
 from stickslip.trajectory.slip_events import share_sticking
 
 if TYPE_CHECKING:
@@ -27,8 +26,9 @@ Of = Callable[["Solution"], Any]
 class Summary:
     """A number that summarises a whole run: its name and meaning in the dataset of a sweep, its SI unit, and what computes it.
 
-    The unit "load" stands for Pa (slab) or N (block), "energy" for J m-2 or J. `of` returns it for a `Solution`, or NaN where the
-    run has no such number. A flag is 1 for yes and 0 for no. A share runs from 0 to 1, and `ends` says in words what these are.
+    The units "slip", "slip_rate", "load" and "energy" stand for those of the body (`names.si_unit`). `of` returns it for a
+    `Solution`, or NaN where the run has no such number. A flag is 1 for yes and 0 for no. A share runs from 0 to 1, and `ends` says
+    in words what these are.
     """
 
     name: str
@@ -37,10 +37,6 @@ class Summary:
     of: Of
     is_flag: bool = False
     ends: tuple[str, str] | None = None
-
-    def unit_for(self, problem: Problem) -> str:
-        """Return the unit for the body of a problem."""
-        return {"load": problem.load_unit, "energy": problem.body.energy_unit}.get(self.unit, self.unit)
 
     def value(self, solution: Solution) -> float:
         """Return the quantity of a solution."""
@@ -115,13 +111,13 @@ _ALL = (
     Summary("events", "1", "slip events", lambda solution: len(solution.events)),
     Summary("pulses", "1", "pulses of all slip events", lambda solution: solution.events.pulses.sum()),
     Summary("shocks", "1", "jumps of slip rate", lambda solution: len(solution.shocks)),
-    Summary("slip", "m", "slip of the whole run", _slip),
-    Summary("peak_rate", "m s-1", "largest slip rate of all slip events", _at_peak("peak_rate")),
+    Summary("slip", "slip", "slip of the whole run", _slip),
+    Summary("peak_rate", "slip_rate", "largest slip rate of all slip events", _at_peak("peak_rate")),
     Summary("peak_time", "s", "when the slip rate is largest", _at_peak("peak_time")),
     Summary("first_start", "s", "start of the first slip event", _first("start")),
     Summary("first_end", "s", "end of the first slip event", _first("end")),
     Summary("first_duration", "s", "duration of the first slip event", _first("duration")),
-    Summary("first_slip", "m", "slip of the first slip event", _first("slip")),
+    Summary("first_slip", "slip", "slip of the first slip event", _first("slip")),
     Summary("first_traction_drop", "load", "friction before minus friction after the first slip event", _first("traction_drop")),
     Summary("first_static_drop", "load", "stiffness times slip of the first slip event", _first("static_drop")),
     Summary("recurrence", "s", "mean time from the start of one slip event to that of the next", _recurrence(np.mean, 1)),

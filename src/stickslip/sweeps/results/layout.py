@@ -21,9 +21,9 @@ from stickslip.foundation import zarr_folder
 from stickslip.foundation.arguments import check_whole, shown
 from stickslip.foundation.constants import PAPER
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.names import in_files, si_unit
 from stickslip.foundation.show import clean
-from stickslip.friction.contract import STATE_NAMES
-from stickslip.io.netcdf import LONG_NAMES
+from stickslip.io.netcdf import about_curves
 from stickslip.io.zarr_store import FolderFormat, check_layout
 from stickslip.sweeps.design.design import GRID, IN_WORDS
 from stickslip.sweeps.execution.chunk import MEANINGS, NOT_RUN, PREFIX, TIME
@@ -101,12 +101,10 @@ def results(plan: Plan) -> dict[str, dict[str, Any]]:
     for one in plan.work.quantities:
         flags = {"flag_values": [0.0, 1.0], "flag_meanings": "no yes"} if one.is_flag else {}
         ends = {"ends": list(one.ends)} if one.ends else {}
-        found[one.name] = {"long_name": one.meaning, "units": one.unit_for(problem), **flags, **ends}
+        found[one.name] = {"long_name": one.meaning, "units": in_files(si_unit(one.unit, problem.load_unit)), **flags, **ends}
     if series is not None:
-        units = {"slip": "m", "slip_rate": "m s-1"}
-        units |= {name: state.unit for name, state in zip(STATE_NAMES, problem.friction.states, strict=False)}
-        for curve, name in zip(series.curves, series.names, strict=True):
-            found[name] = {"long_name": LONG_NAMES[curve], "units": units.get(curve, problem.load_unit)}
+        known = about_curves(problem)
+        found |= {name: dict(known[curve]) for curve, name in zip(series.curves, series.names, strict=True)}
     return found
 
 

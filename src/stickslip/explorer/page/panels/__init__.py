@@ -8,8 +8,8 @@ from stickslip.explorer.model.answer import Answer
 from stickslip.explorer.model.fault import FaultAnswer
 from stickslip.explorer.page.panels import contact, energy, fault, field, law, motion, shape
 from stickslip.explorer.page.panels.law import place, unit_along
-from stickslip.explorer.page.panels.motion import COLUMNS, DRAWN, columns_of
-from stickslip.explorer.page.panels.units import share_loads, units_of
+from stickslip.explorer.page.panels.motion import COLUMNS, CURVE_OF, DRAWN, columns_of
+from stickslip.explorer.page.panels.units import share_axis, units_of
 from stickslip.explorer.page.stage import Stage
 from stickslip.explorer.page.view import Columns, LegendKey, Units, View, limits
 
@@ -28,7 +28,7 @@ def add_pinned(view: View, kept: Answer | None, answer: Answer, units: Units) ->
     if kept is None:
         return
     curves = columns_of(kept.motions[0], units)
-    shown = {"slip", "rate"} | ({"traction"} if share_loads(answer.motions[0], kept.motions[0]) else set())
+    shown = {name for name, curve in CURVE_OF.items() if share_axis(answer.motions[0], kept.motions[0], curve)}
     known = {"time", "rate", *(DRAWN[name] for name in shown)}
     view.columns["pinned"] = {name: curves[name] if name in known else [float("nan")] * len(curves["time"]) for name in curves}
     for name in shown:

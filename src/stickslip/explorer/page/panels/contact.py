@@ -11,6 +11,7 @@ from stickslip.explorer.model.answer import Answer, ContactPicture
 from stickslip.explorer.page.components import paint
 from stickslip.explorer.page.stage import Stage
 from stickslip.explorer.page.view import Columns, LegendKey, Units, View, axis_label, limits
+from stickslip.foundation.names import name_of, plain_symbol
 
 TEXT = "Contact equation: load against slip rate, with stick, stable and unstable slip, folds, and the path of the run"
 KINDS = {1: "stable", -1: "unstable", 0: "continuum"}
@@ -42,7 +43,7 @@ def data_of(answer: Answer, units: Units) -> View:
     keys = [LegendKey("stick", "stick"), *(KEYS[kind] for kind in found), LegendKey("path", "path")]
     keys += [LegendKey("fold", "ink", "ring")] if len(folds) else []
     keys += [LegendKey("jump", "muted", "dot")] if len(jumps) else []
-    name = "force" if units.load[0].endswith("N") else "load"
+    load = name_of("load", answer.motions[0].load_unit)
     return View(
         columns=columns,
         limits={
@@ -50,8 +51,8 @@ def data_of(answer: Answer, units: Units) -> View:
             "contact_load": limits(contact.load / pascal, path["load"], columns["stick"]["load"][1]),
         },
         labels={
-            "axis:contact_rate@contact": axis_label("slip rate", "v", units.on_curve[0]),
-            "axis:contact_load@contact": axis_label(name, "β", units.load[0]),
+            "axis:contact_rate@contact": axis_label(name_of("slip_rate"), plain_symbol("slip_rate"), units.on_curve[0]),
+            "axis:contact_load@contact": axis_label(load, plain_symbol("load"), units.load[0]),
         },
         titles={"contact": "Contact g(v) at the slip of the start"} if answer.scenario.problem.friction.depends_on_slip else {},
         keys={"contact": tuple(keys)},

@@ -10,12 +10,11 @@ from stickslip.explorer.model.answer import Answer
 from stickslip.explorer.page.components import paint
 from stickslip.explorer.page.stage import NARROW, Stage
 from stickslip.explorer.page.view import Columns, LegendKey, Units, View, axis_label, limits
-from stickslip.figures.style import unit_of
+from stickslip.foundation.names import name_of, readable_unit
 
 TEXT = "Energy against time: elastic, kinetic, radiated, damped, and friction heat, stacked"
 PARTS = ("elastic", "kinetic", "radiated", "damped", "heat")
 """The parts that are stacked, from below, as in the figures of the package; each name is also the role of its colour."""
-NAMES = {"heat": "friction heat"}
 
 
 def data_of(answer: Answer, units: Units) -> View:
@@ -28,9 +27,9 @@ def data_of(answer: Answer, units: Units) -> View:
         top = top + energy.parts[name] if name in drawn else top
         edges[name] = top
     total = energy.parts.get("total", top)
-    unit, size = unit_of(energy.unit, total, top)
+    unit, size = readable_unit(energy.unit, total, top)
     columns = {name: values if name == "time" else values / size for name, values in edges.items()} | {"total": total / size}
-    keys = tuple(LegendKey(NAMES.get(name, name), name, "area") for name in reversed(drawn))
+    keys = tuple(LegendKey(name_of(name) if name == "heat" else name, name, "area") for name in reversed(drawn))
     if units.whole:
         span = answer.motions[0].time[[0, -1]] / units.time[1]
         ends, clock = (float(span[0]), float(span[1])), "time"

@@ -12,7 +12,8 @@ from stickslip.explorer.page.components import paint
 from stickslip.explorer.page.panels import energy, field, motion
 from stickslip.explorer.page.stage import NARROW, Stage
 from stickslip.explorer.page.view import LegendKey, Units, View, axis_label, limits, single
-from stickslip.figures.style import nearly_flat, unit_of
+from stickslip.figures.style import nearly_flat
+from stickslip.foundation.names import name_of, readable_unit
 
 TITLES = {
     "profile_rate": "Slip rate along the contact now", "profile_slip": "Slip along the contact now", "slip": "Slip",
@@ -48,9 +49,9 @@ def _units(answer: FaultAnswer, kept: FaultAnswer | None) -> Units:
     main, run = answer.motions[0], answer.run
     both = (main, *(kept.motions if kept else ()))
     offset = float(main.traction[0]) if nearly_flat(main.traction, main.load) else 0.0
-    time, place = unit_of("s", np.ptp(main.time)), unit_of("m", run.slab.y)
-    stress = unit_of("Pa", *(curve - offset for one in both for curve in (one.traction, one.load)))
-    slip, rate = unit_of("m", run.slip), unit_of("m/s", run.slip_rate)
+    time, place = readable_unit("s", np.ptp(main.time)), readable_unit("m", run.slab.y)
+    stress = readable_unit("Pa", *(curve - offset for one in both for curve in (one.traction, one.load)))
+    slip, rate = readable_unit("m", run.slip), readable_unit("m/s", run.slip_rate)
     return Units(time, time, 0.0, True, slip, rate, False, stress, offset, stress, rate, place)
 
 
@@ -71,11 +72,7 @@ def _motion(answer: FaultAnswer, kept: FaultAnswer | None, units: Units) -> View
         limits={"time": clock}
         | {name: limits(*(one[column] for one in (curves, beside) for column in columns)) for name, columns in names.items()},
         labels={"axis:time@traction": axis_label("time", "t", units.time[0])},
-        titles={
-            "slip": axis_label("Slip in the middle", "u", units.slip[0]),
-            "rate": axis_label("Slip rate in the middle", "v", units.rate[0]),
-            "traction": axis_label("Traction in the middle", "τ", units.stress[0]),
-        },
+        titles=motion.titles({panel: f"{name_of(curve)} in the middle" for panel, curve in motion.CURVE_OF.items()}, units),
         keys={
             "slip": further,
             "rate": further,
@@ -84,10 +81,7 @@ def _motion(answer: FaultAnswer, kept: FaultAnswer | None, units: Units) -> View
         hidden={"axis:rate_powers"},
         facts={
             "time": {"unit": units.time[0], "size": units.time[1], "from": clock[0], "to": clock[1]},
-            "read": [
-                {"column": name, "symbol": motion.SYMBOLS[name], "unit": unit, "offset": bool(units.offset and name == "traction")}
-                for name, unit in (("slip", units.slip[0]), ("rate", units.rate[0]), ("traction", units.stress[0]))
-            ],
+            "read": motion.read(units),
             "marks": marks,
         },
     )  # fmt: skip
@@ -102,7 +96,7 @@ def _map(answer: FaultAnswer, units: Units) -> View:
     shape = {"x": [float(time[0]) / units.time[1] - 0.5 * step], "y": [float(y[0]) - 0.5 * width]}
     shape |= {"dw": [step * time.size], "dh": [width * y.size]}
     change = (run.traction - run.traction[0])[frames].T
-    pascal = unit_of("Pa", change)
+    pascal = readable_unit("Pa", change)
     images = {
         "velocity": single(run.slip_rate[frames].T / units.rate[1]),
         "displacement": single(run.slip[frames].T / units.slip[1]),

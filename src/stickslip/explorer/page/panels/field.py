@@ -13,7 +13,7 @@ from stickslip.explorer.model.answer import Answer
 from stickslip.explorer.page.components import paint
 from stickslip.explorer.page.stage import NARROW, Stage, signed_scale
 from stickslip.explorer.page.view import Columns, LegendKey, Units, View, axis_label, single
-from stickslip.figures.style import unit_of
+from stickslip.foundation.names import readable_unit
 
 TEXT = "Velocity, displacement or stress in the slab: distance from the contact against time, with wave fronts"
 EMPTY: Columns = {"velocity": [], "displacement": [], "stress": [], "x": [], "y": [], "dw": [], "dh": []}
@@ -28,12 +28,12 @@ def data_of(answer: Answer, units: Units) -> View:
         )  # fmt: skip
     time, place = units.nearby(slab.time), slab.place / units.place[1]
     step, height = (float(np.mean(np.diff(one))) if one.size > 1 else 1.0 for one in (time, place))
-    name, size = unit_of("m/s", slab.velocity)
+    name, size = readable_unit("m/s", slab.velocity)
     velocity = single(slab.velocity.T / size)
     largest = float(np.abs(velocity).max()) or 1.0
     shape = {"x": [float(time[0]) - 0.5 * step], "y": [-0.5 * height], "dw": [step * time.size], "dh": [height * place.size]}
     displacement, change = slab.displacement.T, (slab.stress - slab.stress[0]).T
-    of_stress, pascal = unit_of("Pa", change)
+    of_stress, pascal = readable_unit("Pa", change)
     image = {"velocity": [velocity], "displacement": [single(displacement / units.slip[1])], "stress": [single(change / pascal)]}
     fields = {
         "velocity": ends_of(velocity, name),

@@ -10,7 +10,7 @@ from stickslip.explorer.model.answer import Answer, LawPicture
 from stickslip.explorer.page.components import paint
 from stickslip.explorer.page.stage import Stage
 from stickslip.explorer.page.view import Columns, LegendKey, Units, View, axis_label, limits
-from stickslip.figures.style import unit_of
+from stickslip.foundation.names import readable_unit
 
 TEXT = "Friction law: friction coefficient against slip or slip rate"
 
@@ -54,7 +54,7 @@ def unit_along(law: LawPicture, units: Units) -> tuple[str, float]:
     """Return the unit of the horizontal axis: that of the run, SI for powers of ten."""
     si, own = ("m", units.slip) if law.along == "slip" else ("m/s", units.rate)
     fits = 0.05 <= np.abs(law.x).max() / own[1] < 1e4  # the curve can reach much further than the run
-    return (si, 1.0) if law.log else own if fits else unit_of(si, law.x)
+    return (si, 1.0) if law.log else own if fits else readable_unit(si, law.x)
 
 
 def place(law: LawPicture, values: Any, unit: tuple[str, float]) -> Any:

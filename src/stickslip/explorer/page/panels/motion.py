@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,11 +11,11 @@ from bokeh.models import Span
 from stickslip.explorer.model.answer import Answer, BodyCurves
 from stickslip.explorer.model.words import short
 from stickslip.explorer.page.components import paint
-from stickslip.explorer.page.panels.units import Curve, held, share_loads
+from stickslip.explorer.page.panels.units import Curve, held, share_axis
 from stickslip.explorer.page.stage import NARROW, Stage
 from stickslip.explorer.page.view import Columns, LegendKey, LineStyle, Units, View, axis_label, limits
 from stickslip.figures.runs.curves import after_start
-from stickslip.figures.style import CURVES, FORCES, unit_of
+from stickslip.foundation.names import QUANTITIES, name_of, plain_symbol, readable_unit, si_unit
 
 TEXTS = {"slip": "Slip against time", "rate": "Slip rate against time", "traction": "Traction and load against time"}
 FURTHER = {
@@ -34,7 +34,6 @@ CURVE_OF: dict[str, Curve] = {"slip": "slip", "rate": "slip_rate", "traction": "
 COLUMNS = ("time", "slip", "rate", "rate_at", "traction", "load")
 """What is known of a body at each time."""
 LOADS = ("traction", "load")
-SYMBOLS = {"slip": "u", "rate": "v", "traction": "τ"}
 
 
 def data_of(answer: Answer, units: Units) -> View:
@@ -47,13 +46,12 @@ def data_of(answer: Answer, units: Units) -> View:
         # The end of the spring that is pulled, from the law of the spring.
         stiffness = answer.scenario.problem.body.stiffness
         columns["motion"]["drive"] = (main.slip + (main.load - main.load[0]) / stiffness) / units.slip[1]
-    force = main.load_unit == "N"
-    name = FORCES["traction"] if force else CURVES["traction"][0]
-    name = f"change of {name}" if units.offset else name
+    spoken = {panel: name_of(curve, main.load_unit) for panel, curve in CURVE_OF.items()}
+    spoken["traction"] = "change of " * bool(units.offset) + spoken["traction"]
     keys = {name: (LegendKey(main.name, name), *_key(answer, name)) for name in CURVE_OF}
     for panel, key in _misfits(answer).items():
         keys[panel] = (*keys[panel], key)
-    keys["traction"] = (*keys["traction"], LegendKey("spring force" if force else "load", "load", "dot"))
+    keys["traction"] = (*keys["traction"], LegendKey(name_of("load", main.load_unit), "load", "dot"))
     time = columns["motion"]["time"]
     view = View(
         columns=columns,
@@ -68,25 +66,33 @@ def data_of(answer: Answer, units: Units) -> View:
         labels={
             "axis:time@traction": axis_label("time", "t", units.time[0]),
         },
-        titles={
-            "slip": axis_label("Slip", "u", units.slip[0]),
-            "rate": axis_label("Slip rate", "v", units.rate[0]),
-            "traction": axis_label(name.capitalize(), "τ", units.stress[0]),
-        },
+        titles=titles(spoken, units),
         keys=keys,
         hidden={"axis:rate@rate" if units.log else "axis:rate_powers"},
         facts={
             "time": {"unit": units.time[0], "size": units.time[1], "from": float(time[0]), "to": float(time[-1])},
-            "read": [
-                {"column": column, "symbol": SYMBOLS[column], "unit": unit, "offset": bool(units.offset and column == "traction")}
-                for column, unit in (("slip", units.slip[0]), ("rate", units.rate[0]), ("traction", units.stress[0]))
-            ],
+            "read": read(units),
             "marks": [{"time": mark.time / units.time[1], "kind": mark.kind, "text": mark.text} for mark in answer.marks],
         },
     )
     view.add(_states(main, units))
     view.add(_residual(answer, units))
     return view
+
+
+def titles(spoken: Mapping[str, str], units: Units) -> dict[str, str]:
+    """Return the title of each panel, from the name of what it shows."""
+    shown = zip(CURVE_OF.items(), (units.slip, units.rate, units.stress), strict=True)
+    return {panel: axis_label(spoken[panel].capitalize(), plain_symbol(curve), unit) for (panel, curve), (unit, _) in shown}
+
+
+def read(units: Units) -> list[dict[str, Any]]:
+    """Return symbol and unit of what is read off at the cursor in each panel."""
+    shown = zip(CURVE_OF.items(), (units.slip, units.rate, units.stress), strict=True)
+    return [
+        {"column": panel, "symbol": plain_symbol(curve), "unit": unit, "offset": bool(units.offset and panel == "traction")}
+        for (panel, curve), (unit, _) in shown
+    ]
 
 
 def _states(main: BodyCurves, units: Units) -> View:
@@ -96,7 +102,7 @@ def _states(main: BodyCurves, units: Units) -> View:
         return View(columns={"states": {name: [] for name in ("time", *both)}}, hidden={"state"})
     values = [one.values for one in main.states]
     log = all((one > 0.0).all() and one.max() > SEVERAL * one.min() for one in values)
-    unit, size = (main.states[0].unit, 1.0) if log else unit_of(main.states[0].unit, *values)
+    unit, size = (main.states[0].unit, 1.0) if log else readable_unit(main.states[0].unit, *values)
     shown = [np.log10(one) if log else one / size for one in values]
     nothing = np.full(main.time.size, np.nan)
     columns = {"time": main.time / units.time[1]} | dict(zip(both, [*shown, nothing], strict=False))
@@ -116,12 +122,12 @@ def _residual(answer: Answer, units: Units) -> View:
     curve = next((one for one in ("traction", "slip", "slip_rate") if found is not None and one in found.residuals), "")
     if found is None or not curve:
         return View(columns={"residual": {"time": [], "residual": []}}, hidden={"residual"})
-    unit, size = unit_of({"slip": "m", "slip_rate": "m/s"}.get(curve, answer.motions[0].load_unit), found.residuals[curve])
+    unit, size = readable_unit(si_unit(curve, answer.motions[0].load_unit), found.residuals[curve])
     away = found.residuals[curve] / size
     return View(
         columns={"residual": {"time": found.time / units.time[1], "residual": away}},
         limits={"residual": limits(away, 0.0)},
-        titles={"residual": axis_label(f"Measured minus run: {curve.replace('_', ' ')}", "", unit)},
+        titles={"residual": axis_label(f"Measured minus run: {QUANTITIES[curve].name}", "", unit)},
     )
 
 
@@ -158,7 +164,9 @@ def _beside(main: BodyCurves, other: Sequence[BodyCurves], units: Units) -> Colu
     if not other:
         return {name: [] for name in COLUMNS}
     found = columns_of(other[0], units)
-    return found if share_loads(main, other[0]) else found | {name: np.full(other[0].time.size, np.nan) for name in LOADS}
+    return (
+        found if share_axis(main, other[0], "traction") else found | {name: np.full(other[0].time.size, np.nan) for name in LOADS}
+    )
 
 
 def _rate_limits(answer: Answer, units: Units) -> tuple[float, float]:
@@ -172,12 +180,12 @@ def _rate_limits(answer: Answer, units: Units) -> tuple[float, float]:
 def _key(answer: Answer, name: str) -> tuple[LegendKey, ...]:
     """Return how the legend of a panel names the companion; one that leaves the axis is named with the end of its curve."""
     main, curve = answer.motions[0], CURVE_OF[name]
-    others = [one for one in answer.motions[1:2] if name != "traction" or share_loads(main, one)]
+    others = [one for one in answer.motions[1:2] if share_axis(main, one, curve)]
     if not others or others[0] in held(answer, curve):
         return tuple(LegendKey(one.name, name, "dash") for one in others)
     reach = getattr(others[0], curve)
     reach = reach[np.argmax(np.abs(reach))]
-    unit, size = unit_of({"slip": "m", "rate": "m/s"}.get(name, main.load_unit), reach)
+    unit, size = readable_unit(si_unit(curve, main.load_unit), reach)
     return (LegendKey(f"{others[0].name}, to {reach / size:.3g} {unit}", name, "dash"),)
 
 

@@ -8,7 +8,8 @@ import numpy as np
 
 from stickslip.explorer.model.answer import Answer, BodyCurves
 from stickslip.explorer.page.view import Units
-from stickslip.figures.style import nearly_flat, unit_of
+from stickslip.figures.style import nearly_flat
+from stickslip.foundation.names import readable_unit, si_unit
 
 Curve = Literal["slip", "slip_rate", "traction"]
 REACH = 4.0
@@ -21,40 +22,41 @@ def units_of(answer: Answer, kept: Answer | None = None) -> Units:
     """Return the units of an answer, and of the run that is kept beside it: panels that show the same quantity share the unit."""
     contact, slab, main = answer.contact, answer.slab, answer.motions[0]
     further = kept.motions[:1] if kept else ()
-    same = (*held(answer, "traction"), *(motion for motion in further if share_loads(main, motion)))
+    same = (*held(answer, "traction"), *(motion for motion in further if share_axis(main, motion, "traction")))
     stresses = [curve for motion in same for curve in (motion.traction, motion.load)]
     offset = float(main.traction[0]) if nearly_flat(*stresses) else 0.0
     slips = [motion.slip for motion in (*held(answer, "slip"), *further)]
     rates = [motion.slip_rate for motion in (*held(answer, "slip_rate"), *further)]
     log = answer.solution.problem.friction.creeps  # slip rates are then never zero, and differ widely
-    span, window = np.ptp(main.time), np.ptp(answer.energy.time)
+    rate, span, window = si_unit("slip_rate", main.load_unit), np.ptp(main.time), np.ptp(answer.energy.time)
     whole = window >= WHOLE * span
     return Units(
-        time=unit_of("s", span),
-        near=unit_of("s", span if whole else window),
+        time=readable_unit("s", span),
+        near=readable_unit("s", span if whole else window),
         begin=0.0 if whole else float(answer.energy.time[0]),
         whole=bool(whole),
-        slip=unit_of("m", *slips),
-        rate=unit_of("m/s", *rates, log=log),
+        slip=readable_unit(si_unit("slip", main.load_unit), *slips),
+        rate=readable_unit(rate, *rates, log=log),
         log=log,
-        stress=unit_of(main.load_unit, *(curve - offset for curve in stresses)),
+        stress=readable_unit(main.load_unit, *(curve - offset for curve in stresses)),
         offset=offset,
-        load=unit_of(main.load_unit, contact.load if contact else main.load),
-        on_curve=unit_of("m/s", main.slip_rate, contact.path_rate if contact else 0.0),
-        place=unit_of("m", slab.place if slab else 1.0),
+        load=readable_unit(main.load_unit, contact.load if contact else main.load),
+        on_curve=readable_unit(rate, main.slip_rate, contact.path_rate if contact else 0.0),
+        place=readable_unit("m", slab.place if slab else 1.0),
     )
 
 
-def share_loads(main: BodyCurves, other: BodyCurves) -> bool:
-    """Return True if loads of two bodies can share an axis: the block equivalent to a slab is that of 1 m², so its N are Pa."""
-    return main.load_unit == other.load_unit or main.body == "slab"
+def share_axis(main: BodyCurves, other: BodyCurves, curve: Curve) -> bool:
+    """Return True if a curve of two bodies can share an axis: the block equivalent to a slab is that of 1 m², so its N are Pa."""
+    loads = main.load_unit, other.load_unit
+    return loads == ("Pa", "N") or si_unit(curve, loads[0]) == si_unit(curve, loads[1])
 
 
 def held(answer: Answer, curve: Curve) -> tuple[BodyCurves, ...]:
     """Return the bodies that an axis is made to hold: the body itself, and its companion unless that would make it look flat."""
     main, other = answer.motions[0], answer.motions[1:2]
     fits = all(extent(one, curve) <= REACH * extent(main, curve) for one in other)
-    return (main, *other) if fits and (curve != "traction" or all(share_loads(main, one) for one in other)) else (main,)
+    return (main, *other) if fits and all(share_axis(main, one, curve) for one in other) else (main,)
 
 
 def extent(motion: BodyCurves, curve: Curve) -> float:

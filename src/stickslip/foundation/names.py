@@ -1,0 +1,173 @@
+"""What quantities are called, in one place: name, symbol, unit and meaning of each, and the units in which numbers are readable.
+
+Files, figures, tables, the explorer and records read this. A unit may depend on the body: `KINDS` has a row for each unit of loads
+(`Body.load_unit`), and a body whose loads have another unit needs one more row there.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from stickslip.foundation.constants import YEAR
+
+
+@dataclass(frozen=True)
+class KindOfBody:
+    """What depends on the unit of a body's loads: the units of slip and energy, what loads are called, and other names."""
+
+    slip: str
+    energy: str
+    loads: str
+    names: Mapping[str, str] = field(default_factory=dict)
+    """Names of quantities where they differ from those in `QUANTITIES`."""
+
+
+KINDS = {
+    "Pa": KindOfBody("m", "J/m^2", "stress"),
+    "N": KindOfBody("m", "J", "force", {"traction": "friction force", "load": "spring force"}),
+}
+"""Each kind of body by the SI unit of its loads: a slab's are stresses, a block's are forces."""
+
+
+class Name(NamedTuple):
+    """Name and symbol (mathtext without dollar signs) of a quantity, its SI unit, and its meaning in files.
+
+    The unit may be "slip", "slip_rate", "load" or "energy": it then depends on the body.
+    """
+
+    name: str
+    symbol: str
+    unit: str
+    meaning: str = ""
+
+
+QUANTITIES = {
+    "time": Name("time", "t", "s", "time since the start of the run"),
+    "slip": Name("slip", "u", "slip", "slip of the contact, u"),
+    "event_slip": Name("slip in the event", r"\Delta u", "slip", "slip of the contact since the start of the event"),
+    "slip_rate": Name("slip rate", "v", "slip_rate", "slip rate of the contact, v"),
+    "traction": Name("traction", r"\tau", "load", "friction on the contact, tau"),
+    "load": Name("load", r"\beta", "load", "load on the contact, beta"),
+    "friction": Name("friction coefficient", r"\mu", "1"),
+    "state": Name("state", "", "1", "state of the friction law"),
+    "second_state": Name("second state", "", "1", "second state of the friction law"),
+    "shear_stress": Name("shear stress", r"\tau", "Pa"),
+    "shear_force": Name("shear force", "F", "N"),
+    "friction_peak": Name("peak friction", r"\mu_p", "1"),
+    "shear_stress_peak": Name("peak stress", r"\tau_p", "Pa"),
+    "shear_force_peak": Name("peak force", "F_p", "N"),
+    "friction_rest": Name("friction at rest", r"\mu_r", "1"),
+    "shear_stress_rest": Name("stress at rest", r"\tau_r", "Pa"),
+    "shear_force_rest": Name("force at rest", "F_r", "N"),
+    "friction_drop": Name("drop of friction", r"\Delta\mu", "1"),
+    "shear_stress_drop": Name("stress drop", r"\Delta\tau", "Pa"),
+    "shear_force_drop": Name("drop of force", r"\Delta F", "N"),
+    "recurrence": Name("recurrence", "T", "s"),
+    "duration": Name("duration", r"\delta t", "s"),
+    "peak_rate": Name("peak slip rate", "v_{max}", "slip_rate"),
+    "heat": Name("friction heat", "", "energy"),
+}
+"""The curves of a run by their names in `Solution.curve`, what a record may hold of samples and of slip events, and heat.
+
+The unit of a state is that of its law.
+"""
+
+GREEK = {
+    **{"alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "eta": "η", "theta": "θ", "kappa": "κ", "lambda": "λ"},
+    **{"mu": "μ", "nu": "ν", "xi": "ξ", "pi": "π", "rho": "ρ", "sigma": "σ", "tau": "τ", "phi": "φ", "psi": "ψ", "omega": "ω"},
+}
+"""Greek letters by the names under which declarations and formulas write them."""
+
+_PREFIXES = ((1e12, "T"), (1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"))
+_PREFIXED = ("Pa", "Pa/m", "Pa s/m", "Pa m/s", "N", "N/m", "N s/m", "J", "J/m²")
+"""Units that are read with a prefix, besides those of loads."""
+_READABLE = {
+    "s": ((YEAR, "year"), (86_400.0, "day"), (1.0, "s"), (1e-3, "ms"), (1e-6, "µs")),
+    "m": ((1e3, "km"), (1.0, "m"), (1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm")),
+    "m/s": ((1.0, "m/s"), (1e-3, "mm/s"), (1e-6, "µm/s"), (1e-9, "nm/s")),
+}
+"""Readable units of other SI units, the largest first: size in SI units and name."""
+_SHORT = {
+    "m": (("km", 1e3), ("mm", 1e-3), ("um", 1e-6)),
+    "s": (("years", YEAR), ("ms", 1e-3)),
+    "m/s": (("km/s", 1e3), ("mm/s", 1e-3), ("um/s", 1e-6), ("m/year", 1.0 / YEAR)),
+}
+"""Units, with their sizes in SI units, among which the shortest text of one number is looked for (`show.brief`)."""
+DECADES = 1e6
+"""A logarithmic axis that spans more than this factor has the SI unit: a prefix would not make its powers of ten more readable."""
+
+
+def si_unit(what: str, *load_units: str) -> str:
+    """Return the SI unit of a quantity, or of what a column names in place of a unit, for bodies whose loads have these units.
+
+    Any other text is a unit already. Different units are joined, as in "Pa or N"; by default they are those of all kinds of bodies.
+    """
+    known = QUANTITIES[what].unit if what in QUANTITIES else what
+    units = []
+    for load in load_units or KINDS:
+        kind = KINDS[load]
+        units.append({"slip": kind.slip, "slip_rate": f"{kind.slip}/s", "load": load, "energy": kind.energy}.get(known, known))
+    return " or ".join(dict.fromkeys(units))
+
+
+def name_of(quantity: str, load_unit: str = "Pa") -> str:
+    """Return the name of a quantity for a body whose loads have this unit: "traction" is a "friction force" if it is N."""
+    return KINDS[load_unit].names.get(quantity, QUANTITIES[quantity].name)
+
+
+def plain_symbol(quantity: str) -> str:
+    """Return the symbol of a quantity as plain text, such as "τ"."""
+    return re.sub(r"\\([a-z]+)", lambda found: GREEK[found[1]], QUANTITIES[quantity].symbol)
+
+
+def in_files(unit: str) -> str:
+    """Return a unit as the CF conventions spell it in files: "m s-1" for "m/s", "J m-2" for "J/m^2"."""
+    return re.sub(r"/(\w+)\^?(\d?)", lambda found: f" {found[1]}-{found[2] or 1}", unit)
+
+
+def for_readers(unit: str) -> str:
+    """Return a unit, of a file or declared, as readers expect to see it: "m/s" for "m s-1", "kg/m³" for "kg/m^3"."""
+    known = {"m^-1 s": "s/m", "1/m": "m⁻¹"}.get(unit, unit)
+    plain = re.sub(r" ([a-z]+)-(\d)$", r"/\1^\2", known).removesuffix("^1")
+    return re.sub(r"(?<=/m)\^([23])$", lambda found: "²³"[int(found[1]) - 2], plain)
+
+
+def has_prefixes(unit: str) -> bool:
+    """Return True for units that are read with a prefix, such as MPa."""
+    return unit in _PREFIXED or unit in KINDS
+
+
+def sizes_of(unit: str) -> tuple[tuple[float, str], ...]:
+    """Return the readable units of an SI unit, the largest first: size in SI units and name. A unit without others has none."""
+    return tuple((size, prefix + unit) for size, prefix in _PREFIXES) if has_prefixes(unit) else _READABLE.get(unit, ())
+
+
+def readable_unit(unit: str, *values: Any, log: bool = False, plain: bool = False) -> tuple[str, float]:
+    """Return the unit (name, size in SI units) in which values (SI) are readable together: the largest that fits.
+
+    The largest magnitude is at least one in it (s, m and m/s: a half). It is the SI unit if all values are 0 or the unit has no
+    others, and on a logarithmic axis (`log`) for values that span more than `DECADES`. In plain text (`plain`) only prefixes for
+    large numbers are taken, and the unit is left as it is spelled.
+    """
+    unit = unit if plain else for_readers(unit)
+    choice = [(size, name) for size, name in sizes_of(unit) if not plain or (has_prefixes(unit) and size >= 1.0)]
+    known = np.concatenate([np.abs(np.ravel(np.asarray(one, float))) for one in values]) if values else np.zeros(0)
+    known = known[np.isfinite(known) & (known > 0.0)]
+    if not choice or not known.size or (log and known.max() > DECADES * known.min()):
+        return unit, 1.0
+    least = 0.5 if unit in _READABLE else 1.0
+    # A hair less than the bound, so that rounding does not decide about round numbers.
+    found = next(((name, size) for size, name in choice if known.max() >= least * size * (1.0 - 1e-9)), None)
+    return found or (choice[-1][1], choice[-1][0])
+
+
+def short_units(unit: str) -> tuple[tuple[str, float], ...]:
+    """Return the further units, with their sizes in SI units, in which the text of one number may be short."""
+    return (
+        tuple((name, size) for size, name in reversed(sizes_of(unit)) if size > 1.0) if has_prefixes(unit) else _SHORT.get(unit, ())
+    )
