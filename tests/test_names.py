@@ -98,7 +98,16 @@ def test_figures_name_the_quantities_of_a_new_kind(rotor: Scenario) -> None:
         "energy": "energy (TJ)",
     }
     assert "friction and\nspring torque (TN m)" in [axes.get_ylabel() for axes in plot().axes]
+    assert {"slip (rad)", "slip $u$ (rad)"} <= {axes.get_ylabel() for axes in plot.catalogue().axes}
     assert plot.friction(against="slip").axes[0].get_xlabel() == "slip $u$ (rad)"
+
+
+def test_steady_sliding_of_a_new_kind_has_its_units(rotor: Scenario) -> None:
+    problem = ss.load_scenario("rate-and-state-block").problem
+    block = as_block(problem.body)
+    body = Rotor(mass=block.mass, stiffness=block.stiffness, normal_force=block.normal_force)
+    axes = ss.studies.steady(replace(problem, body=body)).plot().axes[0]
+    assert [text.partition(" (")[2] for text in (axes.get_xlabel(), axes.get_ylabel())] == ["rad/s)", "MN m)"]
 
 
 def test_tables_and_sentences_have_the_units_of_a_new_kind(rotor: Scenario, capsys: pytest.CaptureFixture[str]) -> None:

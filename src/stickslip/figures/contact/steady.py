@@ -39,12 +39,13 @@ def data(found: SteadySlidings) -> xr.Dataset:
     contents = {
         "traction": curve_quantity("slip_rate", steady_traction(found.problem, rates), "traction", found.unit),
         "stable": xr.Variable("slip_rate", stable.astype(int), {"long_name": "1 where steady sliding is stable", "units": "1"}),
-        "sliding_rate": curve_quantity("sliding", slidings, "slip_rate"),
+        "sliding_rate": curve_quantity("sliding", slidings, "slip_rate", found.unit),
         "sliding_traction": curve_quantity("sliding", [abs(one.traction) for one in found.slidings], "traction", found.unit),
-        "critical_rate": curve_quantity("change", critical, "slip_rate"),
-        "sticks_to": curve_quantity("rest", rests, "slip_rate"),
+        "critical_rate": curve_quantity("change", critical, "slip_rate", found.unit),
+        "sticks_to": curve_quantity("rest", rests, "slip_rate", found.unit),
     }
-    return xr.Dataset(contents, coords={"slip_rate": curve_quantity("slip_rate", rates, "slip_rate")}, attrs={"force": found.unit})
+    along = curve_quantity("slip_rate", rates, "slip_rate", found.unit)
+    return xr.Dataset(contents, coords={"slip_rate": along}, attrs={"force": found.unit})
 
 
 @styled

@@ -35,7 +35,7 @@ from stickslip.figures.style import (
 )
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.names import readable_unit
+from stickslip.foundation.names import readable_unit, si_unit
 from stickslip.foundation.place import Place
 from stickslip.observables.event_table import that_count
 from stickslip.observables.predictability import is_followed, predictability
@@ -83,11 +83,12 @@ def data(solution: Solution, event: int | None = None) -> xr.Dataset:
     window = solution.window(chosen)
     lasting = window.shown[1] / 1.1
     near = solution.window(chosen, before=0.25 * CLOSE * lasting, after=CLOSE * lasting)
-    contents = _events(table)
+    loads = solution.problem.load_unit
+    contents = _events(table, si_unit("slip", loads))
     for name, readings in (("run", solution), ("window", window), ("close", near)):
         time, slip = readings.curve("slip" if name == "run" else "event_slip")
         contents[f"{name}_time"] = curve_quantity(f"{name}_point", time, "time")
-        contents[f"{name}_slip"] = curve_quantity(f"{name}_point", slip, "slip")
+        contents[f"{name}_slip"] = curve_quantity(f"{name}_point", slip, "slip", loads)
     # After the horizon only statistics mean anything.
     horizon = predictability(solution).horizon if is_followed(solution.problem) else math.inf
     contents["horizon"] = quantity((), horizon, "predictability horizon", "", "s")
@@ -102,10 +103,10 @@ def data_of_events(table: pd.DataFrame, title: str = "") -> xr.Dataset:
     return xr.Dataset(_events(table), attrs={"title": _title(title, table)})
 
 
-def _events(table: pd.DataFrame) -> dict[str, xr.Variable]:
-    about = {"start": ("start of the event", "s"), "slip": ("slip", "m"), "recurrence": ("recurrence time", "s")}
+def _events(table: pd.DataFrame, length: str = "m") -> dict[str, xr.Variable]:
+    about = {"start": ("start of the event", "s"), "slip": ("slip", length), "recurrence": ("recurrence time", "s")}
     found = {name: quantity("event", table[name].to_numpy(float), text, "", unit) for name, (text, unit) in about.items()}
-    return found | {"whole_slip": quantity("whole_event", that_count(table, "slip"), "slip of events that are over", "", "m")}
+    return found | {"whole_slip": quantity("whole_event", that_count(table, "slip"), "slip of events that are over", "", length)}
 
 
 def _title(title: str, table: pd.DataFrame) -> str:
@@ -132,7 +133,7 @@ def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     _draw_zooms(axes, dataset)
     unit, size = time_unit(float(recurrence.max())) if len(recurrence) else ("s", 1.0)
     if "E" in axes:
-        _draw_distribution(axes["E"], dataset["whole_slip"].values)
+        _draw_distribution(axes["E"], dataset["whole_slip"])
     if "F" in axes:
         _draw_recurrence(axes["F"], recurrence / size, unit, narrow=narrow)
     if "G" in axes:
@@ -199,7 +200,7 @@ def _draw_time_line(axes: Axes, dataset: xr.Dataset, *, ring: bool) -> None:
     slip, wide = dataset["slip"].values, spans_decades(dataset["slip"].values)
     last = float(dataset["run_time"].values[-1]) if "run_time" in dataset else float(dataset["start"].values[-1])
     unit, size = time_unit(last)
-    length, metres = readable_unit("m", slip, log=wide)
+    length, metres = readable_unit(dataset["slip"].attrs["units"], slip, log=wide)
     start, end = dataset["start"].values / size, last / size
     low = 0.5 * slip.min() / metres if wide else 0.0
     axes.vlines(start, low, slip / metres, color=BLUE, linewidth=0.9)
@@ -224,7 +225,7 @@ def _draw_zooms(panels: Mapping[str, Axes], dataset: xr.Dataset) -> None:
             continue
         axes = panels[panel]
         time, slip = dataset[f"{name}_time"].values, dataset[f"{name}_slip"].values
-        (unit, size), (length, metres) = time_unit(float(np.ptp(time))), readable_unit("m", np.ptp(slip))
+        (unit, size), (length, metres) = time_unit(float(np.ptp(time))), readable_unit(dataset["slip"].attrs["units"], np.ptp(slip))
         axes.plot(time / size, slip / metres, color=GREEN)
         if name == "run":
             axes.axvline(float(dataset["start"][int(dataset["chosen"])]) / size, color=VERMILLION, linewidth=0.8, zorder=0)
@@ -233,9 +234,10 @@ def _draw_zooms(panels: Mapping[str, Axes], dataset: xr.Dataset) -> None:
         zero_line(axes)
 
 
-def _draw_distribution(axes: Axes, slip: Floats) -> None:
+def _draw_distribution(axes: Axes, slips: xr.DataArray) -> None:
+    slip = slips.values
     many, wide = len(slip) > WIDE, spans_decades(slip)
-    unit, size = readable_unit("m", slip, log=wide)
+    unit, size = readable_unit(slips.attrs["units"], slip, log=wide)
     ordered = np.sort(slip) / size
     smallest = ordered[0] if wide else 0.0
     axes.step([smallest, *ordered, ordered[-1]], [len(slip), *range(len(slip), 0, -1), 1 if many else 0], where="pre", color=BLUE)
