@@ -189,7 +189,7 @@ def test_the_table_of_the_page_is_what_its_script_measures(search: str) -> None:
     """On the two coarsest meshes here; the script measures all six."""
     docs = Path(__file__).parents[2] / "docs"
     column = {"stick-first": 1, "continue": 2}[search]
-    text = (docs / "schemes.md").read_text(encoding="utf-8")
+    text = (docs / "theory" / "schemes-at-a-jump.md").read_text(encoding="utf-8")
     page = re.findall(r"^\| (.*?) \| `([-DmMx?]{6})` \| `([-DmMx?]{6})` \|$", text, re.MULTILINE)
     found = runpy.run_path(str(docs / "scheme_verdicts.py"))["verdicts"](search, (25, 50))
     assert {row[0]: row[column][:2] for row in page} == found
