@@ -26,7 +26,7 @@ def is_algebraic(problem: Problem) -> bool:
 
 
 def table_of_branches(problem: Problem, law_slip: float) -> tuple[Floats, float]:
-    """Return the table of branches at a law slip (m, minus the initial one), and the load at which the contact leaves stick.
+    """Return the table of branches at a law slip (m, minus the initial one), and the load that ends stick.
 
     That load is in Pa, minus the strength. Where the solution is unique there is one branch, which is never left.
     """
@@ -55,7 +55,7 @@ def strength_change(problem: Problem, law_slip: float) -> float:
 
 
 def branch_of(branches: BranchRow, rate: float) -> int:
-    """Return the branch to which a slip rate (m/s) belongs.
+    """Return the branch of a slip rate (m/s).
 
     It is the nearest branch, because rounding may put a rate at a fold outside of every branch.
     """

@@ -23,7 +23,7 @@ from stickslip.problem.problem import Problem
 
 @dataclass(frozen=True, eq=False)
 class Inflow:
-    """Straight segments, each from the time (s) at which it arrives, plus a tone. Slab: Pa; block: N/s."""
+    """Straight segments, each with the time (s) of its arrival, plus a tone. Slab: Pa; block: N/s."""
 
     start: Floats
     value: Floats
@@ -50,7 +50,7 @@ class Inflow:
         return np.asarray(straight + 2.0 / frequency * np.sin(0.5 * frequency * (high - low)) * self._swing(middle))
 
     def gathered(self, trip: Floats, offset: Floats, trips: Floats) -> Floats:
-        """Return the growth of a load at rest over the given number of whole round trips, in which nothing but the tone changes.
+        """Return the growth of a load at rest over the given number of whole round trips, while only the tone changes.
 
         On a slab it is the sum of F over these round trips: their number times the mean of F, with Dirichlet's kernel for the tone.
         """
@@ -67,7 +67,7 @@ class Inflow:
         return np.asarray(straight + self._summed(trips) * self._swing(middle))
 
     def breaks(self) -> list[tuple[int, float]]:
-        """Return the round trips and offsets (s) at which segments begin; an edge between two is offset 0 of the later one."""
+        """Return the round trips and offsets (s) where segments begin; an edge between two round trips is offset 0 of the later."""
         trips = np.floor(self.start / self.round_trip_time)
         offsets = self.start - trips * self.round_trip_time
         late, early = offsets > (1.0 - EDGE) * self.round_trip_time, offsets < EDGE * self.round_trip_time
@@ -75,7 +75,7 @@ class Inflow:
         return list(zip((trips + late).astype(int).tolist(), offsets.tolist(), strict=True))
 
     def edges(self, low: float, high: float) -> Floats:
-        """Return the times (s) between two others at which segments arrive or a tone has turned by about 1 rad."""
+        """Return the times (s) between two others when segments arrive or a tone has turned by about 1 rad."""
         turns = math.floor((high - low) * self.tone.frequency) if self.tone.amplitude != 0.0 else 0
         inside = self.start[(self.start > low) & (self.start < high)]
         return np.unique(np.concatenate([inside, np.linspace(low, high, turns + 2)[1:-1]])) if turns else inside

@@ -104,7 +104,7 @@ def missing_for_creep(problem: Problem) -> str:
 LARGEST_SHARE = 0.01
 """Largest shortest_event, as a share of the two-way travel time: a body with a longer one would no longer behave as a slab."""
 MOST_PIECES = 4096
-"""Number of pieces in a round trip above which events are lumped automatically: each costs about 0.4 kB and a microsecond."""
+"""Events are lumped automatically if a round trip has more pieces than this: each costs about 0.4 kB and a microsecond."""
 AUTOMATIC_SHARE = 1.0 / 1024.0
 """Shortest event of automatic lumping, as a share of the two-way travel time: a few pieces fit into each such interval."""
 

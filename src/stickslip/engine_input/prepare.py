@@ -24,7 +24,7 @@ from stickslip.problem.selection_rule import SelectionRule
 
 
 def prepare(problem: Problem, rtol: float, shortest: float | None = 0.0) -> tuple[Setup, Integers]:
-    """Return the setup that the engine needs for a problem, and the memory of a run at t = 0, to which a history must be lent.
+    """Return the engine's setup for a problem, and the memory of a run at t = 0; a history must still be lent to it.
 
     `Setup.params` are those in the memory, which holds the addresses of the setup's tables: the caller keeps both. Compiles the
     law's formulas if they are new. The result is cached for the next run.
@@ -152,7 +152,7 @@ def first_load_varying(problem: Problem) -> at.Floats:
 
 
 def _parts(problem: Problem, pieces: at.Floats) -> at.Floats:
-    """Return the same load in shorter pieces, in which the phase of a tone changes by at most LARGEST_TURN."""
+    """Return the same load in shorter pieces; the phase of a tone changes by at most LARGEST_TURN in each."""
     known, tone = FirstLoad.of(pieces), inflow_of(problem).tone
     phase = known.phase
     if tone.amplitude == 0.0:
@@ -176,7 +176,7 @@ FIRST_DISC = 3
 """Disc on which a run tries to prove its first step, as an index of `certificate.RATIOS`: one that serves most steps at the default
 tolerance."""
 LARGEST_TURN, MOST_PARTS = 1.0, 100_000
-"""Largest phase (rad) over which a sine's Taylor series is right to rounding, and the largest number of parts of a round trip."""
+"""A sine's Taylor series is right to rounding up to this phase (rad); largest number of parts of a round trip."""
 
 
 def loading_of(problem: Problem) -> at.Floats:
@@ -236,7 +236,7 @@ def set_references(table: at.Integers, numbers: at.Floats) -> None:
 
 
 def functions_of(formulas: Sequence[CompiledFormula], problem: Problem) -> at.Integers:
-    """Return a table of `LawPiece` in which only the functions are set, those that the engine needs.
+    """Return a table of `LawPiece` with only the functions set, those that the engine needs.
 
     A law with a state is always stepped implicitly.
     """

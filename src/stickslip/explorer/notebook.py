@@ -27,7 +27,7 @@ def check_extra(who: str) -> None:
 
 
 ROUND_TRIPS = 3.0
-"""Round trips of a slab, or periods of a block, that are shown of a problem to which no duration is given."""
+"""A problem without a duration is shown for this many round trips of a slab, or periods of a block."""
 
 
 @for_users

@@ -23,11 +23,11 @@ if TYPE_CHECKING:
     import pandas as pd
 
 DRAFT = ".stickslip-draft-"
-"""Prefix of the temporary names (drafts) under which files and folders are written before they get their final name."""
+"""Prefix of the temporary names (drafts) of files and folders that are being written; they get their final name afterwards."""
 STALE = 60.0
-"""Age (s) from which an unlocked draft counts as left behind: a living writer locks its draft long before that."""
+"""An unlocked draft counts as left behind at this age (s): a living writer locks its draft long before that."""
 STALE_WITHOUT_LOCKS = 86_400.0
-"""Age (s) from which a draft counts as left behind even if no lock on it could be taken: no file takes a day to write."""
+"""A draft counts as left behind at this age (s) even if no lock on it could be taken: no file takes a day to write."""
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 """Error numbers that mean that there is no space left: full disk, exhausted quota, or a file size limit."""
 
@@ -254,7 +254,7 @@ OWN = re.compile(rb"^# (written by |code=)?stickslip\b|^start,end,duration,recur
 BINARY = {".nc": b"\x89HDF", ".parquet": b"PAR1"}
 """First bytes of files that name this package somewhere at their beginning or end, by suffix."""
 LOOKED_AT = 65_536
-"""Number of bytes at the beginning, and at the end, in which a file of this package names it."""
+"""A file of this package names it within this many bytes from the beginning, or from the end."""
 
 
 def check_replaceable(path: Path, where: str) -> None:

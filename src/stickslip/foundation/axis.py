@@ -1,4 +1,4 @@
-"""An axis: a parameter with the numbers that it takes from a lower to an upper end, and the text in which a range is typed."""
+"""An axis: a parameter with its numbers from a lower to an upper end, and the text of a typed range."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ from stickslip.foundation.headings import COLUMNS, FoundColumn, find, is_signed,
 
 @dataclass(frozen=True)
 class Table:
-    """Columns of numbers in SI by their plain heading, and the lines (or rows) from which they come."""
+    """Columns of numbers in SI by their plain heading, and the lines (or rows) of their origin."""
 
     columns: dict[str, Floats]
     place: str

@@ -17,7 +17,7 @@ from stickslip.foundation.units import LONGEST, split_quantity, to_si
 LARGEST_INTEGER = 10**300
 """Largest magnitude of a whole number that is converted to a float."""
 SAME = 1e-12
-"""Relative difference up to which the definitions of a unit in two libraries count as the same."""
+"""Definitions of a unit in two libraries that differ by less than this (relative) count as the same."""
 NO_UNIT = "dimensionless"
 """Name of the unit of a pure number in pint."""
 
@@ -111,7 +111,7 @@ def _from_text(text: str, unit: str) -> float:
 
 
 def unit_among(value: Any, units: str) -> str:
-    """Return the one of the units "m/s or Pa" to which a text or a quantity of pint converts; "" for anything else."""
+    """Return the unit of "m/s or Pa" that fits a text or a quantity of pint; "" for anything else."""
     parts = split_quantity(value) if isinstance(value, str) else (1.0, _name_of(value.units)) if has_unit(value) else None
     for unit in units.split(" or "):
         try:

@@ -10,13 +10,13 @@ import numpy as np
 from stickslip.foundation.arrays import Floats
 
 UNSEEN = 1e-9
-"""Change of friction by a combination of parameters, as a share of the largest, below which the points do not see it."""
+"""Points do not see a combination of parameters that changes friction by less than this share of the largest change."""
 PART = 0.05
-"""Component in an unseen combination (all components: 1) from which a parameter is part of it."""
+"""A parameter is part of an unseen combination (of length 1) if its component is larger than this."""
 CORRELATED = 0.99
-"""Correlation of two parameters from which the points hardly tell them apart."""
+"""The points hardly distinguish two parameters with a larger correlation than this."""
 SERIAL = 5.0
-"""Number of standard deviations by which neighbouring residuals may be more alike than chance makes them."""
+"""Neighbouring residuals may be more alike than by chance by this many standard deviations."""
 
 
 def covariance_of(slopes_by: Floats, variance: float, unseen_below: float = UNSEEN) -> tuple[Floats, list[list[int]]]:

@@ -11,7 +11,7 @@ from contextvars import ContextVar
 
 
 def printable(text: str) -> str:
-    """Return a text in which line breaks and other characters that cannot be printed are escaped."""
+    """Return a text with line breaks and other unprintable characters escaped."""
     return text if text.isprintable() else "".join(one if one.isprintable() else ascii(one)[1:-1] for one in text)
 
 

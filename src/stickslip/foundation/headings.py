@@ -1,4 +1,4 @@
-"""Understand the headings of columns: which quantity each names, in which unit, and what a heading that is missing could be."""
+"""Understand the headings of columns: the quantity and the unit of each, and suggestions for a missing heading."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class HeadingColumn:
 
 
 def _driven(*what: str) -> tuple[str, ...]:
-    """Return headings for what the driven end of a machine does."""
+    """Return headings for the motion of the driven end of a machine."""
     ends = ("load point", "lp", "load", "loading", "driver", "driving", "ram", "piston", "actuator", "crosshead", "pull")
     return tuple(f"{end} {one}" for end in ends for one in what)
 
@@ -85,7 +85,7 @@ LONGEST = 120
 PURE = ("", ".", "-", "–", "1", "none", "no unit", "dimensionless")
 """What people write in place of a unit for a pure number."""
 ONE_WORD = 5
-"""Number of letters from which a heading of several words is also understood in one: "loadpoint", but not "sign" for "sig n"."""
+"""A heading of several words with at least this many letters is also understood in one: "loadpoint", but not "sign" for "sig n"."""
 _OFTEN = {"m": "mm", "m/s": "mm/s", "s": "ms", "Pa": "MPa", "N": "kN"}
 """Units that laboratories use in place of those of SI."""
 _HEADING = re.compile(r"(?P<name>[^()\[\]]*)(?:[(\[](?P<unit>[^()\[\]]*)[)\]])?\s*")

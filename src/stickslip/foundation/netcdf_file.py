@@ -40,7 +40,7 @@ libraries take 5 ms for each."""
 
 
 OF_NETCDF = {"CLASS", "NAME", "REFERENCE_LIST", "DIMENSION_LIST", "_NCProperties", "_Netcdf4Dimid", "_Netcdf4Coordinates"}
-"""Attributes with which netCDF stores dimensions."""
+"""Attributes that netCDF uses to store dimensions."""
 
 
 class Variable(NamedTuple):

@@ -1,4 +1,4 @@
-"""A law, a body, a loading history or a problem in which some numbers have other values, by their names."""
+"""Give some numbers of a law, a body, a loading history or a problem other values, by name."""
 
 from __future__ import annotations
 

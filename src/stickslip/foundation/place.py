@@ -1,4 +1,4 @@
-"""The keywords with which users say where a figure is drawn, and how large."""
+"""The keywords for the place and the size of a figure."""
 
 from __future__ import annotations
 

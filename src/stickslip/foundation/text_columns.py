@@ -39,7 +39,7 @@ from stickslip.foundation.headings import (
 LONGEST_LINE = 50_000
 """Largest number of characters of a line."""
 PREAMBLE = 200
-"""Number of lines before the header in which notes of an instrument are looked for."""
+"""Notes of an instrument may take this many lines before the header."""
 NO_NUMBER = ("", "nan", "-", "–", "na", "n/a", "null", "none")
 """What instruments and people write where a number is missing."""
 DECIMAL_COMMA = (

@@ -36,11 +36,11 @@ METADATA = "zarr.json"
 SIZES = {0: 0, 1: 2, 2: 4, 3: 8}
 """Bytes of the field with the size of the content in a frame of Zstandard, by its flag (RFC 8878)."""
 IN_ONE_FOLDER: Any = {"name": "default", "separator": "."}
-"""Names of chunks with which all chunks of an array lie in one folder."""
+"""Naming of chunks that puts all chunks of an array into one folder."""
 
 
 class Folder(LocalStore):
-    """A folder of zarr of which only ordinary files are read, none of them large, and none that unpacks to more than it may."""
+    """A folder of zarr. Only ordinary files are read: none that is large, and none that unpacks to more than allowed."""
 
     @override
     async def get(self, key: str, prototype: Any = None, byte_range: Any = None) -> Any:

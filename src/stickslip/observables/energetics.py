@@ -2,9 +2,9 @@
 
     elastic + work = kinetic + heat + damped + balance
 
-`waves` is the sum of three energies: what is radiated through the driver, what is trapped in the slab at the end beyond what was
-trapped at the start, and what the damping of a block dissipates, which is to a block what radiation is to a slab. The waves of
-earlier events may feed an event; then `waves` is negative.
+`waves` is the sum of three energies: that radiated through the driver; the growth of the energy trapped in the slab; and that
+dissipated by the damping of a block, which is to a block what radiation is to a slab. If the waves of earlier events feed an event,
+`waves` is negative.
 Source: Kanamori & Brodsky 2004, Rep. Prog. Phys. 67, 1429; Kanamori & Rivera 2006, AGU Geophysical Monograph 170, 3.
 """
 

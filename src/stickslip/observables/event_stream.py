@@ -51,7 +51,7 @@ class EventStream:
     def needed(self, history: History) -> int:
         """Return the first piece of the history that is needed for new events and for the energy of the waves under way.
 
-        The piece before the one in which the last event began tells whether slip began there from rest.
+        Whether the last event began from rest is seen from the piece before its first one.
         """
         trips = history.store.trip
         return max(min(int(np.searchsorted(trips, trips[self.first] - WAVES_OF)), self.first - 1), 0)
@@ -83,7 +83,7 @@ class Look:
     """All events that were found; the first `old` of them were reported before."""
     old: int
     known_by: Integers
-    """For each new event that is final, the piece from which on it is final."""
+    """For each new event that is final, the piece that made it final."""
 
     def first_ones(self, count: int) -> Look:
         """Return the first few of the new events."""

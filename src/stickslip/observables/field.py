@@ -32,8 +32,8 @@ from stickslip.trajectory.history import History, Positions, Side
 ROUNDS = 8
 """Round trips that are evaluated together."""
 POINTS: Floats = np.asarray(chebyshev.chebpts1(TERMS + 1), float)
-"""Points at which the wave of a piece is sampled. Their number makes the interpolation exact for the polynomials of the history
-times the linear derivative of time with respect to xi.
+"""Sampling points for the wave of a piece. Their number makes the interpolation exact for the polynomials of the history times the
+linear derivative of time with respect to xi.
 """
 TO_SERIES: Floats = np.asarray(np.linalg.inv(chebyshev.chebvander(POINTS, TERMS)), float)
 """Matrix from values at these points to the coefficients of a Chebyshev series; the transformation loses no digits."""
@@ -139,7 +139,7 @@ class WaveInterval:
         if any(self.history.is_averaged(trip) for trip in np.unique(self.history.store.trip[at.piece])):
             raise InputError("the field is not known here: the waves in the slab left the contact in a leap over creep")
         self.start: Floats = breaks[another]
-        """Times (s) from which on another piece of the history holds, or the same one a number of whole round trips later."""
+        """Times (s) when another piece of the history begins to hold, or the same one a number of whole round trips later."""
         self._piece, leaped = at.piece[another], at.leaped[another]
         store = self.history.store
         self._origin = self.history.seconds(store.trip[self._piece] + leaped, store.phase_from[self._piece])
@@ -149,7 +149,7 @@ class WaveInterval:
         self._wave = TO_SERIES @ self._values
 
     def _candidates(self, low: float, high: float) -> Floats:
-        """Return the times inside at which another piece may begin to hold: phases of all pieces so far, in every round trip."""
+        """Return the times inside when another piece may begin to hold: phases of all pieces so far, in every round trip."""
         history, store = self.history, self.history.store
         known = max(int(np.searchsorted(history.start, high, side="right")), 1)
         phases = np.unique(np.concatenate([[0.0], store.phase_from[:known], store.phase_to[:known]]))
@@ -200,9 +200,9 @@ class WaveInterval:
 
     @cached_property
     def _sums(self) -> Floats:
-        """The addends, one for each part, with which those integrals count from the start of the interval.
+        """Constants, one for each part, that make those integrals count from the start of the interval.
 
-        Each is the integral up to the start of the part, less the value of the part's own series there.
+        Each is the integral up to the start of the part, minus the value of the part's own series there.
         """
         parts = np.arange(len(self.start))
         begin, end = (

@@ -1,4 +1,4 @@
-"""Quantities of a contact on which slip travels, from frames of its motion: when it breaks, in how many pulses, how fast."""
+"""Quantities of travelling slip on a contact, from frames of its motion: times of rupture, number of pulses, and speed."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ Integers = NDArray[np.int64]
 
 
 def rupture_times(times: Floats, rate: Floats, threshold: float) -> Floats:
-    """Return the time (s) at which each node first slips faster than a threshold (m/s); the slip rate (m/s) has time first.
+    """Return the time (s) when each node first slips faster than a threshold (m/s); the slip rate (m/s) has time first.
 
-    It is that of the first frame above the threshold, or between the frames where |rate| passes it if it is linear in time there;
-    NaN where that never happens.
+    |rate| is taken as linear in time between frames; the time is that of the first frame if that is above the threshold, and NaN
+    for nodes that never exceed it.
     """
     fast = np.abs(rate) > threshold
     first = fast.argmax(axis=0)
@@ -31,7 +31,7 @@ def pulses(rate: Floats, threshold: float) -> Integers:
     """Return the number of slip pulses that have passed each node; the slip rate (m/s) has time first.
 
     They are maxima of |rate| above the threshold (m/s), separated by minima below half the lower one: as `pulses` of slip events. A
-    maximum counts from the moment at which the rate has fallen to half of it, and at the end if it is still the largest.
+    maximum counts as soon as the rate has fallen to half of it, and at the end if it is still the largest.
     """
     size = np.abs(rate)
     count, high, low = np.zeros(size.shape[1:], np.int64), size[0].copy(), size[0].copy()
@@ -47,7 +47,7 @@ def pulses(rate: Floats, threshold: float) -> Integers:
 
 
 def rupture_speed(distance: float, times: Floats) -> Floats:
-    """Return the speed (m/s) at which the front passes each node of a line, from rupture times (s) at a distance (m) of nodes.
+    """Return the speed (m/s) of the front at each node of a line, from rupture times (s) at nodes a distance (m) apart.
 
     It is the inverse of the slope of the rupture time, by central differences; NaN at nodes without neighbours that slip, and inf
     where neighbours begin to slip at once.

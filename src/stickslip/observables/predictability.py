@@ -29,12 +29,12 @@ if TYPE_CHECKING:
     import pandas as pd
 
 LOST = 0.1
-"""Disturbance, as a share of the waves that slip sends out, that changes an event into another one: it ends the horizon."""
+"""A disturbance of this share of the waves that slip sends out changes an event into another one: it ends the horizon."""
 
 
 @dataclass(frozen=True)
 class Predictability(NamesAttributes):
-    """The result of `predictability`, at the times (s) at which pieces of the history, or slip events, start.
+    """The result of `predictability`, at the start times (s) of pieces of the history, or of slip events.
 
     `amplification` is the size there of a disturbance of the load that is 1 at the start of the run; NaN if it is not known.
     `error` is the first disturbance that tolerance and rounding make, as a share of the waves 2 Z v that slip sends out.
@@ -48,9 +48,9 @@ class Predictability(NamesAttributes):
 
     @property
     def horizon(self) -> float:
-        """The time (s) from which on single events mean nothing; inf if there is none in this run.
+        """The time (s) when single events cease to mean anything; inf if there is none in this run.
 
-        It is the first time at which the disturbance exceeds a tenth of the waves that slip sends out.
+        The disturbance then exceeds a tenth of the waves that slip sends out for the first time.
         """
         lost = np.flatnonzero(self.amplification * self.error > LOST)
         return float(self.time[lost[0]]) if lost.size else math.inf
@@ -62,7 +62,7 @@ class Predictability(NamesAttributes):
 
     @property
     def exponent(self) -> float:
-        """An estimate of the largest Lyapunov exponent, 1/s: ln(largest) divided by the time at which it was reached."""
+        """An estimate of the largest Lyapunov exponent, 1/s: ln(largest) divided by the time of the largest amplification."""
         if not self.largest > 1.0:
             return 0.0
         reached = float(self.time[int(np.nanargmax(self.amplification))])
@@ -79,7 +79,7 @@ class Predictability(NamesAttributes):
 
 
 class PredictedRun(Protocol):
-    """A run, as far as its predictability is concerned: its history, and the relative tolerance with which it was computed."""
+    """A run, as far as its predictability is concerned: its history and its relative tolerance."""
 
     @property
     def history(self) -> History:

@@ -1,11 +1,11 @@
-"""Prove, from a history alone, how far its polynomials miss the contact equation; nothing that made them is used.
+"""Prove bounds on the residual of the contact equation from a history alone, without anything that made it.
 
 The engine's own bound of a step (`engine.contact_step.certificate`) rests on its series: their first coefficients are those of the
-solution. Here the same is shown of a finished step without that premise. Let g be what the contact equation lacks, y the place in
-the step minus 1/2, and |g| <= M for |y| <= R, by the formula of the law on discs (`friction.formula.bounds`). The ellipse with the
-ends of the step as its foci and the larger half-axis R lies in that disc, and has the parameter q = 2 R + sqrt(4 R^2 - 1). Let p be
-the polynomial of degree n through the values of g at n + 1 Chebyshev points of the step. Then (Trefethen 2019, Approximation Theory
-and Approximation Practice, ch. 8)
+solution. Here the bound is proven for a finished step without that premise. Let g be the residual of the contact equation, y the
+place in the step minus 1/2, and |g| <= M for |y| <= R, by the formula of the law on discs (`friction.formula.bounds`). The ellipse
+with the ends of the step as its foci and the larger half-axis R lies in that disc, and has the parameter q = 2 R + sqrt(4 R^2 - 1).
+Let p be the polynomial of degree n through the values of g at n + 1 Chebyshev points of the step. Then (Trefethen 2019,
+Approximation Theory and Approximation Practice, ch. 8)
 
     |g - p| <= 4 M q^-n / (q - 1),    |p| <= sum of the sizes of its coefficients
 
@@ -40,9 +40,9 @@ Places = NDArray[np.intp]
 ORDER = 32
 """Degree n of the polynomial through the values of g (1)."""
 RADII = np.array([8.0, 5.6, 4.0, 2.8, 2.0, 1.5, 1.2, 1.0, 0.85, 0.75])
-"""Radii R of the discs that are tried, in lengths of the step (1)."""
+"""Radii R of the discs to try, in lengths of the step (1)."""
 FIRST, SHARE, LARGEST = 32, 4096, 512
-"""Numbers of steps that are proven anew: the first of each kind, an even share of all, and those with the largest bounds."""
+"""Numbers of steps to prove anew: the first of each kind, an even share of all, and those with the largest bounds."""
 AT_ONCE = 128
 """Number of steps that are proven together: it keeps the memory bounded."""
 POLYNOMIAL = 3e-15
@@ -55,7 +55,7 @@ SUM = 5e-16
 
 @dataclass(frozen=True)
 class Proof:
-    """Bounds of how far a run's polynomials miss the contact equation at any moment, the rounding of numbers included.
+    """Bounds on the residual of the contact equation at any moment of a run, the rounding of numbers included.
 
     Of `steps` steps of slip, `anew` are proven from the history and the law's formula alone, whatever made them: all of them in a
     short run, else the first of each kind, a share of the others, and those with the largest bounds. The bounds of the others are
@@ -70,7 +70,7 @@ class Proof:
     steps: int
     """Number of steps of slip that have a bound."""
     anew: int
-    """Number of them that are proven without the series, or the stages, from which the engine made them."""
+    """Number of them that are proven without the engine's series or stages."""
     unproven: int
     """Number of pieces of the history that are checked at places only: the law is not analytic where the slip rate passes zero."""
     unit: str
@@ -93,7 +93,7 @@ class Proof:
 
 
 class Proven(NamedTuple):
-    """What is proven of some pieces of a history: the largest bound (Pa or N), and numbers of steps."""
+    """Proven bounds for some pieces of a history: the largest one (Pa or N), and numbers of steps."""
 
     residual: float = 0.0
     steps: int = 0
@@ -107,7 +107,7 @@ class Proven(NamedTuple):
 
 
 def proven(history: History) -> Proven:
-    """Return what is proven of a history."""
+    """Return the proven bounds for a history."""
     bound, steps, anew = bounds_of_pieces(history)
     return Proven(float(np.nanmax(bound, initial=0.0)), steps, anew, int(np.count_nonzero(np.isnan(bound))))
 
@@ -165,7 +165,7 @@ _POWERS = _POINT ** np.arange(DEGREE)[:, None]
 _SHIFT = np.array([[comb(n, k) * 0.5 ** (n - k) if k <= n else 0.0 for k in range(DEGREE)] for n in range(DEGREE)])
 """Matrix from coefficients in xi to those in y = xi - 1/2."""
 _RATIO = 2.0 * RADII + np.sqrt(4.0 * RADII**2 - 1.0)
-"""q, by which the Chebyshev coefficients of a function that is bounded on each disc fall from order to order."""
+"""q for each disc: the Chebyshev coefficients of a function that is bounded on the disc fall by q from order to order."""
 
 
 def _at_points(c: Floats) -> Disc:
@@ -218,7 +218,7 @@ class MotionOnDiscs(NamedTuple):
 
 
 def _bounds(history: History, n: Places) -> Floats:
-    """Return the largest |g| (Pa or N) at the points of each of some steps, what they do not show, and a bound of both."""
+    """Return the largest |g| (Pa or N) at the points of each of some steps, the error between them, and a bound on both."""
     found = np.full((3, len(n)), np.inf)
     piece = history.store.law_piece[n]
     for i in np.unique(piece).tolist():
@@ -233,9 +233,9 @@ def _bounds(history: History, n: Places) -> Floats:
 
 
 def _unsure_duration(history: History, n: Places) -> Floats:
-    """Return the share (1) of the duration of each of some steps that rounding makes of it: it is the difference of two times.
+    """Return the relative rounding (1) of the duration of each of some steps, which is a difference of two times.
 
-    Only inertia asks for the duration; next to a fold, where time is a parabola, there is none.
+    Only the force of inertia needs the duration. Next to a fold, where time is a parabola, there is no such rounding.
     """
     if not history.problem.body.has_inertia:
         return np.zeros((len(n), 1))
@@ -261,7 +261,7 @@ def _lacking(problem: Problem, piece: int, motion: MotionOnDiscs) -> Disc:
 
 
 def _from_points(values: Disc, everywhere: Floats) -> tuple[Floats, Floats, Floats]:
-    """Return the largest of the values at the points of each step, what they do not show, and a bound, from bounds M on RADII."""
+    """Return the largest value at the points of each step, the error between them, and a bound on both, from bounds M on RADII."""
     rounding, highest = values.radius.max(axis=1), np.abs(values.centre).max(axis=1)
     parts = np.abs(dct(values.centre, type=1, axis=1)) / ORDER
     parts[:, [0, -1]] *= 0.5

@@ -25,13 +25,13 @@ from stickslip.trajectory.tables import shock_columns
 Regime = Literal["regular", "irregular", "continuum"]
 
 _ROUNDING = 1e-12
-"""Distance from the ends of the window between the folds, as a share of it, within which a load has no choice: a start at the
-static strength has none.
+"""The rule has no choice at loads closer than this to the ends of the window between the folds, as a share of the window. So it has
+none at a start at the static strength.
 """
 _SLIPS = 33
-"""Number of slips along a run at which the branches are computed to find its regime."""
+"""To find the regime of a run, branches are computed at this many slips along it."""
 _CANDIDATES = 50
-"""Largest number of intervals that are searched for the first time between the folds: it bounds the cost of a search that fails."""
+"""At most this many intervals are searched for the first time between the folds: it bounds the cost of a search that fails."""
 
 
 @dataclass(frozen=True)
@@ -39,8 +39,8 @@ class RuleInfluence:
     """Decisions of the selection rule in a run, in a `regime` of the contact.
 
     `shocks` says for each row of `solution.shocks` whether the rule decided it: the load was between the folds before or after the
-    shock, or the load reached a fold by itself (cause "fold"). `since` is the first time (s) at which the load lay between the
-    folds, or None. `folds_move` is True for a law whose folds move with slip; then `shocks` is empty and `since` is None.
+    shock, or the load reached a fold by itself (cause "fold"). `since` is the first time (s) with the load between the folds, or
+    None. `folds_move` is True for a law whose folds move with slip; then `shocks` is empty and `since` is None.
     """
 
     rule: str
@@ -103,9 +103,9 @@ def _side_of_folds(contact: Uniqueness, load: Floats) -> Floats:
 
 
 def _first_between(history: History, contact: Uniqueness, time: Floats, load: Floats) -> float | None:
-    """Return the first time (s) at which the load is between the folds, or None.
+    """Return the first time (s) with the load between the folds, or None.
 
-    The time is one of the curve, or is found between two of them at which the load lies on different sides of the folds.
+    The time is one of the curve, or is found between two of them with loads on different sides of the folds.
     """
     place = _side_of_folds(contact, load)
     passed = (place[1:] == 0.0) | ((place[1:] != place[:-1]) & (np.diff(time) > 0.0))

@@ -69,7 +69,7 @@ class Waves:
     def arriving(self, leaving: Floats, left: Floats) -> Floats:
         """Return the load minus the reference (Pa) one round trip after a wave left the contact.
 
-        `left` is the time at which it left (s since the start of the run).
+        `left` is the time when it left (s since the start of the run).
         """
         return np.asarray(self.body.reflection * leaving + self.inflow.at(left + self.round))
 
@@ -168,7 +168,7 @@ class Waves:
         if self.body.is_driven_rigidly:
             last = self._in_trip(past - 1, self.half, self.round).integral(self.power)
             return self.stored(Epoch(past, 0.0)) - self.stored(Epoch(first, self.half)) + last
-        # all these round trips are alike, but the waves of the last one may meet another loading at the driver
+        # all these round trips are alike, except that the waves of the last one may meet another loading at the driver
         one, last = (self._in_trip(trip, 0.0, self.round).integral(self.power) for trip in (first, past - 1))
         return (past - first - 1) * one + last
 

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from stickslip.scenarios.scenario import Scenario
 
 CAPACITY = 16_384
-"""Pieces of history for which a catalogue has room at first, about 7 MB; it grows only where what must be kept fills half of it."""
+"""Initial room of a catalogue in pieces of history, about 7 MB; it grows only if the pieces to keep fill half of it."""
 
 
 @for_users
@@ -68,8 +68,8 @@ def catalogue(
     max_events : int, optional
         Number of slip events after which the run stops.
     event_rate : float or str, optional
-        Slip rate (m/s, or a text with a unit) above which the contact is in an event. The default is 1e-6 S (range of mu)/Z; for a
-        block sqrt(K m) replaces Z.
+        Slip above this rate (m/s, or a text with a unit) is an event. The default is 1e-6 S (range of mu)/Z; for a block sqrt(K m)
+        replaces Z.
     energy : bool
         Add the energies of each event (slab: J/m^2, block: J). Automatic leaps over creep are then switched off.
     checkpoint_every : float or str
@@ -82,7 +82,7 @@ def catalogue(
     -------
     pandas.DataFrame
         The table of `Solution.catalogue(event_rate, energy=energy)`, with a last row for an event that the end of the run
-        leaves open. Its `attrs` hold what ended the run, and notes.
+        leaves open. Its `attrs` hold the reason for the end of the run, and notes.
 
     Raises
     ------
@@ -168,17 +168,17 @@ def alone_with(rows: Rows) -> AbstractContextManager[None]:
 
 @dataclass(frozen=True)
 class Catalogue:
-    """The result of a run without a history: its rows, the number of events that are over, and what ended it.
+    """The result of a run without a history: its rows, the number of events that are over, and the reason for its end.
 
-    `notes` holds one line each on predictability, energy trapped in waves, leaps over creep, lumped events and rounding, where
-    there is something to report.
+    `notes` holds one line each on predictability, energy trapped in waves, leaps over creep, lumped events and rounding, if there
+    is something to report.
     """
 
     rows: Rows | RowsInMemory
     events: int
     status: Status
     reached: float
-    """Time at which the run ended, s."""
+    """Time at the end of the run, s."""
     notes: Mapping[str, str]
 
     @property
@@ -212,8 +212,8 @@ class OutputSoFar:
 class EventRows:
     """The sink (`run_loop.Sink`) that writes rows as events become known, and discards the history that they no longer need.
 
-    `so_far` is the output at the point from which this run, or a longer one, would continue, and `residual` (Pa or N) the largest
-    bound of the steps that were proven anew: some of the first ones, and of those still in memory at the end.
+    `so_far` is the output at the point where this run, or a longer one, would continue. `residual` (Pa or N) is the largest bound
+    of the steps that were proven anew: some of the first ones, and some of those still in memory at the end.
     """
 
     run: ExactRun

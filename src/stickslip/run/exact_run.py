@@ -1,4 +1,4 @@
-"""The exact solver of one contact, as a run sees it: what is reported, counted, kept and returned of a `Session`."""
+"""The exact solver of one contact, as a run sees it: a `Session` with its reports, counts of events, files and result."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ class ExactRun(Session):
         return solution
 
     def _full(self) -> Status:
-        """Return the status of a run whose history is full, with what would help: what begins later than the run got, would not."""
+        """Return the status of a run whose history is full, with remedies; measures that begin after its end would not help."""
         options, history = self.options, self.history()
         trips, cures, stream = history.store.trip, [], EventStream(default_event_rate(self.problem))
         stream.look(history).tell()

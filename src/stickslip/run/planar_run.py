@@ -34,19 +34,20 @@ if TYPE_CHECKING:
 FRAMES = 100
 """Frames in a two-way travel time, by default."""
 RESIDUAL = 1e-6
-"""Largest miss of the contact equation, as a share of the load, in a run that counts as a solution; rounding gives 1e-15."""
+"""Largest residual of the contact equation, as a share of the load, in a run that counts as a solution; rounding gives 1e-15."""
 ROUNDING = 1e-12
-"""Share of the normal stress by which rounding may carry friction below zero."""
+"""Rounding may carry friction below zero by this share of the normal stress."""
 UNHEARD_OF = 1e3
-"""Slip rate of an unstable run over the one that the largest load would drive against radiation alone; fronts come to some ten."""
+"""A run is unstable if its slip rate exceeds this multiple of the rate that the largest load could drive against radiation alone;
+fronts reach some ten times that rate."""
 NODES = 200
-"""Nodes whose step counts as one in the budget of a call: the first call then takes less than a second."""
+"""The step of this many nodes counts as one in the budget of a call: the first call then takes less than a second."""
 COMPILER = 6e7
 """Memory that compiling a run takes, bytes."""
 UNKNOWN_MEMORY = 16e9
-"""Memory that a machine is taken to have which does not say how much it has, bytes."""
+"""Assumed memory of a machine that does not report it, bytes."""
 LIMITS_OF_CONTAINER = ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes")
-"""Files in which Linux says how much memory the processes of a container may take."""
+"""Files with the memory limit of a container's processes under Linux."""
 
 
 class PlanarReport(NamedTuple):
@@ -77,10 +78,10 @@ PlanarProgress = Callable[[PlanarReport], object]
 
 
 def memory_of(slab: PlanarSlab, duration: float, frames: int = FRAMES) -> float:
-    """Return the memory (bytes) that a run of this duration (s) needs beside that of Python and its libraries.
+    """Return the memory (bytes) that a run of this duration (s) needs besides that of Python and its libraries.
 
-    These are the exponentials, the paths of waves in a round trip, the echoes of the round trips to come with what it takes to set
-    them up, and the frames, of which there are two copies at the end, or none (0) if they are streamed.
+    It holds the exponentials, the paths of waves in a round trip, the echoes of the round trips to come and the room to set them
+    up, and the frames: two copies of them at the end, or none (0) if they are streamed.
     """
     round_trips, steps = slab.round_trips(duration), slab.steps_per_round_trip
     modes = float(np.prod(slab.shape[:-1])) * (slab.shape[-1] // 2 + 1)
@@ -162,7 +163,7 @@ def resume_planar(path: Path, duration: float | str | WithUnit | None = None, **
 
 
 def check_duration(store: PlanarStore, before: float) -> None:
-    """Refuse a new duration that the run has passed, or for which it would have been prepared in another way. Raises InputError."""
+    """Refuse a new duration that the run has passed, or that would have needed other preparations. Raises InputError."""
     slab, wanted, reached = store.slab, store.duration, store.times[-1]
     if wanted == before:
         return
@@ -205,7 +206,7 @@ class PlanarRun:
     here: tuple[slice, ...]
     """Where the nodes of the contact are among those of the solver."""
     memory: float
-    """What the run needs, bytes."""
+    """Memory that the run needs, bytes."""
     frames: Frames
     can_be_saved: bool = False
     """True at a frame: a run continues from one."""
@@ -225,7 +226,7 @@ class PlanarRun:
     def advance(self, budget: int) -> int:
         """Advance to the next frame, or as far as a budget of steps of NODES nodes each allows: see `Solver.advance`.
 
-        The end of a round trip is a frame, too; there the history is full of what the round trip has sent.
+        The end of a round trip is a frame, too; there the history is full of the waves that the round trip has sent.
         """
         solver, every = self.solver, self.steps_to_frame
         if not solver.steps_left:

@@ -93,17 +93,17 @@ Doing = Literal["stuck", "creeping", "slipping"]
 
 
 LONG_RUN = 200_000
-"""Number of pieces of history from which a run is called long: some 0.1 GB in memory, and in a file."""
+"""A run is called long from this many pieces of history on: some 0.1 GB in memory, and in a file."""
 
 
 class Report(NamedTuple):
     """The progress of a run; as a text it is one line for people.
 
-    It holds the simulated time so far and at the end of the run (s); the number of slip events that are over, and that after which
-    the run stops, if there is one; the number of pieces of history computed so far, including those that have been discarded; and
-    the present motion of the contact, which creeps while |v| does not exceed the slip rate that defines events. `pace` is the
-    simulated time per wall-clock time since the first report, and `left` the wall-clock time left at this pace (s); both are NaN
-    while they are not known.
+    It holds the simulated time so far and at the end of the run (s); the number of slip events that are over, and the number that
+    ends the run, if there is one; the number of pieces of history computed so far, including discarded ones; and the present motion
+    of the contact, which creeps while |v| does not exceed the slip rate that defines events. `pace` is the simulated time per
+    wall-clock time since the first report, and `left` the wall-clock time left at this pace (s); both are NaN while they are not
+    known.
     """
 
     time: float

@@ -62,7 +62,7 @@ class NowAndThen:
 
 
 class Sink(Protocol[New_contra, Result_co]):
-    """What takes the results of a run."""
+    """The receiver of the results of a run."""
 
     who: str
     """Name of the public function, for messages."""
@@ -108,7 +108,7 @@ class WholeHistory(Generic[Result]):
 
 
 class Watch(Protocol):
-    """What is done between two calls of the solver, when the state of the run is consistent."""
+    """The work between two calls of the solver, when the state of the run is consistent."""
 
     def look(self, *, now: bool) -> int | None:
         """Monitor the run after a call of the solver. Returns a code to end the run, or None to continue.
@@ -175,7 +175,7 @@ def run_to_end(run: Solver[New, Any], sink: Sink[New, Result]) -> Result:
 
 
 def run_loop(run: Solver[Any, Any], watch: Watch, interrupts: Interrupts) -> int:
-    """Run to the end, or until Ctrl-C has been noted. Returns the code of what ended the run (see `trajectory.status`)."""
+    """Run to the end, or until Ctrl-C has been noted. Returns the code of the run's end (see `trajectory.status`)."""
     budget = FIRST_BUDGET
     try:
         while True:

@@ -1,6 +1,6 @@
-"""A run in progress, called a session: the arrays on which the compiled engine works, and what is done with them between its calls.
+"""A run in progress, called a session: the arrays of the compiled engine, and the work on them between its calls.
 
-A piece of history is an interval on which load and slip rate are polynomials. A block's round trip is a period of its oscillation.
+A piece of history is an interval with load and slip rate as polynomials. A block's round trip is a period of its oscillation.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from stickslip.trajectory.phase_index import standing_behind
 from stickslip.trajectory.status import Checkpoint, engine, rounding_note
 
 FIRST_CAPACITY = 256
-"""Pieces of history for which a run has room at first, 0.1 MB; the room grows fourfold when it is full."""
+"""Initial room of a run in pieces of history, 0.1 MB; the room grows fourfold when it is full."""
 SPARE = 16
 """Room beyond the largest number of pieces allowed: the engine calls a history full when it has room for fewer than 8 more."""
 
@@ -104,7 +104,7 @@ class Session:
 
     @property
     def rounding_note(self) -> str:
-        """One line on steps in which rounding hides the law, or an empty string if there are none."""
+        """One line on steps with a law hidden by rounding, or an empty string if there are none."""
         return rounding_note(int(self.count.rough), float(self.state.roughest))
 
     @property
@@ -191,7 +191,7 @@ class Session:
         rebuild_queue(self.memory, pieces[past | ahead].astype(np.int64), int(past.sum()))
 
     def cut_at_end(self) -> None:
-        """Store the state from which a longer run would continue, and let the end of this run cut pieces and leaps."""
+        """Store the state where a longer run would continue, and let the end of this run cut pieces and leaps."""
         self.before_end, self.end_is_ahead = self.snapshot(), False
         self.count.to_the_end = 1
 
@@ -202,7 +202,7 @@ class Session:
         return Checkpoint(state, count, scratch, self.setup.branches.copy(), stick_to, engine())
 
     def checkpoint(self) -> Checkpoint:
-        """Return the checkpoint from which this run, or a longer one, would continue."""
+        """Return the checkpoint where this run, or a longer one, would continue."""
         return self.before_end or self.snapshot()
 
     def restore(self, checkpoint: Checkpoint) -> None:

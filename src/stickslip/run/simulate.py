@@ -83,12 +83,12 @@ def simulate(
     rtol : float, optional
         Relative tolerance of the run, between 1e-15 and 1e-2; 1e-10 by default.
     frames : int, optional
-        For a `PlanarSlab`, the number of frames that are kept of each two-way travel time; 100 by default.
+        For a `PlanarSlab`, the number of frames to keep in each two-way travel time; 100 by default.
     creep_rtol : float, optional
         Error of slip that leaps over creep may cause, as a share of the slip since the start: up to 1e-2, and 0 for no leaps.
         Automatic by default (see Notes).
     shortest_event : float or str, optional
-        Duration (s) below which slip events are lumped: up to 1 % of the two-way travel time, and 0 for no lumping. Automatic by
+        Slip events shorter than this (s) are lumped: up to 1 % of the two-way travel time, and 0 for no lumping. Automatic by
         default (see Notes).
     max_events : int, optional
         Number of slip events after which the run stops.
@@ -96,8 +96,8 @@ def simulate(
         True shows the progress in one line, on a terminal or in a notebook. A function is called with a
         `stickslip.run.progress.Report` while the run continues.
     checkpoint : str or Path, optional
-        File (.nc) from which `stickslip.resume` can continue the run, even after it has been killed. At the end it holds the
-        solution. For a `PlanarSlab` a folder (NAME.zarr) that does not exist yet, to which all frames are written.
+        File (.nc) that lets `stickslip.resume` continue the run, even after it has been killed. At the end it holds the solution.
+        For a `PlanarSlab` a new folder (NAME.zarr); all frames are written to it.
     checkpoint_every : float or str
         Interval between two checkpoints, s of wall clock.
     max_pieces : int, optional
@@ -168,7 +168,7 @@ def simulate(
 
 
 def simulate_exactly(source: Problem | Scenario, options: RunOptions) -> Solution:
-    """Run a contact all of which slips alike from t = 0: see `simulate`."""
+    """Run a contact that slips as a whole (one node) from t = 0: see `simulate`."""
     if options.checkpoint is not None:
         check_replaceable(options.checkpoint, f"simulate: {options.checkpoint}")
     problem = source if isinstance(source, Problem) else source.problem
@@ -178,7 +178,7 @@ def simulate_exactly(source: Problem | Scenario, options: RunOptions) -> Solutio
 
 @dataclass(frozen=True)
 class SolverKind:
-    """A solver that `simulate` has, and which of the options of a run it takes."""
+    """One of the solvers of `simulate`, and the options that it takes."""
 
     solves: Callable[[Any], bool]
     """True for a problem, a slab or a scenario that it is for."""
@@ -187,7 +187,7 @@ class SolverKind:
     takes: frozenset[str]
     """Names of fields of `RunOptions`."""
     refusal: str
-    """What is said of any other option, with its name in braces."""
+    """The message for any other option; braces stand for its name."""
 
     def check(self, who: str, given: Mapping[str, object]) -> None:
         """Refuse options that are given, not None, and not taken. Raises InputError, which begins with `who`."""

@@ -1,4 +1,4 @@
-"""What a run asks of its solver: the protocol that progress, Ctrl-C, checkpoints and counts of events are written for.
+"""The protocol of a solver, as progress, Ctrl-C, checkpoints and counts of events need it.
 
 `ExactRun` (`run/exact_run.py`) is the exact solver of one contact, `PlanarRun` (`run/planar_run.py`) that of a contact of many
 nodes. `run_to_end` (`run/run_loop.py`) runs either, and whatever else implements the protocol.
@@ -41,10 +41,10 @@ class Solver(Protocol[New_co, Result_co]):
         """True if as many events have been reported as the options ask for."""
 
     def advance(self, budget: int) -> int:
-        """Advance by at most `budget` steps, or what takes as long, towards the end of the run, `options.duration`.
+        """Advance by at most `budget` steps, or by work that takes as long, towards the end of the run, `options.duration`.
 
         Return a code: Stop.NONE if the steps are used up, Stop.END_AHEAD if the next call takes the run to its end, Stop.FULL if
-        the history has no more room, or the code of what ended the run, a key of `trajectory.status.STATUSES`.
+        the history has no more room, or the code of the run's end, a key of `trajectory.status.STATUSES`.
         """
 
     def grow(self) -> bool:
@@ -53,7 +53,8 @@ class Solver(Protocol[New_co, Result_co]):
     def new_events(self) -> New_co | None:
         """Return the events that are new, or None if this solver counts none.
 
-        If the options ask for no more than these, the run goes back to the step by which the last that they ask for is final.
+        If this completes the number of events that the options ask for, the run goes back to the step that makes the last of them
+        final.
         """
 
     def report(self, pace: Pace) -> object:

@@ -1,4 +1,4 @@
-"""The table [contact] of a scenario: a grid along the contact, and what varies along it, as numbers from which profiles follow."""
+"""The table [contact] of a scenario: a grid along the contact, and numbers that define profiles of the quantities along it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from stickslip.problem.problem import Problem
 LOCKED = "locked"
 """Name of the profile that is true where the contact never slips."""
 PRESSED = ("body.normal_stress", "initial.load", "initial.excess")
-"""Names of what follows when a contact is pressed harder."""
+"""Names of the quantities that scale with the normal stress."""
 _DECLARED = fields_of(PlanarSlab)
 GRID = (*_DECLARED, "replicas")
 """Fields that a contact shares with `PlanarSlab`."""

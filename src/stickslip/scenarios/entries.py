@@ -151,7 +151,7 @@ ANYWHERE = "STICKSLIP_FILES_ANYWHERE"
 def read_points(
     name: str, folder: Path | None, columns: Mapping[str, str], where: str, along: str | None = None
 ) -> dict[str, list[float]]:
-    """Return the numbers (SI) in the CSV file `name` of the scenario's folder, by the field to which they belong.
+    """Return the numbers (SI) in the CSV file `name` of the scenario's folder, by field.
 
     `columns` maps headings to fields. The last belongs to the dependent variable; exactly one other column must be there, or be
     named by `along`, and holds the ascending slips, slip rates or times at which the values are given. Blank lines, lines that
@@ -172,7 +172,7 @@ def read_points(
 
 
 def _points_in(text: str, columns: Mapping[str, str], file: str) -> dict[str, list[float]]:
-    """Return the numbers (SI) in CSV text by the field to which they belong, as `read_points` does.
+    """Return the numbers (SI) in CSV text by field, as `read_points` does.
 
     `file` is the name of the text in messages.
     """

@@ -34,9 +34,9 @@ from stickslip.scenarios.stability import stability_of, start_of, wait_of
 OF_SLIP = ("counts", "memory")
 """Options of a law that say which slip it sees; they mean nothing to a law without slip."""
 BARELY_ABOVE = 1.01
-"""Factor (1) up to which the growth of a disturbance is shown as its excess over 1."""
+"""A growth of a disturbance below this factor (1) is shown as its excess over 1."""
 LARGE_STRAIN = 0.01
-"""Shear strain (no unit) beyond which linear elasticity is doubtful, and a warning is due."""
+"""A larger shear strain (no unit) than this raises a warning: linear elasticity is doubtful."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class Examination:
     steady: SteadySlidings
     uniqueness: Uniqueness
     critical: list[Fact]
-    """Values of single parameters at which the regime changes while all others stay as they are."""
+    """Critical values of single parameters: the regime changes there while all others stay as they are."""
     along_slip: str
     warnings: list[str]
 
@@ -230,7 +230,7 @@ def _proof(contact: Uniqueness) -> str:
 
 
 def _along_slip(problem: Problem, contact: Uniqueness) -> str:
-    """Return a sentence on the slip (m) at which the regime changes, for a law of slip and slip rate; "" for other laws."""
+    """Return a sentence on the slip (m) where the regime changes, for a law of slip and slip rate; "" for other laws."""
     law = problem.friction
     if contact.resistance is None or not (law.depends_on_slip and law.depends_on_rate):
         return ""

@@ -12,7 +12,7 @@ from stickslip.foundation.errors import InputError, nearest
 
 
 class BundledEntry(NamedTuple):
-    """What a bundled scenario says about itself: its title, and one sentence on what it shows."""
+    """The description of a bundled scenario: its title, and one sentence on its purpose."""
 
     title: str
     description: str

@@ -1,4 +1,4 @@
-"""The parameters of a scenario, named by their place in the file, and scenarios in which some of them have other values.
+"""The parameters of a scenario, named by their place in the file, and scenarios with other values for some of them.
 
 The names of the problem's numbers are those of `problem.parameters`, "pressing" among them; to them come those of [run] and
 [contact]. The last part of a name ("thickness") is sufficient if it is unambiguous.
@@ -35,7 +35,7 @@ WHOLE = ("run.events", "contact.nodes", "contact.width_nodes", "contact.frames")
 EXCLUDE_EACH_OTHER = {"initial.load": "excess", "initial.excess": "load"}
 """A scenario has either an initial load or an initial excess. The one that is given another value replaces the other."""
 TOGETHER = (("initial.load", "initial.excess"), *((PRESSING, f"body.{name}") for name in ("normal_stress", "normal_force")))
-"""Pairs of which one alone can be given another value."""
+"""Pairs of parameters; only one of each pair can be given another value."""
 MAY_BE_STEADY = ("initial.rate", *(f"initial.{name}" for name in STATE_NAMES))
 """Parameters for which "steady" stands for steady sliding; as initial rate it takes the place of load and states, too."""
 _STEP = re.compile(r"(?P<name>[^\[]+)(?:\[(?P<index>\d+)\])?")
@@ -153,7 +153,7 @@ def _pressed(scenario: Scenario, value: float) -> Scenario:
 
 
 def with_values(scenario: Scenario, values: Mapping[str, Any], where: str) -> Scenario:
-    """Return a scenario in which some parameters have other values, as `Scenario.with_values` does; `where` begins messages."""
+    """Return a scenario with other values of some parameters, as `Scenario.with_values` does; `where` begins messages."""
     changes, texts = [], []
     for name, value in values.items():
         parameter = find_parameter(scenario, name, where)

@@ -39,7 +39,7 @@ LARGEST_TEXT = 4_000_000
 MOST_TABLES = 100
 """Largest number of tables in a scenario; the laws with most parts have a fifth of it."""
 LARGE_COEFFICIENT, SMALL_STRESS = 3.0, 10.0
-"""Static coefficient above which, and normal stress (Pa) of a slab below which, a question is due."""
+"""A static coefficient above, or a normal stress (Pa) of a slab below, these values raises a question."""
 _HEADING = re.compile(r"""^[ \t]*\[{1,2}[ \t]*[A-Za-z_"']""", re.MULTILINE)
 _LONG_KEY = re.compile(rf"""(?<![\w-])(?:(?:[\w-]+|"[^"\n]*"|'[^'\n]*')[ \t]*\.[ \t]*){{{DEEPEST}}}""")
 
@@ -97,7 +97,7 @@ class Scenario(CheckedArguments):
         return tomllib.loads(self.to_toml())
 
     def with_values(self, values: Mapping[str, Any]) -> Scenario:
-        """Return a scenario in which some parameters have other values, such as {"friction.alpha": 2.0, "body.thickness": "5 km"}.
+        """Return a scenario with other values of some parameters, such as {"friction.alpha": 2.0, "body.thickness": "5 km"}.
 
         Values are numbers in SI, texts with a unit, or words; names are as in `stickslip.sweep`. The title says what was changed;
         the description, which may no longer be true, is left out. An initial load replaces an initial excess, and an excess a load.

@@ -1,4 +1,4 @@
-"""The schema of a scenario file, derived from what bodies, laws, loading histories and `Problem` declare about their fields.
+"""The schema of a scenario file, derived from the declared fields of bodies, laws, loading histories and `Problem`.
 
 A new law or body enters the schema by being registered.
 """
@@ -37,7 +37,7 @@ CONTACT = "contact"
 MOST_EVENTS = 10**12
 """Number of slip events that no run reaches."""
 NO_STATE = {"state": Quantity("1", "state variable of the friction law, if it has one")}
-"""Declaration of the initial state for a law that has no state, and for which none may be given."""
+"""Declaration of the initial state for a law without a state: none may be given."""
 
 
 class Key(NamedTuple):

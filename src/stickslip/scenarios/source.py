@@ -69,7 +69,7 @@ def uniqueness(problem: Problem | Scenario | str | Path, law_slip: float | str |
 
     See Also
     --------
-    stickslip.studies.critical_value : the value of a parameter from which on the answer is not unique.
+    stickslip.studies.critical_value : the value of a parameter where the answer ceases to be unique.
     stickslip.selection : the rules that select one of several answers.
 
     Examples

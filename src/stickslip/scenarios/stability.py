@@ -1,4 +1,4 @@
-"""Sentences for users on what a contact does at the start, and on whether it is stable there."""
+"""Sentences for users on the motion of a contact at the start, and on its stability there."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from stickslip.reference.slab import growth_rate
 
 
 def loading_rate(problem: Problem) -> float:
-    """Return the initial rate at which the load of a stuck contact grows, Pa/s (block: N/s).
+    """Return the initial growth rate of the load on a stuck contact, Pa/s (block: N/s).
 
     It is exact for a block, and a mean over round trips for a slab.
     """
@@ -25,7 +25,7 @@ def loading_rate(problem: Problem) -> float:
 
 
 def start_of(problem: Problem) -> str:
-    """Return a sentence on what the contact does at t = 0+ and, if it sticks, on when it will slip."""
+    """Return a sentence on the motion of the contact at t = 0+ and, if it sticks, on the time when it will slip."""
     if problem.has_initial_rate:
         return f"slides from the start, at {problem.rate:.6g} m/s: {_why_it_slides(problem)}"
     if not problem.friction.sticks:
@@ -87,7 +87,7 @@ def wait_of(problem: Problem) -> float:
 
 
 def stability_of(problem: Problem) -> str:
-    """Return a sentence on static stability at the start, and on the rate (1/s) at which a small disturbance grows.
+    """Return a sentence on static stability at the start, and on the growth rate (1/s) of a small disturbance.
 
     Under a law with states there is only steady sliding to speak of, and under rate-and-state friction its critical stiffness.
     """
@@ -123,7 +123,7 @@ def _block_stability(body: SpringBlock, by_slip: float, by_rate: float) -> str:
 
 
 def _critical_stiffness(problem: Problem, law: RateAndState) -> str:
-    """Return a sentence on the stiffness of the body and the critical one, above which sliding at the pull rate is stable."""
+    """Return a sentence on the stiffness of the body and the critical one: sliding at the pull rate is stable above it."""
     body, rate, pull = problem.body, abs(problem.first_pull_rate), "first pull rate" if problem.varies else "pull rate"
     if rate == 0.0:
         return "not pulled at first" if problem.varies else "not pulled: it creeps to a halt, ever more slowly"

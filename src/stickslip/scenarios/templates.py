@@ -119,7 +119,7 @@ def _starter(example: dict[str, Any], friction: str | None, pull: str | None) ->
 
 
 def _written(example: dict[str, Any], about: str = "") -> str:
-    """Return a scenario as text in which every key is explained, after `about`, some lines of comments."""
+    """Return a scenario as text that explains every key, after `about`, some lines of comments."""
     kinds = {table: kind_of(table, example[table], "starter") for table in KINDS}
     texts = [f"{key} = {_toml(example[key])}\n" for key in ("title", "description") if key == "title" or example[key]]
     parts = [about + "#\n" * bool(about) + _HEADER, "".join(texts)]

@@ -108,12 +108,12 @@ def sweep(
     series : sequence of str
         Curves of a solution to keep over time, as variables `series_...`.
     samples : int
-        Number of times at which curves are sampled.
+        Number of times for samples of curves.
     out : str or pathlib.Path, optional
-        Folder (.zarr) in which results are stored chunk by chunk. A call with the folder of an earlier, stopped call of the same
+        Folder (.zarr) for the results, chunk by chunk. A call with the folder of an earlier, stopped call of the same
         sweep runs the members that are missing.
     threads : int, optional
-        Number of threads (default: all cores). Results depend neither on it nor on the order in which members run.
+        Number of threads (default: all cores). Results depend neither on it nor on the order of members.
     workers : int, optional
         Run the chunks on a local dask.distributed cluster of this number of processes instead of on threads.
     scheduler : str, optional
@@ -138,7 +138,7 @@ def sweep(
     See Also
     --------
     stickslip.simulate : one run.
-    stickslip.studies.find : the value of one parameter at which the answer changes.
+    stickslip.studies.find : the value of one parameter where the answer changes.
 
     Examples
     --------
@@ -189,7 +189,7 @@ def carry_out(plan: Plan, out: str | Path | None, run: Runner, progress: Progres
     """Run the chunks of a plan that are missing in its store, and return the dataset. Raises InputError for an unusable store."""
     store = ResultStore.in_memory(plan) if out is None else ResultStore.at(plan, check_out(Path(out)))
     tally = Tally(store, progress)
-    # Ctrl-C leaves a valid store, in which members that have not been run have the status NOT_RUN.
+    # Ctrl-C leaves a valid store: members that have not been run have the status NOT_RUN.
     with store, ctrl_c_breaks_in(), suppress(KeyboardInterrupt):
         missing = ((chunk, store.plan.values(chunk)) for chunk in store.missing())
         unfinished: dict[int, ChunkResult] = {}

@@ -64,7 +64,7 @@ NO_LEAPS = np.empty((0, 4))
 
 @dataclass(frozen=True)
 class Positions:
-    """Times located in the history: each lies in a piece, at a place xi in it, or in a rest over which nothing was recorded.
+    """Times located in the history: each lies at a place xi in a piece, or in a rest that was not recorded.
 
     At rest the load is an echo of `piece`: `leaped` is the number of whole round trips since then (0 within a recorded piece), and
     `last` is the last piece before the position.
@@ -85,7 +85,7 @@ class Positions:
 
     @property
     def at_rest(self) -> NDArray[np.bool_]:
-        """True for positions at which nothing was recorded because the contact rests."""
+        """True for positions in rests that were not recorded."""
         return self.leaped > 0.0
 
     def recorded(self) -> Positions:
@@ -109,12 +109,12 @@ class History:
     duration: float
     epoch: Epoch = START
     creep: Floats = field(default_factory=NO_LEAPS.copy)
-    """Leaps over creep, one per row: round trips before it, round trips in it, and bounds of the errors of slip at its landing
-    (m) and of the time at which that slip is reached (s).
+    """Leaps over creep, one per row: round trips before it, round trips in it, and bounds on the errors of slip at its landing (m)
+    and of the time when that slip is reached (s).
     """
     max_events: int | None = None
-    """Number of slip events after which the run stopped; None if it did not stop because of them. The history reaches beyond the
-    last of them, to the piece from which on it is known what it leaves behind, and another event may begin there.
+    """Number of slip events after which the run stopped; None if it did not stop because of them. The history goes on beyond the
+    last of them until its aftermath is known, and another event may begin there.
     """
 
     def seen_from(self, epoch: Epoch) -> History:
@@ -127,12 +127,12 @@ class History:
 
     @cached_property
     def start(self) -> Floats:
-        """The time at which each piece starts, s."""
+        """The start time of each piece, s."""
         return self.seconds(self.store.trip, self.store.phase_from)
 
     @cached_property
     def end(self) -> Floats:
-        """The time at which each piece ends, s."""
+        """The end time of each piece, s."""
         return self.seconds(self.store.trip, self.store.phase_to)
 
     @property
@@ -143,7 +143,7 @@ class History:
 
     @cached_property
     def breaks(self) -> Floats:
-        """The times (s) at which recorded pieces begin or end, including the start and the end of the run."""
+        """The times (s) of the ends of recorded pieces, including the start and the end of the run."""
         return np.append(np.union1d(self.start, self.end[self.rests]), self.span[1])
 
     def __len__(self) -> int:
@@ -176,8 +176,8 @@ class History:
     def _find_echoes(self, found: Positions, n: NDArray[np.intp], time: Floats, side: Side) -> None:
         """Set the piece whose echo is the load, for those times (s) that lie in a rest: entries n of `found`.
 
-        At its edges a rest has the phase of the piece beside it, which the time in seconds gives but for rounding: rounding could
-        turn the limit from one side into that from the other.
+        At its edges a rest takes the exact phase of the piece beside it. The time in seconds would give it only to rounding, which
+        could turn the limit from one side into that from the other.
         """
         last, store = found.last[n], self.store
         trip = (store.trip[last] - self.epoch.trip).astype(float)
@@ -221,7 +221,7 @@ class History:
     def standing(self, trip: int) -> tuple[NDArray[np.intp], Floats, Floats]:
         """Return the pieces whose waves are in the body at the end of a round trip.
 
-        The pieces are in order of phase; the other arrays hold the offsets (s) from which and up to which each holds.
+        The pieces are in order of phase; the other arrays hold the first and the last offset (s) of each.
         """
         first, past = (int(np.searchsorted(self.store.trip, trip, side=side)) for side in ("left", "right"))
         own = np.arange(first, past)
@@ -231,7 +231,7 @@ class History:
         return self.phases.standing(past - 1)
 
     def echo_edges(self, begin: float, end: float, most: int) -> Floats:
-        """Return the times (s) between `begin` and `end` at which echoes of recorded pieces begin while the contact rests.
+        """Return the times (s) between `begin` and `end` when echoes of recorded pieces begin while the contact rests.
 
         If there are more than `most` of them, round trips of a rest after the second have only the times of the smallest and the
         largest load, which show how far it swings, and some of these trips are left out evenly. The result is empty if there are

@@ -1,7 +1,7 @@
 """Index of a history by phase: find the piece that was recorded last at a given phase of the round trip.
 
 While the contact rests nothing is recorded: the load is then an echo of what was recorded last at the same phase. Pieces are
-intervals of phase in order of time. They are kept in a segment tree over all phases at which a piece begins or ends; each node
+intervals of phase in order of time. They are kept in a segment tree over the phases of all ends of pieces; each node
 lists its pieces in order of time (Bentley 1977, unpublished; see de Berg et al. 2008, Computational Geometry, section 10.3).
 """
 
@@ -17,7 +17,7 @@ from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.state.layout import Floats, Integers, Store, trimmed
 
 NOTHING = -1
-"""Marks a phase at which no piece has been recorded."""
+"""Marks a phase without a recorded piece."""
 LEVELS = 64
 """Largest number of halvings of an index or of a range of indices: they have 64 bits."""
 FEW = 64
@@ -87,7 +87,7 @@ def _standing(begins: Integers, members: Integers, upto: int, best: Integers) ->
 
 @dataclass(frozen=True, eq=False)
 class Phases:
-    """The pieces of a history, indexed by phase (offset in the round trip, s) and by the order in which they were recorded."""
+    """The pieces of a history, indexed by phase (offset in the round trip, s) and by the order of recording."""
 
     edges: Floats
     leaves: int  # a power of two, at least the number of intervals between the edges
@@ -124,7 +124,7 @@ class Phases:
     def standing(self, upto: int) -> tuple[NDArray[np.intp], Floats, Floats]:
         """Return the pieces whose waves are in the body after the piece `upto`.
 
-        The pieces are in order of phase; the other arrays hold the phases (s) from which and up to which each holds.
+        The pieces are in order of phase; the other arrays hold the first and the last phase (s) of each.
         """
         best = np.empty(2 * self.leaves, np.int64)
         _standing(self.begins, self.members, upto, best)

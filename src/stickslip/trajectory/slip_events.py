@@ -1,4 +1,4 @@
-"""Slip events in a history: where each begins, is fastest and ends, and from which piece on its aftermath is known."""
+"""Slip events in a history: the begin, peak and end of each, and the piece that makes its aftermath known."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from stickslip.trajectory.history import History, Positions
 from stickslip.trajectory.turning_points import FULL, Known, Spare, Turn, search_history, turns_in
 
 LAST_THIRD = 2.0 / 3.0
-"""Share of a run (1) after which what is transient at its start counts as over."""
+"""After this share of a run (1), transients from its start count as over."""
 HARDLY = 0.01
-"""Share of the pull rate (1) below which a contact that never rests counts as sticking."""
+"""A contact that never rests counts as sticking below this share of the pull rate (1)."""
 NEGLIGIBLE = 1e-9
 """Share of a run (1) that may be the rounding of its parts."""
 NOT_YET = -1
@@ -77,7 +77,7 @@ def rises_over(c: Floats, rate: float) -> bool:
 
 @kernel
 def find_aftermath(table: Integers, piece: Integers, xi: Floats, by: Integers) -> None:
-    """Find the piece from which on the aftermath of each event is known; see `SlipEvents.known_by`."""
+    """Find the piece that makes the aftermath of each event known; see `SlipEvents.known_by`."""
     pieces = pieces_in(table)
     for n in range(len(piece)):
         mode, rate = pieces[piece[n]].mode, abs(evaluate(pieces[piece[n]].rate, xi[n]))
@@ -90,7 +90,7 @@ def find_aftermath(table: Integers, piece: Integers, xi: Floats, by: Integers) -
 
 @kernel
 def time_slipping(pieces: HistoryPiece, length: int, round_trip_time: float, begin: float, end: float) -> float:
-    """Return the time (s) between two others in which the contact slips, in the first `length` pieces."""
+    """Return how long (s) the contact slips between two times, in the first `length` pieces."""
     total = 0.0
     for n in range(length):
         if pieces[n].mode != 0:
@@ -108,7 +108,7 @@ def time_slipping_in(table: Integers, round_trip_time: float, begin: float, end:
 
 @kernel
 def rest_of(slipping: float, length: float) -> float:
-    """Return the share (1) of a length of time (s) that slip leaves to rest; what may be rounding counts as 0."""
+    """Return the share (1) of rest in a length of time (s), given the time of slip; a share that may be rounding counts as 0."""
     share = 1.0 - slipping / length
     return share if share > NEGLIGIBLE else 0.0
 
@@ -120,10 +120,10 @@ def time_creeping(creep: Floats, round_trip_time: float, begin: float, end: floa
 
 
 def share_sticking(history: History) -> float:
-    """Return the share (1) of the last third of a run in which the contact sticks.
+    """Return the share (1) of sticking in the last third of a run.
 
-    It sticks while it rests, or, under a law that never does, while it is slower than HARDLY times the pull rate, or times its mean
-    slip rate there if that is larger.
+    The contact sticks while it rests. Under a law without rest it sticks while it is slower than HARDLY times the pull rate, or
+    HARDLY times its mean slip rate in that third if that is larger.
     """
     begin, end, trip = LAST_THIRD * history.duration, history.duration, history.round_trip_time
     if history.problem.friction.sticks:
@@ -163,7 +163,7 @@ class SlipEvents(NamedTuple):
     is_over: NDArray[np.bool_]
     """True if the slip rate falls to the threshold within the history."""
     threshold: float
-    """The slip rate (m/s) above which slip is an event."""
+    """Slip above this rate (m/s) is an event."""
 
     @classmethod
     def of(cls, history: History, threshold: float, first: int = 0) -> Self:
@@ -197,17 +197,17 @@ class SlipEvents(NamedTuple):
 
     @property
     def begin(self) -> Positions:
-        """The positions at which the events begin."""
+        """The positions of the beginnings of the events."""
         return Positions.inside(self.piece[0], self.xi[0])
 
     @property
     def peak(self) -> Positions:
-        """The positions at which the slip rate is largest."""
+        """The positions of the largest slip rates."""
         return Positions.inside(self.piece[1], self.xi[1])
 
     @property
     def end(self) -> Positions:
-        """The positions at which the events end, or the history does."""
+        """The positions of the ends of the events, or of the history if an event is not over."""
         return Positions.inside(self.piece[2], self.xi[2])
 
     def largest(self, values: Floats) -> Floats:
@@ -217,7 +217,7 @@ class SlipEvents(NamedTuple):
         return found
 
     def known_by(self, history: History) -> Integers:
-        """Return the piece from which on it is known what each event leaves behind; NOT_YET if the history ends before that.
+        """Return the piece that makes the aftermath of each event known; NOT_YET if the history ends before that.
 
         In that piece the contact has come to rest or reversed its direction, or the slip rate exceeds its value at the end of the
         event.

@@ -1,4 +1,4 @@
-"""What ended a run and what to try if it failed, and checkpoints of a run or a catalogue."""
+"""Reasons for the end of a run with cures for failures, and checkpoints of a run or a catalogue."""
 
 from __future__ import annotations
 
@@ -80,9 +80,9 @@ FULL_HISTORY = -2
 MOST_WORTH_ASKING = 10_000_000
 """Largest number of pieces that a message proposes to allow: 4 GB."""
 GROWING = 2.0
-"""Factor by which a history grows faster in its second half than in its first, from which on its size cannot be foretold."""
+"""If a history grows faster in its second half than in its first by more than this factor, its size cannot be foretold."""
 SHORTER = 0.98
-"""Share of the time at which there was still room that a run with as many pieces is certain to reach; it is shown with 3 digits."""
+"""A run with as many pieces surely reaches this share of the last time with room left; the time is shown with 3 digits."""
 INTERRUPTED = -3
 """The user stopped the run."""
 ENOUGH_EVENTS = -4
@@ -144,12 +144,12 @@ class Crowd:
 
     pieces: int
     reached: float  # time, s
-    at_half: float  # time at which it had half of the pieces, s
-    before_last: float  # time at which it had room for more pieces than an event takes, s
+    at_half: float  # time when it had half of the pieces, s
+    before_last: float  # last time with room for more pieces than an event takes, s
     asked: float  # time that was asked for, s
 
     def status(self, cures: Sequence[str]) -> Status:
-        """Return the status of its run; `cures` are what else helps in this case, besides more pieces and a shorter run."""
+        """Return the status of its run; `cures` are further remedies in this case, besides more pieces and a shorter run."""
         later, when = self.reached - self.at_half, f"{brief(self.reached, 's')} of {brief(self.asked, 's')}"
         said = f"the history reached its limit of {self.pieces} pieces at {when}"
         shorter = f"a duration of up to {brief(SHORTER * self.before_last, 's', 3)}"

@@ -82,11 +82,11 @@ def creep_note(history: History) -> str:
 
 
 NEAR_THE_END = 8
-"""Number of round trips after a leap within which the run ends if the leap was cut by its end."""
+"""A leap was cut by the end of the run if the run ends within this many round trips after it."""
 
 
 STEADY = 1e-3
-"""Largest deviation of the slip rate from that of steady sliding, as a share of it, in sliding that is called steady."""
+"""Sliding is called steady if its slip rate differs from that of steady sliding by at most this share."""
 
 
 def _slides_steadily(history: History) -> bool:

@@ -13,11 +13,11 @@ from stickslip.engine.state.layout import TERMS, Floats, HistoryPiece, Integers
 from stickslip.engine.state.workspace import pieces_in
 
 SAME = 1e-12
-"""Relative distance of a slip rate from the threshold, or of a bound from zero, below which rounding may decide its sign."""
+"""If a slip rate is closer to the threshold, or a bound closer to zero, than this (relative), rounding may decide its sign."""
 SLACK = 1e-6
-"""Share of the threshold by which the slip rate may rise on its way to rest, or fall on its way from it: rounding, and no turn."""
+"""A rise on the way to rest, or a fall on the way from it, by less than this share of the threshold is rounding and no turn."""
 NO_REST = -1
-"""Marks a crossing of the threshold from which the slip rate does not lead straight to rest."""
+"""Marks a crossing of the threshold that does not lead straight to rest."""
 TURNS = math.inf
 """Marks a slip rate that turns."""
 FULL = -1
@@ -58,12 +58,12 @@ spare_in = record_at(Spare)
 
 
 class Search(NamedTuple):
-    """Say where points are looked for, and where they go, as pointers."""
+    """Hold pointers to the history to search and to room for the points."""
 
     pieces: HistoryPiece  # the history (`Store.pieces`)
     known: Known  # what is known of each piece
     turns: Turn  # the points
-    room: int  # number of points for which there is room
+    room: int  # number of points that fit
     spare: Spare
 
 
@@ -156,7 +156,7 @@ def note_end(pieces: HistoryPiece, turns: Turn, n: int, piece: int) -> int:
 
 @kernel
 def put_in_order(turns: Turn, found: int) -> None:
-    """Sort the first `found` points by piece and place, and at one place those at which the rate rises first.
+    """Sort the first `found` points by piece and place; at one place, points with rising rate come first.
 
     The pieces are in order already.
     """
@@ -248,7 +248,7 @@ def extend_to_rest(search: Search, span: tuple[int, int], threshold: float, foun
 
 @kernel
 def piece_next_to_rest(search: Search, span: tuple[int, int], place: tuple[int, float], way: int, threshold: float) -> int:
-    """Return the piece in which slip begins from rest before a place (way is -1), or comes to rest after it (1).
+    """Return the piece of the onset of slip before a place (way is -1), or of the arrest after it (1).
 
     The slip rate passes the threshold (m/s) at that place (piece, xi). Returns NO_REST if the rate turns between the place and the
     rest, or if the history does not reach to the rest.
@@ -279,8 +279,8 @@ def piece_next_to_rest(search: Search, span: tuple[int, int], place: tuple[int, 
 def starts_from_rest(pieces: HistoryPiece, n: int) -> bool:
     """Return True if slip in a piece begins from rest, or, at a piece at rest, if rest begins there.
 
-    Where slip turns round, or begins again as it ends, the contact rests for an instant, of which the history has no piece. A
-    contact whose load balances friction to the last digit may also slide at a rate of zero: it rests all the same.
+    If slip turns round, or begins again as it ends, the contact rests for an instant without a piece in the history. A contact
+    whose load balances friction to the last digit may also slide at a rate of zero: it rests all the same.
     """
     if n == 0 or pieces[n].mode != pieces[n - 1].mode or pieces[n].rate[0] == 0.0:
         return True
@@ -291,8 +291,8 @@ def starts_from_rest(pieces: HistoryPiece, n: int) -> bool:
 def descend(memory: Spare, start: tuple[float, int], low: float, slack: float) -> float:
     """Follow |slip rate| (m/s), a polynomial, from the place xi to the start of its piece (way is -1) or to its end (1).
 
-    `start` is xi and way. Returns the lowest value so far, of which `low` is that before, or TURNS if the rate rises by more than
-    `slack` above it.
+    `start` is xi and way, and `low` the lowest value before. Returns the lowest value so far, or TURNS if the rate rises by more
+    than `slack` above it.
     """
     (xi, way), spare = start, spare_in(memory)
     rate, places, last = spare.rate, spare.found, 0.0 if way < 0 else 1.0

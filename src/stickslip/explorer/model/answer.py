@@ -139,7 +139,7 @@ class Mark:
 
 @dataclass(frozen=True)
 class KeyNumber:
-    """One number by which two runs are compared: a name, its value in SI and its unit; NaN if the run has no such number."""
+    """One number for the comparison of two runs: a name, its value in SI and its unit; NaN if the run has no such number."""
 
     name: str
     value: float
@@ -173,9 +173,9 @@ class Answer:
 
 
 MOST_SAMPLES = 20_000
-"""Number of samples above which means of them are drawn and compared."""
+"""Of more samples than this, means are drawn and compared."""
 DRAWN_AS = {"friction": "traction", "shear_stress": "traction", "shear_force": "traction", "slip": "slip", "slip_rate": "slip_rate"}
-"""The curve of a motion behind which a measured quantity is drawn."""
+"""Each measured quantity is drawn behind this curve of a motion."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""The controls of a setting, worked out from what bodies, laws, loadings and runs declare about their numbers."""
+"""The controls of a setting, derived from the declared numbers of bodies, laws, loadings and runs."""
 
 from __future__ import annotations
 
@@ -147,7 +147,7 @@ def controls_of(setting: Setting) -> tuple[ControlGroup, ...]:
 
 
 class _Tables:
-    """The tables of a setting, beside those with which its scenario began."""
+    """The tables of a setting, beside those of its scenario at the beginning."""
 
     def __init__(self, setting: Setting) -> None:
         self.setting, self.problem = setting, setting.scenario().problem
@@ -250,7 +250,7 @@ class _Tables:
         return all(self.setting.value(f"initial.{name}") is None for name in ("load", "excess"))
 
     def applies(self, path: str) -> bool:
-        """Return False for an entry that this problem cannot have, and for a number in place of which there is a table."""
+        """Return False for an entry that this problem cannot have, and for a number that a table replaces."""
         if path in ("loading.far_stress", "loading.far_stress_rate") and self.problem.body.is_driven_rigidly:
             return False
         if path in ("initial.state", "initial.second_state") and (not self.problem.friction.states or self.starts_steadily):
@@ -305,7 +305,7 @@ class _Tables:
         return Control(path, name, "number of the formula", "number", one.value, unit, size, slider, declared=one.declared)
 
     def _slider(self, path: str, entry: Quantity, value: float | None, default: Any) -> SliderRange | None:
-        """Return the range of a slider, which follows from the value with which the scenario began and not from the present one."""
+        """Return the range of a slider. It follows from the first value of the scenario and not from the present one."""
         anchor = self.began(path)
         try:
             began = entry.check("", "", anchor) if anchor is not None else value if default in (MISSING, None) else default
@@ -316,7 +316,7 @@ class _Tables:
 
 
 def unit_of(given: Any, value: float | None, si: str) -> tuple[str, float]:
-    """Return the unit in which a number is shown, and its size in SI: that in which it was given, or a readable one."""
+    """Return the unit for showing a number, and its size in SI: the unit of the input, or a readable one."""
     if si == "1":
         return "", 1.0
     parts = split_quantity(given) if isinstance(given, str) else None

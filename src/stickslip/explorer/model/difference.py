@@ -40,7 +40,7 @@ def _short(value: Any) -> str:
 
 
 SAME = 1e-9
-"""Relative difference up to which two numbers count as equal."""
+"""Two numbers that differ by less than this (relative) count as equal."""
 TEXTS = ("title", "description")
 """Entries that change no number."""
 MOST_NAMED = 6

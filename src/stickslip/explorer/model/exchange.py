@@ -28,8 +28,8 @@ from stickslip.scenarios.templates import STARTERS
 def with_kind(setting: Setting, table: str, kind: str) -> Setting:
     """Return a setting with another kind of body, law, loading or start in one of its tables: see `controls.Group`.
 
-    Numbers with the same name, unit and an allowed value stay; others are those with which the scenario began, or plausible ones. A
-    contact whose law or body is exchanged starts at its static strength, or close to steady sliding. Raises InputError for an
+    Numbers with the same name, unit and an allowed value stay; others are those of the scenario at its beginning, or plausible
+    ones. A contact with a new law or body starts at its static strength, or close to steady sliding. Raises InputError for an
     unknown kind.
     """
     if table == "body":
@@ -44,7 +44,7 @@ def with_kind(setting: Setting, table: str, kind: str) -> Setting:
 
 
 def _law_table(setting: Setting, table: str, kind: str) -> dict[str, Any]:
-    """Return the table of a law of another kind, with what still fits of the former one."""
+    """Return the table of a law of another kind, with the numbers of the former one that still fit."""
     source = Source(setting.name)
     law = kind_of("friction", {"kind": kind}, setting.name)
     made = {"kind": kind} | _began(setting, table, kind, _example(law))
@@ -69,7 +69,7 @@ def _example(law: type[FrictionLaw]) -> dict[str, Any]:
 
 
 def _began(setting: Setting, table: str, kind: str, otherwise: dict[str, Any]) -> dict[str, Any]:
-    """Return the table with which the bundled scenario began if it is of this kind, otherwise other values."""
+    """Return the table of the bundled scenario at its beginning if it is of this kind, otherwise `otherwise`."""
     if setting.name in library.names():
         own = Setting.bundled(setting.name).value(table)
         if isinstance(own, Mapping) and own.get("kind") == kind:

@@ -20,7 +20,7 @@ from stickslip.solution.interval import last_large_event
 from stickslip.solution.solution import Solution
 
 MOST_EVENTS = 500
-"""Number of slip events up to which pulses are looked for: each takes a millisecond, and single ones of more would not be seen."""
+"""Pulses are sought in at most this many slip events: each takes a millisecond, and among more, single ones would not be seen."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class Findings:
 
     @property
     def arrest(self) -> float:
-        """The time at which the largest event ends, s; NaN if it does not end within the run, or if there is none."""
+        """The end time of the largest event, s; NaN if it does not end within the run, or if there is none."""
         return float("nan") if self.largest is None else float(self.largest.end)
 
     @property
@@ -130,7 +130,7 @@ def key_numbers(found: Findings, contact: Uniqueness, motion: BodyCurves) -> tup
 
 
 NEAR = 5e-4
-"""Distance of a ratio from 1 below which the distance is given instead of the ratio."""
+"""If a ratio is closer to 1 than this, its distance from 1 is given instead."""
 FEW = 2
 """Largest number of jumps that are all named."""
 RULES = {

@@ -25,7 +25,7 @@ from stickslip.trajectory.history import History, Positions
 POINTS = 600
 """Number of points of the curve."""
 MARGIN = 0.15
-"""Share of what the run passed through that is shown before and after it."""
+"""Margin before and after the range that the run passed through, as a share of that range."""
 SCALES = 4.0
 """Number of characteristic slip rates of the law that are shown at least."""
 DECADES = 20
@@ -61,7 +61,7 @@ def _along_slip(solution: Solution) -> LawPicture:
 
 
 def _slip_scale(law: FrictionLaw) -> float:
-    """Return a slip (m) over which a law changes: that of its first knot, or one over its steepest relative slope at slip 0."""
+    """Return a slip scale (m) of a law: that of its first knot, or one over its steepest relative slope at slip 0."""
     if law.knots:
         return abs(law.knots[-1]) or 1.0
     slope = abs(float(law.slopes(0.0)[0]))
@@ -213,11 +213,11 @@ SLAB_TIMES = 160
 """Number of times for a slab; for a block there are `BLOCK_TIMES`."""
 BLOCK_TIMES = 400
 LONG_HISTORY, FEW_NODES = 1_000, 4
-"""Number of pieces of a history from which on energies are integrated with fewer nodes on each: with all nodes they would take
-longer than the run, and a picture shows no difference.
+"""In a history with at least LONG_HISTORY pieces, energies are integrated with FEW_NODES nodes on each: with all nodes that would
+take longer than the run, and a picture shows no difference.
 """
 SLAB_PLACES = 240
-"""Number of places in the slab at which the product of its two waves is added up."""
+"""Number of places in the slab for the sum over the product of its two waves."""
 
 
 def energy_picture(shown: ShownInterval, waves: SampledWaves | None) -> EnergyPicture:

@@ -1,4 +1,4 @@
-"""The ends of sliders: they follow from the declared range of a quantity, and from the value with which the scenario began."""
+"""The ends of sliders: they follow from the declared range of a quantity, and from its first value in the scenario."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class SliderRange(NamedTuple):
 def range_of(path: str, declared: Quantity, anchor: float | None, problem: Problem) -> SliderRange | None:
     """Return the range of a slider for the number at a path such as "body.density", or None if a slider makes no sense.
 
-    It follows from `anchor`, the value (SI) with which the scenario began, and not from the slider.
+    It follows from `anchor`, the first value (SI) in the scenario, and not from the slider.
     """
     if path in ("run.rtol", "run.creep_rtol", "run.shortest_event", "body.p_wave_speed") or anchor is None:
         return None
@@ -99,7 +99,7 @@ def _special(path: str, anchor: float, problem: Problem) -> SliderRange | None:
 
 
 def slip_scale(problem: Problem) -> float:
-    """Return a slip (m) over which friction changes: the longest length among the numbers of the law, or 1 m if there is none."""
+    """Return a slip scale (m) of friction: the longest length among the numbers of the law, or 1 m if there is none."""
     lengths = [one.value for one in problem.parameters.values() if one.name.startswith("friction.") and one.unit == "m"]
     numbers = [one.value for one in problem.parameters.values() if one.unit in ("1/m", "m^-1") and one.value]
     return max([*lengths, *(2.0 * math.pi / abs(number) for number in numbers)], default=1.0) or 1.0

@@ -43,7 +43,7 @@ EVEN = 3000
 INSIDE = 6
 """Number of samples within each piece of the history, if there are not more than `ENDS_ONLY` pieces."""
 ENDS_ONLY = 600
-"""Number of pieces from which on only their ends are sampled besides."""
+"""With more pieces than this, only their ends are sampled besides."""
 OF_START = 500
 """Number of samples of the load that the initial state brings."""
 NEARBY = 1e-9

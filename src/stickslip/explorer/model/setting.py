@@ -112,7 +112,7 @@ class Setting:
             return None
 
     def with_value(self, path: str, value: Any) -> Self:
-        """Return a setting in which one entry is replaced, or left away if `value` is None."""
+        """Return a setting with one entry replaced, or left out if `value` is None."""
         document = deepcopy(dict(self.document))
         *tables, key = path.split(".")
         place: Any = document
@@ -169,7 +169,7 @@ def _bundled(name: str) -> dict[str, Any]:
 
 
 VERSION = "1"
-"""Version of what links look like."""
+"""Version of the form of links."""
 LONGEST = 16_000
 """Largest number of characters of all parameters together: browsers and servers pass on about twice as many."""
 READABLE = 2_000
@@ -228,7 +228,7 @@ def _read(text: str) -> Any:
 
 
 def setting_of(parameters: Mapping[str, str]) -> Setting:
-    """Return the setting, which makes a scenario, to which the decoded parameters of a link lead.
+    """Return the setting from the decoded parameters of a link; it makes a valid scenario.
 
     Parameters that are no entries of a scenario, such as the place of a cursor, are left to others. Raises InputError, in one line,
     if the link is too long, of another version, broken, or does not lead to a scenario.

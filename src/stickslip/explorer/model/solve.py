@@ -88,7 +88,7 @@ def _kind(scenario: Scenario) -> str:
 
 
 LONG = 5_000
-"""Number of pieces of a run from which on its pictures take long enough to be told of."""
+"""From this many pieces of a run on, its pictures take so long that their progress is reported."""
 
 
 def solve(scenario: Scenario, told: Told = silent, behind: Backdrop | None = None) -> Answer:

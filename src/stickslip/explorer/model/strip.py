@@ -44,7 +44,7 @@ def strip_range(parameter: str, low: float, high: float, *, log: bool = False) -
 class Strip:
     """The results of the runs of a strip, in the order of the `values` (SI) of the parameter that moves.
 
-    `here` is its value in the setting from which the strip was made; NaN if the setting has none. `results` are the quantities
+    `here` is its value in the setting that the strip was made from; NaN if the setting has none. `results` are the quantities
     `SHOWN`, and "irregular": 1 where several slip rates solve the contact equation; NaN for runs that failed. `refused` says why,
     in one line, by the number of the run. Units are in SI, "1" for a pure number.
     """

@@ -14,7 +14,7 @@ from stickslip.explorer.model.strip import strip_range
 from stickslip.foundation.axis import Axis
 
 Panel = Literal["law", "contact", "shape", "slip", "rate", "traction", "field", "energy", "profile_rate", "profile_slip"]
-"""The panels of the page to which a step can point."""
+"""The panels of the page that a step can point to."""
 
 
 @dataclass(frozen=True)
@@ -195,5 +195,5 @@ TOUR_OF_A_FAULT = (
 
 
 def tour_of(setting: Setting) -> tuple[TourStep, ...]:
-    """Return the tour of a page on which a setting is shown."""
+    """Return the tour of a page that shows a setting."""
     return TOUR_OF_A_FAULT if setting.is_fault else TOUR

@@ -1,4 +1,4 @@
-"""Quantities as they stand in the sentences of the explorer: a few digits, and the unit in which they are readable."""
+"""Quantities in the sentences of the explorer: a few digits, and a readable unit."""
 
 from __future__ import annotations
 

@@ -51,11 +51,11 @@ _SECTIONS = {
 OTHERS = "Faults and other cases"
 """Name of the section with the scenarios that no other section names."""
 FIRST = "fig6-slab"
-"""The scenario with which the explorer begins."""
+"""The first scenario of the explorer."""
 
 
 class Offered(NamedTuple):
-    """A scenario to choose: its section, its name, its title, and one sentence on what it shows."""
+    """A scenario to choose: its section, its name, its title, and one sentence on its purpose."""
 
     section: str
     name: str
@@ -70,7 +70,7 @@ def faults() -> list[str]:
 
 
 def offered() -> tuple[Offered, ...]:
-    """Return all bundled scenarios in 1D in the order in which they are offered, section by section."""
+    """Return all bundled scenarios in 1D in the order of the menu, section by section."""
     known = {name: library.entries()[name] for name in library.in_1d()}
     sections = {section: [name for name in names if name in known] for section, names in _SECTIONS.items()}
     named = {name for names in sections.values() for name in names}
@@ -109,7 +109,7 @@ class Controls:
         self.view.values = values
 
     def _blame(self) -> None:
-        """Show the fault at the row that it names, or else at the row in which something was entered last."""
+        """Show the fault at the row that it names, or else at the row of the last entry."""
         fault, found = self._explorer.fault, FAULT.search(self._explorer.fault)
         path = f"{found['table']}.{found['key']}" if found else self._entered
         self.view.faults = {path: fault} if fault else {}
@@ -125,7 +125,7 @@ class Controls:
 
 
 def changed(setting: Setting, controls: Iterable[ControlGroup], entered: dict[str, Any]) -> Setting:
-    """Return a setting with what was entered in one row: a number of its slider, the text of its field, or a choice.
+    """Return a setting with the entry in one row: a number of its slider, the text of its field, or a choice.
 
     Raises InputError, in one line, for an entry that cannot be read.
     """

@@ -45,7 +45,7 @@ def content_of(encoded: str) -> bytes:
 
 
 def opened(name: str, content: bytes, present: Setting) -> Setting:
-    """Return the setting to which an opened file leads: a scenario, or the present setting with a table of friction as its law.
+    """Return the setting from an opened file: a scenario, or the present setting with a table of friction as its law.
 
     Folders in the name are dropped. Raises InputError, in one line, if the file is too large, is no text, or cannot be used.
     """
@@ -161,7 +161,7 @@ FORMATS = {
     "png": Format("Figure (PNG)", ".png", "image/png", png_file),
     "svg": Format("Figure (SVG)", ".svg", "image/svg+xml", svg_file),
 }
-"""The kinds of files, by the name under which the page asks for them."""
+"""The kinds of files, by their names in requests of the page."""
 OF_A_FAULT = {
     "toml": FORMATS["toml"],
     "netcdf": Format("Whole run (netCDF)", ".nc", "application/x-netcdf", fields_file),

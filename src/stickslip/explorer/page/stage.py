@@ -1,4 +1,4 @@
-"""The Bokeh models that an answer fills: sources of data, ranges and axes, each with the name under which a view speaks of it."""
+"""The Bokeh models that an answer fills: sources of data, ranges and axes, each with its name in a view."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Stage:
         return found
 
     def note(self, name: str, model: Any) -> Any:
-        """Give a model a name, under which a view can hide it or change its text; return the model."""
+        """Give a model a name, so that a view can hide it or change its text; return the model."""
         model.name = name
         self.named[name] = model
         return model
@@ -79,7 +79,7 @@ class Stage:
         return drawn
 
     def powers(self, drawn: Any, name: str, side: str) -> None:
-        """Add to a plot an axis of powers of ten, hidden at first, for values of which the plot shows the logarithm."""
+        """Add an axis of powers of ten to a plot, hidden at first, for values that the plot shows as logarithms."""
         axis = LinearAxis(formatter=CustomJSTickFormatter(code=POWER), visible=False)
         axis.ticker.min_interval = 1.0
         dress(axis)
@@ -105,7 +105,7 @@ class Stage:
 
 
 def signed_scale(name: str) -> Any:
-    """Return a colour scale of signed values, under a name by which the browser sets its ends."""
+    """Return a colour scale of signed values, with a name that lets the browser set its ends."""
     return LinearColorMapper(palette=palettes()["light"]["signed"], low=-1.0, high=1.0, name=name, tags=[{"palette": "signed"}])
 
 

@@ -88,7 +88,7 @@ def place_of(strip: Strip, values: Any, size: float) -> Any:
 
 
 def _bands(x: Any, irregular: Any) -> tuple[list[float], list[float]]:
-    """Return where the intervals begin and end in which the contact is irregular."""
+    """Return the ends of the intervals with an irregular contact."""
     inside = np.concatenate([[False], irregular == 1.0, [False]])
     edges = np.flatnonzero(inside[1:] != inside[:-1])
     middles = np.concatenate([x[:1], (x[1:] + x[:-1]) / 2, x[-1:]])
@@ -220,7 +220,7 @@ class StripView:
 
 
 def unit_shown(setting: Setting, where: Axis) -> tuple[str, float]:
-    """Return the unit (name, size in SI) in which the controls show a parameter, or a readable one if it has no control.
+    """Return the unit (name, size in SI) of a parameter in the controls, or a readable one if it has no control.
 
     It is that of a pure number if the scenario has no such parameter, as before the first answer of a link.
     """

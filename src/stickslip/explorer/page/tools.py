@@ -47,7 +47,7 @@ def _encoded(parameters: Mapping[str, str]) -> str:
 
 
 def begin(explorer: Explorer, parameters: Mapping[str, str]) -> None:
-    """Ask for the first answer of a page: that of the link by which it was opened, or of the explorer's setting.
+    """Ask for the first answer of a page: that of the link that opened it, or of the explorer's setting.
 
     A part of the link that cannot be used is left out, and the page says why.
     """
@@ -151,7 +151,7 @@ class Tools:
         self.update()
 
     def update(self) -> None:
-        """Bring the buttons, and the address, to what is shown now."""
+        """Make the buttons and the address match the answer that is shown now."""
         self.view.param.update(
             pinned=self._explorer.pinned is not None, ready=self._explorer.shown is not None, query=self._query() or self.view.query
         )

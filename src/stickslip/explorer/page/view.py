@@ -44,7 +44,7 @@ class View:
     facts: dict[str, Any] = field(default_factory=dict)
 
     def add(self, other: View) -> None:
-        """Take over what another view holds."""
+        """Take over the content of another view."""
         for name, columns in other.columns.items():
             self.columns[name] = self.columns.get(name, {}) | columns
         self.limits |= other.limits
@@ -135,7 +135,7 @@ def heading(title: str, keys: Sequence[LegendKey]) -> str:
 
 
 def headings_of(view: View, titles: Mapping[str, str]) -> dict[str, str]:
-    """Return the heading of each panel as HTML; `titles` are used for panels of which the view says none."""
+    """Return the heading of each panel as HTML; `titles` are used for panels without a heading in the view."""
     return {name: heading(view.titles.get(name, title), view.keys.get(name, ())) for name, title in titles.items()}
 
 

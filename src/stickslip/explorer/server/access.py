@@ -15,7 +15,7 @@ from tornado.routing import Matcher, Rule
 from tornado.web import Application, OutputTransform, RequestHandler
 
 LOOPBACK = ("127.0.0.1", "localhost", "[::1]")
-"""The names under which a computer reaches itself."""
+"""The names that a computer has for itself."""
 PATHS = ("/", "/ws", "/favicon.ico")
 """What the server answers, beside the bundled files in `STATIC`."""
 STATIC = "/static/"
@@ -42,7 +42,7 @@ HEADERS = {
 
 @dataclass(frozen=True)
 class Reply:
-    """What a browser gets in place of what it asked for: a page of one sentence, or another address together with a cookie."""
+    """A reply instead of the requested page: a page of one sentence, or another address together with a cookie."""
 
     status: int
     sentence: str = ""
@@ -52,12 +52,12 @@ class Reply:
 
 @dataclass(frozen=True)
 class Access:
-    """The conditions under which requests are answered.
+    """The conditions for answering requests.
 
-    `names` are the hosts, without a port, under which the server may be asked; None for any. The list for a server on the loopback
-    address protects it from pages that let their own name point to this computer. Pages of `origins` (with a port unless it is the
-    usual one) may connect, beside the server's own. `is_full` returns a sentence if no further page can be opened. The first
-    address must contain the `token`, which the browser keeps as a cookie.
+    `names` are the allowed host names of requests, without a port; None for any. The list for a server on the loopback address
+    protects it from pages that let their own name point to this computer. Pages of `origins` (with a port unless it is the usual
+    one) may connect, besides the server's own. `is_full` returns a sentence if no further page can be opened. The first address
+    must contain the `token`, which the browser keeps as a cookie.
     """
 
     names: frozenset[str] | None
@@ -66,7 +66,7 @@ class Access:
     token: str = field(default_factory=token_urlsafe, repr=False)
 
     def reply_to(self, request: HTTPServerRequest) -> Reply | None:
-        """Return what a request gets in place of what it asks for; None if it is to be answered."""
+        """Return the reply that refuses or redirects a request; None if the request is to be answered."""
         if (
             self.names is not None
             and _name_and_port(request.host)[0] not in self.names
@@ -118,7 +118,7 @@ def _without_token(request: HTTPServerRequest) -> str:
 
 
 class _Held(Matcher):
-    """Matches the requests that get a reply in place of what they ask for."""
+    """Matches the requests that are refused or redirected."""
 
     def __init__(self, access: Access) -> None:
         self._access = access

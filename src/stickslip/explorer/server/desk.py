@@ -43,9 +43,9 @@ class _Task:
 class ThreadDesk:
     """The `Desk` of a page: one piece of work at a time; of the requests that come meanwhile only the latest is kept.
 
-    Work learns of its end from the function `told` that it is given, and calls about ten times a second. It raises `Stopped`, which
-    ends a run with what it has calculated so far, after `stop`; and `Dropped` if the page is closed, or if the work has taken
-    longer than PATIENCE and a newer request waits.
+    Work is given the function `told` and calls it about ten times a second. After `stop`, `told` raises `Stopped`, which ends a run
+    with its results so far. It raises `Dropped` if the page is closed, or if the work has taken longer than PATIENCE and a newer
+    request waits.
 
     `deliver`, which any thread may call, has a function called on the page's own thread. There `report` is called with lines on the
     progress of the work.
@@ -173,7 +173,7 @@ def unforeseen(error: Exception) -> InputError:
 FIRST_RUNS = (("fig6-slab", 20.0), ("fig6-block-reconstructed", 20.0), ("rate-and-state-block", 1.0), ("fig4-loop", 1.0))
 """Scenarios, each with a duration (s), that between them use the parts of the engine that most runs need."""
 FIRST_STRIP = Axis("friction.alpha", 0.05, 2.0, 16)
-"""A strip of a few runs, by which batches are warmed."""
+"""A strip of a few runs, to warm up batches."""
 LINE = "The engine is being loaded: the first picture takes a moment longer."
 
 

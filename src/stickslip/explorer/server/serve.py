@@ -38,7 +38,7 @@ LOOK_EVERY_MS = 1_000
 
 
 class Sessions:
-    """Counts the open pages of a server, of which there may be `most`, and has those that were closed removed."""
+    """Counts the open pages of a server, at most `most`, and has closed ones removed."""
 
     def __init__(self, most: int) -> None:
         self.most = most
@@ -77,19 +77,19 @@ TITLE = "stickslip explorer"
 PORTS = 50
 """Number of ports that are tried."""
 LARGEST_MESSAGE = 4_000_000
-"""Size (bytes) of the largest message from a browser: an upload of 1 MB with all that surrounds it."""
+"""Size (bytes) of the largest message from a browser: an upload of 1 MB with everything around it."""
 LARGEST_REQUEST = {"max_body_size": 10_000, "max_header_size": 100_000, "max_buffer_size": LARGEST_MESSAGE, "body_timeout": 30}
-"""Bounds of what a browser may send outside the websocket: there is nothing to send but an address, which can hold a long link."""
+"""Limits for requests outside the websocket: a browser has only an address to send, which can hold a long link."""
 LONGEST_LOADING = 60.0
-"""Time (s) after which a page that has not told that it is there is taken to be there."""
+"""A page that has not reported that it is loaded counts as loaded after this time (s)."""
 LOGGERS = ("panel", "bokeh", "tornado", "asyncio", "stickslip")
-"""Loggers of what runs in the server."""
+"""Loggers of the libraries in the server."""
 MOST_LINES = 1000
 """Lines of the log that wait to be written; further ones are lost."""
 STDERR = 2
 """Descriptor of standard error."""
 EVERYWHERE = ("0.0.0.0", "::", "")
-"""Addresses by which a server listens on all networks of the computer."""
+"""Addresses that make a server listen on all networks of the computer."""
 
 MakeExplorer = Callable[[ThreadDesk, ThreadDesk], Explorer]
 Build = Callable[[Explorer], Any]
@@ -99,8 +99,8 @@ Build = Callable[[Explorer], Any]
 class Endpoint:
     """Where a server listens, and for whom. The default address can be reached from this computer only.
 
-    The port is 0 for any free one, None for the first free one from FIRST_PORT on. `origins` are hosts (`name` or `name:port`)
-    under which the page may be reached, beside the address itself. At most `sessions` pages may be open at the same time.
+    The port is 0 for any free one, None for the first free one from FIRST_PORT on. `origins` are further hosts (`name` or
+    `name:port`) of the page, besides the address itself. At most `sessions` pages may be open at the same time.
     """
 
     address: str = LOOPBACK[0]
@@ -139,10 +139,10 @@ class _Log(QueueHandler):
 
 
 def log_to_stderr() -> None:
-    """Have the libraries of the server log to standard error, and wait for nobody who should read that.
+    """Have the libraries of the server log to standard error, without waiting for a reader.
 
-    Panel logs to standard output, where the address of the page is said. Whoever reads nothing but the address lets the pipe become
-    full, at which the server would stand still.
+    Panel logs to standard output, which also tells the address of the page. A program that reads only the address there would let
+    the pipe fill up, and the server would stand still.
     """
     through = _Log()
     for name in LOGGERS:
@@ -153,8 +153,8 @@ def log_to_stderr() -> None:
 class ExplorerServer:
     """A server that is bound to its port, and answers once its event loop runs.
 
-    `make` makes the explorer of a new page, given its desk and that on which files are written; `build` builds the page of an
-    explorer. With `warms` the compiler is warmed before the first answer needs it.
+    `make` makes the explorer of a new page, given its desk and the desk for writing files; `build` builds the page of an explorer.
+    With `warms` the compiler is warmed before the first answer needs it.
     """
 
     def __init__(self, endpoint: Endpoint, make: MakeExplorer, build: Build, *, warms: bool = True) -> None:
@@ -172,7 +172,7 @@ class ExplorerServer:
 
     @property
     def port(self) -> int:
-        """The port on which the server listens."""
+        """The port of the server."""
         return int(self._bokeh.port)
 
     @property
@@ -291,11 +291,11 @@ def check_free(address: str, port: int) -> None:
 
 
 class DeliveryToTab:
-    """Call functions with the lock of a page's document, from the moment on at which the browser has the page.
+    """Call functions with the lock of a page's document, as soon as the browser has the page.
 
     All of it runs in the event loop itself: Bokeh loses callbacks that another thread adds while a session is being made, or while
     the changes of its document are held back. It also loses changes that are made after the page was sent and before the browser
-    has put it together, so that a page whose first answer took that long would wait for it for ever.
+    has put it together, so that the page would wait for ever for a first answer that comes in this time.
     """
 
     def __init__(self, document: Any) -> None:

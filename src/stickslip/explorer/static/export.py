@@ -39,7 +39,7 @@ SHORT = 8
 LEVELS = {8: 2**8 - 2, 16: 2**16 - 2}
 """The largest whole number of a packed column by its bits; the one after it stands for NaN."""
 COARSE = {"velocity", "stress"}
-"""Images that are only drawn in colours, for which 8 bits are enough."""
+"""Images that are only drawn in colours: 8 bits are enough for them."""
 
 
 def packed_view(view: View) -> dict[str, Any]:
@@ -94,7 +94,7 @@ def script(name: str, number: int, content: Any) -> str:
 
 
 STRIP_PLACES = 25
-"""Number of places of each strip at which an answer is kept, beside that of the step itself."""
+"""Number of places of each strip with a stored answer, besides that of the step itself."""
 LIBRARY = "bokeh.min.js"
 """The script of Bokeh that draws the plots."""
 READ_ME = """The tour of the stickslip explorer. Open index.html in a browser: it needs no network and no server.

@@ -5,9 +5,9 @@ its two travelling waves, [(Z v + sigma)^2 + (Z v - sigma)^2] / (4 G) integrated
 law at the slip and slip rate of the run, not from the load: so the balance tests the run, and is not an identity.
 
 The kinetic energy of the slab needs both waves at the same place, Z v = (A + B) / 2: A is the beta that is on its way to the
-contact, B the w that is on its way to the driver. Between the places at which a piece of either wave ends, both are smooth
-functions of the travel time from the contact, except for a square root at a fold. With s^2 (3 - 2 s) for the place in such an
-interval they are smooth functions of s up to its ends.
+contact, B the w that is on its way to the driver. Between the ends of pieces of either wave, both are smooth functions of the
+travel time from the contact, except for a square root at a fold. With s^2 (3 - 2 s) for the place in such an interval they are
+smooth functions of s up to its ends.
 """
 
 from __future__ import annotations
@@ -49,8 +49,8 @@ def energy(history: History, t: ArrayLike, origin: float | None = None) -> xr.Da
     """Return the energies of a run at times (s) since the history's epoch, as differences from their values at an origin (s).
 
     The origin is by default the start of the run. The dataset holds work, stored (elastic + kinetic), elastic, kinetic, heat,
-    damped, radiated, balance; and trapped, which is no difference (slab: J/m^2, block: J). Work is what the driver puts in, net of
-    radiated, which is what leaves through a driver of finite impedance. Balance is work - stored - heat - damped, zero for an exact
+    damped, radiated, balance; and trapped, which is no difference (slab: J/m^2, block: J). Work is the energy input of the driver,
+    net of the energy radiated through a driver of finite impedance. Balance is work - stored - heat - damped, zero for an exact
     solution. Trapped is the part of the stored energy that travels to and fro in waves.
 
     Raises InputError for times outside the run, and for times in a leap over creep or within a round trip after it: the waves that

@@ -1,10 +1,9 @@
 """Energy of the run of a planar slab, as differences from its start.
 
-What is inside the slab is found from the slip of the contact, by methods that share no code with the solver: the mean motion by the
-two waves of the slab in 1D, and the rest by the volume method (`Volume`), whose contact is made to slip as in the run. The heat is
-that of the law. So the balance tests the run: it closes if waves in a slab whose contact slips like this bring the load under which
-the law lets it slip like this. Tests add friction to the volume method, as a solver of their own
-(`tests/reference/planar_methods.py`).
+The field inside the slab is found from the slip of the contact, by methods that share no code with the solver: the mean motion by
+the two waves of the slab in 1D, and the rest by the volume method (`Volume`), whose contact is made to slip as in the run. The heat
+is that of the law. So the balance tests the run: it closes only if the waves made by this slip bring the load that makes the law
+slip in this way. Tests add friction to the volume method, as a solver of their own (`tests/reference/planar_methods.py`).
 """
 
 from __future__ import annotations
@@ -34,8 +33,8 @@ def cost(slab: PlanarSlab, duration: float, steps: int) -> float:
 def energies(slab: PlanarSlab, times: Floats, *, slip: Floats, slip_rate: Floats, heat: Floats, steps: int) -> dict[str, Floats]:
     """Return the energies of a run at equal steps of time (s), by "time" and NAMES: J, or J per metre of z for a line.
 
-    Slip (m), slip rate (m/s) and work of friction (J/m^2) are those of the frames, time first. In an even number of `steps` in a
-    two-way travel time waves inside the slab are followed.
+    Slip (m), slip rate (m/s) and work of friction (J/m^2) are those of the frames, time first. Waves inside the slab are followed
+    in `steps` steps per two-way travel time, an even number.
     """
     large, here = slab.alone_for(float(times[-1]))
     mean = slip_rate.reshape(len(times), -1).sum(axis=1) * (slab.node_area / math.prod(large.extent))
@@ -57,7 +56,7 @@ def energies(slab: PlanarSlab, times: Floats, *, slip: Floats, slip_rate: Floats
 
 def _mean_motion(slab: PlanarSlab, rate: Floats, at: Floats, steps: int) -> dict[str, Floats]:
     """Return the energies of wavenumber 0: of a slab in 1D that slips at the mean rate (m/s) of the contact."""
-    from scipy.integrate import cumulative_trapezoid  # takes a tenth of a second to load, which other runs do not need
+    from scipy.integrate import cumulative_trapezoid  # takes a tenth of a second to load; other runs do not need it
 
     body, problem, half, last = slab.body, slab.problem, steps // 2, len(at) - 1
     impedance, step, area = body.impedance, body.two_way_time / steps, math.prod(slab.extent)
@@ -121,8 +120,8 @@ class PlanarMedium:
     """A slab 0 < x < h with scalar waves u_tt = c^2 (u_xx + u_yy + u_zz), periodic along the contact at x = 0.
 
     `length` is the period along each direction (m): one number in 2D, two in 3D; the shape of `initial_load` (Pa), which is in
-    equilibrium, gives the numbers of nodes. `driver_impedance` (Pa s/m) is that of the half-space beyond x = h, in which waves are
-    as fast, and which reflects every wave by the factor (Z - Zd) / (Z + Zd); infinite for a rigid driver, 0 for a dead load.
+    equilibrium, gives the numbers of nodes. `driver_impedance` (Pa s/m) is that of the half-space beyond x = h. Waves are equally
+    fast there, and it reflects every wave by the factor (Z - Zd) / (Z + Zd); infinite for a rigid driver, 0 for a dead load.
     """
 
     density: float
@@ -205,7 +204,7 @@ class Volume:
         self._slip_before = self.slip
 
     def move(self, slip: Floats) -> None:
-        """Take one step of time, after which the contact has a given slip (m)."""
+        """Take one step of time; the contact then has the given slip (m)."""
         now, after = self._now, self._before  # the memory of the latter is used again
         self._slip_before, self.slip = self.slip, slip
         after[1:-1] = self._cosine * (self._near * now[:-2] + (2.0 - self._near) * now[2:]) - after[1:-1]
@@ -214,10 +213,10 @@ class Volume:
         self.steps += 1
 
     def energies(self) -> tuple[float, float, float]:
-        """Return the kinetic and elastic energy of the slab, and that of the driver, half a step ago, less those at the start.
+        """Return the kinetic and elastic energy of the slab, and that of the driver, half a step ago, minus those at the start.
 
-        They are J per m of strike in 2D, J in 3D, of what has been added to the initial state. The work of the initial stress,
-        which acts at the contact, -initial load times slip, is part of the elastic energy. A rigid driver must be at rest.
+        They are in J per m of strike in 2D, in J in 3D. The initial stress does work at the contact, -initial load times slip; it
+        is part of the elastic energy. A rigid driver must be at rest.
         """
         case, dt, inside = self.case, self.step_of_time, round(0.5 * self.case.two_way_time / self.step_of_time)
         now, before, along = self._now, self._before, 2.0 * (1.0 - self._cosine) / dt**2  # w^2 as the scheme has it

@@ -36,7 +36,7 @@ PULSE_COLUMNS = {
 """Columns of `Solution.pulses`: unit, as `names.si_unit` understands it, and meaning."""
 
 GRID = 17
-"""Number of places on a piece at which the traction is compared to find the smallest one."""
+"""Number of places on a piece to compare in search of the smallest traction."""
 REFINEMENTS = 14
 """Number of times that the grid is refined, by a factor of 8, around the smallest traction."""
 
@@ -110,7 +110,7 @@ def pulses_table(history: History, threshold: float) -> pd.DataFrame:
 
 
 def _starts(rate: Floats, begin: int, past: int) -> list[int]:
-    """Return the indices at which the pulses of an event begin among the turning points of |v|.
+    """Return the first index of each pulse of an event among the turning points of |v|.
 
     The pulses are those that `trajectory.slip_events.group_turns` counts.
     """
@@ -151,7 +151,7 @@ def _weakest(history: History, begin: Positions, end: Positions) -> Positions:
 
 
 def _lowest(history: History, piece: NDArray[np.intp], low: Floats, high: Floats) -> tuple[Floats, Floats]:
-    """Return the place on a grid from low to high (xi) at which the traction in each piece is smallest, and that traction."""
+    """Return the place of the smallest traction in each piece on a grid from low to high (xi), and that traction."""
     xi = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, GRID)
     values = history.resistance(Positions.inside(np.repeat(piece, GRID), xi.ravel())).reshape(xi.shape)
     chosen = np.arange(len(piece)), np.argmin(values, axis=1)

@@ -25,7 +25,7 @@ Values = NDArray[Any]
 LARGEST_AXIS = 10_000_000
 """Largest number of values of an axis, and of members of a random design: 80 MB for each parameter."""
 EQUAL = 1e-9
-"""Relative difference up to which the ratios of successive values count as equal."""
+"""Ratios of successive values that differ by less than this (relative) count as equal."""
 FORM = '"KEY=LOW..HIGH:POINTS", followed by ":log" for equal ratios, or "KEY=VALUE,VALUE,..."'
 
 

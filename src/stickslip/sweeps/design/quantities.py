@@ -89,7 +89,7 @@ def _slip(solution: Solution) -> float:
 
 
 def _sticking(solution: Solution) -> float:
-    """Return the share of the last third of a run in which the contact sticks; NaN if the run has not reached its end."""
+    """Return the share of sticking in the last third of a run; NaN if the run has not reached its end."""
     return share_sticking(solution.history) if solution.status.ok else np.nan
 
 

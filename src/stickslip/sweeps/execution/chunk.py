@@ -27,7 +27,7 @@ from stickslip.trajectory.status import BAD_PARAMETERS as REFUSED
 from stickslip.trajectory.status import ENOUGH_EVENTS, FULL_HISTORY, STATUSES, Status
 
 END = "end_time"
-"""The quantity that the message on a failed member needs: the time (s) at which its run ended."""
+"""The quantity that the message on a failed member needs: the time (s) at the end of its run."""
 MAX_PIECES = 200_000
 """Largest number of polynomial pieces in the history of a member that runs by itself (90 MB); a member that needs more fails."""
 NOT_RUN = -1
@@ -35,7 +35,7 @@ NOT_RUN = -1
 BAD_PARAMETERS = 10
 """Code of a member whose scenario is refused, or cannot start."""
 ERROR = 14
-"""Code of a member for which a quantity could not be calculated, or something else went wrong."""
+"""Code of a member without a quantity that could not be calculated, or with another fault."""
 FIRST_FAILURE = 10
 """Smallest code of a failure. Members that failed have a reason in place of results."""
 

@@ -32,7 +32,7 @@ Chunk = TypeVar("Chunk")
 Result = TypeVar("Result")
 
 LOOPBACK = "127.0.0.1"
-"""Address at which a local cluster listens; no other machine can reach it."""
+"""Address of a local cluster; no other machine can reach it."""
 PATIENCE = 10.0
 """Time (s) within which a scheduler must answer."""
 LARGEST_FILE = 1_000_000
@@ -47,7 +47,7 @@ GONE = "sweep: the dask scheduler is lost; finished chunks are kept: the same co
 GONE_AGAIN = ("lost", "pending")
 """Statuses of a chunk whose result was ready but lost with its worker before it was fetched. Dask computes it again."""
 ENVIRON = "distributed.nanny.pre-spawn-environ"
-"""Prefix of dask's settings for the environment variables with which worker processes start."""
+"""Prefix of dask's settings for the environment variables of worker processes."""
 SETTINGS = {
     "distributed.worker.profile.enabled": False,  # profiling costs a few per cent of all time, and is not used here
     # With dask's own settings, workers return every freed array to the operating system and fetch it again,
@@ -130,7 +130,7 @@ def on_cluster(client: Client) -> Runner:
 
 
 def stream(client: Client, run: Callable[[Chunk], Result], chunks: Iterable[tuple[int, Chunk]]) -> Iterator[tuple[int, Result]]:
-    """Yield the number and the result of each chunk, in the order in which they are ready, with few in flight at a time.
+    """Yield the number and the result of each chunk as soon as it is ready, with few in flight at a time.
 
     `run` and the chunks must be picklable. A chunk that fails does not hold up the others: ChunksLostError is raised when these
     are done. Raises InputError at once if a worker has another version of the engine, and ChunksLostError if the scheduler is lost.

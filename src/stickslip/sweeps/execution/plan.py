@@ -32,7 +32,7 @@ The upper limit is LARGEST_CHUNK if members run one by one, and LARGEST_BATCH in
 lost when a sweep is killed.
 """
 SAMPLES = 200
-"""Default number of times at which curves are sampled."""
+"""Default number of times for samples of curves."""
 MOST_SAMPLES = 1_000_000
 """Largest number of samples of a curve, which limits its size to 8 MB for each member."""
 

@@ -78,7 +78,7 @@ class ResultStore:
         self._lock.close()
 
     def missing(self) -> list[int]:
-        """Return the numbers of the chunks of which some member is not done."""
+        """Return the numbers of the chunks with members that are not done."""
         left = self.status == NOT_RUN
         return [chunk for chunk in range(self.plan.chunks) if left[self.plan.region(chunk)].any()]
 

@@ -63,7 +63,7 @@ def ends_of(values: Any, unit: str) -> dict[str, Any]:
 
 
 def plot(stage: Stage, text: str = TEXT) -> Any:
-    """Return the plot of what is chosen of the slab, over time and place."""
+    """Return the plot of the chosen quantity in the slab, over time and place."""
     drawn = stage.plot("field", "near", "place", text, left=NARROW, bare=True)
     picture, colours = stage.source("picture", "image", "x", "y", "dw", "dh"), signed_scale("colour:field")
     drawn.image("image", "x", "y", "dw", "dh", source=picture, color_mapper=colours, level="image")

@@ -132,7 +132,7 @@ def _residual(answer: Answer, units: Units) -> View:
 
 
 def _measured(answer: Answer, units: Units) -> Columns:
-    """Return the samples of a record behind the run, NaN for what was not measured; empty columns if there is none."""
+    """Return the samples of a record behind the run, NaN for quantities that were not measured; empty columns without a record."""
     found = answer.measured
     if found is None:
         return {name: [] for name in ("time", *DRAWN.values())}
@@ -208,7 +208,7 @@ def plots(stage: Stage) -> dict[str, Any]:
 
 
 def further_plots(stage: Stage) -> dict[str, Any]:
-    """Return the plots of the states and of what was measured minus the run, over the same axis of time."""
+    """Return the plots of the states and of the record minus the run, over the same axis of time."""
     found = {name: stage.plot(name, "time", name, text, left=NARROW, bare=True) for name, text in FURTHER.items()}
     stage.powers(found["state"], "state_powers", "left")
     states = stage.source("states", "time", "state", "second")

@@ -1,4 +1,4 @@
-"""The units in which one answer is shown, chosen once for all panels."""
+"""The units for one answer, chosen once for all panels."""
 
 from __future__ import annotations
 
