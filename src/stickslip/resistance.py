@@ -23,11 +23,11 @@ from stickslip.friction.formula.expression import Expression
 from stickslip.friction.formula.functions import evaluate
 
 _LOADS = 2.0
-"""Largest load at which many solutions are told apart (1), as a multiple of the largest friction."""
+"""Many solutions are distinguished up to this load, as a multiple (1) of the largest friction."""
 _FASTEST = 1e9
 """Largest scale of a law that is kept, as a multiple of S (variation of mu)/Z; at faster rates Z s dominates g."""
 _FLAT = 1e-9
-"""Slope of g, relative to Z, below which an interval may be flat; its variation must then be within the rounding of g, too."""
+"""An interval may be flat if the slope of g is below this, relative to Z, and if g varies on it by no more than its rounding."""
 
 
 @dataclass(frozen=True)
@@ -99,7 +99,7 @@ class Resistance:
 
     @cached_property
     def rate_knots(self) -> tuple[float, ...]:
-        """The slip rates (m/s) above 0 at which the law changes its formula."""
+        """The slip rates (m/s) above 0 where the law changes its formula."""
         return tuple(knot for knot in self.law.knots if knot > 0.0) if self.law.knot_variable == "rate" else ()
 
     @cached_property
@@ -125,7 +125,7 @@ class Resistance:
 
     @cached_property
     def plateaus(self) -> tuple[Plateau, ...]:
-        """The intervals on which g is flat, slowest first: all their slip rates solve the contact equation at one load."""
+        """The intervals with flat g, slowest first: all their slip rates solve the contact equation at one load."""
         found: list[Plateau] = []
         for low, high in pairwise((0.0, *self.rate_knots)):
             level = float(self._levels[int(self.law.piece_at(self.law_slip, low))])
@@ -182,7 +182,7 @@ class Resistance:
 
     @property
     def largest_load(self) -> float:
-        """The largest load (Pa) for which solutions are told apart under a law whose friction rises and falls for ever."""
+        """The largest load (Pa) with distinguished solutions under a law whose friction rises and falls for ever."""
         return _LOADS * self.largest_friction
 
     @property
@@ -191,7 +191,7 @@ class Resistance:
         return (self.largest_load + 2.0 * self.normal * self.law.variation) / self.damping
 
     def fastest(self, excess: float) -> float:
-        """Return a slip rate (m/s) at which g certainly exceeds the given excess (Pa), because friction is bounded below."""
+        """Return a slip rate (m/s) that certainly makes g exceed the given excess (Pa), because friction is bounded below."""
         fall = self.strength - self.normal * self.law.range()[0]
         bound = max(excess + fall, 0.0) / self.damping
         return 2.0 * bound + float(np.finfo(float).tiny)

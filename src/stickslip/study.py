@@ -1,4 +1,4 @@
-"""What all studies share: runs that Ctrl-C ends, the time up to which runs are compared, the text of a result, and its figure."""
+"""The common parts of all studies: runs that Ctrl-C ends, the common time of runs, the text of a result, and its figure."""
 
 from __future__ import annotations
 
@@ -111,7 +111,7 @@ class RunsCompared(Study):
 
     @cached_property
     def until(self) -> float:
-        """The time (s) up to which runs are compared: the earliest end of a run."""
+        """The end (s) of the comparison of runs: the earliest end of a run."""
         return min(run.history.span[1] for run in self._all_runs())
 
     @property

@@ -53,7 +53,7 @@ class Folding:
     counted: int = 0
     """Number of pieces whose shocks, and whose time in slip, have been counted."""
     slips: float = 0.0
-    """Time (s) in which the contact slips in the last third of the run, so far."""
+    """Time (s) of slip in the last third of the run, so far."""
 
     def look(self, *, now: bool) -> int | None:
         """End the run if the batch is to stop: see `run_loop.Watch`."""
@@ -85,7 +85,7 @@ class Folding:
         self.counted = run.length
 
     def set_sticking(self, code: int) -> None:
-        """Write the share of the last third in which the contact sticks; NaN if the run has not reached its end."""
+        """Write the share of sticking in the last third; NaN if the run has not reached its end."""
         run = self.run
         if code in (Stop.FINISHED, Stop.LOCKED):
             end, creep = run.options.duration, run.history().creep

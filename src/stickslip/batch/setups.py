@@ -44,7 +44,7 @@ holds would be freed."""
 PARTS = 4
 """Parts into which the interval of a fold is cut: few, because many folds are found together."""
 MOST_TURNS = 64
-"""Largest number of turns of g, or of intervals in which these are not decided, that are told apart."""
+"""Largest number of turns of g, or of undecided intervals, that are distinguished."""
 FASTEST = 1e9
 """Slip rates beyond this multiple of the contact's own scale S (variation of mu)/Z do not matter, as in `contact.equation`."""
 
@@ -53,10 +53,10 @@ class Alike(NamedTuple):
     """The properties that the members of a group share, whatever their numbers."""
 
     problem: Problem  # the problem of one of the members
-    functions: Integers  # table of LawPiece in which only the functions are set
+    functions: Integers  # table of LawPiece with only the functions set
     jets: Integers  # as in `Setups`
     prepare: Integers  # (pieces,): addresses of the functions that fill the constants of each piece
-    size: int  # number of constants for which each piece has room
+    size: int  # room for constants in each piece
     state: State  # at t = 0
     counts: Counts
 

@@ -37,7 +37,7 @@ Booleans = NDArray[np.bool_]
 Places = NDArray[np.intp]
 
 QUANTITIES = COLUMNS
-"""Names of the quantities to which a batch can reduce a run."""
+"""Names of the quantities that a batch can compute from a run."""
 RUN = {"duration": DURATION, "rtol": RTOL}
 """The entries of [run] in a scenario that may be varied."""
 
@@ -97,7 +97,7 @@ def excess_of(problem: Problem, strength: Any) -> Any:
 
 
 def pieces_at_start(problem: Problem) -> Places:
-    """Return the index of the law's piece in which each member starts; a single one if the members cannot differ in it."""
+    """Return the index of each member's first piece of the law; a single one if the members cannot differ in it."""
     law = problem.friction
     if not law.knots or law.knot_variable == "rate":
         return np.zeros(1, np.intp)

@@ -110,7 +110,7 @@ GROUPS: dict[str, tuple[Callable[..., None], ...]] = {
     "The source paper": (paper,),
     "This installation": (doctor,),
 }
-"""The functions of all commands, by the heading under which the help shows them."""
+"""The functions of all commands, by their heading in the help."""
 COMMANDS = {command.__name__: command for commands in GROUPS.values() for command in commands}
 """The functions of all commands, by name."""
 STYLE: dict[str, Any] = {

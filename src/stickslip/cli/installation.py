@@ -90,7 +90,7 @@ def _version(one: Requirement) -> str | None:
 
 
 def engine() -> Iterator[Finding]:
-    """Yield the compiler with the processor for which it compiles, and the cache of compiled code. Imports the compiler."""
+    """Yield the compiler with its target processor, and the cache of compiled code. Imports the compiler."""
     with redirect_stderr(io.StringIO()):  # a cache that cannot be used is reported below, with the cure
         from stickslip.engine.compile import cache
     from llvmlite import __version__ as version

@@ -105,7 +105,7 @@ class Strength:
     def in_sight(self, x: float, end: float) -> bool:
         """Return True if friction is proven to change from x to `end` no more than its slopes at x suggest.
 
-        A part of the law that leaves no trace at x would be missed between the places at which a leap looks at friction.
+        A part of the law that leaves no trace at x would be missed between the places where a leap evaluates friction.
         """
         way, unit = abs(end - x), self.problem.normal
         expected = abs(self.slope(x)) * way + abs(self.curvature(x)) * way * way

@@ -29,7 +29,7 @@ class Piece:
 
     @property
     def phase_to(self) -> float:
-        """The offset at which the piece ends, s."""
+        """The offset of the end of the piece, s."""
         return self.phase_from + self.speed + self.bend
 
     @property

@@ -18,7 +18,7 @@ class LeapingRun(Protocol):
     count: Counts
     store: Store
     last: tuple[int, float]
-    """Round trip and phase (s) at which the run ends."""
+    """Round trip and phase (s) of the end of the run."""
 
     @property
     def length(self) -> int:

@@ -61,7 +61,7 @@ class Planner:
     most: int  # largest number of round trips
     at_end: bool = False
     largest: float = 0.0  # largest error of a state so far, m
-    swing: float = 0.0  # largest range so far by which slip oscillates from one round trip to the next, m
+    swing: float = 0.0  # largest range so far of the oscillation of slip from one round trip to the next, m
 
     def plan(self) -> CreepPlan | None:
         """Return a plan for a leap, or None if no leap is possible."""

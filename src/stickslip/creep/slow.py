@@ -35,9 +35,9 @@ from stickslip.friction.formula.functions import evaluate
 from stickslip.problem.problem import Problem
 
 NODES = 12
-"""Number of offsets in each stretch of the round trip at which the motion is followed."""
+"""The motion is followed at this many offsets in each stretch of the round trip."""
 ROUNDS = 3
-"""Number of rounds in which the averaged motion is matched to a round trip."""
+"""Number of rounds to match the averaged motion to a round trip."""
 BOTH, PLAIN, HEAVY = range(3)
 """The three motions that are followed side by side: with ripple, without it, and with ripple and inertia."""
 RIPPLES, INERTIA = np.array([1.0, 0.0, 1.0]), np.array([[0.0], [0.0], [1.0]])
@@ -72,7 +72,7 @@ def to_powers(values: Floats) -> Floats:
 
 @dataclass(frozen=True)
 class Offsets:
-    """The offsets in a round trip at which the motion is followed: NODES in each of some stretches of it."""
+    """Offsets in a round trip for following the motion: NODES in each of some stretches of it."""
 
     edges: Floats  # (stretches + 1), s
     period: float  # s

@@ -138,7 +138,7 @@ class SlowLeaps:
         return steps
 
     def _reached(self, step: SlowStep) -> float:
-        """Return the last moment of a step at which the motion is slow."""
+        """Return the last moment of a step with slow motion."""
         low, high = step.begin, step.end
         if self._is_slow(step.between(high)):
             return high

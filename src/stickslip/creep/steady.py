@@ -50,7 +50,7 @@ STILL, LONG = 1e-3, 1000
 many times as long as the run so far: the swings of a contact with mass fade ever more slowly. Else the tolerance is that share.
 """
 ROOM = 1.001
-"""Slip rates for which slopes of friction are bounded reach this much farther than the deviation."""
+"""Slopes of friction are bounded over a range of slip rates that reaches this much farther than the deviation."""
 ROUNDING = 4e-16
 """Rounding of a number, as a share of it."""
 MOST = 700.0

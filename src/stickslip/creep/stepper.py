@@ -107,7 +107,7 @@ in an event storm.
 LONGEST_SPENT = 4096
 """Largest number of round trips that are waited for because a search for a leap took as long as they do."""
 FAST = 1000.0
-"""Largest slip rate, as a multiple of the pull rate, at which a leap is attempted: no tolerance would accept a faster creep."""
+"""A leap is attempted up to this slip rate, as a multiple of the pull rate: no tolerance would accept a faster creep."""
 CHECKED = 1
 """Number of exact round trips after the landing; the last of them has to slip as the continued leap predicts."""
 STEPS = 10_000

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 SUFFIXES = (".csv", ".parquet", ".nc")
-"""File suffixes of the formats in which a catalogue can be stored."""
+"""File suffixes of the formats for a catalogue."""
 LONGEST_HEADER = 10_000
 """Largest length, in bytes, of the first line of a catalogue."""
 AT_A_TIME = 50_000
@@ -53,7 +53,7 @@ class Rows:
 
     @property
     def growing(self) -> Path:
-        """The growing file, to which rows are appended during the run."""
+        """The growing file: rows are appended to it during the run."""
         return self.path if self.path.suffix.lower() == ".csv" else self.path.with_suffix(".rows.csv")
 
     @property
@@ -208,7 +208,7 @@ def read_table(path: Path) -> pd.DataFrame:
 
 
 def read_csv(path: Path) -> Iterator[pd.DataFrame]:
-    """Yield a CSV catalogue as tables of at most AT_A_TIME rows, the first of which may be empty.
+    """Yield a CSV catalogue as tables of at most AT_A_TIME rows; the first one may be empty.
 
     Numbers are exact to the last digit, which pandas' own reader does not promise. Raises InputError for an empty file, and for a
     row with the wrong number of entries or with an entry that is not a number.

@@ -52,7 +52,7 @@ KINDS = {
 """Attributes that hold the version, each with a description of the files that have it, for messages."""
 
 DRAWN_POINTS = 2000
-"""Number of evenly spaced times of the stored curves, to which breaking points are added: enough for a figure."""
+"""Number of evenly spaced times of the stored curves, besides the breaking points: enough for a figure."""
 
 AXES = (("numbers",), ("counts",), ("rows", "terms"), ("branches", "levels"), ("one",))
 """Names of the dimensions of a checkpoint's arrays, in the order of `checkpoint.ARRAYS`."""

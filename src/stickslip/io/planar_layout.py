@@ -195,7 +195,7 @@ def slab_in(group: zarr.Group, path: Path) -> PlanarSlab:
 
 
 def _check_rows(group: Any, path: Path, slab: PlanarSlab) -> None:
-    """Refuse more rows than a run of this duration has, or rows of which there is no file."""
+    """Refuse more rows than a run of this duration has, or rows without a file."""
     steps, frames = (whole_number(group.attrs, name, path, 1) for name in ("steps_per_round_trip", "frames"))
     trips = slab.round_trips(number(group.attrs, "duration", path))
     most = {"time": trips * (min(frames, steps) * 2 + 1) + 2, SENT: trips * (steps + 1)}

@@ -17,7 +17,7 @@ from stickslip.solution.window import Window
 MOST_VALUES = 20_000_000
 """Largest number of values computed for a series: one for each sample or, with the filter, some FINER len(NODES) = 64."""
 FINER = 8
-"""Number of averages for each sample, from which the filter keeps one."""
+"""Number of averages for each sample; the filter keeps one of them."""
 _GAUSS = np.polynomial.legendre.leggauss(8)
 NODES, WEIGHTS = 0.5 * (1.0 + _GAUSS[0]), 0.5 * _GAUSS[1]
 """Gauss's rule on [0, 1] with eight nodes: between breaking points the curves of a slipping contact are smooth."""

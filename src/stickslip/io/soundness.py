@@ -27,7 +27,7 @@ from stickslip.trajectory.history import History
 from stickslip.trajectory.status import Checkpoint
 
 ROUND_TRIP_ROUNDING = 1e-9
-"""Share of a round trip by which rounding may carry an offset beyond its end; also the tolerance of xi around 0 and 1."""
+"""Rounding may carry an offset beyond the end of a round trip by this share of it; also the tolerance of xi around 0 and 1."""
 LAST_CAUSE = Cause.HEALING
 """Largest code for the cause of a shock."""
 FINITE = ("phase_from", "phase_to", "speed", "bend", "slip", "law_slip", "load", "rate")
@@ -54,7 +54,7 @@ NOT_NEGATIVE = (
 FREE = ("last_step", "fold_rate", "amplified", "gain", "target", "unbalanced", "rounded", "roughest", "exit")
 """Numbers of the state that may be infinite or NaN."""
 Fault = tuple[str, Any]
-"""The name of what is checked, and whether it is wrong."""
+"""The name of a check, and whether it fails."""
 
 
 def number(attributes: Mapping[str, Any], name: str, path: Path, lowest: float = 0.0) -> float:
@@ -229,7 +229,7 @@ def _faults_of_state(checkpoint: Checkpoint, history: History) -> Iterator[Fault
 
 
 def _faults_of_branch(checkpoint: Checkpoint, setup: Setup, solution: Solution) -> Iterator[Fault]:
-    """Yield checks of the branches, which follow from the problem and, if folds move, from the slip for which they hold."""
+    """Yield checks of the branches, which follow from the problem and, if folds move, from their slip."""
     problem, branch, stick_to = solution.problem, checkpoint.branch, float(checkpoint.stick_to[0])
     yield "engine_count branch", not 0 <= Counts(checkpoint.count).branch < len(branch)
     yield "engine_branch: no number", np.isnan(branch).any() or math.isnan(stick_to)

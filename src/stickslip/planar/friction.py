@@ -106,7 +106,7 @@ class ContactOfNodes:
         states
             States in the form that the formulas use, one more axis in front.
         guess
-            A slip rate (m/s) from which the search begins.
+            A slip rate (m/s) where the search begins.
 
         Returns
         -------

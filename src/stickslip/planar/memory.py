@@ -54,7 +54,7 @@ def exponentials(longest: float, points: int = POINTS) -> Exponentials:
 
 
 def horizon(round_trips: int) -> int:
-    """Return the number of round trips for which a run makes its exponentials: up to there it can be prolonged."""
+    """Return the number of round trips that a run's exponentials cover: it can be prolonged up to there."""
     return 1 << (round_trips - 1).bit_length()
 
 

@@ -23,7 +23,7 @@ from stickslip.problem.parameters import put_many
 from stickslip.problem.problem import Problem
 
 MANY = 256
-"""Number of different nodes up to which each is checked as a problem of its own; of more, the extremes are, and some others."""
+"""Up to this many different nodes are all checked as problems of their own; of more, the extremes and some others are."""
 MAY_VARY = ("friction.", "body.normal_stress", "initial.")
 """Beginnings of the names of what may vary along the contact."""
 
@@ -61,7 +61,7 @@ class NodeValues:
         Parameters
         ----------
         reach
-            Slip (m) from the start up to which strength is looked at: at 1000 places, half of them close to the start.
+            Range of slip (m) from the start for evaluating strength: at 1000 places, half of them close to the start.
         """
         fall = rise = 0.0
         for problem in self.problems:

@@ -31,9 +31,9 @@ MOST_STEPS = 1e12
 MOST_NODES = 2**22
 """Largest number of nodes: more do not fit into the memory that a run may take."""
 WIDEST_STEP = 2.5
-"""Largest phase w dt, of the shortest wave in one time step, for which the steps were seen to be stable."""
+"""The steps were seen to be stable up to this phase w dt of the shortest wave in one time step."""
 ENOUGH_NODES = 5.0
-"""Nodes in a process zone from which a front is called resolved: a rule of thumb, which twice the nodes put to the test."""
+"""A front is called resolved with at least this many nodes in its process zone: a rule of thumb; test it with twice the nodes."""
 PROCESS_ZONE = 9.0 * math.pi / 16.0
 """Length of the process zone of a slow front, times the largest -S mu'/G: K^2/(4 G) is the fracture energy (strength drop) Dc/2,
 with K = 4/3 sqrt(2 length/pi) (strength drop)."""
@@ -210,7 +210,7 @@ class PlanarSlab(CheckedArguments):
         Parameters
         ----------
         reach
-            Slip (m) from the start up to which strength is looked at.
+            Range of slip (m) from the start for evaluating strength.
         """
         fall = self.values.steepest_fall(reach, self.body.impedance) if reach > 0.0 else 0.0  # no slip, no front
         return PROCESS_ZONE * self.body.shear_modulus / fall / max(self.spacing) if fall > 0.0 else math.nan

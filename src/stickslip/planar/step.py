@@ -1,4 +1,4 @@
-"""One step of a planar slab in time, and the arrays on which it works: predictor and corrector for slip, at all nodes at once."""
+"""One step of a planar slab in time, and its arrays: predictor and corrector for slip, at all nodes at once."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ from stickslip.problem.start import Start, start_of
 DAY = 86_400.0
 """A day, s: what is called a round trip of a block that never sticks."""
 LONGEST_ROUND_TRIP = 1e6
-"""Largest number of periods of a block (1) in what is called its round trip."""
+"""Largest number of periods (1) in a block's round trip."""
 
 
 class Problem(ProblemFields):
@@ -108,7 +108,7 @@ class Problem(ProblemFields):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        _ = self.rate  # refuses a start at which nothing balances
+        _ = self.rate  # refuses a start without balance
         self._check_rate()
 
     def _shown(self) -> dict[str, str]:
@@ -201,7 +201,7 @@ class Problem(ProblemFields):
 
     @property
     def rules(self) -> tuple[str, ...]:
-        """The names of the built-in selection rules under which the problem can be run."""
+        """The names of the built-in selection rules that this problem can be run with."""
         return (PERFECT_DELAY,) if self.folds_move else SELECTION_RULES
 
     @property

@@ -52,14 +52,14 @@ class SelectionTable(CheckedArguments):
         return self.keep_from[branch] <= self.keep_to[branch]
 
     def climb(self, branch: int, excess: float) -> int:
-        """Return the branch taken when the load has risen above the range in which `branch` is kept; -1 denotes stick.
+        """Return the branch taken when the load has risen above the range that keeps `branch`; -1 denotes stick.
 
         `excess` is the load minus the static strength (Pa).
         """
         return next(j for j in range(branch + 1, len(self.keep_to)) if self.is_taken(j) and excess <= self.keep_to[j])
 
     def descend(self, branch: int, excess: float) -> int:
-        """Return the branch taken when the load has fallen below the range in which `branch` is kept; -1 denotes stick.
+        """Return the branch taken when the load has fallen below the range that keeps `branch`; -1 denotes stick.
 
         `excess` is the load minus the static strength (Pa).
         """
@@ -119,7 +119,7 @@ def name_of(rule: str | SelectionRule) -> str:
 
 
 def checked(rule: Any) -> str | SelectionRule:
-    """Return a rule in the form in which a problem stores it: its name if it is built in or registered, else the function.
+    """Return a rule as a problem stores it: its name if it is built in or registered, else the function.
 
     Raise InputError for an unknown name, for an object that is not a hashable function, and for a function whose own name cannot
     identify it in a saved run.

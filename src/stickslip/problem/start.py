@@ -102,7 +102,7 @@ def _resistance(problem: ProblemFields, states: tuple[float, ...]) -> Callable[[
 
 
 def _balance(resistance: Callable[[Any], Floats], load: float, problem: ProblemFields) -> float:
-    """Return the slowest slip rate (m/s, >= 0) at which the resistance is a load (>= 0), to rounding."""
+    """Return the slowest slip rate (m/s, >= 0) with a resistance equal to a load (>= 0), to rounding."""
     rates = np.geomspace(SLOWEST, FASTEST, AT_ONCE)
     beyond = resistance(rates) > load
     if beyond[0]:

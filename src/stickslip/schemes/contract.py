@@ -24,7 +24,7 @@ from stickslip.problem.problem import Problem
 class Grid:
     """A slab cut into equal cells, with its driver and its start, for a run; every number in SI.
 
-    Displacements count from the start, at which the slab has the uniform stress `stress` and the velocity V x/h.
+    Displacements count from the start. There the slab has the uniform stress `stress` and the velocity V x/h.
     """
 
     cells: int

@@ -139,7 +139,7 @@ class MasslessContact(LeapFrog):
         self.excess = 0.0
 
     def first(self, contact: SchemeContact) -> Sample:
-        """Return the state at t = 0, at which nothing has moved."""
+        """Return the state at t = 0, when nothing has moved."""
         grid, last = self.grid, float(self.rate[-1])
         push = self._kick_interior(self._forces(), 0.5 * grid.dt)
         self.driver += 0.5 * grid.dt * push * 0.5 * (last + float(self.rate[-1]))

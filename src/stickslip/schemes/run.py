@@ -51,7 +51,7 @@ SEARCHES = {
 }
 """Ways to search for a root, each with its meaning."""
 POINTS = 48
-"""Number of slip rates, in each of two sets, at which roots are looked for."""
+"""Number of slip rates, in each of two sets, in the search for roots."""
 ROUNDING = 16.0 * float(np.finfo(float).eps)
 """A load that exceeds the strength by less than this share of it does not begin slip."""
 NEWTON_STEPS = 50

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 Curve = Literal["slip", "slip_rate", "traction", "load", "state", "second_state", "event_slip"]
 LONG_HISTORY = 100_000
-"""Number of pieces from which on fewer values of each are looked at for a curve."""
+"""With more pieces than this, fewer values of each are evaluated for a curve."""
 TIME = Quantity("s", "time")
 CURVES: tuple[Curve, ...] = ("slip", "slip_rate", "traction", "load")
 """Quantities that every run can draw against time."""
@@ -129,7 +129,7 @@ class Readings(NamesAttributes):
 
     @property
     def breaks(self) -> Floats:
-        """The times (s) at which recorded pieces begin or end, including 0 and the end of the run."""
+        """The times (s) of the ends of recorded pieces, including 0 and the end of the run."""
         return self.history.breaks
 
     @property

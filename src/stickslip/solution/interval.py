@@ -19,7 +19,7 @@ MOST_FRONTS = 60
 
 
 def fronts_of(readings: Readings, start: float, end: float) -> list[Floats]:
-    """Return for each front between two times (s) the times at which it is at the contact, at the driver, and so on in turn.
+    """Return for each front between two times (s) the times when it is at the contact, at the driver, and so on in turn.
 
     Raises InputError for a block.
     """
@@ -50,7 +50,7 @@ def origins_of(readings: Readings, start: float, end: float) -> Floats:
 
 
 def bounces_of(time: float, end: float, round_trip: float, reflection: float) -> Floats:
-    """Return the times (s) at which a wave that leaves the contact at `time` is at the contact, at the driver, and so on in turn.
+    """Return the times (s) when a wave that leaves the contact at `time` is at the contact, at the driver, and so on in turn.
 
     The last is the first that is not before `end`, or earlier the last arrival at the driver of a wave not fainter than `FAINT`.
     """

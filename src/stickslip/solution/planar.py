@@ -37,7 +37,7 @@ FIELDS = {name: in_files(si_unit(name, "Pa")) for name in ("slip", "slip_rate", 
 MOTION = {"slip": "slip", "slip_rate": "rate", "traction": "traction", "heat": "heat"}
 """Name in the solver's `PlanarMotion` of each field of a frame."""
 LARGEST_MISS = 0.1
-"""Miss of the energy balance, as a share of the heat, from which a run is not called resolved."""
+"""A run is not called resolved if its energy balance misses by more than this share of the heat."""
 FEWEST_STEPS, QUICK = 100.0, 2e8
 """Steps in a round trip in which energies are followed, at least; and `cost` up to which a summary has them: about two seconds."""
 
@@ -152,7 +152,7 @@ class PlanarSolution(NamesAttributes):
 
     @property
     def threshold(self) -> float:
-        """The slip rate (m/s) above which a node slips in a pulse: the event rate of the problem in 1D."""
+        """A node slips in a pulse above this slip rate (m/s): the event rate of the problem in 1D."""
         return default_event_rate(self.slab.problem)
 
     @property
@@ -162,7 +162,7 @@ class PlanarSolution(NamesAttributes):
 
     @cached_property
     def rupture_times(self) -> Floats:
-        """The time (s) at which each node first slips faster than `threshold`; NaN where it never does."""
+        """The time (s) when each node first slips faster than `threshold`; NaN where it never does."""
         return rupture_times(self.times, self.slip_rate, self.threshold)
 
     @property

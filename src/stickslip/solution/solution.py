@@ -77,13 +77,13 @@ class Solution(Exports):
     status: Status
     history: History
     checkpoint: Checkpoint | None = None
-    """State from which the run, or a longer one, can continue (`stickslip.resume`)."""
+    """State for continuing the run, or a longer one (`stickslip.resume`)."""
     max_events: int | None = None
     """Number of slip events after which the run was told to stop."""
     creep_rtol: float | None = None
     """Tolerance of leaps over creep as the user gave it: None is automatic, 0 computes every round trip."""
     shortest_event: float | None = None
-    """Duration (s) below which events are lumped, as the user gave it: None is automatic, 0 lumps none."""
+    """Events shorter than this (s) are lumped, as the user gave it: None is automatic, 0 lumps none."""
     lumping_note: str = ""
     """One line on automatic lumping; empty if it did not begin."""
     rounding_note: str = ""
@@ -100,11 +100,11 @@ class Solution(Exports):
 
     @cached_property
     def events(self) -> pd.DataFrame:
-        """The slip events, one row each: maximal intervals in which |v| exceeds the default event rate (see `catalogue`)."""
+        """The slip events, one row each: maximal intervals with |v| above the default event rate (see `catalogue`)."""
         return self.catalogue()
 
     def catalogue(self, event_rate: float | str | WithUnit | None = None, *, energy: bool = False) -> pd.DataFrame:
-        """Return the slip events as a table, one row each: a slip event is a maximal interval in which |v| exceeds `event_rate`.
+        """Return the slip events as a table, one row each: a slip event is a maximal interval with |v| above `event_rate`.
 
         That is a slip rate in m/s, or a text with a unit; the default is 1e-6 S (range of mu) / Z, for the block 1e-6 S (range of
         mu) / sqrt(K m); 0 takes every slip. With `energy` the table has the energies of each event (J/m^2; block: J), which take
@@ -190,7 +190,7 @@ class Solution(Exports):
         return energy(self.history, t)
 
     def scenario(self, name: str = UNNAMED) -> Scenario:
-        """Return the scenario of which this is a run."""
+        """Return the scenario of this run."""
         return Scenario(
             problem=self.problem,
             duration=self.asked_duration,
@@ -266,7 +266,7 @@ class Solution(Exports):
 
     @cached_property
     def rule_influence(self) -> RuleInfluence:
-        """The shocks that the selection rule decided, and the time from which it had a choice."""
+        """The shocks that the selection rule decided, and the first time when it had a choice."""
         from stickslip.observables.rule_influence import rule_influence
 
         return rule_influence(self.history, lambda: self.curve("load"))

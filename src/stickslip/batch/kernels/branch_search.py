@@ -17,7 +17,7 @@ from stickslip.engine.state.layout import Floats, Integers
 from stickslip.engine.state.workspace import branches_in
 
 MOST_BRANCHES = 4
-"""Largest number of branches for which tables have room."""
+"""Room of tables for branches."""
 BELOW, ABOVE = 1e-8, 1e4
 """Between these multiples of the slowest and of the fastest scale of a contact lies the fold of a law that bends one way."""
 NEVER_RISES, TOO_MANY = 0, -1

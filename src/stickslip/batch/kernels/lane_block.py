@@ -39,9 +39,9 @@ class LaneBlock(MemoryRecord):
     slip_shift: float  # m: as in `LawPiece`
     disc_powers: Floats = floats_inside(TERMS)  # powers of the radius of the disc on which a step is proven, in units
     ratio: float  # 1: radius of that disc, in lengths of the step
-    shrunk: float  # 1: factor by which what the step misses is smaller on the step than on that disc
+    shrunk: float  # 1: ratio of the residual on the step to that on the disc
     disc: float  # 1: number of the disc that served the step before
-    share: float  # 1: bound of what the step misses, as a share (`contact_step.certificate`)
+    share: float  # 1: bound on the residual of the step, as a share (`contact_step.certificate`)
     rate: Floats = floats_inside(TERMS)  # m/s: magnitude of the slip rate over the step, as a polynomial on [0, 1]
     slope: Floats = floats_inside(TERMS)  # m/s: slope of that polynomial, with the sign that makes it start above zero
     unit: float  # length, in xi, in whose units the series is

@@ -53,7 +53,7 @@ COLUMNS = tuple(Reduced.places)
 FIRST_OF_EVENTS, LAST_OF_EVENTS = COLUMNS.index("peak_rate"), COLUMNS.index("recurrence_cv")
 """The columns from the first to the second of these describe slip events, and so do the numbers of events and pulses."""
 OF_EVENTS = frozenset({"events", "pulses", *COLUMNS[FIRST_OF_EVENTS : LAST_OF_EVENTS + 1]})
-"""Columns for which slip events must be found."""
+"""Columns that need slip events."""
 
 
 class FoundEventsInMemory(NamedTuple):

@@ -68,7 +68,7 @@ class Group(NamedTuple):
     setups: Setups
     wants_events: bool  # True if slip events must be found
     stop: Integers  # (1,): a flag that ends the whole batch
-    codes: Integers  # (members,): codes of what ended the runs
+    codes: Integers  # (members,): codes of the ends of the runs
     out: Floats  # (members, Reduced.total)
 
 
@@ -138,7 +138,7 @@ class Members(NamedTuple):
     stiffness: Floats
     turns: Turn  # points of the slip rate of a run that has ended
     events: EventTurns
-    room: int  # number of points for which there is room
+    room: int  # number of points that fit
     spare: Spare
 
 

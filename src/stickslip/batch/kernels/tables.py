@@ -24,10 +24,10 @@ class Setups(NamedTuple):
     irregular: Floats  # (members,): 1 if several slip rates solve the contact equation at some load, otherwise 0
     state: Floats  # at t = 0, the same for all members
     counts: Integers  # at t = 0, the same for all members
-    last_trip: Integers  # (members,): the round trip in which each run ends
-    last_phase: Floats  # (members,): the offset (s) in this round trip at which it ends
+    last_trip: Integers  # (members,): the last round trip of each run
+    last_phase: Floats  # (members,): the offset (s) of its end in this round trip
     duration: Floats  # (members,), s
-    threshold: Floats  # (members,): slip rate (m/s) above which slip is an event
+    threshold: Floats  # (members,): slip above this rate (m/s) is an event
     stiffness: Floats  # (members,): Pa/m for a slab, N/m for a block
     excess: Floats  # (members,): initial load minus static strength, Pa or N
 

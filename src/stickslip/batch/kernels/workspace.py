@@ -1,4 +1,4 @@
-"""The memory in which a thread of a batch works: lanes, each with a state and a history, which serve one member after another."""
+"""The memory of a thread of a batch: lanes, each with a state and a history, which serve one member after another."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from stickslip.trajectory.slip_events import EventTurns
 from stickslip.trajectory.turning_points import Known, Spare, Turn
 
 FIRST_CAPACITY, LARGEST_CAPACITY = 512, 32_768
-"""Numbers of pieces of history for which a lane has room at first, and at most; a member that needs more is run by itself."""
+"""Initial and largest room of a lane in pieces of history; a member that needs more is run by itself."""
 TURNS_PER_PIECE = 8
-"""Number of points of the slip rate (`trajectory.turning_points`) for which there is room at first, for each piece of history."""
+"""Initial room for points of the slip rate (`trajectory.turning_points`), for each piece of history."""
 LINE = 16
 """Numbers (of 8 bytes) in two cache lines, which processors fetch together. Addresses of lanes must be multiples of one line."""
 

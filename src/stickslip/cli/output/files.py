@@ -19,7 +19,7 @@ from stickslip.foundation.errors import InputError, warn
 CATALOGUES = (".csv", ".parquet", ".nc")
 """File suffixes of catalogues, those of `io.catalogue_rows`, which takes long to import."""
 LARGE = 10_000_000
-"""Size (bytes) from which a file is large enough for its size to be told."""
+"""The size of a file is reported from this size (bytes) on."""
 DPI = 200.0
 """Dots per inch of figures if the user does not say."""
 CROWDED = "constrained_layout not applied"

@@ -28,7 +28,7 @@ FIRST = 12
 DIGITS = 8, 5
 """Numbers of significant digits that are tried until a table fits the terminal; if none does, the table is divided."""
 MANY_EVENTS = 100_000
-"""Number of events above which a catalogue is not read again for its statistics."""
+"""A catalogue with more events than this is not read again for its statistics."""
 LATE = 1e4
 """Time (s) from which on times have a fixed number of decimals: significant digits alone would hide fractions of a second."""
 
@@ -52,7 +52,7 @@ def show_solution(scenario: Scenario, solution: Solution) -> None:
 
 
 def show_catalogue(scenario: Scenario, found: Catalogue) -> None:
-    """Print on standard output the summary of a run of which only slip events were kept."""
+    """Print on standard output the summary of a run that kept only slip events."""
     screen = titled(scenario)
     _say_how(screen, scenario, found.status, found.reached, (found.notes.get("creep", ""), found.notes.get("lumping", "")))
     say(screen, f"{found.events} slip event{'' if found.events == 1 else 's'}")
@@ -169,7 +169,7 @@ def _print(screen: Console, what: str, columns: Mapping[str, Sequence[Any]], uni
 
 
 def _readable(column: Sequence[Any], unit: str) -> tuple[str, Sequence[Any]]:
-    """Return the unit in which a column of numbers is short, and the column in that unit."""
+    """Return the unit that makes a column of numbers short, and the column in that unit."""
     sizes = [abs(value) for value in column if isinstance(value, float) and math.isfinite(value)]
     name, factor = readable_unit(unit, *sizes, plain=True)
     return (name, column) if factor == 1.0 else (name, [value / factor for value in column])

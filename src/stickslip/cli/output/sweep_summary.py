@@ -64,7 +64,7 @@ def _on_starts(dataset: xr.Dataset, keys: Sequence[str]) -> list[str]:
 
 
 MASS = "body.contact_mass"
-"""Parameter under which some laws start in another way at 0."""
+"""Parameter that makes some laws start in another way if it is 0."""
 
 
 def quantities_of(dataset: xr.Dataset) -> list[str]:

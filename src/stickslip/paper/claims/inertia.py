@@ -18,7 +18,7 @@ from stickslip.solution.solution import Solution
 LONG = YEAR
 """A rest of at least this time (s) counts as long: one year, against events of seconds."""
 MASS_FACTORS = (1.0, 1e-2, 1e-4, 1e-6)
-"""Factors by which the mass of the block is multiplied."""
+"""Factors on the mass of the block."""
 CONTACT_MASSES = (1e6, 1e5, 1e4)
 """Masses on the slab's contact, in kg/m^2; the slab itself has rho h = 2.8e7."""
 
@@ -76,7 +76,7 @@ def rise_time(solution: Solution) -> float:
 
 
 def _reaches(solution: Solution, rate: float, start: float, end: float) -> float:
-    """Return the first time (s) between `start` and `end` at which the slip rate reaches `rate` (m/s)."""
+    """Return the first time (s) between `start` and `end` when the slip rate reaches `rate` (m/s)."""
     time = np.linspace(start, end, 257)
     first = int(np.argmax(solution.slip_rate(time) >= rate))
     if first == 0:

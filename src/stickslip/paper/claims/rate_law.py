@@ -15,11 +15,11 @@ from stickslip.problem.problem import Problem
 from stickslip.solution.solution import Solution
 
 SCAN = (1.0001, 1.001, 1.01, 1.1, 1.5, 2.0, 3.0, 5.0, 10.0, 100.0)
-"""Multiples of the critical alpha at which claim 13 is measured, in addition to alpha_c + 1e-6 s/m."""
+"""Claim 13 is measured at these multiples of the critical alpha, and at alpha_c + 1e-6 s/m."""
 SECOND_EVENT_BY = 93_890.0
-"""Time (s) by which the slab just above the critical alpha slips again; soon after, it has events in every round trip."""
+"""The slab just above the critical alpha slips again within this time (s); soon after, it has events in every round trip."""
 LIKE_COULOMB = 0.9
-"""Share of the slip rate under Coulomb's law from which on the slab counts as behaving as with that law."""
+"""The slab counts as behaving as under Coulomb's law if its slip rate is at least this share of that under Coulomb's law."""
 
 
 @claim(5, "Under the rate law with α = 1 the block's slip rate is continuous.")

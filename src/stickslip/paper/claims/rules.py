@@ -115,7 +115,7 @@ def shocks_for_every_rule(runs: Runs) -> ClaimVerdict:
 
 @claim(12, "The rule of perfect delay is no simple energy criterion: Maxwell's rule gives another answer.")
 def not_an_energy_criterion(runs: Runs) -> ClaimVerdict:
-    """Measure the time of the second event, and the load at which stick ends, under each rule."""
+    """Measure the time of the second event, and the load that ends stick, under each rule."""
     solutions = {rule: runs.case(f"second-event-{rule}") for rule in SELECTION_RULES}
     waits = {rule: waiting_time(s) / YEAR for rule, s in solutions.items()}
     firsts = {rule: float(s.events.slip.iloc[0]) for rule, s in solutions.items()}
@@ -144,7 +144,7 @@ def waiting_time(solution: Solution) -> float:
 
 
 def stick_ends(case: Problem) -> float:
-    """Return the load (Pa) at which the rule leaves stick as the load slowly rises."""
+    """Return the load (Pa) that makes the rule leave stick as it slowly rises."""
     return next(jump.load for jump in uniqueness_of(case).jumps if jump.direction == "up" and jump.rate_before == 0.0)
 
 

@@ -192,7 +192,7 @@ def _response(runs: Runs, case: Problem, share: float) -> float:
 
 @claim(16, "The initial data are close to instability.")
 def close_to_instability(_: Runs) -> ClaimVerdict:
-    """Measure the distance from the initial slip to the slip at which friction weakens as fast as the slab unloads."""
+    """Measure the distance from the initial slip to the slip where friction weakens as fast as the slab unloads."""
     cases = {reading: problem(name) for reading, name in READINGS.items()}
     missing = {r: unstable_from(case) - case.initial_slip for r, case in cases.items()}
     ratio = {r: _weakening(case) / case.body.stiffness for r, case in cases.items()}
@@ -216,7 +216,7 @@ def close_to_instability(_: Runs) -> ClaimVerdict:
 
 
 def unstable_from(case: Problem) -> float:
-    """Return the slip (m) after the first peak of friction at which S |mu'| = G/h."""
+    """Return the slip (m) after the first peak of friction where S |mu'| = G/h."""
     body, law = case.body, typed(case.friction, SinusoidalSlip)
     return (math.pi / 2.0 + math.asin(body.stiffness / _steepest(case))) / law.wavenumber
 

@@ -34,7 +34,7 @@ class MeasuredNumber:
 
 @dataclass(frozen=True)
 class ClaimVerdict:
-    """The outcome for one claim, with the reading in which it holds, an explanation and the measured numbers."""
+    """The outcome for one claim, with the reading that makes it hold, an explanation and the measured numbers."""
 
     outcome: Outcome
     reading: str
