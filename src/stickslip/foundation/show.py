@@ -1,4 +1,4 @@
-"""Show numbers with units, tables and dataclasses to people: on the terminal, in notebooks and in what `repr` shows."""
+"""Show numbers with units, tables and dataclasses to people: on the terminal, in notebooks and in `repr`."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _TIMES = ((YEAR, "years"), (86_400.0, "days"), (3_600.0, "hours"), (60.0, "min")
 DIGITS = 6
 """Number of significant digits of `brief`."""
 UNHANDY = 2
-"""Number of characters by which a text may be longer if its number then lies between 0.1 and 1000."""
+"""A text may be this many characters longer if its number then lies between 0.1 and 1000."""
 
 
 def number(value: float, digits: int = 8) -> str:
@@ -44,7 +44,7 @@ def with_unit(value: float, unit: str) -> str:
 
 
 def brief(value: float, unit: str, digits: int = DIGITS) -> str:
-    """Format a quantity, with 6 digits by default, in the unit in which it is short: "10 km", "0.05 m/year", "100 MPa".
+    """Format a quantity, with 6 digits by default, in the unit that makes it short: "10 km", "0.05 m/year", "100 MPa".
 
     Unlike `with_unit` it gives a text that can be given for the quantity again; "1/m" is then written "/m".
     """
