@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import gc
+import hashlib
 import os
 import signal
 from collections import Counter
 from collections.abc import Generator, Mapping
+from pathlib import Path
 
+import llvmlite.binding as llvm
 import numpy as np
 import pytest
 from hypothesis import settings
@@ -22,6 +25,17 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as in jobs that a shell
     signal.signal(signal.SIGINT, signal.default_int_handler)
 settings.register_profile("stickslip", deadline=None)  # a slow machine is no failure
 settings.load_profile("stickslip")
+
+# JAX, which planar slabs need, compiles alike functions once for all tests, processes and sessions, and in half the time: functions
+# that run for milliseconds need not be optimised. `tests/planar/test_planar_solver.py` compares the numbers of optimised code.
+# Machine code is kept apart for each kind of processor. JAX reads these settings when it is imported, which is after this.
+PROCESSOR = hashlib.sha256(f"{llvm.get_host_cpu_name()} {llvm.get_host_cpu_features().flatten()}".encode()).hexdigest()
+os.environ |= {
+    "JAX_COMPILATION_CACHE_DIR": str(Path(__file__).parents[1] / ".pytest_cache" / f"jax-{PROCESSOR[:8]}"),
+    "JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS": "0",
+    "JAX_PERSISTENT_CACHE_MIN_ENTRY_SIZE_BYTES": "-1",
+    "JAX_DISABLE_MOST_OPTIMIZATIONS": "1",
+}
 
 
 @pytest.hookimpl(wrapper=True)

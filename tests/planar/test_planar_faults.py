@@ -42,6 +42,7 @@ def test_rate_and_state_friction_far_below_the_grid_is_not_finite_and_not_resolv
     assert ss.resume(tmp_path / "run.zarr").status.name == ss.open_solution(tmp_path / "run.zarr").status.name == "not finite"
 
 
+@pytest.mark.usefixtures("compiled_anew")
 def test_a_search_that_does_not_find_the_slip_rate_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     slab = state_patch()
     found = ss.simulate(slab, 3.0, frames=16)
@@ -54,6 +55,7 @@ def test_a_search_that_does_not_find_the_slip_rate_is_noticed(monkeypatch: pytes
     assert missed.residual > 1e-6
 
 
+@pytest.mark.usefixtures("compiled_anew")
 def test_an_unstable_run_is_noticed_before_its_numbers_overflow(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("stickslip.planar.slab.WIDEST_STEP", 10.0)
     run = ss.simulate(patch(nodes=128, length=2e4, courant=2.0), 12.0, frames=100)

@@ -245,6 +245,7 @@ print(json.dumps([len(jax.devices()), found, sorted(set(re.findall("all-[a-z-]+[
 
 def started(devices: int, *arguments: str) -> subprocess.Popen[str]:
     flags = {"XLA_FLAGS": f"--xla_force_host_platform_device_count={devices}", "JAX_PLATFORMS": "cpu"}
+    flags["JAX_DISABLE_MOST_OPTIMIZATIONS"] = "0"  # as users have it
     command = [sys.executable, "-c", SEVERAL, *arguments]
     return subprocess.Popen(command, env=os.environ | flags, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
