@@ -256,32 +256,27 @@ def test_thickness_and_impedance_of_a_laboratory_slab_come_out_of_one_slip_event
     assert study.values["friction.static"] == pytest.approx(0.6, rel=1e-3)
 
 
-def test_posterior_samples_have_the_intervals_of_the_curvature() -> None:
+def test_posterior_samples_have_the_intervals_of_the_curvature_and_more_of_them_go_on_where_the_walk_ended() -> None:
     pytest.importorskip("emcee")
-    free = ("friction.a", "friction.reference")
-    study = inferred(free=free, samples=800)
+    few = inferred(free=("friction.a", "friction.reference"), samples=160)
+    study = few.more(800)
+    assert few.samples is not None
     assert study.samples is not None
     assert len(study.samples) == 800
+    assert study.samples[:160].equals(few.samples)
     spread = study.samples.std().to_numpy()
     assert spread == pytest.approx(study.table.uncertainty.to_numpy(), rel=0.3)
-    assert set(study.table.source) == {"samples"}
+    assert set(study.table.source) == set(few.table.source) == {"samples"}
+    assert few.about_samples[0].startswith("160 samples")
     assert "800 samples" in study.about_samples[0]
     assert len(study.plot().axes) == 4
-
-
-def test_more_samples_go_on_where_the_walk_ended() -> None:
-    pytest.importorskip("emcee")
-    study = inferred(free=("friction.a", "friction.reference"), samples=160)
-    longer = study.more(320)
-    assert longer.samples is not None
-    assert study.samples is not None
-    assert len(longer.samples) == 320
-    assert longer.samples[:160].equals(study.samples)
-    assert longer.about_samples[0].startswith("320 samples")
     with pytest.raises(ss.InputError, match="more: there are 160 samples already, got 160"):
-        study.more(160)
+        few.more(160)
+
+
+def test_more_samples_than_none_are_refused(found: Inference) -> None:
     with pytest.raises(ss.InputError, match="more: no samples were drawn: ask `infer` for some first, with samples="):
-        inferred().more(100)
+        found.more(100)
 
 
 def drawn_until(call: int, count: int, before: Any = None) -> Any:

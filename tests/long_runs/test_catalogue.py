@@ -116,14 +116,15 @@ def test_energies_survive_a_forgotten_history(name: str, tmp_path: Path, monkeyp
     """As those of the whole run, and taken up too: relative 1e-12 of the largest, for sums run over other pieces."""
     monkeypatch.setattr(module, "CAPACITY", 64)
     problem, duration = RUNS[name]
-    whole = ss.simulate(problem, duration).catalogue(energy=True)
+    run = ss.simulate(problem, duration)
+    whole = run.catalogue(energy=True)
     ss.catalogue(problem, 0.7 * duration, tmp_path / "events.csv", energy=True)
     found = ss.resume(tmp_path / "events.checkpoint.nc", duration)
     assert list(found.columns) == list(whole.columns)
     for energy in ENERGY_COLUMNS:
         np.testing.assert_allclose(found[energy], whole[energy], rtol=0.0, atol=1e-12 * whole.released.abs().max(), err_msg=energy)
     if isinstance(problem.body, ss.ElasticSlab):
-        assert found.attrs["trapped"] == ss.simulate(problem, duration).trapped_note
+        assert found.attrs["trapped"] == run.trapped_note
     finished = found[found.end.notna()]
     assert (finished.balance.abs() < 1e-9 * finished.released.abs().max()).all()
 
