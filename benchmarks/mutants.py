@@ -10,7 +10,10 @@ from pathlib import Path
 import numpy as np
 
 SOURCE = Path("src/stickslip")
-PACKAGES = ("contact", "observables", "engine", "engine_input", "trajectory", "creep", "solution", "run")
+CORE = ("contact", "observables", "engine", "engine_input", "trajectory", "creep", "solution", "run")
+AROUND = ("io", "sweeps", "scenarios", "inference", "cli", "explorer/model", "planar", "schemes")
+PACKAGES = CORE + AROUND
+"""Folders of the package from which mutants are drawn: the core, which decides what a run gives, and the rooms around it."""
 
 
 @dataclass(frozen=True)
@@ -30,8 +33,8 @@ class Mutant:
 
     @property
     def package(self) -> str:
-        """The folder that the file lies in."""
-        return self.path.split("/")[0]
+        """The folder of PACKAGES that the file lies in."""
+        return next((one for one in PACKAGES if self.path.startswith(one + "/")), self.path.split("/")[0])
 
 
 @dataclass(frozen=True)
@@ -128,7 +131,7 @@ def named(root: Path) -> list[Mutant]:
 def drawn(root: Path, count: int, seed: int, packages: tuple[str, ...] = PACKAGES) -> list[Mutant]:
     """Random mutants of the packages' files, each package as often as any other."""
     rng = np.random.default_rng(seed)
-    choices = {package: list(_of_package(root, package)) for package in packages}
+    choices = {package: list(of_package(root, package)) for package in packages}
     orders = {package: iter(rng.permutation(len(found)).tolist()) for package, found in choices.items()}
     result = []
     for n in range(count):
@@ -139,7 +142,8 @@ def drawn(root: Path, count: int, seed: int, packages: tuple[str, ...] = PACKAGE
     return result
 
 
-def _of_package(root: Path, package: str) -> Iterator[Mutant]:
+def of_package(root: Path, package: str) -> Iterator[Mutant]:
+    """Every mutant of a package's files."""
     for path in sorted((root / SOURCE / package).rglob("*.py")):
         yield from _of_file(path, str(path.relative_to(root / SOURCE)))
 

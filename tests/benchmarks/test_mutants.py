@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import ast
+import json
 from pathlib import Path
 
 import pytest
-from benchmarks.mutants import NAMED, SOURCE, drawn, named
+from benchmarks.mutants import NAMED, PACKAGES, SOURCE, Mutant, drawn, named
+from benchmarks.reached import Reached
 from benchmarks.soak_checks import run
 from benchmarks.soak_problems import draw
 
@@ -27,6 +29,42 @@ def test_random_mutants_parse_and_differ_and_are_reproducible() -> None:
         text = (ROOT / SOURCE / mutant.path).read_bytes()
         assert mutant.applied(text) != text
         ast.parse(mutant.applied(text))
+
+
+def test_each_package_has_mutants() -> None:
+    assert {mutant.package for mutant in drawn(ROOT, len(PACKAGES), seed=1)} == set(PACKAGES)
+
+
+SCALES = """LONGEST = 3
+def first(
+    text, many=7
+):
+    if text:
+        return (text +
+            text[:LONGEST])
+    return many
+"""
+REACH = [("first[a]", 0.1, [5, 6, 7]), ("first[b]", 0.2, [5, 6, 7]), ("second", 0.3, [5, 6]), ("third", 0.05, [5, 8])]
+
+
+@pytest.mark.parametrize(
+    ("change", "tests"),
+    [
+        ("[:", ["first[a]", "second", "first[b]"]),
+        ("text:", ["third", "first[a]", "second", "first[b]"]),
+        ("3", ["first[a]", "first[b]"]),
+        ("7", ["third", "first[a]", "second", "first[b]"]),
+        ("return many", ["third"]),
+    ],
+    ids=["second line of a statement", "condition", "constant", "default", "statement"],
+)
+def test_tests_of_a_mutant_reach_it_each_function_first(change: str, tests: list[str], tmp_path: Path) -> None:
+    (tmp_path / SOURCE).mkdir(parents=True)
+    (tmp_path / SOURCE / "a.py").write_text(SCALES)
+    found = tmp_path / "reach.jsonl"
+    found.write_text("\n".join(json.dumps({"test": t, "seconds": s, "lines": {"a.py": lines}}) for t, s, lines in REACH))
+    begin = SCALES.index(change)
+    assert Reached(tmp_path, found).of(Mutant("", "a.py", begin, begin + 1, ""), most=4) == tests
 
 
 def test_soak_draws_every_kind_reproducibly() -> None:
