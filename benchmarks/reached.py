@@ -29,12 +29,17 @@ class Reached:
 
     def of(self, mutant: Mutant, most: int) -> list[str]:
         """Up to `most` tests that reach the mutant, one of each function before a second of any, the quick ones first."""
-        tests = set().union(*(self.tests.get(place, set()) for place in self.places(mutant)))
+        tests = self._at(self.places(mutant))
+        if not tests:  # what runs in another process, or is used through another name: all tests that reach the file
+            tests = self._at({(path, number) for path, number in self.tests if path == mutant.path})
         cases: dict[str, list[str]] = defaultdict(list)
         for test in sorted(tests, key=self.seconds.__getitem__):
             cases[test.partition("[")[0]].append(test)
         ranks = {test: (rank, self.seconds[test]) for group in cases.values() for rank, test in enumerate(group)}
         return sorted(ranks, key=ranks.__getitem__)[:most]
+
+    def _at(self, places: set[tuple[str, int]]) -> set[str]:
+        return set().union(*(self.tests.get(place, set()) for place in places))
 
     def places(self, mutant: Mutant) -> set[tuple[str, int]]:
         """Files and lines of the changed statement, or, where it runs at import, of all that uses what it defines."""

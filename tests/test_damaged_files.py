@@ -18,7 +18,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.cli.commands.show import stored
-from stickslip.engine.state.layout import Counts, State
+from stickslip.engine.state.layout import NEVER, Counts, State
 from stickslip.foundation import atomic_write, netcdf_file
 from stickslip.foundation.atomic_write import DRAFT, STALE, held, write_atomically
 from stickslip.io.netcdf import save_checkpoint
@@ -112,6 +112,20 @@ def check_edit(run: ss.Solution, tmp_path: Path, edit: Callable[[Checkpoint], ob
     path = tmp_path / "run.nc"
     save_checkpoint(replace(run, checkpoint=checkpoint), path)
     refused(lambda: ss.resume(path, 30 * ss.YEAR), "run.nc: not a state that a run can have: ", "out of range")
+
+
+@pytest.mark.parametrize("trips", [{0: -1}, {1: 5, 2: 3}, {-1: NEVER}], ids=["negative", "descend", "beyond all"])
+def test_a_row_of_a_piece_out_of_range_is_refused(run: ss.Solution, tmp_path: Path, trips: dict[int, int]) -> None:
+    path = run.to_netcdf(tmp_path / "run.nc")
+
+    def edit(file: h5py.File) -> None:
+        table = file["history_trip"][...]
+        for place, trip in trips.items():
+            table[place] = trip
+        file["history_trip"][...] = table
+
+    resealed(path, edit)
+    refused(lambda: ss.open_solution(path), "run.nc: not a state that a run can have: row of a piece is out of range")
 
 
 def test_tables_that_claim_more_than_the_file_holds_are_not_read(run: ss.Solution, tmp_path: Path) -> None:

@@ -51,6 +51,10 @@ COMMANDS = [
 ]
 
 
+def test_answers_of_a_block_and_a_slab_may_differ_by_a_tenth(command):
+    assert re.search(r"--within .*differ.*\[default: 0\.1\]", " ".join(command("analogy", "--help").out.split()))
+
+
 @pytest.mark.parametrize("name", COMMANDS)
 def test_help_says_what_it_does_with_an_example(command, name):
     shown = command(name, "--help")

@@ -13,7 +13,7 @@ import stickslip as ss
 from stickslip.cli.app import COMMANDS
 from stickslip.cli.options import complete_scenario, complete_vary
 from stickslip.run.run_loop import Interrupts
-from stickslip.scenarios import read_scenario
+from stickslip.scenarios import library, read_scenario
 from tests.cli.conftest import Outcome
 
 Command = Callable[..., Outcome]
@@ -65,6 +65,7 @@ def test_check_says_what_it_means_and_what_is_resolved(command: Command) -> None
     [
         ("contact.nodes=128", "the process zone has 3.88 nodes, not resolved: 5 are wanted, as with 166 nodes along y"),
         ("contact.patches[0].initial.load=70 MPa", "no node is loaded to its strength before the run ends: nothing will slip"),
+        ("contact.patches[0].initial.load=70 MPa", "0 of 256 nodes slip at once, 25 are locked; the others are 0 Pa or more below"),
         ("contact.replicas=true", "the contact repeats itself every 40 km, and waves of its replicas arrive"),
         ("run.duration=3 s", "the run ends before the first echo returns at R = 5.71429 s"),
         ("body.normal_stress=1 Pa", "the normal stress is 1 Pa"),
@@ -72,6 +73,20 @@ def test_check_says_what_it_means_and_what_is_resolved(command: Command) -> None
 )
 def test_check_asks_about_numbers(command: Command, change: str, warning: str) -> None:
     assert warning in " ".join(command("check", "planar-patch", "--set", change).out.split())
+
+
+@pytest.mark.parametrize(
+    ("outside", "warning"),
+    [
+        ("friction.static = 30", "the static friction coefficient is 30"),
+        ('initial.load = "60 MPa"', "waves of its replicas arrive"),
+    ],
+    ids=["strongest place", "two loads"],
+)
+def test_check_looks_at_every_place(command: Command, tmp_path: Path, outside: str, warning: str) -> None:
+    text = library.text("planar-patch").replace("locked = true", outside).replace("replicas = false", "replicas = true")
+    (tmp_path / "open.toml").write_text(text)
+    assert warning in " ".join(command("check", "open.toml").out.split())
 
 
 @pytest.mark.parametrize("name", [name for name in COMMANDS if name not in WITHOUT_SCENARIO | WITH_CONTACT])

@@ -34,6 +34,7 @@ def test_laws_are_compared_and_the_best_comes_first(command, points):
     assert "coulomb" in dict(listed)
     assert "linear-slip-weakening" not in dict(listed)
     assert [float(above) for _, above in listed] == sorted(float(above) for _, above in listed)
+    assert "(and 0 more)" not in " ".join(shown.out.split())
 
 
 def test_parameters_are_shown_with_uncertainty_and_unit(command, points):

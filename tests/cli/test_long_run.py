@@ -32,6 +32,11 @@ def test_a_run_continues(command, tmp_path: Path):
     assert ss.open_solution(tmp_path / "longer.nc").duration == 60 * ss.YEAR
 
 
+@pytest.mark.parametrize(("events", "said"), [("1", "\n1 slip event\n"), ("2", "\n2 slip events\n")])
+def test_the_summary_of_a_catalogue_counts_its_events(command, events: str, said: str):
+    assert said in command("run", "cycles-block", "--events", events, "--catalogue", "events.csv").out
+
+
 def test_a_catalogue_continues(command, tmp_path: Path):
     shown = command("run", "cycles-block", "--duration", "100 years", "--catalogue", "events.csv")
     assert shown.code == 0

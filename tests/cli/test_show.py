@@ -1,5 +1,6 @@
 """`stickslip show` tells what is in a file of results, as the run that made it did."""
 
+import re
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -11,6 +12,7 @@ import pytest
 import stickslip as ss
 from stickslip import __version__
 from stickslip.cli.options import complete_result
+from stickslip.cli.output.summary import statistics
 from stickslip.scenarios.scenario import load_scenario
 from tests.cli.conftest import Outcome
 
@@ -147,6 +149,12 @@ def test_a_catalogue_of_another_version_may_lack_columns(command: Command, resul
     assert "pulses" not in shown.out
 
 
+@pytest.mark.parametrize(("slips", "percent"), [([1.0, 2.0, 3.0], "50"), ([2.0, 2.0, 5.0], "58")])
+def test_the_scatter_of_slips_is_a_share_of_their_mean(slips: list[float], percent: str) -> None:
+    (line,) = statistics({"recurrence": [np.nan] * 3, "slip": slips, "start": [1.0, 2.0, 3.0], "end": [1.5, 2.5, 3.5]})
+    assert re.fullmatch(rf"slip: mean [23] m, standard deviation {percent} % of it\n", line)
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
@@ -163,6 +171,7 @@ def test_a_catalogue_of_another_version_may_lack_columns(command: Command, resul
         (["run.nc", "--path", "a.png"], "show: --path needs a slab without contact mass"),
         (["run.nc", "--figure", "a.png", "--energy-figure", "./a.png"], "--energy-figure a.png: is already the file of --figure"),
         (["events.csv", "--figure", "a.png"], "events.csv: a catalogue keeps slip events only, no history: leave out --figure"),
+        (["run.nc", "--quantity", "slip"], "show: --quantity chooses what is drawn of a sweep, and run.nc is not a sweep"),
         (["map.zarr", "--energy-figure", "a.png"], "map.zarr: the results of a sweep have no --energy-figure: --figure draws"),
     ],
 )

@@ -2,6 +2,7 @@
 
 import errno
 import os
+import re
 from pathlib import Path
 
 import pytest
@@ -9,6 +10,7 @@ import xarray as xr
 from typer import Context
 
 from stickslip.cli.options import complete_axis, complete_design, complete_quantity, complete_series, complete_vary
+from stickslip.scenarios.stability import OTHER_START
 from stickslip.sweeps.design.quantities import QUANTITIES
 from stickslip.sweeps.sweep import SweepProgress
 
@@ -60,6 +62,21 @@ def test_sweep_draws_samples(command):
     shown = command("sweep", "fig6-slab", "-v", "alpha=0.1..1:log", "--design", "lhs", "-m", "6", "--seed", "3")
     assert shown.code == 0
     assert "6 members drawn as a Latin hypercube over friction.alpha" in shown.out
+
+
+def test_numbers_of_the_summary_are_in_the_unit_above_them(command):
+    out = command("sweep", "fig6-slab", "-v", "alpha=1", "-q", "first_traction_drop", "-q", "slip", "--out", "one.zarr").out
+    with xr.open_zarr("one.zarr") as found:
+        drop = float(found.first_traction_drop.values.item())
+    assert f"{drop / 1e6:.6g}" in re.search(r"^first_traction_drop .*MPa.*$", out, re.MULTILINE)[0]
+
+
+@pytest.mark.parametrize(("masses", "told"), [("0,1e6", True), ("1e5,1e6", False)])
+def test_a_map_says_where_members_without_mass_start_in_another_way(command, masses: str, told: bool):
+    shown = command(
+        "sweep", "rate-and-state-slab", "-v", f"contact_mass={masses}", "--set", "duration=0.1 s", "-q", "slip", "--out", "m.zarr"
+    )
+    assert (shown.code, OTHER_START[:40] in " ".join(shown.out.split())) == (0, told)
 
 
 def test_a_dry_run_writes_nothing(command, tmp_path: Path):

@@ -53,6 +53,19 @@ def test_a_link_is_not_followed(tmp_path: Path) -> None:
     assert (tmp_path / "victim.csv").read_text() == "precious\n"
 
 
+def test_another_suffix_is_refused_with_all_that_there_are(tmp_path: Path) -> None:
+    with pytest.raises(ss.InputError, match=r"events\.txt: the name must end in \.csv, \.parquet or \.nc$"):
+        ss.catalogue(PROBLEM, DURATION, tmp_path / "events.txt")
+
+
+def test_a_run_stopped_before_its_first_event_continues_without_a_file(tmp_path: Path) -> None:
+    rows = Rows(tmp_path / "events.csv")
+    rows.take_up(0, 0, rows.digest(0))
+    assert (rows.size, rows.growing.exists()) == (0, False)
+    with pytest.raises(ss.InputError, match="has lost rows that the checkpoint counts on"):
+        rows.take_up(1, 1, rows.digest(0))
+
+
 @pytest.mark.parametrize("wrong", [{"told": -1}, {"bytes": 0.5}, {"first": "x"}, {"event_rate": float("nan")}, {"energies": 2}])
 def test_numbers_of_a_checkpoint_are_checked(tmp_path: Path, wrong: dict[str, object]) -> None:
     checkpoint = began(tmp_path)

@@ -411,6 +411,13 @@ def test_a_state_that_counts_other_frames_is_refused(store: Path) -> None:
     refused(lambda: ss.resume(store), "it has 15 frames, its state.nc says 99")
 
 
+def test_a_run_stopped_after_its_first_frame_can_continue(store: Path) -> None:
+    state = netcdf_file.read(store / "state.nc")
+    netcdf_file.write(state.assign_attrs(written=1, sent=1), store / "state.nc")
+    with planar_store.PlanarStore.at(store) as found:
+        assert (found.written, found.sent) == (1, 1)
+
+
 def test_python_without_assertions_is_refused_in_one_line(store: Path) -> None:
     code = "import stickslip as ss\ntry: ss.open_solution('run.zarr')\nexcept ss.InputError as error: print(error)"
     path = str(Path(ss.__file__).parents[1])

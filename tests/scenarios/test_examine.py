@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from stickslip import ElasticSlab, Problem, SpringBlock
 from stickslip.contact.rules.loop import resolved
-from stickslip.friction import LAWS, FromTable, RateAndState, SinusoidalSlip, TwoStateRateAndState
+from stickslip.friction import LAWS, FromTable, HyperbolicRate, RateAndState, SinusoidalSlip, TwoStateRateAndState
 from stickslip.reference.rate_and_state import SteadySliding
 from stickslip.scenarios import library
-from stickslip.scenarios.examine import examine
+from stickslip.scenarios.examine import Fact, examine
 from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
 from stickslip.scenarios.templates import template
 
@@ -166,8 +166,44 @@ def test_every_law_that_weakens_with_rate_has_critical_values() -> None:
             assert fact.meaning.startswith("here ")
 
 
+@pytest.mark.parametrize(("alpha", "side"), [(0.05, "below"), (0.5, "above"), (None, "at")])
+def test_each_critical_value_says_on_which_side_of_it_the_problem_is(alpha: float | None, side: str) -> None:
+    """alpha_c = Z / (S (mu_s - mu_d)) = 0.196 s/m, and the critical stress is that for which alpha would be it."""
+
+    def critical(alpha: float) -> dict[str, Fact]:
+        law = HyperbolicRate(static=0.8, dynamic=0.3, alpha=alpha)
+        return {fact.name: fact for fact in examine(Scenario(Problem(SLAB, law, initial_excess=0.0), 10.0)).critical}
+
+    found = critical(alpha or critical(0.5)["friction.alpha"].value)
+    assert found["friction.alpha"].value == pytest.approx(0.196, rel=1e-9, abs=0)
+    assert found["friction.alpha"].meaning.startswith(f"here {side} it, at ")
+    assert "proven" not in found["friction.alpha"].meaning
+    if alpha is not None:
+        assert found["body.normal_stress"].meaning.startswith(f"here {side} it, at ")
+
+
 def warnings(scenario: Scenario) -> str:
     return "\n".join(examine(scenario).warnings)
+
+
+@pytest.mark.parametrize(("start", "slips"), [({}, False), ({"initial_rate": 0.1}, True)], ids=["at rest", "moving"])
+def test_only_a_contact_at_rest_can_wait_in_vain(start: dict[str, float], slips: bool) -> None:
+    problem = Problem(SpringBlock(2.8e12, 3.43e13, 1e14), LAW, pull_rate=1e-9, initial_excess=-1e12, **start)
+    assert ("nothing will slip" in warnings(Scenario(problem, 1.0))) is not slips
+
+
+@pytest.mark.parametrize(("given", "shown"), [({}, True), ({"creep_rtol": 1e-4}, True), ({"creep_rtol": 0.0}, False)])
+def test_an_option_that_is_off_is_not_listed(given: dict[str, float], shown: bool) -> None:
+    facts = examine(load_scenario("fig6-slab").with_values({f"run.{name}": one for name, one in given.items()})).given["run"]
+    assert ("creep_rtol" in {fact.name for fact in facts}) is shown
+
+
+@pytest.mark.parametrize(("name", "over"), [("fig6-slab", "steady sliding after 200 round trips of it"), ("creep", "creep after")])
+def test_the_automatic_tolerance_says_what_it_leaps_over(name: str, over: str) -> None:
+    problem = Problem(SLAB, SinusoidalSlip(1.0, 0.5, 5.0), pull_rate=1e-9, initial_excess=0.0)
+    found = examine(load_scenario(name) if name != "creep" else Scenario(problem, 10.0)).given["run"]
+    (automatic,) = (fact.meaning for fact in found if fact.name == "creep_rtol")
+    assert over in automatic
 
 
 def test_examine_warns_of_what_is_doubtful() -> None:

@@ -118,6 +118,7 @@ def test_series_are_read_as_records_are(tmp_path: Path, form: str) -> None:
     file = tmp_path / f"{NAME}.csv"
     np.savetxt(file, columns() * factors, delimiter=separator, header=header, comments="", fmt="%.17g", encoding="utf-8-sig")
     read = read_series(file)
+    assert (read.name, read.cells) == (NAME, 0)
     for name, exact in (("time", right().time), ("slip", right().slip), ("rate", right().rate), ("traction", right().traction)):
         np.testing.assert_allclose(getattr(read, name), exact, rtol=1e-13, atol=1e-300)
 

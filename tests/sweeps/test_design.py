@@ -273,6 +273,7 @@ BAD_DESIGNS: list[tuple[dict[str, Any], str]] = [
     ({"vary": {"alpha": [[1.0, 2.0], [3.0, 4.0]]}}, "friction.alpha must be a number in s/m"),
     ({"vary": {"alpha": np.array([-1.0, 1.0])}}, "friction.alpha must be at least 0 s/m, got -1"),
     ({"vary": {"alpha": np.array([1.0, 1.0])}}, "friction.alpha has the value 1.0 twice"),
+    ({"vary": {"alpha": [3.0, 1.0, 2.0, 3.0]}}, "friction.alpha has the value 3.0 twice"),
     ({"vary": {"alpha": [1.0, 2.0] * UREG.km}}, "sweep: vary: friction.alpha: 'kilometer' does not convert to s/m"),
     ({"vary": {"alpha": [1.0, 2.0 * UREG.km]}}, "friction.alpha: 'kilometer' does not convert to s/m"),
     ({"vary": {"run.selection": [1.0] * UREG.km}}, "run.selection takes words, got a quantity in kilometer"),

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 import pickle
 from dataclasses import replace
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -14,8 +15,10 @@ import stickslip as ss
 from stickslip.observables.energy.balance import energy
 from stickslip.scenarios.scenario import load_scenario, read_scenario
 from stickslip.sweeps.design.quantities import QUANTITIES, quantities_named
-from stickslip.sweeps.execution.chunk import BAD_PARAMETERS, ERROR, MEANINGS, Work, one_by_one, run_chunk
+from stickslip.sweeps.execution.chunk import BAD_PARAMETERS, ERROR, MEANINGS, NOT_RUN, ChunkResult, Work, one_by_one, run_chunk
 from stickslip.sweeps.execution.plan import make_plan
+from stickslip.sweeps.results.store import ResultStore
+from stickslip.sweeps.sweep import SweepProgress, Tally
 from tests.batch.cases import sticking
 
 PULSES = load_scenario("fig5-slab-reconstructed")
@@ -132,6 +135,13 @@ def test_quantities_are_those_of_the_solution(name: str) -> None:
     assert batch.sticking.item() == pytest.approx(of_run["sticking"], rel=1e-9, abs=1e-12)
 
 
+def test_two_times_between_events_have_a_scatter_and_one_has_none() -> None:
+    scenario = load_scenario("cycles-block")
+    for events, known in ((3, True), (2, False)):
+        found = QUANTITIES["recurrence_cv"].value(ss.simulate(scenario, max_events=events))
+        assert np.isfinite(found) == known
+
+
 def test_what_a_run_does_not_have_is_missing() -> None:
     quiet = ss.sweep(RATE, {"friction.dynamic": [0.79]}, quantities=QUANTITIES)
     missing = {name for name in QUANTITIES if np.isnan(quiet[name].item())}
@@ -191,6 +201,22 @@ def test_failures_are_recorded_and_do_not_stop_others() -> None:
     assert dataset.reason.values[0, 1] == ""
     meanings = dict(zip(dataset.status.flag_values, dataset.status.flag_meanings.split(), strict=True))
     assert meanings == MEANINGS
+
+
+def test_codes_in_stores_keep_their_meaning() -> None:
+    """Stores and users' programs hold these numbers."""
+    stopped = {10: "bad_parameters", 11: "event_storm", 12: "not_finite", 13: "too_many_pieces", 14: "error"}
+    done = {-1: "not_run", 0: "finished", 1: "enough_events", 2: "locked_for_ever"}
+    assert done | stopped | {15: "negative_friction", 16: "off_the_law"} == MEANINGS
+
+
+def test_a_tally_counts_failures_and_names_the_slowest() -> None:
+    told: list[SweepProgress] = []
+    plan = make_plan(RATE, {"alpha": [0.5, 1.0, 2.0, 3.0]}, quantities="slip", chunk=2)
+    tally = Tally(cast(ResultStore, SimpleNamespace(plan=plan, status=np.full(4, NOT_RUN))), told.append)
+    tally.add(1, ChunkResult({}, np.array([BAD_PARAMETERS, 0], np.int8), seconds=3.0, alone={0: 1.0, 1: 2.0}))
+    assert (told[-1].done, told[-1].failed, told[-1].seconds) == (2, 1, 3.0)
+    assert list(tally.alone.items()) == [(3, 2.0), (2, 1.0)]
 
 
 def test_a_run_that_does_not_reach_its_end_has_failed(monkeypatch: pytest.MonkeyPatch) -> None:

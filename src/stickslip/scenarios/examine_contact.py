@@ -77,7 +77,7 @@ def _start(slab: PlanarSlab) -> str:
     excess = slab.values.excess[free]
     slips = int((excess > 0.0).sum())
     below = excess[excess <= 0.0]
-    rest = f"; the others are {brief(-below.max(), 'Pa')} or more below their strength" if below.size else ""
+    rest = f"; the others are {brief(abs(below.max()), 'Pa')} or more below their strength" if below.size else ""
     return f"{slips} of {count} nodes slip at once{locked}{rest}"
 
 

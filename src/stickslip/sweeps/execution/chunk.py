@@ -135,7 +135,7 @@ class ChunkResult:
     """The results of some members, in their order.
 
     `results` holds a float64 array for each name, of shape (members,), or (members, samples) for a series. `status` holds codes
-    (`outcome.MEANINGS`). `reasons` says why members failed, by their index; such members have NaN for results.
+    (`MEANINGS`). `reasons` says why members failed, by their index; such members have NaN for results.
     """
 
     results: dict[str, Floats]
