@@ -49,7 +49,7 @@ ROOMS = {
         ("contract",),
         ("values",),
         ("law",),
-        ("piecewise",),
+        ("piecewise", "pressed"),
         ("laws", "custom"),
     ),
     "engine": (

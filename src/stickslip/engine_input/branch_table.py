@@ -22,7 +22,7 @@ def is_algebraic(problem: Problem) -> bool:
 
     This holds for a massless contact under a law of slip rate without a state variable.
     """
-    return not problem.body.has_inertia and problem.friction.depends_on_rate and not problem.friction.states
+    return not problem.body.has_inertia and problem.friction.depends_on_rate and not problem.contact_law.states
 
 
 def table_of_branches(problem: Problem, law_slip: float) -> tuple[Floats, float]:

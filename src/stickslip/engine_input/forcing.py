@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -102,6 +102,25 @@ EDGE = 1e-13
 """Distance from the edge of a round trip, as a share of it, within which a break lies on the edge."""
 
 
+class Pressing(NamedTuple):
+    """A normal load that varies, as growth since the start, as a share of the normal load there (1)."""
+
+    start: Floats  # s: times at which its straight parts begin
+    value: Floats
+    slope: Floats  # 1/s
+    tone: Tone
+
+
+def pressing_of(problem: Problem) -> Pressing:
+    """Return the growth of a normal load; one part without growth if it is constant."""
+    history = problem.normal_load
+    if history is None:
+        return Pressing(np.zeros(1), np.zeros(1), np.zeros(1), SILENT)
+    segments, tone = _scaled(history, 1.0 / problem.normal)
+    start, value, slope = np.array(segments).T
+    return Pressing(start, value - 1.0, slope, tone)
+
+
 def wave_before(problem: Problem) -> Any:
     """Return the wave beta - 2 Z v, minus the reference strength (Pa), that leaves the contact of a slab just before the start."""
     return problem.excess - 2.0 * problem.body.impedance * problem.rate
@@ -130,7 +149,7 @@ def steady_inflow(problem: Problem) -> tuple[float, float]:
 def inflow_of(problem: Problem) -> Inflow:
     """Return the inflow of a problem."""
     body = problem.body
-    if not problem.varies:
+    if not problem.loading_varies:
         value, slope = steady_inflow(problem)
         return _inflow([Segment(0.0, value, slope)], SILENT, 0.0, problem)
     if not body.has_waves:

@@ -97,7 +97,7 @@ def missing_for_creep(problem: Problem) -> str:
     if law.memory != "all":
         return "a friction law that remembers all slip (no memory of its own)"
     if problem.varies:
-        return "a constant pull rate"
+        return "a constant pull rate and normal load"
     return ""
 
 

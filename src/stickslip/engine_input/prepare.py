@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import lru_cache
 from types import SimpleNamespace
 from typing import Any
@@ -11,14 +12,17 @@ from typing import Any
 import numpy as np
 
 from stickslip.contact.rules.selection import rule_of
+from stickslip.contact.uniqueness import regime_of
 from stickslip.engine.compiled_formula import CompiledFormula, compile_formula, keep_with
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, FirstLoad, Integers, LawPiece, LoadingSegment, Params, Setup, State
 from stickslip.engine.state.workspace import counts_in, lend_problem, memory_of, params_in
 from stickslip.engine_input.branch_table import branch_of, is_algebraic, table_of_branches
-from stickslip.engine_input.forcing import inflow_of, steady_inflow, wave_before
+from stickslip.engine_input.forcing import inflow_of, pressing_of, steady_inflow, wave_before
 from stickslip.engine_input.limits import set_length, set_lumping
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.show import brief
+from stickslip.problem.parameters import normal_field
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SelectionRule
 
@@ -53,6 +57,7 @@ def _prepared(problem: Problem, rule: SelectionRule, rtol: float, shortest: floa
 
 @lru_cache(maxsize=32)
 def _of_problem(problem: Problem, _: SelectionRule) -> tuple[Setup, State, Counts]:  # keyed by the rule: its name may be reused
+    check_unique(problem)
     params = parameters_of(problem)
     branches, params.stick_to = table_of_branches(problem, 0.0)
     first = first_load_varying(problem) if problem.varies else first_load(problem)
@@ -65,12 +70,24 @@ def _of_problem(problem: Problem, _: SelectionRule) -> tuple[Setup, State, Count
     return setup, state, counts
 
 
+def check_unique(problem: Problem) -> None:
+    """Raise InputError if the normal load varies, and a contact without mass may have several slip rates under the largest one."""
+    if problem.normal_load is None or problem.body.has_inertia or problem.friction.states:
+        return
+    body, name = problem.body, normal_field(problem)
+    most = replace(problem, body=replace(body, **{name: problem.normal_load.highest}), normal_load=None)
+    if problem.friction.depends_on_rate and regime_of(most) != "regular":
+        at = f"under {brief(most.normal, problem.load_unit)}"
+        why = f"{at} several slip rates solve the contact equation, and the folds between them would move"
+        raise InputError(f"normal_load: {why}: give the contact a mass (contact_mass), or a constant normal load")
+
+
 def parameters_of(problem: Problem) -> Params:
     """Return `Setup.params` without the numbers that depend on the tolerance.
 
     If any of the problem's numbers is an array, the result has a column for each member of a batch.
     """
-    body, law = problem.body, problem.friction
+    body, law = problem.body, problem.contact_law
     params = SimpleNamespace(**dict.fromkeys(Params.places, 0.0))
     params.round_trip_time = problem.round_trip_time
     params.normal = problem.normal
@@ -96,6 +113,9 @@ def parameters_of(problem: Problem) -> Params:
     else:
         params.inflow, params.inflow_rate = steady_inflow(problem)
         params.ramp = params.inflow if body.is_driven_rigidly else problem.far_stress_rate * body.round_trip_time
+    if problem.normal_varies:
+        params.pressing_tone, params.pressing_frequency, params.pressing_phase = pressing_of(problem).tone
+        params.coupling = problem.friction.normal_coupling
     numbers = [getattr(params, name) for name in Params.places]
     return Params(together([one for number in numbers for one in (number if isinstance(number, list) else [number])]))
 
@@ -180,16 +200,22 @@ LARGEST_TURN, MOST_PARTS = 1.0, 100_000
 
 
 def loading_of(problem: Problem) -> at.Floats:
-    """Return the segments of the inflow and where they arrive; an empty one if the loading is steady."""
+    """Return the segments of inflow and normal load, and where they arrive; an empty one if both are steady."""
     if not problem.varies:
         return NOT_VARYING
-    inflow = inflow_of(problem)
-    table = LoadingSegment.table(len(inflow.start))
+    inflow, pressing = inflow_of(problem), pressing_of(problem)
+    start = np.union1d(inflow.start, pressing.start)
+    table = LoadingSegment.table(len(start))
     segments = LoadingSegment.of(table)
-    segments.trip, segments.offset = zip(*inflow.breaks(), strict=True)
-    segments.value, segments.slope = inflow.value, inflow.slope
-    ends = inflow.value[:-1] + inflow.slope[:-1] * np.diff(inflow.start)
-    segments.jump[1:] = abs(inflow.value[1:] - ends) > 1e-14 * np.maximum(abs(ends), abs(inflow.value[1:]))
+    segments.trip, segments.offset = zip(*replace(inflow, start=start).breaks(), strict=True)
+    for one, value, slope in ((inflow, "value", "slope"), (pressing, "pressing", "pressing_rate")):
+        of = np.searchsorted(one.start, start, side="right") - 1
+        begins, grows = one.value[of] + one.slope[of] * (start - one.start[of]), one.slope[of]
+        ends = begins[:-1] + grows[:-1] * np.diff(start)
+        jumps = abs(begins[1:] - ends) > 1e-14 * np.maximum(abs(ends), abs(begins[1:]))
+        segments.jump[1:] = np.maximum(segments.jump[1:], jumps)
+        setattr(segments, value, begins)
+        setattr(segments, slope, grows)
     return table
 
 
@@ -202,7 +228,7 @@ def _pieces(phase: list[Any], load: list[Any], slope: list[Any], jump: list[Any]
 
 def law_tables(problem: Problem) -> tuple[at.Integers, at.Floats]:
     """Return the pieces of the law as a table of `LawPiece`, and the constants of their formulas."""
-    law, start = problem.friction, problem.law_slip
+    law, start = problem.contact_law, problem.law_slip
     formulas = [compile_formula(tree, law.parameters(), law.state_trees()) for tree in law.trees()]
     static, home = float(law.static_coefficient(start)), int(law.piece_at(start))
     references, numbers = references_of(problem, home, static, lambda i, slip: float(law.piece_coefficient(i, slip, 0.0)))
@@ -221,7 +247,7 @@ def references_of(problem: Problem, home: int, static: Any, friction: Callable[[
     holds there, and the near knot in any other. `static` is the static friction coefficient at the start, and `friction` returns mu
     of a piece at a slip and v = 0. If any number is an array, the numbers have a column for each member of a batch.
     """
-    law, start, pieces = problem.friction, problem.law_slip, range(len(problem.friction.pieces))
+    law, start, pieces = problem.contact_law, problem.law_slip, range(len(problem.friction.pieces))
     in_slip = law.knot_variable == "slip"
     references = [start if i == home or not in_slip else law.knots[i - 1 if i > home else i] for i in pieces]
     offsets = [-law.static_excess if i == home else friction(i, references[i]) - static for i in pieces]
@@ -246,7 +272,7 @@ def functions_of(formulas: Sequence[CompiledFormula], problem: Problem) -> at.In
         piece = LawPiece(place)
         if not is_algebraic(problem):
             piece.balls_at = formula.address("balls")
-        if problem.friction.states:
+        if problem.contact_law.states:
             piece.state_at = formula.address("state_value")
         else:
             piece.radii_at = formula.address("radii")
@@ -267,12 +293,13 @@ def start_of(problem: Problem) -> tuple[State, Counts]:
     count.is_block = not problem.body.has_waves
     count.has_inertia = problem.body.has_inertia
     count.is_algebraic = is_algebraic(problem)
-    count.states, count.sticks = len(problem.friction.states), problem.friction.sticks
+    count.states, count.sticks = len(problem.contact_law.states), problem.friction.sticks
+    count.given = problem.contact_law.given
     count.reverses = sum(2**n for n in problem.friction.reverses)
     if problem.has_initial_rate or not problem.friction.sticks:
         state.rate_now = problem.rate
         count.mode = 1 if (problem.rate or problem.load) >= 0.0 else -1
-    for n, value in enumerate(problem.states):
+    for n, value in enumerate(problem.contact_states):
         state.state_now[n] = -value if count.mode < 0 and n in problem.friction.reverses else value
     count.pause_at = count.lumped_since = count.lump_above = at.NEVER
     count.folds_move = problem.folds_move

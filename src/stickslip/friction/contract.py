@@ -17,7 +17,6 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import check_fields
 from stickslip.foundation.show import Declared
-from stickslip.friction.formula.expression import STATES
 
 Formula = Callable[..., Any]
 """A function that returns mu from the parameters (attributes of the first argument), slip u (m) and slip rate v >= 0 (m/s).
@@ -28,8 +27,8 @@ The states of a law that has some are further arguments, in their order.
 
 STATE_NAMES: tuple[Literal["state", "second_state"], ...] = ("state", "second_state")
 """Names of the states of a law for its users: of the only one, or of the first and the second."""
-MOST_STATES = len(STATES)
-"""Largest number of states of a law."""
+MOST_STATES = 2
+"""Largest number of states of a law, beside those that follow from time alone."""
 
 
 def one_argument(states: Sequence[Any]) -> Any:
@@ -95,6 +94,8 @@ class LawContract(Declared, ABC):
     Formulas then take it as a fourth argument, the second as a fifth, and `state_rate` is their evolution. For a law with two
     states, whatever is said of "the state" below is an array with one more axis in front, for the states.
     """
+    given: ClassVar[int] = 0
+    """Number of states, the last ones, that follow from time alone, such as a normal load (see `pressed`)."""
     sticks: ClassVar[bool] = True
     """True if the contact rests below a static strength; False if friction passes smoothly through v = 0."""
     start: ClassVar[Mapping[str, Any]] = {}
@@ -167,6 +168,11 @@ class LawContract(Declared, ABC):
         """The ascending places (m or m/s) between consecutive pieces: one fewer than `pieces`."""
         return ()
 
+    @property
+    def normal_coupling(self) -> float:
+        """How far the first state, in the form of the formulas, falls as the normal load grows by a factor e; 0 for most laws."""
+        return 0.0
+
     # ---- state ----------------------------------------------------------------------------------------------------------------
 
     @property
@@ -199,5 +205,5 @@ class LawContract(Declared, ABC):
     def __post_init__(self) -> None:
         check_fields(self)
         self.check()
-        if len(self.states) > MOST_STATES:
+        if len(self.states) - self.given > MOST_STATES:
             raise InputError(f"{type(self).__name__}: a law has at most {MOST_STATES} states, this one {len(self.states)}")

@@ -32,7 +32,7 @@ LAST_CAUSE = Cause.HEALING
 """Largest code for the cause of a shock."""
 FINITE = ("phase_from", "phase_to", "speed", "bend", "slip", "law_slip", "load", "rate")
 """Fields of a piece of the history that must be finite."""
-SAME = ("is_block", "has_inertia", "is_algebraic", "states", "reverses", "sticks", "folds_move", "knots_in_rate", "varies")
+SAME = ("is_block", "has_inertia", "is_algebraic", "states", "given", "reverses", "sticks", "folds_move", "knots_in_rate", "varies")
 """Counts that follow from the problem alone, so that those in a file must be the same."""
 FLAGS = ("moved", "jump", "stiff", "branch_ended", "is_locked", "to_the_end", "sparse", "lumped", "lumps")
 """Counts that are 0 or 1."""
@@ -116,7 +116,7 @@ def _shapes_of_columns(columns: dict[str, NDArray[Any]]) -> Iterator[Fault]:
 
 def _shapes_of_history(history: History) -> Iterator[Fault]:
     store, pieces = history.store, len(history)
-    states = len(history.problem.friction.states)
+    states = len(history.problem.contact_law.states)
     yield "number of pieces of the history", pieces < 1
     yield "shape or type of history_state", not _is(store.state, (pieces if states else 0, states, at.TERMS), "f")
     yield "shape or type of history_creep", not _is(history.creep, (len(history.creep), 4), "f")

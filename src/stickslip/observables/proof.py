@@ -211,7 +211,7 @@ class MotionOnDiscs(NamedTuple):
         slip[:, 0] = problem.law_slip + store.law_slip[n]
         if problem.body.has_inertia:
             thrust[:, :-1] = problem.body.inertia / store.speed[n, None] * order * rate[:, 1:]
-        states = [np.pad(store.state[n, i], ((0, 0), (0, 2))) for i in range(len(problem.friction.states))]
+        states = [np.pad(store.state[n, i], ((0, 0), (0, 2))) for i in range(len(problem.contact_law.states))]
         for i in problem.friction.reverses:
             states[i] *= way
         return cls(slip, rate, load, thrust, states)
@@ -251,7 +251,7 @@ def _with_duration(lacking: Disc, thrust: Disc, unsure: Floats) -> Disc:
 
 def _lacking(problem: Problem, piece: int, motion: MotionOnDiscs) -> Disc:
     """Return g = Z v + S mu + m dv/dt - load (Pa or N) where the motion is in discs, by the formula of a piece of the law."""
-    law, damping, (slip, rate, load, thrust, states) = problem.friction, problem.body.damping, motion
+    law, damping, (slip, rate, load, thrust, states) = problem.contact_law, problem.body.damping, motion
     variables: dict[Expression, Disc] = dict(zip(VARIABLES, (slip, rate, *states), strict=False))
     mu = on_discs(law.trees()[piece], law.numbers(piece), variables)
     centre = damping * rate.centre + problem.normal * mu.centre + thrust.centre - load.centre

@@ -111,6 +111,8 @@ class PlanarSlab(CheckedArguments):
         if has_dashpot(problem.body):
             name = type(problem.body).__name__
             raise InputError(f"PlanarSlab: the damping of this {name} is not its impedance, which the solver takes it for")
+        if problem.normal_varies:
+            raise InputError("PlanarSlab: a normal_load that varies is followed at one place only: leave it out")
         if law.reverses:
             raise InputError(
                 f"PlanarSlab: {type(law).__name__} has a state that reverses with slip, which planar slabs do not follow"

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from stickslip.bodies import BODIES, BodyOnCharacteristics
 from stickslip.foundation.arguments import CheckedArguments, check_type, is_number, shown
@@ -18,15 +19,20 @@ from stickslip.foundation.quantities import Quantity, check_fields, quantities_o
 from stickslip.friction import FrictionLaw
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.friction.custom.from_function import as_law
+from stickslip.friction.pressed import Pressed
 from stickslip.loading import VARYING, LoadingHistory
 from stickslip.problem.selection_rule import SelectionRule, checked
 
-MAY_VARY = ("pull_rate", "far_stress")
-"""Fields of a problem that may be a loading history instead of a number."""
+MAY_VARY = ("pull_rate", "far_stress", "normal_load")
+"""Fields of a problem that may be a loading history instead of a number; the last one is nothing else."""
 A_HISTORY = "; what varies in time is one of stickslip.loading, such as Steps([0.0, 10.0], [1e-6, 1e-5])"
 """Hint for a value that is no number."""
 LOAD = si_unit("load")
 """Unit of a load: Pa on a slab, N on a block."""
+CONSTANT = "a constant one is normal_stress or normal_force of the body"
+"""Hint for a normal load that is a number."""
+SAME = 1e-12
+"""Relative difference (1) between two normal loads that is rounding."""
 STEADY = "steady"
 """Initial state, or initial rate, that stands for the one of steady sliding at the pull rate."""
 INITIAL_STATES = tuple(f"initial_{name}" for name in STATE_NAMES)
@@ -60,6 +66,9 @@ class ProblemFields(CheckedArguments):
         "Pa", "shear stress far beyond a driver of finite impedance", default=None
     )
     far_stress_rate: Number = quantity("Pa/s", "rate of change of the far stress", default=0.0)
+    normal_load: Converted[LoadingHistory | None, LoadingHistory | None] = quantity(
+        LOAD, "normal load that varies in time and begins with that of the body", default=None
+    )
     selection: str | SelectionRule = "perfect-delay"
 
     def __post_init__(self) -> None:
@@ -82,19 +91,36 @@ class ProblemFields(CheckedArguments):
         for name in MAY_VARY:
             value, declared = getattr(self, name), quantities_of(type(self))[name]
             if isinstance(value, LoadingHistory):
-                if value.unit not in (VARYING, declared.unit):
-                    raise InputError(f"Problem: {name} must be in {declared.unit}, got a history of values in {value.unit}")
+                unit = self.body.load_unit if declared.unit == LOAD else declared.unit
+                if value.unit not in (VARYING, unit):
+                    raise InputError(f"Problem: {name} must be in {unit}, got a history of values in {value.unit}")
+            elif name == "normal_load" and value is not None:
+                raise InputError(f"Problem: normal_load must be a loading history, got {shown(value)}: {CONSTANT}")
             elif value is not None or name == "pull_rate":
                 try:
                     declared.check("Problem", name, value)
                 except InputError as error:
                     raise InputError(f"{error}{'' if is_number(value) else A_HISTORY}") from None
-        if len(self._varying) > 1:
+        if len(self._varying) - self.normal_varies > 1:
             raise InputError("Problem: only one of pull_rate and far_stress may vary in time")
         if isinstance(self.far_stress_rate, LoadingHistory):
             raise InputError("Problem: far_stress_rate must be a number in Pa/s: what may vary in time is pull_rate or far_stress")
         for name in self._varying:
             getattr(self, name).check()
+        if self.normal_load is not None:
+            self._check_normal_load(self.normal_load)
+
+    def _check_normal_load(self, history: LoadingHistory) -> None:
+        unit, field_name = self.body.load_unit, "normal_stress" if self.body.has_waves else "normal_force"
+        if not history.lowest > 0.0:
+            raise InputError(
+                f"Problem: normal_load must stay above 0 {unit}, but may fall to {history.lowest:g}: the contact would open"
+            )
+        if abs(history.first - self.normal) > SAME * self.normal:
+            given = f"normal_load begins with {history.first:.12g} {unit}, but the body's {field_name} is {self.normal:.12g} {unit}"
+            raise InputError(f"Problem: {given}: make them equal")
+        if history.tone.amplitude != 0.0 and any(one.slope for one in history.segments):
+            raise InputError("Problem: normal_load: a sinusoid beside slopes is not followed: its straight parts must be constant")
 
     def _check_load(self) -> None:
         steady = self.has_initial_rate and not self.given_states
@@ -146,8 +172,30 @@ class ProblemFields(CheckedArguments):
 
     @property
     def varies(self) -> bool:
-        """True if the pull rate or the far stress is a loading history; a constant far_stress_rate does not count."""
+        """True if pull rate, far stress or normal load is a loading history; a constant far_stress_rate does not count."""
         return len(self._varying) > 0
+
+    def normal_at(self, t: ArrayLike) -> NDArray[np.float64]:
+        """Return the normal load S (Pa or N) at times (s since the start of the run) of any shape."""
+        return np.full(np.shape(t), self.normal) if self.normal_load is None else self.normal_load.at(t)
+
+    @property
+    def normal_varies(self) -> bool:
+        """True if the normal load is a loading history."""
+        return isinstance(self.normal_load, LoadingHistory)
+
+    @property
+    def loading_varies(self) -> bool:
+        """True if the pull rate or the far stress is a loading history."""
+        return len(self._varying) > self.normal_varies
+
+    @cached_property
+    def contact_law(self) -> FrictionLaw:
+        """The law that the contact obeys: `friction`, times the growth of the normal load if that varies (`friction.pressed`)."""
+        if self.normal_load is None:
+            return self.friction
+        least, most = self.normal_load.lowest / self.normal, self.normal_load.highest / self.normal
+        return Pressed(self.friction, least, most)
 
     @property
     def first_pull_rate(self) -> float:
@@ -156,7 +204,7 @@ class ProblemFields(CheckedArguments):
 
     @property
     def normal(self) -> float:
-        """S: the normal stress (Pa) of the slab, or the normal force (N) of the block."""
+        """S: the normal stress (Pa) of the slab, or the normal force (N) of the block; at the start if it varies."""
         return self.body.normal_load
 
     @property

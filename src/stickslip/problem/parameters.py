@@ -31,7 +31,7 @@ from stickslip.problem.fields import ProblemFields
 
 PRESSING = "pressing"
 """Name of the normal load with the initial load and the far stress in proportion: pressed harder, a contact is as near to slip."""
-LOADING = ("pull_rate", "far_stress", "far_stress_rate")
+LOADING = ("pull_rate", "far_stress", "far_stress_rate", "normal_load")
 """Fields of a problem that are in the table [loading] of a scenario."""
 STRESSES = ("far_stress", "far_stress_rate")
 """Those of them that follow the normal load when a contact is pressed harder."""
@@ -125,9 +125,11 @@ def entries_of(problem: ProblemFields) -> Iterator[ProblemEntry]:
     for name in LOADING:
         declared, value = quantities_of(type(problem))[name], getattr(problem, name)
         varies = isinstance(value, LoadingHistory)
-        yield ProblemEntry(f"loading.{name}", declared, None if varies else value)
+        if name != "normal_load":  # which is nothing but a history
+            yield ProblemEntry(f"loading.{name}", declared, None if varies else value)
         if varies:
-            yield from _entries_in(value, f"loading.{name}", {VARYING: declared.unit})
+            unit = problem.load_unit if name == "normal_load" else declared.unit
+            yield from _entries_in(value, f"loading.{name}", {VARYING: unit})
     yield from _of_start(problem)
 
 
@@ -182,7 +184,7 @@ def pressed(problem: P, value: float) -> P:
     """
     factor = value / problem.normal
     body = replace(problem.body, **{normal_field(problem): value})
-    changes = {name: getattr(problem, name) for name in ("initial_load", "initial_excess", *STRESSES)}
+    changes = {name: getattr(problem, name) for name in ("initial_load", "initial_excess", *STRESSES, "normal_load")}
     scaled = {name: _scaled(one, factor) for name, one in changes.items() if one is not None}
     return replace(problem, body=body, **scaled)
 

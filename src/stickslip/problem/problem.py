@@ -16,7 +16,7 @@ from stickslip.foundation.names import si_unit
 from stickslip.foundation.quantities import quantities_of
 from stickslip.foundation.show import brief, brief_repr, fields_in, html_table, shown_fields
 from stickslip.friction.contract import one_argument
-from stickslip.loading import SILENT, VARYING, LoadingHistory
+from stickslip.loading import VARYING, LoadingHistory
 from stickslip.problem.fields import INITIAL_STATES, LOAD, STEADY, ProblemFields
 from stickslip.problem.parameters import Parameters
 from stickslip.problem.selection_rule import PERFECT_DELAY, SELECTION_RULES, name_of
@@ -65,6 +65,9 @@ class Problem(ProblemFields):
         minus Z v0 if the contact starts at an initial rate.
     far_stress_rate
         Rate of change of the far stress (Pa/s).
+    normal_load
+        Normal stress (Pa) or normal force (N) that varies in time: a loading history that begins with that of the body and stays
+        above 0 (see Notes).
     selection
         The rule that selects one slip rate if several solve the contact equation, or its name (`stickslip.selection`).
 
@@ -86,6 +89,10 @@ class Problem(ProblemFields):
     At most one of `pull_rate` and `far_stress` may be a loading history (`stickslip.loading`). The initial velocity in a slab is
     linear in x, from the initial rate, or rest, at the contact to the pull rate at 0 s at the driver. With initial_rate="steady" it
     is the same everywhere.
+
+    `normal_load` may vary beside one of them: steps, straight lines or a sinusoid. Friction is S(t) mu(u, v, state), and the
+    strength at rest S(t) mu_static; `body.normal_stress` or `body.normal_force` is S(0). A contact without mass then needs a slip
+    rate that is unique under every normal load: a run under a law whose friction falls faster with the slip rate is refused.
 
     See Also
     --------
@@ -115,7 +122,8 @@ class Problem(ProblemFields):
         """Return the texts of the fields that differ from their defaults, by name; body and friction come first."""
         shown = dict(shown_fields(self, {LOAD: self.load_unit}))
         for name in self._varying:
-            shown[name] = brief_repr(getattr(self, name), {VARYING: quantities_of(Problem)[name].unit})
+            unit = quantities_of(Problem)[name].unit
+            shown[name] = brief_repr(getattr(self, name), {VARYING: self.load_unit if unit == LOAD else unit})
         for name, state in zip(INITIAL_STATES, self.friction.states, strict=False):
             if getattr(self, name) is not None:
                 value = getattr(self, name)
@@ -164,6 +172,7 @@ class Problem(ProblemFields):
                 ("pull_rate", self.pull_rate, si_unit("slip_rate", self.load_unit)),
                 ("far_stress", self.far_stress, self.load_unit),
                 ("far_stress_rate", self.far_stress_rate or None, "Pa/s"),
+                ("normal_load", self.normal_load, self.load_unit),
             )
             if value is not None
         }
@@ -184,8 +193,8 @@ class Problem(ProblemFields):
         period = self.body.round_trip_time
         if self.body.has_waves or self.friction.sticks:
             return period
-        tone = self.pull_rate.tone if isinstance(self.pull_rate, LoadingHistory) else SILENT
-        swing = 2.0 * math.pi / tone.frequency if tone.amplitude != 0.0 else math.inf
+        tones = [one.tone for one in (self.pull_rate, self.normal_load) if isinstance(one, LoadingHistory)]
+        swing = min((2.0 * math.pi / tone.frequency for tone in tones if tone.amplitude != 0.0), default=math.inf)
         return max(period, min(DAY, LONGEST_ROUND_TRIP * period, swing))
 
     @property
@@ -197,7 +206,8 @@ class Problem(ProblemFields):
     def folds_move(self) -> bool:
         """True if the folds of the contact equation move with slip: no mass, and a law of slip and slip rate without a state."""
         law = self.friction
-        return law.depends_on_slip and law.depends_on_rate and not law.states and not self.body.has_inertia
+        free = law.states or self.body.has_inertia or self.normal_varies
+        return law.depends_on_slip and law.depends_on_rate and not free
 
     @property
     def rules(self) -> tuple[str, ...]:
@@ -237,6 +247,15 @@ class Problem(ProblemFields):
     def stress(self) -> float:
         """The shear stress in a slab at t = 0 (Pa): the load minus Z v0, which leaves with the waves."""
         return self.load - self.body.damping * self.rate
+
+    @property
+    def contact_states(self) -> tuple[float, ...]:
+        """The initial states of `contact_law`: `states`, and those that follow from time alone."""
+        if self.normal_load is None:
+            return self.states
+        tone = self.normal_load.tone
+        grows = self.normal_load.segments[0].slope + tone.amplitude * tone.frequency * math.cos(tone.phase)
+        return (*self.states, 0.0, grows / self.normal)
 
     @property
     def states(self) -> tuple[float, ...]:

@@ -67,7 +67,7 @@ class Session:
         """Return a run at t = 0."""
         setup, memory = prepare(problem, options.rtol, options.shortest_event)
         capacity = min(FIRST_CAPACITY, options.most_pieces + SPARE)
-        store = at.new_store(capacity, len(problem.friction.states))
+        store = at.new_store(capacity, len(problem.contact_law.states))
         tolerance = creep_tolerance(problem, options.creep_rtol, options.rtol)
         leaps = CreepLeaps(problem, tolerance, patient=options.creep_rtol is None) if tolerance > 0.0 else None
         return cls(problem, options, setup, memory, store, EchoNode.table(capacity), leaps)

@@ -172,7 +172,9 @@ def check_suitable(problem: Problem) -> None:
     if has_dashpot(slab):
         raise InputError(f"schemes: the damping of this {type(slab).__name__} is not its impedance, which the schemes take it for")
     if problem.varies:
-        raise InputError("schemes: a pull rate or a far stress that varies in time is not in the schemes: give constant ones")
+        raise InputError(
+            "schemes: a pull rate, far stress or normal load that varies in time is not in the schemes: give constant ones"
+        )
     GridContact(problem)
 
 

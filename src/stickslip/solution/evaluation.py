@@ -104,7 +104,7 @@ class Readings(NamesAttributes):
             which = "second state" if number else "state"
             raise InputError(f"{STATE_NAMES[number]}: {type(law).__name__} has no {which} variable")
         at, shape = self._at(t, "right")
-        states = self.history.states(at)
+        states = self.history.states(at)[: len(law.states)]
         seen = law.outer_state(np.array(states)) if len(states) > 1 else law.outer_state(states[0])[None]
         return np.asarray(seen[number]).reshape(shape)
 

@@ -360,9 +360,11 @@ class History:
         return sums + (self.grown(end) - self.grown(begin))
 
     def states(self, at: Positions) -> list[Floats]:
-        """Return each state of the friction law as its formulas see it in forward slip."""
+        """Return each state of the law that the contact obeys (`Problem.contact_law`) as its formulas see it in forward slip."""
         known = self.store.state
-        return [np.where(at.before, start, horner(known[at.piece, n], at.xi)) for n, start in enumerate(self.problem.states)]
+        return [
+            np.where(at.before, start, horner(known[at.piece, n], at.xi)) for n, start in enumerate(self.problem.contact_states)
+        ]
 
     def state(self, at: Positions) -> Any:
         """Return the states as the one argument of `FrictionLaw.coefficient`; 0 for a law without a state."""
@@ -376,7 +378,7 @@ class History:
 
     def resistance(self, at: Positions) -> Floats:
         """Return the traction of the law against slip, S mu(u, |v|, state), slab: Pa, block: N."""
-        law, states = self.problem.friction, self.states(at)
+        law, states = self.problem.contact_law, self.states(at)
         for n in law.reverses:
             states[n] = np.where(self.mode(at) < 0, -states[n], states[n])
         return np.asarray(self.problem.normal * law.coefficient(self.law_slip(at), np.abs(self.rate(at)), one_argument(states)))

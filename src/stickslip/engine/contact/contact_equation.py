@@ -80,6 +80,13 @@ def friction_of(run: Run, piece: int, law_slip: float, rate: float) -> None:
 
 
 @kernel
+def static_step(run: Run, states: Floats) -> float:
+    """Return the step from sliding to static friction (1, as a share of the normal load at t = 0) under the present normal load."""
+    step = run.params.static_excess
+    return step * (1.0 + states[run.counts.states - run.counts.given]) if run.counts.given > 0 else step
+
+
+@kernel
 def rest_limit(run: Run) -> float:
     """Return the load (Pa or N, minus the reference) where the selection rule leaves rest forwards.
 
@@ -91,6 +98,8 @@ def rest_limit(run: Run) -> float:
         run.counts.breach = Stop.FAILED
     # The step to static friction is added to the coefficient before any product, so that the two cancel exactly if they cancel.
     coefficient = run.friction.coefficient + run.params.static_excess
+    if run.counts.given > 0:
+        coefficient += static_step(run, run.state.state_now) - run.params.static_excess
     return run.params.normal * coefficient + run.params.stick_to
 
 

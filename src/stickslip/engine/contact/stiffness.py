@@ -133,15 +133,18 @@ def stiffness_of_states(run: Run) -> float:
 def forgotten(run: Run) -> bool:
     """Return True if the remainder of the states at rest no longer affects friction, and then set the states to zero.
 
-    States that do not stay at zero at rest are never forgotten: they heal to other values.
+    States that do not stay at zero at rest are never forgotten: they heal to other values. Those that follow from time stay.
     """
     contact_at(run, run.state.law_slip, 0.0, run.state.state_now)
-    for n in range(run.counts.states):
+    own = run.counts.states - run.counts.given
+    for n in range(own):
         if abs(run.value.by_state[n] * run.state.state_now[n]) > FORGOTTEN:
             return False
     fill(run.some_state, 0.0)
+    for n in range(own, run.counts.states):
+        run.some_state[n] = run.state.state_now[n]
     contact_at(run, run.state.law_slip, 0.0, run.some_state)
-    for n in range(run.counts.states):
+    for n in range(own):
         if run.value.change[n] != 0.0:
             return False
     copy(run.some_state, run.state.state_now, STATES)

@@ -11,6 +11,7 @@ from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import onset_of_slip
 from stickslip.engine.contact.law_knots import settle_piece
 from stickslip.engine.contact.pieces import record
+from stickslip.engine.contact.pressing import is_pressing
 from stickslip.engine.contact.stiffness import contact_at, forgotten, is_no_longer_stiff, states_at_point
 from stickslip.engine.contact_step.certificate import NEGLIGIBLE
 from stickslip.engine.contact_step.keep_step import keep_step
@@ -116,7 +117,7 @@ def note_negative_friction(run: Run) -> None:
 @kernel
 def evolves_at_rest(run: Run) -> bool:
     """Return True if the law has states that still change the strength of a contact at rest."""
-    return run.counts.states > 0 and not forgotten(run)
+    return run.counts.states > 0 and (is_pressing(run) or not forgotten(run))
 
 
 @kernel

@@ -117,7 +117,10 @@ def stick(run: Run, xi_to: float) -> None:
         scale(load, onset)
     fill(run.history[run.counts.length].rate, 0.0)
     for n in range(run.counts.states):
-        fill(ahead(run.history_state, at.TERMS * (run.counts.states * run.counts.length + n)), 0.0)
+        kept = ahead(run.history_state, at.TERMS * (run.counts.states * run.counts.length + n))
+        fill(kept, 0.0)
+        if n >= run.counts.states - run.counts.given:
+            kept[0] = run.state.state_now[n]
     record(run, run.state.xi + onset * width if slips else xi_to)
     run.counts.leaving_rest = 0
     if slips:

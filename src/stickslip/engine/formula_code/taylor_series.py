@@ -77,7 +77,7 @@ class FormulaWriter(Recurrences):
 
     def state_value(self) -> list[str]:
         """Write the body of `state_value(c, dx, s, states, out)`; out receives the numbers of a `layout.LawValue`."""
-        variables = ((RATE, "d"), (SLIP, "f"), *zip(self.states, ("y", "z"), strict=False))
+        variables = ((RATE, "d"), (SLIP, "f"), *zip(self.states, ("y", "z", "g", "h"), strict=False))
         body = [f"{state.name} = states[{n}]" for n, state in enumerate(self.states)]
         body += ["s_0 = s", *self.order_zero()]
         for variable, tag in variables:

@@ -18,11 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.engine.compile.kernels import kernel
-from stickslip.engine.contact.contact_equation import constants_of
+from stickslip.engine.contact.contact_equation import constants_of, static_step
 from stickslip.engine.contact.stiffness import contact_at
 from stickslip.engine.memory.addresses import ahead, call_radii
 from stickslip.engine.memory.pointers import numbers_of
-from stickslip.engine.radau.stages import WIDTH, yielding, yielding_of_state
+from stickslip.engine.radau.stages import WIDTH, own_states, yielding, yielding_of_state
 from stickslip.engine.series.polynomial import RECIPROCAL, integral, restrict
 from stickslip.engine.series.radau_nodes import POINT, STAGES
 from stickslip.engine.state.layout import TERMS, Floats
@@ -90,7 +90,7 @@ def prove_step(run: Run, h: float, force: float) -> float:
     N). The bound on the residual load of the contact equation is added to the measured residual (`stages.defects`) in
     run.state.residual. `force` (Pa or N) is the force that the step ignores.
     """
-    slips, rate, load = run.counts.mode != 0, run.trial, run.spare
+    slips, rate, load, own = run.counts.mode != 0, run.trial, run.spare, own_states(run)
     restrict(run.jet, 0.5, 1.0, rate)
     restrict(run.load_along_slip, 0.5, 1.0, load)
     params, ball, value = run.params, run.ball, run.value
@@ -100,13 +100,13 @@ def prove_step(run: Run, h: float, force: float) -> float:
     for n in range(run.counts.states):
         state = state_from_middle(run, n)
         restrict(ahead(run.state_jet, TERMS * n), 0.5, 1.0, state)
-        ball.at_state[n], run.state_error[n] = state[0], math.inf
+        ball.at_state[n], run.state_error[n] = state[0], math.inf if n < own else 0.0
     contact_at(run, law_slip, at_rate, ball.at_state)
     if slips:
         missing = load[0] - force - params.damping * rate[0] - params.normal * value.mu - params.stiffness * walked
         missing -= params.inertia / h * rate[1]
     else:
-        missing = rate[0] - params.normal * value.mu
+        missing = rate[0] - params.normal * (value.mu + static_step(run, ball.at_state))
     piece, least = run.counts.piece, math.inf
     ball.at_slip, ball.at_rate = law_slip + run.law[piece].slip_shift, at_rate
     for disc in range(len(DISCS)):
@@ -121,8 +121,10 @@ def prove_step(run: Run, h: float, force: float) -> float:
             moved += params.inertia / h * slope_on_disc(rate, radius)
             least = min(least, AT_STAGES[disc] * (abs(missing) + params.normal * ball.friction + moved))
         else:
-            least = min(least, AT_POINTS[disc] * (abs(missing) + params.normal * ball.friction + size_on_disc(rate, radius)))
-        for n in range(run.counts.states):
+            step = params.static_excess * ball.state[own] if run.counts.given > 0 else 0.0
+            changed = params.normal * (ball.friction + step)
+            least = min(least, AT_POINTS[disc] * (abs(missing) + changed + size_on_disc(rate, radius)))
+        for n in range(own):
             state = state_from_middle(run, n)
             moved = slope_on_disc(state, radius) / h
             lacking = AT_STAGES[disc] * (abs(value.change[n] - state[1] / h) + ball.change[n] + moved)

@@ -13,6 +13,7 @@ import math
 from typing import Any
 
 from stickslip.engine.compile.kernels import kernel
+from stickslip.engine.contact.pressing import press_stages
 from stickslip.engine.contact.stiffness import contact_at, states_at_point
 from stickslip.engine.memory.addresses import ahead
 from stickslip.engine.memory.pointers import record_at
@@ -41,6 +42,12 @@ WIDTH = (1 + STATES) * STAGES + 1
 """Length of a row of Newton's equations (1), with the right-hand side."""
 between_at: Any = record_at(Between)
 """Function for compiled code that returns the `Between` at a pointer."""
+
+
+@kernel
+def own_states(run: Run) -> int:
+    """Return the number of states that the stages must be solved for: the others follow from time alone."""
+    return run.counts.states - run.counts.given
 
 
 @kernel
@@ -80,7 +87,7 @@ def assemble(run: Run, h: float, force: float) -> None:
     `force` (Pa or N) is the part of the load that the step ignores.
     """
     params, v, m = run.params, run.stage_rate, run.matrix
-    moving, states = run.counts.mode != 0, run.counts.states
+    moving, states = run.counts.mode != 0, own_states(run)
     mass, chi = params.inertia / h, run.k.chi * h
     size = STAGES * (1 + states)
     for i in range(1, POINTS):
@@ -114,12 +121,12 @@ def assemble_state(run: Run, h: float, i: int, n: int) -> None:
     for j in range(1, POINTS):
         row[j - 1] = -h * value.change_by_slip[n] * chi * INTEGRAL[i, j] if moving else 0.0
     row[i - 1] -= h * value.change_by_rate[n]
-    for other in range(run.counts.states):
+    for other in range(own_states(run)):
         own = ahead(row, STAGES * (1 + other))
         for j in range(1, POINTS):
             own[j - 1] = DERIVATIVE[i, j] if other == n else 0.0
         own[i - 1] -= h * value.change_by_state[STATES * n + other]
-    row[STAGES * (1 + run.counts.states)] = h * value.change[n] - evolved
+    row[STAGES * (1 + own_states(run))] = h * value.change[n] - evolved
 
 
 @kernel
@@ -187,7 +194,7 @@ def correct(run: Run, size: int, rounding: float) -> float:
         moved, fastest = max(moved, abs(step)), max(fastest, abs(v[i]))
         if not math.isfinite(v[i]):
             return math.inf
-    for n in range(run.counts.states):
+    for n in range(own_states(run)):
         w, farthest, changed = ahead(run.stage_state, TERMS * n), run.params.state_scale[n] + 1e-300, 0.0
         for i in range(1, POINTS):
             step = m[WIDTH * (STAGES * (1 + n) + i - 1) + size]
@@ -214,11 +221,13 @@ def solve_stages(run: Run, h: float, force: float, share: float) -> bool:
         run.stage_rate[i] = run.stage_rate[0]
         if share > 0.0 and run.counts.mode != 0:  # At rest run.jet holds the strength.
             run.stage_rate[i] = evaluate(run.jet, share * POINT[i])
-    for n in range(run.counts.states):
+    for n in range(own_states(run)):
         w = ahead(run.stage_state, TERMS * n)
         for i in range(1, POINTS):
             w[i] = evaluate(ahead(run.state_jet, TERMS * n), share * POINT[i]) if share > 0.0 else w[0]
-    size = STAGES * (1 + run.counts.states)
+    if run.counts.given > 0:
+        press_stages(run, h)
+    size = STAGES * (1 + own_states(run))
     before, rounding = math.inf, NEWTON_ROUNDING * size_of_load(run) if run.counts.has_inertia == 0 else 0.0
     for _ in range(ITERATIONS):
         assemble(run, h, force)
@@ -303,7 +312,7 @@ def defects(run: Run, h: float, force: float) -> float:
         missing = evaluate(run.load_along_slip, MIDDLE[i]) - force - resisted - params.inertia / h * middle.acceleration
         missed = larger(missed, abs(missing) * yielding(run, h))
         lacking = max(lacking, abs(missing))
-        for n in range(run.counts.states):
+        for n in range(own_states(run)):
             missing = abs(value.change[n] - middle.evolved[n] / h) * yielding_of_state(run, h, n)
             run.state_error[n] = larger(run.state_error[n], missing)
     run.state.residual = lacking + abs(force) if run.counts.mode != 0 else 0.0

@@ -8,13 +8,14 @@ from __future__ import annotations
 import math
 
 from stickslip.engine.compile.kernels import kernel
-from stickslip.engine.contact.contact_equation import TIE, load_ahead
+from stickslip.engine.contact.contact_equation import TIE, load_ahead, static_step
 from stickslip.engine.contact.stiffness import contact_at, hanging_rate, states_at_point, states_in_step, turn_states
 from stickslip.engine.memory.addresses import ahead
 from stickslip.engine.radau.proof import passes_zero, prove_step
 from stickslip.engine.radau.stages import (
     defects,
     larger,
+    own_states,
     rate_at_load,
     rounding_of_law,
     rounding_of_slip,
@@ -72,7 +73,7 @@ def growth_rate(run: Run, least: float) -> float:
     params, value = run.params, run.value
     contact_at(run, run.state.law_slip, run.stage_rate[0], states_at_point(run, 0))
     resistance = params.damping + params.normal * value.by_rate
-    if run.counts.states > 1:
+    if own_states(run) > 1:
         faster = least
         for _ in range(DOUBLINGS):
             if not grows_faster(run, resistance, faster):
@@ -80,12 +81,12 @@ def growth_rate(run: Run, least: float) -> float:
             faster *= 2.0
         return faster if faster > least else 0.0
     if run.counts.has_inertia == 0:
-        if run.counts.states == 0:
+        if own_states(run) == 0:
             return max(-run.k.chi * params.normal * value.by_slip / resistance, 0.0)
         by_rate = value.change_by_rate[0]
         return max(value.change_by_state[0] - by_rate * params.normal * value.by_state[0] / resistance, 0.0)
     mass = params.inertia
-    if run.counts.states == 0:
+    if own_states(run) == 0:
         return max(-resistance / mass, 0.0)
     trace = value.change_by_state[0] - resistance / mass
     product = (params.normal * value.by_state[0] * value.change_by_rate[0] - resistance * value.change_by_state[0]) / mass
@@ -136,9 +137,9 @@ def start_of_step(run: Run) -> float:
     run.stage_rate[0] = abs(state.rate_now)
     if run.counts.mode == 0:
         run.stage_rate[0] = 0.0
-    elif run.counts.leaving_rest != 0:
+    elif run.counts.leaving_rest != 0 and (run.counts.has_inertia == 1 or run.params.static_excess == 0.0):
         contact_at(run, state.law_slip, 0.0, state.state_now)
-        force = run.load_along_slip[0] - run.params.normal * run.value.mu
+        force = run.load_along_slip[0] - run.params.normal * (run.value.mu + static_step(run, state.state_now))
         if run.counts.has_inertia == 0:
             run.stage_rate[0] = 0.0
     elif run.counts.has_inertia == 0:
@@ -160,12 +161,13 @@ def strength_ahead(run: Run) -> float:
     largest, missed = NUMBER_ROUNDING / params.tolerance * params.reference + abs(run.load_along_slip[0]), 0.0
     for i in range(POINTS):
         contact_at(run, run.state.law_slip, 0.0, states_at_point(run, i))
-        run.stage_rate[i] = params.normal * run.value.mu
+        run.stage_rate[i] = params.normal * (run.value.mu + static_step(run, run.some_state))
         largest = max(largest, abs(run.stage_rate[i]))
     interpolate(run.stage_rate, run.jet, run.spare)
     for i in range(STAGES):
         contact_at(run, run.state.law_slip, 0.0, states_in_step(run, MIDDLE[i]))
-        missed = larger(missed, abs(params.normal * run.value.mu - evaluate(run.jet, MIDDLE[i])))
+        strength = params.normal * (run.value.mu + static_step(run, run.some_state))
+        missed = larger(missed, abs(strength - evaluate(run.jet, MIDDLE[i])))
     fill(run.stage_rate, 0.0)
     return max(missed, last_terms(run.jet)) / (params.tolerance * largest)
 

@@ -57,7 +57,13 @@ class Params(MemoryRecord):
     tone: float  # Pa (slab) or N/s (block): amplitude of the tone in an inflow, tone sin(tone_frequency t + tone_phase)
     tone_frequency: float  # rad/s: angular frequency of the tone
     tone_phase: float  # rad: phase of the tone at t = 0
-    state_scale: Floats = floats_inside(STATES)  # units of the states: errors are relative to the state plus these sizes
+    pressing_tone: float  # 1: amplitude of the tone in the normal load, as a share of that at t = 0 (`contact.pressing`)
+    pressing_frequency: float  # rad/s: angular frequency of that tone
+    pressing_phase: float  # rad: phase of that tone at t = 0
+    coupling: float  # 1: how far a state falls as the normal load grows by a factor e (Linker & Dieterich 1992: alpha / b)
+    state_scale: Floats = floats_inside(
+        STATES
+    )  # units of the states: errors are relative to the state, or to these sizes where they are larger
 
 
 class State(MemoryRecord):
@@ -153,6 +159,7 @@ class Counts(MemoryRecord):
     disc: int  # disc of the last explicit step's proof, as an index of `contact_step.certificate.RATIOS`
     rough: int  # number of steps in which rounding in the law hides more than the tolerance
     breach: int  # OFF_THE_LAW, NEGATIVE_FRICTION or FAILED if no step can be made from here, else 0
+    given: int  # number of states, the last ones, that follow from time alone (`contact.pressing`)
     degree: int  # degree of the present piece of load: its coefficients beyond are zero
 
 
@@ -346,7 +353,9 @@ class LoadingSegment(MemoryRecord):
     offset: float  # s: phase of its arrival
     value: float  # inflow there
     slope: float  # its growth per second
-    jump: float  # 1 if the inflow jumps there, else 0
+    jump: float  # 1 if the inflow or the normal load jumps there, else 0
+    pressing: float  # 1: growth of the normal load since t = 0 there, but for its tone, as a share of that at t = 0
+    pressing_rate: float  # 1/s: how fast it grows
 
 
 class HistoryPiece(MemoryRecord):

@@ -36,7 +36,7 @@ from stickslip.engine.state.layout import (
     Store,
 )
 
-MATRIX_ROWS = 40
+MATRIX_ROWS = 110
 """Rows of TERMS numbers (1) that the matrix and the right-hand side of the equations of an implicit step fill."""
 
 
@@ -77,11 +77,11 @@ class Run(MemoryRecord):
     centres: Floats = floats_inside(TERMS)  # values that the series writes right after itself, for `radii`
     powers: Floats = floats_inside(TERMS)  # powers of the length of the step, in units of the series
     k: SeriesInput = inside(SeriesInput, TERMS)  # input of the series
-    value: LawValue = inside(LawValue, TERMS)  # latest result of the law's formula
+    value: LawValue = inside(LawValue, 2 * TERMS)  # latest result of the law's formula
     ball: Ball = inside(Ball, TERMS)  # discs of slip, slip rate and state, and the radius of friction on them
     friction: Friction = inside(Friction, TERMS)  # friction at the contact, as last evaluated
     saved_load: Floats = floats_inside(TERMS)  # Pa or N: the piece of load that is continued after a fold
-    saved: State = inside(State, TERMS)  # the first SAVED fields of the state that belong to it
+    saved: State = inside(State, 2 * TERMS)  # the first SAVED fields of the state that belong to it
     trial: Floats = floats_inside(TERMS)  # room for polynomials that are only tested
     spare: Floats = floats_inside(TERMS)  # further room of this kind
     state_jet: Floats = floats_inside(STATES * TERMS)  # polynomials of the law's states over an implicit step

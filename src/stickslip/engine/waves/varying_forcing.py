@@ -13,6 +13,7 @@ import math
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.far_end import has_faded, is_rigid
 from stickslip.engine.contact.pieces import xi_at
+from stickslip.engine.contact.pressing import couple, is_pressing, press, pressing_at
 from stickslip.engine.series.polynomial import RECIPROCAL, copy, maximum, restrict, total
 from stickslip.engine.state.layout import NEVER, TERMS
 from stickslip.engine.state.workspace import Run
@@ -35,6 +36,8 @@ def take_loading(run: Run) -> None:
     if begin > 0.0 or end < 1.0:
         cut(run, begin, end, phase, phase_to)
     add_loading(run)
+    if run.counts.given > 0:
+        press(run, run.state.phase_from)
     run.state.taken, run.state.taken_to_phase = (end, phase_to) if end < 1.0 else (0.0, 0.0)
     run.counts.source += 1 if end == 1.0 else 0
 
@@ -44,12 +47,15 @@ def enter_segment(run: Run) -> bool:
     """Enter the segment of the loading that has arrived where the piece of load begins; return True if the loading jumps there."""
     phase = run.state.taken_to_phase if run.state.taken > 0.0 else run.state.phase_from
     jumps, tie = False, AT_EDGE * run.params.round_trip_time
+    before = pressing_at(run, phase, 0.0)[0] if run.counts.given > 0 else 0.0
     for _ in range(run.segments):
         if not next_change(run) <= phase + tie:
             break
         run.counts.segment += 1
         run.counts.trips_at_rest = -1  # the last round trip at rest does not predict the next one
         jumps = jumps or run.loading[run.counts.segment].jump == 1.0
+    if jumps and run.counts.given > 0:
+        couple(run, before, pressing_at(run, phase, 0.0)[0])
     return jumps
 
 
@@ -179,6 +185,8 @@ def trips_withstood(run: Run, limit: float) -> int:
     segment = run.counts.segment
     following = segment + 1
     room = run.loading[following].trip - run.counts.trip - 1.0 if following < run.segments else float(NEVER)
+    if is_pressing(run) or (run.counts.given > 0 and segment != run.counts.trip_segment):
+        return 0  # the round trip just past does not predict the next one
     is_dead = run.loading[segment].slope == 0.0 and run.params.tone == 0.0
     if run.counts.is_block == 0 and not is_rigid(run):
         return int(max(room, 0.0)) if is_dead and has_faded(run) else 0

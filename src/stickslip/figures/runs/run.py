@@ -31,6 +31,8 @@ from stickslip.solution.evaluation import Readings
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from stickslip.problem.problem import Problem
+
 WIDTH = 6.4
 """Usual width of the figure, inches."""
 HEIGHTS = {"curve": 1.75, "loading": 1.25, "slip": 2.0}
@@ -61,8 +63,8 @@ def draw(readings: Readings, start: float | None = None, end: float | None = Non
         draw_friction(stress, readings, span)
     mark_shocks([*curves, stress], readings, span)
     last = stress
-    for last in panels["loading"]:
-        _draw_loading(last, readings, *span)
+    for field, last in zip(_varying(readings.problem), panels["loading"], strict=True):
+        _draw_loading(last, readings, field, *span)
     set_time(last, readings, span)
     for panel in panels["slip"]:
         draw_friction(panel, readings, span, "slip")
@@ -75,7 +77,7 @@ def draw(readings: Readings, start: float | None = None, end: float | None = Non
 
 def _panels(readings: Readings, place: Place) -> tuple[Figure, dict[str, list[Any]]]:
     """Return the figure and its panels in one column: three curves, the loading if it varies, and friction against slip."""
-    groups = {"curves": 3, "loading": int(readings.problem.varies), "slip": int(not readings.problem.friction.sticks)}
+    groups = {"curves": 3, "loading": len(_varying(readings.problem)), "slip": int(not readings.problem.friction.sticks)}
     heights = [HEIGHTS["curve"]] * 3 + [HEIGHTS["loading"]] * groups["loading"] + [HEIGHTS["slip"]] * groups["slip"]
     figure = sheet((WIDTH, 0.35 + sum(heights)), **place)
     grid = figure.add_gridspec(len(heights), 1, height_ratios=heights)
@@ -91,14 +93,19 @@ def _panels(readings: Readings, place: Place) -> tuple[Figure, dict[str, list[An
     return figure, found
 
 
-def _draw_loading(panel: Axes, readings: Readings, start: float, end: float) -> None:
-    """Draw the varying field from `start` to `end` (s since the epoch of the readings).
+def _varying(problem: Problem) -> dict[str, LoadingHistory]:
+    """Return the fields of a problem that vary in time, by name."""
+    fields = {name: getattr(problem, name) for name in MAY_VARY}
+    return {name: field for name, field in fields.items() if isinstance(field, LoadingHistory)}
+
+
+def _draw_loading(panel: Axes, readings: Readings, name: str, start: float, end: float) -> None:
+    """Draw the varying field of a name from `start` to `end` (s since the epoch of the readings).
 
     The axis is logarithmic if the field is positive and spans a factor of ten or more, as steps of the pull rate do.
     """
     size = time_unit(end - start)[1]
-    fields = {name: getattr(readings.problem, name) for name in MAY_VARY}
-    name, history = next((name, field) for name, field in fields.items() if isinstance(field, LoadingHistory))
+    history = _varying(readings.problem)[name]
     row, offset = readings.history.epoch
     begun = row * readings.history.round_trip_time + offset
     tone, swing = history.tone, abs(history.tone.amplitude)

@@ -166,7 +166,7 @@ SLIP = Expression("slip", name="u")
 """Symbol of the slip u (m)."""
 RATE = Expression("rate", name="v")
 """Symbol of the magnitude v of the slip rate (m/s)."""
-STATES = Expression("state", name="w"), Expression("state", name="w2")
+STATES = tuple(Expression("state", name=name) for name in ("w", "w2", "w3", "w4"))
 """Symbols of the state variables of a law: of the only one, or of the first and the second."""
 STATE = STATES[0]
 VARIABLES = (SLIP, RATE, *STATES)

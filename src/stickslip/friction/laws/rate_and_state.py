@@ -59,13 +59,17 @@ class RateAndState(DirectEffect):
     With y = v theta / distance, d theta/dt is 1 - y for the ageing law, -y ln y for the slip law and 1 - (y/2)^2 for the PRZ law.
     The contact never sticks: friction passes smoothly through v = 0. `a` must not be so small that the exponential could overflow.
 
+    Under a normal load S(t) that varies, d theta/dt gains -alpha theta S'/(b S), with alpha = `normal_stress_coupling`. A jump from
+    S- to S+ multiplies theta by (S-/S+)^(alpha/b).
+
     The formulas use the state w = ln(rate theta / distance); users give and see theta (s).
     """
 
     kind = "rate-and-state"
     source = (
         "Dieterich 1979, J. Geophys. Res. 84, 2161 (ageing); Ruina 1983, J. Geophys. Res. 88, 10359 (slip); Perrin, Rice & Zheng "
-        "1995, J. Mech. Phys. Solids 43, 1461 (PRZ); Rice & Ben-Zion 1996, Proc. Natl. Acad. Sci. 93, 3811 (arcsinh)"
+        "1995, J. Mech. Phys. Solids 43, 1461 (PRZ); Rice & Ben-Zion 1996, Proc. Natl. Acad. Sci. 93, 3811 (arcsinh); "
+        "Linker & Dieterich 1992, J. Geophys. Res. 97, 4923 (normal_stress_coupling)"
     )
     state = StateVariable("theta", "s", "state theta (distance / v in steady sliding)", scale=1.0)
     start: ClassVar = {"coefficient": 0.65, "state": "1 year"}
@@ -75,6 +79,23 @@ class RateAndState(DirectEffect):
     distance: Number = quantity("m", "slip over which the state renews itself (Dc)", above=0)
     rate: Number = quantity("m/s", "reference slip rate", above=0, default=1e-6)
     evolution: str = declare(Choice("how the state changes", ("ageing", "slip", "prz")), "ageing")
+    normal_stress_coupling: float = quantity(
+        "1",
+        "alpha: friction falls by alpha as the normal load grows by a factor e at once, and recovers with slip",
+        at_least=0,
+        default=0.0,
+    )
+
+    @override
+    def check(self) -> None:
+        super().check()
+        if self.normal_stress_coupling > 0.0 and self.b == 0.0:
+            raise InputError("RateAndState: normal_stress_coupling needs b > 0: it acts through the state")
+
+    @property
+    @override
+    def normal_coupling(self) -> float:
+        return self.normal_stress_coupling / self.b if self.b else 0.0
 
     @property
     @override

@@ -1,0 +1,214 @@
+"""A normal load that varies in time: closed forms, own integrators, jumps of the state, rest, energy, files and refusals.
+
+Times are compared to 1e-9 of a second and slips to 1e-9 of a metre, absolutely, where a closed form is known.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+import stickslip as ss
+from stickslip.engine.state.layout import SAVED as SET_ASIDE
+from stickslip.engine.state.workspace import Run
+from stickslip.loading import LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
+
+STATIC, DYNAMIC, FORCE, STIFFNESS, PULL, LOAD = 0.6, 0.4, 10.0, 100.0, 0.05, 5.0
+BODY = ss.SpringBlock(mass=1.0, stiffness=STIFFNESS, normal_force=FORCE)
+SLAB = ss.ElasticSlab(density=2700.0, wave_speed=3000.0, thickness=3000.0, normal_stress=1e7)
+
+
+def block(history: object, **more: object) -> ss.Problem:
+    """Return a block under Coulomb friction and a normal force that varies."""
+    law = ss.friction.Coulomb(static=STATIC, dynamic=DYNAMIC)
+    return ss.Problem(BODY, law, pull_rate=PULL, initial_load=LOAD, normal_load=history, **more)  # type: ignore[arg-type]
+
+
+def first_event(amplitude: float, period: float) -> tuple[float, float, float]:
+    """Return start, end and slip of the first event under S = FORCE + amplitude sin(2 pi t / period), by closed forms.
+
+    While the block slips it is a linear oscillator: u = (load + K V t - mu_d S0)/K - mu_d a sin(w t)/(K - m w^2) + A cos + B sin.
+    """
+    omega, own = 2.0 * math.pi / period, math.sqrt(STIFFNESS)
+
+    def short(t: float) -> float:
+        return STATIC * (FORCE + amplitude * math.sin(omega * t)) - LOAD - STIFFNESS * PULL * t
+
+    begin = next(t for t in np.arange(0.0, 5.0, 1e-4) if short(t + 1e-4) < 0.0)
+    start = brentq(short, begin, begin + 1e-4, xtol=1e-15)
+    driven = DYNAMIC * amplitude / (STIFFNESS - omega**2)
+
+    def forced(t: float) -> float:
+        return (LOAD + STIFFNESS * PULL * t - DYNAMIC * FORCE) / STIFFNESS - driven * math.sin(omega * t)
+
+    a = -forced(start)
+    b = -(PULL - driven * omega * math.cos(omega * start)) / own
+
+    def rate(t: float) -> float:
+        since = t - start
+        free = own * (b * math.cos(own * since) - a * math.sin(own * since))
+        return PULL - driven * omega * math.cos(omega * t) + free
+
+    later = next(t for t in start + np.arange(1e-3, 5.0, 1e-4) if rate(t + 1e-4) < 0.0)
+    end = brentq(rate, later, later + 1e-4, xtol=1e-15)
+    return start, end, forced(end) + a * math.cos(own * (end - start)) + b * math.sin(own * (end - start))
+
+
+@pytest.mark.parametrize(("amplitude", "period"), [(3.0, 0.37), (1.0, 2.0), (6.0, 0.05)])
+def test_a_block_under_a_sinusoidal_normal_force_is_an_oscillator_between_closed_form_events(
+    amplitude: float, period: float
+) -> None:
+    event = ss.simulate(block(Sinusoidal(FORCE, amplitude, period)), 2.0).events.iloc[0]
+    assert [event.start, event.end, event.slip] == pytest.approx(first_event(amplitude, period), rel=0.0, abs=1e-9)
+
+
+def test_steps_move_the_strength_at_rest_and_the_drop() -> None:
+    """Rests of years are leapt over: the load K V t meets the strength of the present step."""
+    year, pull = ss.YEAR, 0.01 / ss.YEAR
+    history = Steps([0.0, 3.3 * year, 7.7 * year], [10.0, 6.0, 12.0])
+    run = ss.simulate(replace(block(history), pull_rate=pull, initial_load=0.0), 20.0 * year)
+    assert run.events.start.to_numpy() / year == pytest.approx([3.6, 6.0, 12.0, 16.8], abs=1e-7)  # a slip takes 1e-8 years
+    assert run.events.slip.to_numpy() == pytest.approx([0.024, 0.024, 0.048, 0.048], rel=1e-6)
+    assert len(run.history) < 100
+
+
+def test_a_slab_without_mass_jumps_where_the_normal_stress_steps() -> None:
+    """Z v + S(t) mu(v) = load at every moment, and the load is the echo of the round trip before."""
+    law = ss.friction.FromExpression("0.6 + 0.05*log(1 + v/v1)", {"v1": "0.1 m/s"})
+    times, values = (0.0, 1.3, 3.7), (1e7, 0.9e7, 1.2e7)
+    problem = ss.Problem(SLAB, law, initial_load=6.5e6, normal_load=Steps(times, values))
+    run, trip, impedance = ss.simulate(problem, 5.0), 2.0, 8.1e6
+
+    def rate(t: float, load: float) -> float:
+        normal = values[int(np.searchsorted(times, t, side="right")) - 1]
+        if load <= 0.6 * normal:
+            return 0.0
+        return float(brentq(lambda v: impedance * v + normal * (0.6 + 0.05 * math.log1p(v / 0.1)) - load, 0.0, 1.0, xtol=1e-16))
+
+    def load_at(t: float) -> float:
+        return 6.5e6 if t < trip else load_at(t - trip) - 2.0 * impedance * rate(t - trip, load_at(t - trip))
+
+    for t in (0.5, 1.5, 2.5, 3.2, 3.5, 3.9, 4.5):
+        assert float(run.slip_rate(t)) == pytest.approx(rate(t, load_at(t)), rel=1e-9, abs=1e-12)
+    shocks = run.shocks
+    assert shocks.cause.to_list() == ["start", "loading", "echo", "echo"]
+    assert shocks.time.to_numpy() == pytest.approx([0.0, 1.3, 2.0, 3.3], abs=1e-12)
+
+
+@pytest.mark.parametrize("coupling", [0.0, 0.3])
+@pytest.mark.parametrize("history", [Sinusoidal(1e6, 2e5, 20.0), PiecewiseLinear([0.0, 10.0], [1e6, 1.3e6])])
+def test_rate_and_state_follows_an_own_integrator(history: LoadingHistory, coupling: float) -> None:
+    """To 1e-7 of the slip and 1e-7 in the logarithm of the state; the integrator's own error is 1e-8."""
+    reference, a, b, distance, rate, pull = 0.6, 0.01, 0.008, 1e-4, 1e-6, 1e-5
+    law = ss.friction.RateAndState(reference, a, b, distance, rate, normal_stress_coupling=coupling)
+    body = ss.SpringBlock(mass=1e3, stiffness=2e7, normal_force=1e6)
+    run = ss.simulate(ss.Problem(body, law, pull_rate=pull, normal_load=history), 10.0)
+    start, tone, slope = math.log(rate / pull), history.tone, history.segments[0].slope
+
+    def mu(v: float, w: float) -> float:
+        return a * math.asinh(v / (2.0 * rate) * math.exp((reference + b * w) / a))
+
+    def change(t: float, y: list[float]) -> list[float]:
+        u, v, w = y
+        normal = 1e6 + slope * t + tone.amplitude * math.sin(tone.frequency * t)
+        grows = slope + tone.amplitude * tone.frequency * math.cos(tone.frequency * t)
+        load = 1e6 * mu(pull, start) + 2e7 * (pull * t - u)
+        return [v, (load - normal * mu(v, w)) / 1e3, (rate * math.exp(-w) - v) / distance - coupling / b * grows / normal]
+
+    begins = [0.0, pull, start]
+    slip, _, w = solve_ivp(change, (0.0, 10.0), begins, method="Radau", rtol=1e-8, atol=[1e-14, 1e-14, 1e-8]).y[:, -1]
+    assert float(run.slip(10.0)) == pytest.approx(slip, rel=1e-7)
+    assert math.log(rate * float(run.state(10.0)) / distance) == pytest.approx(w, abs=1e-7)
+
+
+def test_a_step_multiplies_the_state_as_linker_and_dieterich_measured() -> None:
+    law = ss.friction.RateAndState(0.6, 0.01, 0.015, "20 um", normal_stress_coupling=0.25)
+    body = ss.SpringBlock(mass=1e3, stiffness=1e9, normal_force=1e6)
+    history = Steps([0.0, 7.0], [1e6, 1.2e6])
+    run = ss.simulate(ss.Problem(body, law, pull_rate="1 um/s", normal_load=history), 10.0)
+    before, after = float(run.state(7.0 - 1e-9)), float(run.state(7.0))
+    assert after / before == pytest.approx((1e6 / 1.2e6) ** (0.25 / 0.015), rel=1e-6)
+
+
+def test_a_history_that_does_not_change_is_the_constant_normal_load() -> None:
+    for problem in (block(None), ss.Problem(SLAB, ss.friction.LinearSlipWeakening(0.8, 0.5, 0.1), initial_load=8.5e6)):
+        steady = ss.simulate(problem, 3.0)
+        held = ss.simulate(replace(problem, normal_load=Steps([0.0, 1.0], [problem.normal] * 2)), 3.0)
+        names = ["start", "slip", "peak_rate"]
+        assert held.events[names].to_numpy() == pytest.approx(steady.events[names].to_numpy(), rel=1e-8, abs=1e-9)
+
+
+@pytest.mark.parametrize("history", [Steps([0.0, 0.9], [10.0, 7.0]), Sinusoidal(10.0, 3.0, 0.37)])
+def test_energy_is_balanced_with_the_heat_of_the_present_normal_force(history: object) -> None:
+    ends = ss.simulate(block(history), 3.0).energy(3.0)
+    assert float(ends.balance.item()) == pytest.approx(0.0, abs=1e-12)
+    assert float(ends.heat.item()) > 0.1
+
+
+def test_scenario_file_and_resumed_run_are_the_same_to_the_bit(tmp_path: Path) -> None:
+    from stickslip.scenarios.scenario import Scenario
+
+    scenario = Scenario(block(Sinusoidal("10 N", "3 N", "0.37 s")), 3.0)
+    path = tmp_path / "pressed.toml"
+    path.write_text(scenario.to_toml(), encoding="utf-8")
+    again = ss.load_scenario(str(path))
+    assert again.problem == scenario.problem
+    whole = ss.simulate(again)
+    opened = ss.open_solution(whole.to_netcdf(tmp_path / "run.nc"))
+    assert opened.problem == scenario.problem
+    assert np.array_equal(opened.history.store.state, whole.history.store.state)
+    ss.simulate(again, 1.0, checkpoint=tmp_path / "part.nc")
+    assert np.array_equal(ss.resume(tmp_path / "part.nc", 3.0).history.store.rate, whole.history.store.rate)
+
+
+def test_a_number_of_the_history_can_be_swept() -> None:
+    problem = block(Sinusoidal(10.0, 3.0, 0.37))
+    wanted = ["first_start", "first_slip"]
+    found = ss.sweep(problem, {"loading.normal_load.amplitude": [1.0, 3.0]}, duration=1.0, quantities=wanted)
+    for n, amplitude in enumerate((1.0, 3.0)):
+        start, _, slip = first_event(amplitude, 0.37)
+        assert [float(found[name][n]) for name in wanted] == pytest.approx([start, slip], rel=1e-9)
+
+
+def test_pressing_a_problem_scales_its_history() -> None:
+    from stickslip.problem.parameters import pressed
+
+    harder = pressed(block(Sinusoidal(10.0, 3.0, 0.37)), 20.0)
+    assert isinstance(harder.normal_load, Sinusoidal)
+    assert (harder.normal, harder.normal_load.mean, harder.normal_load.amplitude, harder.load) == (20.0, 20.0, 6.0, 2.0 * LOAD)
+
+
+HELD_FORCE = Steps([0.0, 1.0], [10.0, 9.0])
+HELD = Steps([0.0, 1.0], [1e7, 9e6])
+IRREGULAR = ss.Problem(SLAB, ss.friction.HyperbolicRate(0.8, 0.3, "10 s/m"), initial_load=8.1e6)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: block(8.0), r"^Problem: normal_load must be a loading history, got 8\.0: a constant one is normal_stress or"),
+        (lambda: block("8 N"), r"^Problem: normal_load must be a loading history, got '8 N'"),
+        (lambda: block(Steps([0, 1], [8, 9])), r"begins with 8 N, but the body's normal_force is 10 N: make them equal$"),
+        (lambda: block(Steps([0, 1], [10, -1])), r"must stay above 0 N, but may fall to -1: the contact would open$"),
+        (lambda: block(Sinusoidal("10 N", "11 N", "1 s")), r"must stay above 0 N, but may fall to -1: the contact would open$"),
+        (lambda: block(Sinusoidal("10 Pa", "1 Pa", "1 s")), r"^Problem: normal_load must be in N, got a history of values in Pa$"),
+        (lambda: ss.simulate(replace(IRREGULAR, normal_load=HELD), 2.0), r"several slip rates.*contact_mass"),
+        (lambda: ss.studies.schemes(replace(IRREGULAR, normal_load=HELD), 2.0), r"^schemes: .*normal load that varies"),
+        (lambda: ss.studies.infer(block(HELD_FORCE), {"time": [0, 1], "mu": [0.5, 0.5]}, ["friction.static"]), r"^infer: a normal"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_followed_is_refused_in_one_line(make: object, message: str) -> None:
+    with pytest.raises(ss.InputError, match=message) as refused:
+        make()  # type: ignore[operator]
+    assert "\n" not in str(refused.value)
+
+
+def test_what_is_set_aside_beside_a_fold_has_room() -> None:
+    """A state longer than its room in the scratch space would overwrite what lies behind it."""
+    assert Run.places["saved"].size >= SET_ASIDE
