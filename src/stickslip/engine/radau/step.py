@@ -220,7 +220,7 @@ def error_of(run: Run, force: float, lost: float) -> float:
 
 @kernel
 def farthest_state(run: Run, n: int) -> float:
-    """Return the largest magnitude of state n at the points of the step, plus its smallest size that matters (`state_scale`)."""
+    """Return the largest magnitude of state n at the points of the step, or its `state_scale` if that is larger."""
     farthest = run.params.state_scale[n] + 1e-300
     for i in range(POINTS):
         farthest = max(farthest, abs(run.stage_state[TERMS * n + i]))
