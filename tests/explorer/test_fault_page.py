@@ -6,6 +6,7 @@ import asyncio
 import json
 import re
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 from urllib.parse import unquote
 
@@ -18,7 +19,7 @@ import stickslip as ss
 from stickslip.explorer.model import fault
 from stickslip.explorer.model.controls import controls_of
 from stickslip.explorer.model.difference import difference
-from stickslip.explorer.model.fault import FaultAnswer, solve_fault
+from stickslip.explorer.model.fault import FaultAnswer, _marks, solve_fault
 from stickslip.explorer.model.setting import Setting, parameters_of, setting_of
 from stickslip.explorer.model.tour import TOUR_OF_A_FAULT
 from stickslip.explorer.page.controls import Controls
@@ -189,3 +190,12 @@ def test_a_fault_is_shown_in_a_notebook_and_answers() -> None:
     asyncio.run(cells())
     with pytest.raises(ss.InputError, match="a record is not drawn behind a fault"):
         ss.explore(SETTING.scenario(), record={"time (s)": [0.0, 1.0], "mu": [0.6, 0.6]})
+
+
+@pytest.mark.parametrize(("moves", "rest"), [([1.0, 1.0, 0.0], 2.0), ([1.0, 0.0, 0.0], 1.0), ([1.0, 1.0, 1.0], None)])
+def test_arrest_is_the_first_frame_at_rest(moves: list[float], rest: float | None) -> None:
+    slab = SimpleNamespace(body=SimpleNamespace(two_way_time=9.0))
+    rates, times = np.array(moves)[:, None], np.arange(3.0)
+    run = SimpleNamespace(has_slipped=np.array([True]), rupture_times=np.array([0.5]), slab=slab, times=times, slip_rate=rates)
+    marks = {mark.kind: mark.time for mark in _marks(run)}
+    assert marks.get("arrest") == rest

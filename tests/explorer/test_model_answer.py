@@ -3,13 +3,15 @@
 import math
 from dataclasses import replace
 from functools import cache, partial
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import stickslip as ss
 from stickslip.explorer.model.answer import Answer
-from stickslip.explorer.model.pictures import energy_picture
+from stickslip.explorer.model.findings import CAUSES, _jump
+from stickslip.explorer.model.pictures import _path, energy_picture, law_picture
 from stickslip.explorer.model.sampled_waves import SampledWaves, ShownInterval
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.solve import MOST_PIECES, Stopped, companion_of, solve
@@ -116,6 +118,41 @@ def test_energy_of_a_wrong_history_shows_a_gap_between_the_parts_and_the_total(n
     found = energy_picture(shown, SampledWaves(shown)).parts
     stack = sum(values for part, values in found.items() if part != "total")
     assert np.abs(stack - found["total"]).max() > 0.01 * np.ptp(found["total"])
+
+
+def test_mass_of_the_contact_has_its_share_of_the_kinetic_energy() -> None:
+    found = solve(ss.load_scenario("fig6-slab").with_values({"body.contact_mass": 1e6, "run.duration": 4.0}))
+    picture, run = found.energy, found.solution
+    exact = energies(run.history, run.history.find(picture.time, "right"))
+    np.testing.assert_allclose(picture.parts["kinetic"], exact["kinetic"], rtol=0, atol=2e-2 * exact["kinetic"].max())
+
+
+@pytest.mark.parametrize(("cause", "end"), [("start", ""), ("fold", " at 2 s")])
+def test_jump_says_when_it_is_unless_at_the_start(cause: str, end: str) -> None:
+    shock = SimpleNamespace(rate_before=0.0, rate_after=1.0, time=2.0, cause=cause)
+    assert _jump(shock, "m/s") == f"from rest to 1 m/s {CAUSES[cause]}{end}"
+
+
+def test_path_of_a_run_is_cut_where_the_slip_rate_jumps() -> None:
+    motion = SimpleNamespace(
+        time=np.array([0.0, 1.0, 1.0, 1.0, 2.0]), slip_rate=np.array([0.0, 0.0, 0.5, 0.5, 0.6]), load=np.ones(5)
+    )
+    time, rate, load = _path(motion)
+    assert time.tolist() == [0.0, 1.0, 1.0, 1.0, 1.0, 2.0]
+    assert np.isnan(rate).tolist() == np.isnan(load).tolist() == [False, False, True, False, False, False]
+
+
+def test_law_of_slip_and_slip_rate_is_drawn_along_the_rate() -> None:
+    hardens = ss.friction.PiecewiseLinearSlip(slips=(0.0, 100.0), coefficients=(0.0, 5.0))
+    law = ss.friction.SlipPlusRate(hardens, ss.friction.HyperbolicRate(static=0.8, dynamic=0.3, alpha=1.0))
+    problem = replace(ss.load_scenario("fig6-slab").problem, friction=law)
+    motion = SimpleNamespace(slip_rate=np.array([0.0, 1.0]))
+    assert law_picture(ss.simulate(problem, 0.1), motion).along == "slip_rate"
+
+
+def test_sentence_names_the_largest_of_two_events() -> None:
+    assert "slip events, the largest of" in solve(replace(ss.load_scenario("cycles-block"), max_events=2)).sentence
+    assert "One slip event of" in solve(replace(ss.load_scenario("cycles-block"), max_events=1)).sentence
 
 
 @on_slabs

@@ -6,20 +6,23 @@ import tomllib
 import zlib
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import stickslip as ss
 from stickslip.explorer.model.answer import Answer
-from stickslip.explorer.model.controls import Control, controls_of
+from stickslip.explorer.model.controls import Control, controls_of, unit_of
 from stickslip.explorer.model.difference import difference, toml_of
 from stickslip.explorer.model.exchange import with_kind
+from stickslip.explorer.model.ranges import range_of
 from stickslip.explorer.model.setting import LONGEST, Setting, parameters_of, setting_of
 from stickslip.explorer.model.solve import solve
 from stickslip.explorer.page.controls import FIRST, OTHERS, offered, with_expression
 from stickslip.explorer.page.files import opened
 from stickslip.foundation.errors import InputError
+from stickslip.friction import LAWS
 from stickslip.scenarios import library
 from stickslip.scenarios.scenario import read_scenario
 
@@ -83,6 +86,31 @@ def test_sliders_hold_the_value_and_what_they_give_is_read(name: str) -> None:
                 continue
             assert again.value == pytest.approx(end, rel=1e-9)
             assert again.slider == control.slider
+
+
+@pytest.mark.parametrize(
+    ("path", "anchor", "low", "high"),
+    [
+        ("initial.load", -6e7, -9e7, 1.04e8),
+        ("initial.excess", 1e6, -5e6, 5e6),
+        ("initial.excess", 0.0, -1.6e7, 1.6e7),
+        ("contact.patches[0].y[1]", -18e3, -36e3, 36e3),
+    ],
+)
+def test_range_of_a_slider_follows_from_the_first_value(path: str, anchor: float, low: float, high: float) -> None:
+    problem = ss.load_scenario("fig6-slab").problem
+    found = range_of(path, SimpleNamespace(whole=False), anchor, problem)
+    assert (found.low, found.high) == pytest.approx((low, high), rel=1e-12, abs=0)
+
+
+def test_number_in_an_unknown_unit_is_shown_in_si() -> None:
+    assert unit_of("3 km", 3e3, "m") == ("km", 1e3)
+    assert unit_of("3 cubits", 3.0, "m") == ("m", 1.0)
+
+
+def test_exchanged_law_that_never_sticks_begins_at_its_own_friction() -> None:
+    found = with_kind(Setting.bundled("fig6-slab"), "friction", "rate-and-state").value("initial")
+    assert found["load"] == LAWS["rate-and-state"].start["coefficient"] * 1e8
 
 
 def test_entries_are_written_with_the_unit_in_which_they_were_given() -> None:
