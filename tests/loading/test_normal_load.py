@@ -212,3 +212,31 @@ def test_what_cannot_be_followed_is_refused_in_one_line(make: object, message: s
 def test_what_is_set_aside_beside_a_fold_has_room() -> None:
     """A state longer than its room in the scratch space would overwrite what lies behind it."""
     assert Run.places["saved"].size >= SET_ASIDE
+
+
+def test_the_explorer_offers_its_numbers_and_no_number_in_its_place() -> None:
+    from stickslip.explorer.model.controls import controls_of
+    from stickslip.explorer.model.setting import Setting
+    from stickslip.scenarios.scenario import Scenario
+
+    shown = {
+        constant: {one.path for group in controls_of(Setting.of(Scenario(problem, 3.0))) for one in group.controls}
+        for constant, problem in ((True, block(None)), (False, block(Sinusoidal(10.0, 3.0, 0.37))))
+    }
+    assert not any("normal_load" in path for path in shown[True])
+    assert {path.rpartition(".")[2] for path in shown[False] if "normal_load" in path} == {"mean", "amplitude", "period", "phase"}
+
+
+def test_check_tells_the_history_and_calls_a_constant_pull_rate_constant(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from stickslip.cli.main import main
+    from stickslip.scenarios.scenario import Scenario
+
+    path = tmp_path / "pressed.toml"
+    path.write_text(Scenario(block(Sinusoidal(10.0, 3.0, 0.37)), 3.0).to_toml(), encoding="utf-8")
+    with pytest.raises(SystemExit, match=r"^0$"):
+        main(["check", str(path)])
+    told = capsys.readouterr().out
+    assert "normal_load.amplitude" in told
+    assert "at first" not in told.split("K V")[1].splitlines()[0]

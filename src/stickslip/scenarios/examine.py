@@ -157,7 +157,7 @@ def _derived(problem: Problem) -> list[Fact]:
     if problem.has_initial_rate:
         start.append(Fact("v0", problem.rate, si_unit("slip_rate", unit), "slip rate at the start"))
     start += _steady(problem)
-    first = ", at first" if problem.varies else ""
+    first = ", at first" if problem.loading_varies else ""
     if not body.has_waves:
         impedance = math.sqrt(body.stiffness) * math.sqrt(body.inertia)
         return [
@@ -184,7 +184,7 @@ def _steady(problem: Problem) -> list[Fact]:
     steady, states = getattr(law, "steady_coefficient", None), law.steady_state(rate) if rate > 0.0 else None
     if steady is None or states is None:
         return []
-    sliding = f"in steady sliding at the {'first pull rate' if problem.varies else 'pull rate'}"
+    sliding = f"in steady sliding at the {'first pull rate' if problem.loading_varies else 'pull rate'}"
     facts = [Fact("steady friction", problem.normal * float(steady(rate)), problem.load_unit, f"friction {sliding}")]
     for name, state, value in zip(STATE_NAMES, law.states, np.ravel(states), strict=False):
         facts.append(Fact(f"steady {name.replace('_', ' ')}", float(value), state.unit, f"state {state.name} {sliding}"))

@@ -124,9 +124,9 @@ def _block_stability(body: SpringBlock, by_slip: float, by_rate: float) -> str:
 
 def _critical_stiffness(problem: Problem, law: RateAndState) -> str:
     """Return a sentence on the stiffness of the body and the critical one: sliding at the pull rate is stable above it."""
-    body, rate, pull = problem.body, abs(problem.first_pull_rate), "first pull rate" if problem.varies else "pull rate"
+    body, rate, pull = problem.body, abs(problem.first_pull_rate), "first pull rate" if problem.loading_varies else "pull rate"
     if rate == 0.0:
-        return "not pulled at first" if problem.varies else "not pulled: it creeps to a halt, ever more slowly"
+        return "not pulled at first" if problem.loading_varies else "not pulled: it creeps to a halt, ever more slowly"
     sliding = SteadySliding(problem.normal, law.a, law.b, law.distance, rate)
     if not body.has_waves:
         critical, text, unit = sliding.critical_stiffness(body.inertia, body.damping), "stiffness K", "N/m"

@@ -170,9 +170,12 @@ class _Tables:
             others = ControlGroup("loading", others.title, CONSTANT, (CONSTANT, *HISTORIES), others.controls)
         if others.controls:
             yield others
-        far = self.setting.value("loading.far_stress")
-        if isinstance(far, Mapping):
-            yield self.of("loading.far_stress", HISTORIES[far["kind"]], (), "Far stress that varies")
+        for name in ("far_stress", "normal_load"):
+            history = self.setting.value(f"loading.{name}")
+            if isinstance(history, Mapping):
+                yield self.of(
+                    f"loading.{name}", HISTORIES[history["kind"]], (), f"{name.capitalize().replace('_', ' ')} that varies"
+                )
         start = "steady" if self.starts_steadily else "load" if self.setting.value("initial.excess") is None else "excess"
         in_motion = self.problem.has_initial_rate and self.problem.first_pull_rate != 0.0
         kinds = STARTS if law.sticks else STARTS_IN_MOTION if in_motion else ()
@@ -252,6 +255,8 @@ class _Tables:
     def applies(self, path: str) -> bool:
         """Return False for an entry that this problem cannot have, and for a number that a table replaces."""
         if path in ("loading.far_stress", "loading.far_stress_rate") and self.problem.body.is_driven_rigidly:
+            return False
+        if path == "loading.normal_load":  # which is nothing but a table
             return False
         if path in ("initial.state", "initial.second_state") and (not self.problem.friction.states or self.starts_steadily):
             return False

@@ -96,6 +96,8 @@ def _steady(change: Callable[[Floats], Floats]) -> float | None:
         low, high = STATES[k], STATES[k + 1]
         for _ in range(HALVINGS):
             middle = 0.5 * (low + high)
+            if not low < middle < high:
+                break  # no float lies between them
             if float(change(np.array([middle]))[0]) > 0.0:
                 low = middle
             else:
