@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, ClassVar
 
 import pytest
 import xarray as xr
+from matplotlib import pyplot
 
 import stickslip as ss
 from stickslip.bodies import BODIES, as_block
@@ -85,6 +87,13 @@ def test_a_catalogue_has_the_units_of_a_new_kind(rotor: Scenario, tmp_path: Path
     ss.catalogue(rotor, path=path)
     with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as file:
         assert [file[name].attrs["units"] for name in ("slip", "peak_rate", "traction_drop")] == ["rad", "rad s-1", "N m"]
+
+
+@pytest.fixture(autouse=True)
+def _close_figures() -> Iterator[None]:
+    pyplot.close("all")  # tests of other files may have left some
+    yield
+    pyplot.close("all")
 
 
 def test_figures_name_the_quantities_of_a_new_kind(rotor: Scenario) -> None:

@@ -307,7 +307,7 @@ def test_compiling_the_engine_is_announced(
     monkeypatch.setattr(one_module.Kept, "read", lambda _: None)
     monkeypatch.setattr(cache, "announce", said.append)
     monkeypatch.setattr(one_module._Wait, "spent", spent)
-    monkeypatch.setattr(one_module._Wait, "told", set())
+    monkeypatch.setattr(one_module._Wait, "announced", set())
     entry = {"total": total, "run_until": run_until}[name].entry  # type: ignore[attr-defined]
     for _ in range(2):
         assert entry._cache.load_overload(None, entry.targetctx) is None

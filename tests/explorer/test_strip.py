@@ -51,7 +51,7 @@ def test_a_strip_has_two_hundred_runs_with_their_units() -> None:
     assert {name: strip.units[name] for name in ("slip", "first_end", "peak_rate")} == {
         "slip": "m",
         "first_end": "s",
-        "peak_rate": "m s-1",
+        "peak_rate": "m/s",
     }
     critical = ss.uniqueness(SLAB.scenario().problem).critical_value
     assert critical is not None
