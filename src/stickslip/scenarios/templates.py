@@ -131,7 +131,6 @@ def _written(example: dict[str, Any], about: str = "") -> str:
             lines += [f"# kind = {json.dumps(other.kind)}  # {_first_line(other)}" for other in LAWS.values() if other is not kind]
         if table == "loading":
             lines.append(f"# A pull rate that varies: `stickslip new slab --pull KIND`, KIND one of {', '.join(HISTORIES)}.")
-            lines.append("# A normal load that varies: the same kinds, in a table [loading.normal_load].")
         states = states_in(getattr(kinds["friction"], "state", None))  # a typed state is not that of the class
         lines += _table(table, kind, example[table], states)
         if table == "run":
@@ -161,6 +160,7 @@ def _table(table: str, kind: type, example: dict[str, Any], states: tuple[StateV
     for name, (entry, default) in entries_in(table, kind, states).items():
         value = example.get(name)
         if value is None and f"{table}.{name}" == "loading.normal_load":  # which is nothing but a table
+            lines.append(f"# {name} = {{...}}  # {describe(entry)}: a table [{table}.{name}], of the kinds named above")
             continue
         if table == "loading" and isinstance(value, dict):
             inner += ["", f"# {describe(entry)}, as it varies in time", *_table(f"{table}.{name}", HISTORIES[value["kind"]], value)]
