@@ -33,7 +33,7 @@ TextProgress = Callable[[str], Any]
 
 @contextmanager
 def telling(progress: TextProgress | bool | None, what: str) -> Iterator[TextProgress]:
-    """Provide the function that receives the progress of a study, as `told` does; it does nothing if no progress is wanted."""
+    """Provide the function that receives the progress of a study, as `reporting` does; it does nothing if no progress is wanted."""
     with reporting(progress, what) as tell:
         yield tell or (lambda text: None)
 

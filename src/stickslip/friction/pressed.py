@@ -28,7 +28,7 @@ PRESSING = (
 class Pressed(FrictionLaw):
     """(1 + p) law(u, v, w), whose last two states are p and dp/dt; `least` and `most` are bounds of 1 + p.
 
-    The first state of the law follows the normal load: dw/dt gains -coupling dp/dt / (1 + p) (Linker & Dieterich 1992).
+    The first state of the law follows the normal load: dw/dt gains -`normal_coupling` dp/dt / (1 + p) (Linker & Dieterich 1992).
     """
 
     kind = "pressed"
