@@ -116,16 +116,19 @@ def test_a_law_is_one_file_and_its_line_in_laws(tmp_path: Path) -> None:
     package = tmp_path / "stickslip"
     shutil.copytree(Path(stickslip.__file__).parent, package, ignore=shutil.ignore_patterns("__pycache__"))
     blocks = [block for block in blocks_of(page) if block.language in ("python", "toml")]
-    law = next(block.text for block in blocks if "class PowerSlipWeakening" in block.text)
+    law = next(block.text for block in blocks if "class TwoDistanceWeakening" in block.text)
     scenario = next(block.text for block in blocks if block.language == "toml")
-    (package / "friction" / "laws" / "power_slip_weakening.py").write_text(law, encoding="utf-8")
+    (package / "friction" / "laws" / "two_distance_weakening.py").write_text(law, encoding="utf-8")
     listing = package / "friction" / "__init__.py"
     text = listing.read_text(encoding="utf-8").replace(
-        "LAWS: dict", "from stickslip.friction.laws.power_slip_weakening import PowerSlipWeakening\n\nLAWS: dict", 1
+        "LAWS: dict", "from stickslip.friction.laws.two_distance_weakening import TwoDistanceWeakening\n\nLAWS: dict", 1
     )
-    listing.write_text(re.sub(r"(\n    for law in \(\n)", r"\1        PowerSlipWeakening,\n", text), encoding="utf-8")
+    listing.write_text(re.sub(r"(\n    for law in \(\n)", r"\1        TwoDistanceWeakening,\n", text), encoding="utf-8")
     (tmp_path / "mine.toml").write_text(scenario, encoding="utf-8")
-    for arguments, expected in ((["check", "mine.toml"], "PowerSlipWeakening: regular"), (["new", "slab"], "power-slip-weakening")):
+    for arguments, expected in (
+        (["check", "mine.toml"], "TwoDistanceWeakening: regular"),
+        (["new", "slab"], "two-distance-weakening"),
+    ):
         done = subprocess.run(
             [sys.executable, "-c", "import sys; from stickslip.cli.main import main; main(sys.argv[1:])", *arguments],
             cwd=tmp_path,

@@ -220,6 +220,7 @@ def test_the_template_of_every_law_can_be_read(kind: str, body: str) -> None:
 
 CLOSED: dict[str, tuple[dict[str, Any], float, float, float]] = {
     "exponential-slip-weakening": ({"static": 0.7, "dynamic": 0.2, "distance": 0.5}, 0.5, 3.0, 0.2 + 0.5 / math.e),
+    "power-slip-weakening": ({"static": 0.6, "dynamic": 0.2, "distance": 0.1, "exponent": 1 / 3}, 0.7, 3.0, 0.4),
     "parabolic-slip-weakening": ({"static": 0.6, "dynamic": 0.4, "distance": 0.4, "onset": 0.1}, 0.0, 0.0, 0.5875),
     "exponential-cohesive-zone": ({"static": 0.6, "dynamic": 0.4, "distance": 0.2, "offset": 0.1}, 0.1, 0.0, 0.6),
     "piecewise-linear-slip": ({"slips": [0.0, 0.1, 0.3], "coefficients": [0.5, 0.6, 0.4]}, 0.2, 9.0, 0.5),

@@ -27,6 +27,7 @@ from stickslip.friction.laws.of_slip import (
     LinearSlipWeakening,
     ParabolicSlipWeakening,
     PiecewiseLinearSlip,
+    PowerSlipWeakening,
     SinusoidalSlip,
 )
 from stickslip.friction.laws.rate_and_state import FlashHeating, RateAndState, TwoStateRateAndState
@@ -39,6 +40,7 @@ LAWS: dict[str, type[FrictionLaw]] = {
         Coulomb,
         LinearSlipWeakening,
         ExponentialSlipWeakening,
+        PowerSlipWeakening,
         ParabolicSlipWeakening,
         ExponentialCohesiveZone,
         PiecewiseLinearSlip,
@@ -65,4 +67,5 @@ __all__ += ["Fit", "Points", "Smooth", "fit", "fit_each", "smooth"]
 __all__ += ["Coulomb", "Dahl", "FlashHeating", "LuGre"]
 __all__ += ["HyperbolicRate", "LaggedFriction", "PiecewiseLinearRate", "RateAndState", "VelocityStrengthening"]
 __all__ += ["ExponentialCohesiveZone", "ExponentialSlipWeakening", "LinearSlipWeakening", "ParabolicSlipWeakening"]
-__all__ += ["ExponentialStribeck", "PiecewiseLinearSlip", "PowerStribeck", "SinusoidalSlip", "SlipPlusRate", "SlipTimesRate"]
+__all__ += ["ExponentialStribeck", "PiecewiseLinearSlip", "PowerSlipWeakening", "PowerStribeck", "SinusoidalSlip"]
+__all__ += ["SlipPlusRate", "SlipTimesRate"]

@@ -37,6 +37,31 @@ class ExponentialSlipWeakening(SlipWeakening):
 
 
 @dataclass(frozen=True)
+class PowerSlipWeakening(SlipWeakening):
+    """mu(d) = dynamic + (static - dynamic) (1 + d / distance)^(-exponent), with d the slip path.
+
+    Exponent 1/3 is the proxy of thermal pressurisation of Herrera et al., in which the work of weakening grows as d^(2/3). Exponent
+    0.4 is that of Chambon et al. for thick gouge. Where friction is written with an initial slope (static - dynamic) / Dc, as
+    (1 + d / (exponent Dc))^(-exponent), give `distance` = exponent Dc.
+    """
+
+    kind = "power-slip-weakening"
+    source = (
+        "Chambon, Schmittbuhl & Corfdir 2006, J. Geophys. Res. 111, B09309 (gouge); Herrera, Ampuero & Crempien 2024, Geophys. J. "
+        "Int., a proxy implementation of thermal pressurization (exponent 1/3, as a law of slip in SeisSol)"
+    )
+    many = True
+    example: ClassVar = {"static": 0.6, "dynamic": 0.2, "distance": "0.1 m", "exponent": 0.333}
+
+    exponent: float = quantity("1", "how fast friction falls beyond `distance`: as slip to the power -exponent", above=0)
+
+    @staticmethod
+    @override
+    def formula(law: Any, u: Any, v: Any) -> Any:
+        return law.dynamic + (law.static - law.dynamic) * (1.0 + u / law.distance) ** (-law.exponent)
+
+
+@dataclass(frozen=True)
 class LinearSlipWeakening(SlipWeakening):
     """mu falls linearly from static to dynamic over a slip path `distance`, and is constant after that."""
 
