@@ -1,0 +1,160 @@
+"""The arithmetic inside a fit, each piece by itself: against closed forms, full matrices and records of known shape."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from types import SimpleNamespace
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from stickslip.foundation.errors import InputError
+from stickslip.inference.fit.free import DELAY, SERVO, TREND
+from stickslip.inference.fit.memory import (
+    ACTIVE,
+    WHITE,
+    Memory,
+    ResidualBlock,
+    independent_columns,
+    spread_by,
+    spreads_of,
+    unevenness,
+)
+from stickslip.inference.fit.part import Part
+from stickslip.inference.fit.setup import LATER, LEAST, at_rests, scales_of
+from stickslip.inference.fitted_record import FittedRecord
+from stickslip.inference.record import loading
+from stickslip.inference.record.features import Samples, features_in
+from stickslip.inference.record.noise import LOSSES, OUTLYING, cost_of, weights
+from stickslip.inference.record.record import Record
+
+RANDOM = np.random.default_rng(7)
+
+
+@pytest.mark.parametrize("loss", LOSSES)
+@pytest.mark.parametrize("size", [0.3, 0.9, 1.1, 4.0])
+def test_weights_are_derivatives_of_the_cost(loss: str, size: float) -> None:
+    """Central differences in the squared residual, to 1e-8."""
+    squared, step = (size * OUTLYING) ** 2, 1e-5
+    costs = [cost_of(np.sqrt(np.array([squared + side * step])), loss) for side in (1.0, -1.0)]
+    assert weights(np.array([size * OUTLYING]), loss)[0] == pytest.approx((costs[0] - costs[1]) / (2.0 * step), rel=1e-8)
+
+
+def sawtooth(events: int) -> Record:
+    """Friction that rises by 0.1 in 10 s and falls by it within 0.1 s, of which the last event is followed by 10 s of rise."""
+    time = np.arange(0.0, 10.0 * (events + 1), 0.02)
+    phase = np.mod(time, 10.0)
+    friction = 0.5 + np.where(phase < 9.9, 0.1 * phase / 9.9, 0.1 - (phase - 9.9))
+    return Record(time, {"friction": friction})
+
+
+def test_two_events_give_one_row_of_features_and_three_give_two() -> None:
+    for events in (2, 3):
+        record = sawtooth(events)
+        samples = Samples(record.time, record.measured)
+
+        def between(begin: float, end: float, one: Samples = samples) -> Samples:
+            inside = (one.time >= begin) & (one.time <= end)
+            return Samples(one.time[inside], {name: values[inside] for name, values in one.values.items()})
+
+        found = features_in(samples, between, "friction")
+        assert {len(values) for values in found.values()} == {events - 1}
+        assert found["recurrence"] == pytest.approx(10.0, abs=1e-3)
+        assert found["time"] == pytest.approx(9.95 + 10.0 * np.arange(1, events), abs=0.02)
+        assert found["friction_drop"] == pytest.approx(0.1, rel=0.02)
+
+
+def test_noise_of_means_is_that_of_the_samples_over_the_root_of_their_number() -> None:
+    """White noise at uneven times on a straight line: within 10 %, where leaving out one of the three weights is 20 % and more."""
+    time = np.cumsum(RANDOM.uniform(0.2, 1.8, 40_000))
+    values = 3.0 * time + RANDOM.normal(0.0, 0.5, len(time))
+    sums = [np.append(0.0, np.cumsum(one)) for one in (time, values)]
+    for width in (2, 4, 16):
+        assert loading._noise_of_means(sums[0], sums[1], width) == pytest.approx(0.5 / np.sqrt(width), rel=0.1)
+
+
+def test_as_many_parts_as_allowed_are_kept_and_one_more_is_told_by_its_factor(monkeypatch: pytest.MonkeyPatch) -> None:
+    time = np.arange(200.0)
+    values = np.repeat([0.0, 1.0, 0.0, 1.0], 50)
+    allowed = np.full(8, 0.1)
+    monkeypatch.setattr(loading, "MOST_PARTS", 4)
+    assert loading.straight_parts(time, values, allowed, 0) == ([0, 50, 100, 150, 200], 1.0)
+    monkeypatch.setattr(loading, "MOST_PARTS", 3)
+    assert loading.straight_parts(time, values, allowed, 0)[1] > 1.0
+
+
+def test_two_samples_are_a_part_of_a_record_and_one_is_none() -> None:
+    record = sawtooth(2)
+    assert len(record.part(0.0, 0.02)) == 2
+    with pytest.raises(InputError, match="fewer than two samples"):
+        record.part(0.0, 0.01)
+
+
+def test_steps_of_free_numbers_that_start_at_zero_follow_the_record() -> None:
+    time, slip = np.array([5.0, 10.0, 15.0]), np.array([2.0, np.nan, 6.0])
+    problem = SimpleNamespace(first_pull_rate=-3.0)
+    moved = scales_of(Part(Record(time, {"slip": slip}), None, ("slip",)), problem)  # type: ignore[arg-type]
+    assert moved["initial.slip"] == pytest.approx(0.4)
+    assert moved[TREND] == pytest.approx(0.025)
+    assert moved[DELAY] == moved[SERVO] == pytest.approx(0.1)
+    still = scales_of(Part(Record(time, {"friction": slip}), None, ("friction",)), problem)  # type: ignore[arg-type]
+    assert still["initial.slip"] == pytest.approx(0.1 * 3.0 * 10.0)
+
+
+def test_parts_between_rests_begin_a_little_after_each_event() -> None:
+    record = sawtooth(3)
+    found = at_rests(Part(record, None, ("friction",)))
+    begins = [one.begins for one in found]
+    lows = [9.98, 19.98, 29.98]
+    lasting = np.diff([*lows, 40.0])
+    assert begins[0] == 0.0
+    assert np.allclose(begins[1:], np.array(lows) + LATER * lasting, atol=0.05)
+    assert all(len(one.record) >= LEAST for one in found)
+
+
+def test_independent_columns_span_all_that_changes_and_nothing_else() -> None:
+    first, second = RANDOM.normal(size=(2, 50))
+    slopes = np.column_stack([first, 1e-6 * second, np.zeros(50), first - 3.0 * second])
+    found = independent_columns(slopes)
+    assert found.shape == (50, 2)
+    assert np.allclose(found.T @ found, np.eye(2), atol=1e-12)
+    assert np.allclose(found @ (found.T @ slopes), slopes, atol=1e-12)
+
+
+def blocks_of(*lengths: int) -> list[ResidualBlock]:
+    ends = np.append(0, np.cumsum(lengths)).tolist()
+    return [ResidualBlock(slice(first, last), np.cumsum(RANDOM.uniform(0.5, 1.5, last - first))) for first, last in pairwise(ends)]
+
+
+def test_the_spread_under_noise_with_a_memory_is_that_of_the_full_matrix() -> None:
+    blocks, memory = blocks_of(30, 20), Memory(2.0, 0.7, 0.3)
+    influence, full = RANDOM.normal(size=(50, 3)), np.zeros((50, 50))
+    for rows, time in blocks:
+        apart = np.abs(time[:, None] - time)
+        full[rows, rows] = memory.size**2 * np.exp(-apart / memory.time) + memory.white**2 * np.eye(len(time))
+    assert np.allclose(spread_by(influence, memory, blocks), influence.T @ full @ influence, rtol=1e-12)
+
+
+def test_the_narrowest_spread_of_the_residuals_is_whites() -> None:
+    influence, residual = RANDOM.normal(size=(64, 2)), RANDOM.normal(size=64)
+    found = spreads_of(influence, residual, blocks_of(64))
+    assert len(found) == 4  # sums over 1, 2, 4 and 8 samples, an eighth of the block
+    assert np.allclose(found[0], (influence * residual[:, None] ** 2).T @ influence * 64 / 62, rtol=1e-12)
+    sums = [(influence * residual[:, None])[max(at, 0) : at + 2].sum(axis=0) for at in range(-1, 64)]
+    assert np.allclose(found[1], sum(np.outer(one, one) for one in sums) / 2.0 * 64 / 62, rtol=1e-12)
+
+
+def test_unevenness_compares_the_samples_that_hold_half_of_the_leverage_with_the_others() -> None:
+    slopes = np.where(np.arange(100) < 10, 3.02, 1.0)[:, None]  # the first ten hold 91 of 181
+    residual = RANDOM.normal(size=100) * np.where(np.arange(100) < 10, 30.0, 1.0)
+    assert ACTIVE == 0.5
+    found = unevenness(residual, slopes, WHITE, blocks_of(100)).found
+    assert found == pytest.approx(np.sqrt(np.mean(residual[:10] ** 2) / np.mean(residual[10:] ** 2)), rel=1e-12)
+
+
+def test_the_error_of_samples_left_out_leaves_fitted_and_missing_ones_out() -> None:
+    curves = pd.DataFrame({"quantity": ["slip"] * 4, "fitted": [True, True, False, False], "residual": [1.0, 3.0, 4.0, np.nan]})
+    record = SimpleNamespace(curves=curves)
+    assert FittedRecord.errors(record, {"slip": 2.0}, fitted=True) == pytest.approx(np.sqrt(5.0) / 2.0)  # type: ignore[arg-type]
+    assert FittedRecord.errors(record, {"slip": 2.0}, fitted=False) == pytest.approx(2.0)  # type: ignore[arg-type]
