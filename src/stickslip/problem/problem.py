@@ -154,7 +154,8 @@ class Problem(ProblemFields):
         if not self.starts_steadily:
             why = "a contact without mass has no slip rate of its own, load and friction determine it"
             raise InputError(
-                f"Problem: initial_rate: {why}: leave it out, or leave out load and state, so that it starts in steady sliding"
+                f"Problem: initial_rate: {why}: give it a mass, leave the rate out, or leave out load and state, so that it"
+                " starts in steady sliding"
             )
         if self.has_initial_rate and resistance_slope(self) <= 0.0:
             rate = brief(self.rate, si_unit("slip_rate", self.load_unit))

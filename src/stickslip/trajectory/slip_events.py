@@ -149,8 +149,14 @@ def walk(history: History, threshold: float, begin: int = 0) -> Integers:
 
 
 def default_event_rate(problem: Problem) -> float:
-    """Return the default slip rate (m/s) that defines an event: 1e-6 S (range of mu) / Z; for the block sqrt(K m) replaces Z."""
-    return 1e-6 * problem.normal * problem.friction.variation / problem.body.impedance
+    """Return the default slip rate (m/s) that defines an event: 1e-6 S (range of mu) / Z; for the block sqrt(K m) replaces Z.
+
+    If a contact that can stick is thrown at a smaller rate than S (range of mu) / Z, it is 1e-6 times its initial rate: a block on
+    a soft spring is never faster than that.
+    """
+    fast = problem.normal * problem.friction.variation / problem.body.impedance
+    thrown = problem.friction.sticks and problem.has_initial_rate and not problem.starts_steadily
+    return 1e-6 * (min(fast, abs(problem.rate)) if thrown else fast)
 
 
 class SlipEvents(NamedTuple):

@@ -260,7 +260,7 @@ class _Tables:
             return False
         if path in ("initial.state", "initial.second_state") and (not self.problem.friction.states or self.starts_steadily):
             return False
-        if path == "initial.rate" and not self.problem.has_initial_rate:
+        if path == "initial.rate" and not (self.problem.body.has_inertia or self.problem.has_initial_rate):
             return False
         if path in ("initial.load", "initial.excess"):
             return self.setting.value(path) is not None
@@ -297,6 +297,8 @@ class _Tables:
     def _empty(self, path: str, default: Any, entry: Quantity) -> str:
         if path == "initial.rate" and self.starts_steadily:
             return "the pull rate"
+        if path == "initial.rate" and self.problem.friction.sticks:
+            return "rest"
         if default is None:
             return EMPTY.get(path, "none")
         return entry.word if math.isinf(default) else f"{default:g}"

@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import Any
 
 from stickslip.bodies import as_slab
-from stickslip.explorer.model.controls import CONSTANT, STARTS_IN_MOTION
+from stickslip.explorer.model.controls import CONSTANT
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.solve import slab_of_figure
 from stickslip.foundation.errors import InputError
@@ -18,7 +18,8 @@ from stickslip.foundation.quantities import Quantity, fields_of
 from stickslip.friction import FrictionLaw
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.loading import HISTORIES
-from stickslip.problem.problem import Problem, written_out
+from stickslip.problem.fields import STEADY
+from stickslip.problem.problem import written_out
 from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source, key_of, to_table
 from stickslip.scenarios.schema import KINDS, entries_in, kind_of, read_part
@@ -123,23 +124,19 @@ def _with_body(setting: Setting, kind: str) -> Setting:
 
 
 def _with_start(setting: Setting, kind: str) -> Setting:
+    """Return a setting that starts in steady sliding, or from the load, the states and the rate that it has now."""
     problem = setting.scenario().problem
-    if problem.has_initial_rate and kind in STARTS_IN_MOTION:
-        return _with_start_in_motion(setting, kind, problem)
-    if kind not in ("load", "excess"):
+    if kind not in ("load", "excess") and not (kind == STEADY and problem.has_initial_rate):
         raise InputError(f"{setting.name}: [initial] takes load or excess, got {kind!r}")
-    value, other = (problem.load, "excess") if kind == "load" else (problem.excess, "load")
-    return setting.with_value(f"initial.{other}", None).with_value(f"initial.{kind}", float(value))
-
-
-def _with_start_in_motion(setting: Setting, kind: str, problem: Problem) -> Setting:
-    """Return a setting that starts in steady sliding, or from the load and the state that it has now."""
-    initial = {key: value for key, value in setting.value("initial").items() if key not in ("load", "excess", *STATE_NAMES)}
-    if kind == "load":
-        start = written_out(problem)
-        given = {name: getattr(start, f"initial_{name}") for name in ("load", "excess", *STATE_NAMES)}
-        initial |= {key: value for key, value in given.items() if value is not None}
-    return setting.with_value("initial", initial)
+    initial = {key: value for key, value in setting.value("initial").items() if key not in ("load", "excess")}
+    if kind == STEADY:
+        return setting.with_value("initial", {key: value for key, value in initial.items() if key not in STATE_NAMES})
+    start = written_out(problem)
+    states = {name: getattr(start, f"initial_{name}") for name in STATE_NAMES}
+    if initial.get("rate") == STEADY:
+        initial["rate"] = start.initial_rate
+    initial = states | initial | {kind: float(problem.load if kind == "load" else problem.excess)}
+    return setting.with_value("initial", {key: value for key, value in initial.items() if value is not None})
 
 
 def _with_pull(setting: Setting, kind: str) -> Setting:
