@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
 import pytest
 
+import stickslip as ss
 from stickslip.foundation.errors import InputError
+from stickslip.inference.certainty.certainty import _covariance
+from stickslip.inference.fit import search
 from stickslip.inference.fit.free import DELAY, SERVO, TREND
 from stickslip.inference.fit.memory import (
     ACTIVE,
@@ -22,7 +26,7 @@ from stickslip.inference.fit.memory import (
     unevenness,
 )
 from stickslip.inference.fit.part import Part
-from stickslip.inference.fit.setup import LATER, LEAST, at_rests, scales_of
+from stickslip.inference.fit.setup import LATER, LEAST, at_rests, parts_of, scales_of
 from stickslip.inference.fitted_record import FittedRecord
 from stickslip.inference.record import loading
 from stickslip.inference.record.features import Samples, features_in
@@ -115,11 +119,12 @@ def test_parts_between_rests_begin_a_little_after_each_event() -> None:
 
 def test_independent_columns_span_all_that_changes_and_nothing_else() -> None:
     first, second = RANDOM.normal(size=(2, 50))
-    slopes = np.column_stack([first, 1e-6 * second, np.zeros(50), first - 3.0 * second])
-    found = independent_columns(slopes)
-    assert found.shape == (50, 2)
-    assert np.allclose(found.T @ found, np.eye(2), atol=1e-12)
-    assert np.allclose(found @ (found.T @ slopes), slopes, atol=1e-12)
+    for third in (second, first - 3.0 * second):
+        slopes = np.column_stack([first, 1e-6 * second, np.zeros(50), 1e-6 * third])
+        found = independent_columns(slopes)
+        assert found.shape == (50, 2)
+        assert np.allclose(found.T @ found, np.eye(2), atol=1e-12)
+        assert np.allclose(found @ (found.T @ slopes), slopes, rtol=0, atol=1e-12 * np.abs(slopes).max(axis=0))
 
 
 def blocks_of(*lengths: int) -> list[ResidualBlock]:
@@ -151,6 +156,53 @@ def test_unevenness_compares_the_samples_that_hold_half_of_the_leverage_with_the
     assert ACTIVE == 0.5
     found = unevenness(residual, slopes, WHITE, blocks_of(100)).found
     assert found == pytest.approx(np.sqrt(np.mean(residual[:10] ** 2) / np.mean(residual[10:] ** 2)), rel=1e-12)
+
+
+def test_sentences_name_their_record_where_there_are_two() -> None:
+    problem = ss.Problem(ss.SpringBlock(1.0, 1.0, 1.0), ss.friction.RateAndState(0.6, 0.01, 0.008, 1e-3), pull_rate=1e-3)
+    for records in ([sawtooth(2)], [sawtooth(2), sawtooth(3)]):
+        told = parts_of(problem, records, None, None, "contact")[1]
+        assert told
+        assert all(one.startswith("record: ") == (len(records) > 1) for one in told)
+
+
+def test_a_search_that_jumps_led_away_ends_where_it_began(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(search, "sharp_cost", lambda _, x, __: float(np.sum(x**2)))
+    for end, best in ((2.0, 1.0), (0.5, 0.5)):
+        monkeypatch.setattr(search, "solved", lambda *_, end=end, **__: np.array([end]))
+        cost, x = search._followed(None, np.array([1.0]), "linear", search.Best())  # type: ignore[arg-type]
+        assert (cost, x[0]) == (best**2, best)
+
+
+def test_a_file_without_times_is_named_with_the_line_of_its_headings(tmp_path: Path) -> None:
+    file = tmp_path / "record.csv"
+    file.write_text("# from the rig\nfriction,slip\n0.6,1\n0.6,2\n")
+    with pytest.raises(InputError, match=r"record\.csv, line 2: no column 'time'"):
+        Record.read(str(file))
+    with pytest.raises(InputError, match=r"^record: no column 'time'"):
+        Record.read({"friction": [0.6, 0.6]})
+
+
+@pytest.mark.parametrize("larger", [1.0, 3.0])
+def test_residuals_that_are_larger_where_they_count_widen_the_covariance(larger: float) -> None:
+    """One number of constant influence but on ten samples of a hundred: White's covariance, where it is the larger one."""
+    slopes = np.where(np.arange(400) < 40, 3.02, 0.1)[:, None]
+    residual = RANDOM.normal(size=400) * np.where(np.arange(400) < 40, larger, 1.0)
+    model = SimpleNamespace(independent=400, of_means=False, samples=400, inflation=0.0, memory={}, every=1, sizes={"slip": 1.0})
+    record = SimpleNamespace(measured={"slip": residual})
+    block = ResidualBlock(slice(0, 400), np.arange(400.0))
+    model.parts, model.weights = [SimpleNamespace(record=record)], lambda _: np.ones(400)
+    model.blocks = lambda _: [("slip", block)]
+    found, uneven = _covariance(model, residual, slopes, 1.0)  # type: ignore[arg-type]
+    plain = 1.0 / float(np.sum(slopes**2))
+    assert (uneven["slip"].found > 1.0) == (larger > 1.0)
+    if larger == 1.0:
+        assert found[0, 0] == pytest.approx(plain, rel=0.02)  # Student's factor for 399 degrees of freedom is 1.003
+    else:
+        influence = slopes / np.sum(slopes**2)
+        most = max(float(one[0, 0]) for one in spreads_of(influence, residual, [block]))
+        assert most > 5.0 * plain
+        assert found[0, 0] == pytest.approx(most, rel=0.02)
 
 
 def test_the_error_of_samples_left_out_leaves_fitted_and_missing_ones_out() -> None:

@@ -7,15 +7,17 @@ import math
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from scipy.integrate import quad
+from scipy.special import j1
 from tests.planar.patches import SLAB, patch
 
 import stickslip as ss
 from stickslip.engine_input.forcing import inflow_of
 from stickslip.planar import echo as echoes
 from stickslip.planar.driving import locked_load
-from stickslip.planar.memory import recurrence
+from stickslip.planar.memory import advanced, recurrence
 from stickslip.planar.nodes import node_values
-from stickslip.planar.solver import in_double_precision
+from stickslip.planar.solver import PlanarSolver, in_double_precision
 
 RANDOM = np.random.default_rng(3)
 
@@ -25,6 +27,32 @@ def test_the_memory_of_a_plane_is_that_of_its_wavenumbers_one_by_one() -> None:
     plane, line = (recurrence(one, 2.0, 0.05, 10.0) for one in (frequencies, frequencies.ravel()))
     for name in ("decay", "gain", "now"):
         assert np.array_equal(getattr(plane, name).reshape(getattr(line, name).shape), getattr(line, name))
+
+
+def test_the_memory_of_slip_that_grows_evenly_is_its_integral() -> None:
+    """F = -Z w^2 int J1(w s)/(w s) U(t - s) ds for U = t, by quadrature, to 1e-8 of Z."""
+    frequency, impedance, step, steps = 3.0, 2.0, 0.07, 40
+    found = recurrence(np.array([frequency]), impedance, step, steps * step)
+    memory, inherited = np.zeros_like(found.decay), 0.0
+    for n in range(1, steps + 1):
+        slip, time = n * step, n * step
+        force = inherited + float(found.now[0]) * slip
+        wanted = quad(lambda s, end=time: j1(frequency * s) / (frequency * s) * (end - s), 0.0, time, epsabs=1e-12)[0]
+        assert force == pytest.approx(-impedance * frequency**2 * wanted, rel=0, abs=1e-8 * impedance)
+        memory, summed = advanced(memory, found.decay, found.gain, slip)
+        inherited = float(summed[0])
+
+
+def test_heat_is_the_sum_of_traction_times_slip_rate_over_the_steps() -> None:
+    run = PlanarSolver(patch(nodes=32, length=2e4), 3.0)
+    before, heat = run.now(), np.zeros(32)
+    for _ in range(30):
+        assert run.advance(1)
+        now = run.now()
+        heat += 0.5 * run.dt * (before.traction * before.rate + now.traction * now.rate)
+        before = now
+    assert heat.max() > 0.0
+    assert np.allclose(before.heat, heat, rtol=1e-12)
 
 
 @pytest.mark.parametrize("fastest", [1.5, 3.9, 4.2])
