@@ -1,4 +1,4 @@
-"""Hashes of the text that is generated for formulas: those of all laws, and of a thousand trees drawn at random.
+"""Hashes of the text that is generated for formulas: those of all laws, and of trees drawn at random.
 
 python -m tests.engine.formula_texts    # keeps the hashes of the present code in formula_texts.json
 """
@@ -19,7 +19,7 @@ from stickslip.friction.formula.operations import FUNCTIONS
 from tests.engine.drawn import example_law
 
 KEPT = Path(__file__).with_suffix(".json")
-TREES, GROUP = 1000, 50
+TREES, GROUP = 300, 50
 """Number of trees, and of trees that share a hash."""
 NAMES = ("a", "b", "c")
 """Parameters of the trees."""

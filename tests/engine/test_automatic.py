@@ -21,7 +21,7 @@ from stickslip.engine_input.limits import AUTOMATIC_SHARE, MOST_PIECES, PATIENCE
 from stickslip.foundation.units import to_si
 from stickslip.trajectory.status import STATUSES
 from tests.engine.creep_truth import GROWN, ROUND, printed
-from tests.long_runs.problems import differences
+from tests.long_runs.problems import differences, stopped_and_continued
 
 SLOW = ss.load_scenario("second-event-perfect-delay").problem
 BODY = SLOW.body
@@ -75,10 +75,9 @@ def test_pieces_in_a_round_trip_are_bounded() -> None:
 
 def test_a_resumed_run_continues_as_if_it_had_not_stopped(tmp_path: Path) -> None:
     """Bit for bit, in the middle of the storm; and a catalogue that forgets is the table of the whole run."""
-    file, years = tmp_path / "run.nc", 23_900 * ss.YEAR
-    whole = ss.simulate(SLOW, years, shortest_event=1e-2)
-    ss.simulate(SLOW, 0.998 * years, shortest_event=1e-2).to_netcdf(file)
-    assert differences(ss.resume(file, years), whole) == []
+    years = 23_900 * ss.YEAR
+    whole, first = (ss.simulate(SLOW, end, shortest_event=1e-2) for end in (years, 0.998 * years))
+    assert differences(stopped_and_continued(first, years, tmp_path), whole) == []
     pd.testing.assert_frame_equal(ss.catalogue(SLOW, years, shortest_event=1e-2), whole.catalogue(), check_exact=True)
 
 
@@ -121,16 +120,17 @@ def same_pieces(one: ss.Solution, other: ss.Solution, count: int) -> bool:
 # ---- creep --------------------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("rtol", "error"), [(1e-10, 1e-4), (1e-8, 1e-3), (1e-6, 2e-2)])
+@pytest.mark.parametrize(("rtol", "error"), [(1e-10, 1e-4), (1e-6, 2e-2)])
 def test_a_plain_call_reaches_the_first_pulse(rtol: float, error: float) -> None:
-    """2.71878 days of creep in a second, and the error of the pulse's time (s) follows rtol."""
+    """2.71878 days of creep, 41 107 round trips, in a second; the error of the pulse's time (s) follows rtol."""
     run = creeping(printed(1).pull_rate, rtol)
     assert run.status.name == "finished"
     found = brentq(lambda t: float(run.slip(t)) - run.problem.initial_slip - GROWN, PULSE - 20, PULSE + 20, xtol=1e-9)
     assert found == pytest.approx(PULSE, rel=0.0, abs=error)
     assert run.events.peak_time.iloc[-1] / 86_400 == pytest.approx(2.71878, rel=0.0, abs=1e-5)
     assert run.events.peak_rate.iloc[-1] > 10.0
-    assert len(run.history) < 60_000
+    assert run.creep.round_trips.sum() > 40_000
+    assert len(run.history) < 50_000
 
 
 def test_the_first_round_trips_are_all_run() -> None:
@@ -160,10 +160,10 @@ def test_the_tolerance_follows_rtol(rtol: float, tolerance: float) -> None:
 @pytest.mark.parametrize("share", [0.004, 0.5, 0.99])
 def test_a_resumed_run_leaps_as_if_it_had_not_stopped(tmp_path: Path, share: float) -> None:
     """Stopped before the first leap, in it, and behind it."""
-    file, whole = tmp_path / "run.nc", creeping(printed(1).pull_rate)
-    ss.simulate(printed(1), share * whole.creep.end.iloc[0]).to_netcdf(file)
-    assert ss.open_solution(file).creep_rtol is None
-    resumed = ss.resume(file, DAYS)
+    whole = creeping(printed(1).pull_rate, 1e-6)
+    first = ss.simulate(printed(1), share * whole.creep.end.iloc[0], 1e-6)
+    resumed = stopped_and_continued(first, DAYS, tmp_path)
+    assert resumed.creep_rtol is None
     assert differences(resumed, whole) == []
     assert np.array_equal(resumed.history.creep, whole.history.creep)
 
@@ -210,7 +210,7 @@ def test_lumping_keeps_slip_and_energy(alpha: float) -> None:
     assert abs(float(energy.balance[0])) < 1e-9 * float(energy.heat[0])
 
 
-@pytest.mark.parametrize("alpha", [0.05, 0.1, 0.15, 0.19, 0.1959])
+@pytest.mark.parametrize("alpha", [0.05, 0.1959])
 def test_runs_below_the_critical_value_finish(alpha: float) -> None:
     """105 round trips of doubling: within a million pieces; what is lumped is a share of the round trip."""
     run = ss.simulate(weakening(alpha, thickness=1e3), 60.0)
@@ -220,13 +220,12 @@ def test_runs_below_the_critical_value_finish(alpha: float) -> None:
 
 
 def test_lumped_runs_can_be_resumed_streamed_and_batched(tmp_path: Path) -> None:
-    file, problem, end = tmp_path / "run.nc", weakening(0.15, thickness=1e3), 12.0
+    problem, end = weakening(0.15, thickness=1e3), 9.0
     whole = ss.simulate(problem, end)
-    for stop in (7.0, 11.0):
-        ss.simulate(problem, stop).to_netcdf(file)
-        resumed = ss.resume(file, end)
+    for stop in (7.0, 8.9):
+        resumed = stopped_and_continued(ss.simulate(problem, stop), end, tmp_path)
         assert differences(resumed, whole) == []
-        assert resumed.lumping_note == whole.lumping_note == ss.open_solution(file).lumping_note
+        assert resumed.lumping_note == whole.lumping_note
     table = ss.catalogue(problem, end)
     pd.testing.assert_frame_equal(table, whole.catalogue(), check_exact=True)
     assert table.attrs["lumping"] == whole.lumping_note

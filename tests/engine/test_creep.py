@@ -22,8 +22,6 @@ F = ss.friction
 SLAB = ss.ElasticSlab(density=2800, wave_speed=3500, thickness=10e3, normal_stress=100e6)
 PULSE_BY_ENGINE = {10: 23541.221458850272, 100: 2384.9928651208907}
 """faster -> time (s) at which slip has grown by GROWN: `tests.engine.creep_truth engine`."""
-PULSE_BY_GRID = 234901.286195246
-"""The same for the printed pull rate: `tests.engine.creep_truth grid 1 64000`; with 16000 offsets 234901.285855."""
 
 
 def pulse(solution: ss.Solution, near: float) -> float:
@@ -54,15 +52,6 @@ KINKED = F.PiecewiseLinearSlip(slips=(0.0, 8e-4, 1.2e-3, 1e-2), coefficients=(0.
 # ---- the printed slab ---------------------------------------------------------------------------------------------------------
 
 
-def test_the_first_pulse_of_the_printed_slab_comes_when_a_grid_method_says() -> None:
-    """It comes 2.72 days after the start, 41 107 round trips, by a method that shares nothing with this one: to 0.1 ms."""
-    solution = ss.simulate(printed(1), PULSE_BY_GRID + 60.0, creep_rtol=1e-6)
-    assert solution.status.ok
-    assert pulse(solution, PULSE_BY_GRID) == pytest.approx(PULSE_BY_GRID, rel=0.0, abs=1e-4)
-    assert solution.creep.round_trips.sum() > 40_000
-    assert len(solution.history) < 50_000
-
-
 @pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("tolerance", [2e-5, 1e-4, 1e-3])
 def test_slip_stays_within_the_bound_of_each_leap(tolerance: float) -> None:
@@ -76,7 +65,7 @@ def test_slip_stays_within_the_bound_of_each_leap(tolerance: float) -> None:
         assert (np.abs(means(solution, inside) - means(exact, inside)) <= tolerance * means(exact, inside)).all()
 
 
-@pytest.mark.parametrize(("tolerance", "error"), [(1e-3, 0.2), (1e-4, 5e-3), (1e-5, 2e-4), (1e-6, 5e-5)])
+@pytest.mark.parametrize(("tolerance", "error"), [(1e-3, 0.2), (1e-5, 2e-4)])
 def test_the_error_of_the_pulse_time_falls_with_the_tolerance(tolerance: float, error: float) -> None:
     """Ten times faster, 134 million pieces by brute force: the error of the pulse's time (s) falls with the tolerance."""
     near = PULSE_BY_ENGINE[10]

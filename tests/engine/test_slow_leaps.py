@@ -14,7 +14,7 @@ from scipy.integrate import solve_ivp
 import stickslip as ss
 from stickslip.creep import slow
 from stickslip.engine_input.limits import leaps_over
-from tests.long_runs.problems import differences
+from tests.long_runs.problems import differences, stopped_and_continued
 
 SLAB = ss.ElasticSlab(2700.0, 3000.0, 1e4, 50e6)
 TURN = SLAB.two_way_time
@@ -178,10 +178,9 @@ def test_slip_is_the_integral_of_the_slip_rate_through_a_leap() -> None:
 def test_a_resumed_run_leaps_as_if_it_had_not_stopped(share: float, tmp_path: Path) -> None:
     """Bit for bit, stopped before a leap, within it, at the event after it and behind that."""
     problem, trips = CASES["to an event and after it"]
-    end, file = trips * TURN, tmp_path / "run.nc"
+    end = trips * TURN
     whole, _ = runs("to an event and after it")
-    ss.simulate(problem, share * end).to_netcdf(file)
-    assert differences(ss.resume(file, end), whole) == []
+    assert differences(stopped_and_continued(ss.simulate(problem, share * end), end, tmp_path), whole) == []
 
 
 def test_a_note_says_slow_where_the_sliding_is_slow_and_steady_only_where_it_has_become_so() -> None:

@@ -13,6 +13,9 @@ import h5py
 import numpy as np
 
 import stickslip as ss
+from stickslip.io.netcdf import save_checkpoint
+from stickslip.run.options import RunOptions
+from stickslip.run.resume import resume_run
 from tests.engine.moving_folds import KINKED, MATCHED, hardening
 from tests.engine.moving_folds import SLAB as THIN
 from tests.problems import SLAB
@@ -91,6 +94,18 @@ RUNS: dict[str, tuple[ss.Problem, float]] = {
         5000.0,
     ),
 }
+
+
+def continued(path: Path, duration: float | None = None) -> ss.Solution:
+    """Do what `ss.resume` does, but for the file that it would write in the end: that takes longer than the rest."""
+    found = ss.open_solution(path)
+    return resume_run(found, path, RunOptions.to_continue(found, duration, None))
+
+
+def stopped_and_continued(first: ss.Solution, duration: float, folder: Path) -> ss.Solution:
+    """Return the run that goes on, up to a duration (s), from the file of one that ended before."""
+    save_checkpoint(first, folder / "run.nc")
+    return continued(folder / "run.nc", duration)
 
 
 def differences(one: ss.Solution, other: ss.Solution) -> list[str]:

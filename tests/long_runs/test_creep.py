@@ -19,13 +19,11 @@ from stickslip.run import catalogue as module
 from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import RunOptions
 from stickslip.run.progress import Report
-from stickslip.run.resume import taken_up
-from stickslip.run.run_loop import WholeHistory, run_to_end
 from stickslip.solution.window import Window
 from stickslip.trajectory.status import UNDER_WAY
 from tests.engine.creep_truth import ROUND, printed
+from tests.long_runs.problems import continued, killed
 from tests.long_runs.problems import differences as differences_of_runs
-from tests.long_runs.problems import killed
 from tests.problems import SLAB
 
 STABLE = ss.friction.ExponentialSlipWeakening(static=0.8, dynamic=0.3, distance=30.0)
@@ -53,13 +51,6 @@ def differences(one: ss.Solution, other: ss.Solution) -> list[str]:
 def begun(name: str) -> ExactRun:
     problem, duration, rtol = RUNS[name]
     return ExactRun.begin(problem, RunOptions(duration, creep_rtol=rtol))
-
-
-def gone_on(path: Path, duration: float) -> ss.Solution:
-    """As `resume`, which would also write the file again."""
-    stopped = ss.open_solution(path)
-    run = taken_up(stopped, path, RunOptions.to_continue(stopped, duration, None))
-    return run_to_end(run, WholeHistory(run))
 
 
 def step(run: ExactRun) -> bool:
@@ -94,7 +85,7 @@ def test_a_run_stopped_around_leaps_resumes_bit_for_bit(name: str, tmp_path: Pat
         for _ in range(stop):
             step(run)
         save_checkpoint(run.solution(UNDER_WAY), path)
-        assert differences(gone_on(path, duration), whole) == [], f"after {stop} steps"
+        assert differences(continued(path, duration), whole) == [], f"after {stop} steps"
 
 
 @pytest.mark.sampled(every=2)
@@ -106,7 +97,7 @@ def test_a_run_that_ended_within_a_leap_continues_as_if_it_had_not(name: str, tm
     first, last = whole.creep.iloc[0], whole.creep.iloc[-1]
     for end in (first.start + 10 * ROUND, 0.5 * (first.start + first.end), last.end - ROUND, last.end + 2.5 * ROUND):
         save_checkpoint(ss.simulate(problem, float(end), creep_rtol=rtol), path)
-        assert differences(gone_on(path, duration), whole) == [], f"from {end}"
+        assert differences(continued(path, duration), whole) == [], f"from {end}"
 
 
 def test_a_leap_that_is_not_restored_is_noticed(tmp_path: Path) -> None:
@@ -119,7 +110,7 @@ def test_a_leap_that_is_not_restored_is_noticed(tmp_path: Path) -> None:
         count = half.checkpoint.count.copy()
         count[Counts.places[place].first] += change
         save_checkpoint(replace(half, checkpoint=replace(half.checkpoint, count=count)), path)
-        assert differences(gone_on(path, duration), whole) != []
+        assert differences(continued(path, duration), whole) != []
 
 
 @pytest.mark.parametrize("events", [1, 2])

@@ -18,9 +18,8 @@ from stickslip.io.netcdf import save_checkpoint
 from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import RunOptions
 from stickslip.run.progress import Report
-from stickslip.run.resume import resume_run
 from stickslip.trajectory.status import UNDER_WAY, Checkpoint
-from tests.long_runs.problems import RUNS, differences, differences_of_files, killed
+from tests.long_runs.problems import RUNS, continued, differences, differences_of_files, killed
 
 
 def steps_of(problem: ss.Problem, duration: float) -> int:
@@ -45,12 +44,6 @@ def stopped(problem: ss.Problem, duration: float, steps: int, path: Path) -> Che
             run.grow()
     save_checkpoint(run.solution(UNDER_WAY), path)
     return run.snapshot()
-
-
-def continued(path: Path, duration: float | None = None) -> ss.Solution:
-    """Do what `ss.resume` does, but for the file that it would write in the end: that takes longer than the rest."""
-    found = ss.open_solution(path)
-    return resume_run(found, path, RunOptions.to_continue(found, duration, None))
 
 
 @pytest.mark.sampled(every=7)
