@@ -65,8 +65,8 @@ ROOMS = {
         ("on_demand",),
         ("loop",),
     ),
-    "problem": (("run_quantities", "selection_rule"), ("fields",), ("parameters", "start"), ("problem",)),
-    "engine_input": (("branch_table", "forcing", "limits"), ("prepare",)),
+    "problem": (("ground", "run_quantities", "selection_rule"), ("fields",), ("parameters", "start"), ("problem",)),
+    "engine_input": (("branch_table", "forcing", "limits"), ("shaking",), ("prepare",)),
     "planar": (
         ("driving", "echo", "layout", "memory", "nodes"),
         ("friction", "slab"),

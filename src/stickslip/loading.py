@@ -1,4 +1,6 @@
-"""Loading histories: a pull rate, far stress or normal load that varies in time: straight lines, and at most one sinusoid.
+"""Loading histories: what varies in time, in straight lines and at most one sinusoid.
+
+It may be a pull rate, a far stress, a normal load, or the velocity or acceleration of the ground.
 
 To add one, add its class to this file and to HISTORIES.
 """
@@ -22,12 +24,14 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import NumberSeries, Quantity, check_fields, declare, fields_of, quantity
 from stickslip.foundation.show import Declared, brief_repr
 
-VARYING = "m/s or Pa or N"
-"""Unit of the varying quantity: m/s for a pull rate, Pa for a far stress or a normal stress, N for a normal force."""
+VARYING = "m/s or m/s^2 or Pa or N"
+"""Unit of the varying quantity: m/s for a pull rate or a velocity of the ground, m/s^2 for its acceleration, Pa for a far stress or
+a normal stress, N for a normal force.
+"""
 
 
 class Segment(NamedTuple):
-    """A straight part of a history from a time `start` (s) on: a value there (m/s, Pa or N), and its change per second.
+    """A straight part of a history from a time `start` (s) on: a value there (m/s, m/s^2, Pa or N), and its change per second.
 
     It lasts until the next segment or for ever.
     """
@@ -37,12 +41,12 @@ class Segment(NamedTuple):
     slope: float
 
     def at(self, time: float) -> float:
-        """Return the value (m/s, Pa or N) at a time (s since the start of the run)."""
+        """Return the value (m/s, m/s^2, Pa or N) at a time (s since the start of the run)."""
         return self.value + self.slope * (time - self.start)
 
 
 class Tone(NamedTuple):
-    """A sinusoid amplitude (m/s, Pa or N) sin(frequency t + phase), of an angular frequency (rad/s) > 0, beside the segments."""
+    """A sinusoid amplitude (in the unit of the values) sin(frequency t + phase), of an angular frequency (rad/s) > 0."""
 
     amplitude: float
     frequency: float
@@ -54,7 +58,7 @@ SILENT = Tone(0.0, 1.0, 0.0)
 
 
 class LoadingHistory(Declared, ABC):
-    """A pull rate (m/s), far stress (Pa) or normal load (Pa or N) as a function of time (s) since the start of the run.
+    """A pull rate, far stress, normal load or motion of the ground as a function of time (s) since the start of the run.
 
     Before the start of the run the value is the one at the start. A run meets the breaking points of the history exactly.
 
@@ -69,7 +73,7 @@ class LoadingHistory(Declared, ABC):
     """Plausible values of the fields, in the form of a scenario file."""
 
     unit: str = VARYING
-    """Unit of the values, "m/s", "Pa" or "N", if they were given with one; plain numbers fit all."""
+    """Unit of the values, "m/s", "m/s^2", "Pa" or "N", if they were given with one; plain numbers fit all."""
 
     def __post_init__(self) -> None:
         units = [unit for value in self._varying() if (unit := unit_among(value, VARYING))]
@@ -111,18 +115,18 @@ class LoadingHistory(Declared, ABC):
 
     @property
     def first(self) -> float:
-        """The value (m/s, Pa or N) at 0 s."""
+        """The value (m/s, m/s^2, Pa or N) at 0 s."""
         return self.segments[0].value + self.tone.amplitude * math.sin(self.tone.phase)
 
     @property
     def lowest(self) -> float:
-        """A lower bound of the values (m/s, Pa or N): the least of the straight parts, less the amplitude of the sinusoid."""
+        """A lower bound of the values: the least of the straight parts, less the amplitude of the sinusoid."""
         ends = (one.at(end) for one, end in zip(self.segments, self._ends, strict=True))
         return min(*(one.value for one in self.segments), *ends) - abs(self.tone.amplitude)
 
     @property
     def highest(self) -> float:
-        """An upper bound of the values (m/s, Pa or N)."""
+        """An upper bound of the values (m/s, m/s^2, Pa or N)."""
         ends = (one.at(end) for one, end in zip(self.segments, self._ends, strict=True))
         return max(*(one.value for one in self.segments), *ends) + abs(self.tone.amplitude)
 
@@ -132,7 +136,7 @@ class LoadingHistory(Declared, ABC):
         return [*(one.start for one in self.segments[1:]), math.inf if self.segments[-1].slope else self.segments[-1].start]
 
     def at(self, t: ArrayLike) -> NDArray[np.float64]:
-        """Return the values (m/s, Pa or N) of the history at times (s since the start of the run) of any shape.
+        """Return the values (m/s, m/s^2, Pa or N) of the history at times (s since the start of the run) of any shape.
 
         At a jump it is the value after the jump; before 0 s it is the value at 0 s.
         """

@@ -179,6 +179,8 @@ def _of_run(scenario: Scenario, parameters: Sequence[str]) -> Iterator[str]:
         yield "[run] events: a batch runs for a time, not until a number of events"
     if scenario.problem.varies:
         yield "[loading] a batch needs a loading that does not vary in time"
+    if scenario.problem.one_way:
+        yield "[loading] one_way: a batch slips both ways"
     if scenario.creep_rtol is not None and scenario.creep_rtol > 0.0:
         yield "[run] creep_rtol: a batch cannot leap over creep from the start of a run"
 

@@ -2,13 +2,14 @@
 
 The load of a slab is beta(t) = r w(t - R) + F(t). The inflow is F(t) = 2 Z [Zd V + s] / (Z + Zd) at t - h/c, or 2 Z V(t - h/c)
 for a rigid driver, less (1 + r) times the reference strength, because all loads are differences from it. The load of a block
-grows by K V(t) per second.
+grows by K V(t) per second, less the mass times the jerk of the ground. What moving ground adds to the load of a slab is in
+`shaking`.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -18,6 +19,7 @@ from numpy.typing import NDArray
 from stickslip.engine.waves.varying_forcing import dirichlet
 from stickslip.foundation.arrays import Floats
 from stickslip.loading import SILENT, LoadingHistory, Segment, Tone
+from stickslip.problem.ground import Ground
 from stickslip.problem.problem import Problem
 
 
@@ -68,11 +70,7 @@ class Inflow:
 
     def breaks(self) -> list[tuple[int, float]]:
         """Return the round trips and offsets (s) where segments begin; an edge between two round trips is offset 0 of the later."""
-        trips = np.floor(self.start / self.round_trip_time)
-        offsets = self.start - trips * self.round_trip_time
-        late, early = offsets > (1.0 - EDGE) * self.round_trip_time, offsets < EDGE * self.round_trip_time
-        offsets[late | early] = 0.0
-        return list(zip((trips + late).astype(int).tolist(), offsets.tolist(), strict=True))
+        return breaks_of(self.start, self.round_trip_time)
 
     def edges(self, low: float, high: float) -> Floats:
         """Return the times (s) between two others when segments arrive or a tone has turned by about 1 rad."""
@@ -100,6 +98,24 @@ class Inflow:
 
 EDGE = 1e-13
 """Distance from the edge of a round trip, as a share of it, within which a break lies on the edge."""
+
+
+def breaks_of(start: Floats, round_trip_time: float, joined: bool = False) -> list[tuple[int, float]]:
+    """Return the round trips and offsets (s) of times (s); an edge between two round trips is offset 0 of the later.
+
+    If `joined`, offsets that differ by rounding become one, so that breaks that come in every round trip cut it at one place.
+    """
+    trips = np.floor(start / round_trip_time)
+    offsets = start - trips * round_trip_time
+    rounding = max(EDGE * round_trip_time, 8.0 * float(np.spacing(start[-1]))) if joined else EDGE * round_trip_time
+    late, early = offsets > round_trip_time - rounding, offsets < rounding
+    offsets[late | early] = 0.0
+    if joined:
+        order = np.argsort(offsets, kind="stable")
+        ranked = offsets[order]
+        first = np.append(True, np.diff(ranked) > rounding)
+        offsets[order] = ranked[first][np.cumsum(first) - 1]
+    return list(zip((trips + late).astype(int).tolist(), offsets.tolist(), strict=True))
 
 
 class Pressing(NamedTuple):
@@ -149,6 +165,8 @@ def steady_inflow(problem: Problem) -> tuple[float, float]:
 def inflow_of(problem: Problem) -> Inflow:
     """Return the inflow of a problem."""
     body = problem.body
+    if not body.has_waves and problem.ground is not None:
+        return _shaken_block(problem, problem.ground)
     if not problem.loading_varies:
         value, slope = steady_inflow(problem)
         return _inflow([Segment(0.0, value, slope)], SILENT, 0.0, problem)
@@ -158,6 +176,21 @@ def inflow_of(problem: Problem) -> Inflow:
     if body.is_driven_rigidly:
         return _inflow(*_scaled(problem.pull_rate, 2.0 * body.impedance), delay, problem)
     return _inflow(*_lossy(problem), delay, problem)
+
+
+def _shaken_block(problem: Problem, ground: Ground) -> Inflow:
+    """Return the growth of a block's load where the ground moves: K V - m a', with a the acceleration of the ground."""
+    mass, pull = problem.body.inertia, problem.pull_rate
+    segments, tone = _scaled(pull, problem.body.stiffness) if isinstance(pull, LoadingHistory) else ([], SILENT)
+    segments = segments or [Segment(0.0, steady_inflow(problem)[0], 0.0)]
+    pulled = _inflow(segments, tone, 0.0, problem)
+    start = np.union1d(pulled.start, ground.start)
+    of_pull, of_ground = pulled.segment(start), np.searchsorted(ground.start, start, side="right") - 1
+    value = pulled.value[of_pull] + pulled.slope[of_pull] * (start - pulled.start[of_pull]) - mass * ground.jerk[of_ground]
+    amplitude, frequency, phase = ground.tone
+    if amplitude != 0.0:
+        tone = Tone(mass * amplitude * frequency * frequency, frequency, phase)
+    return replace(pulled, start=start, value=value, slope=pulled.slope[of_pull], tone=tone)
 
 
 def _lossy(problem: Problem) -> tuple[list[Segment], Tone]:

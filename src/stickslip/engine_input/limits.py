@@ -96,6 +96,8 @@ def missing_for_creep(problem: Problem) -> str:
         return f"a friction law of slip alone ({type(law).__name__} is not one)"
     if law.memory != "all":
         return "a friction law that remembers all slip (no memory of its own)"
+    if problem.ground is not None or problem.one_way:
+        return "ground at rest, and slip in both directions"
     if problem.varies:
         return "a constant pull rate and normal load"
     return ""

@@ -18,8 +18,9 @@ from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, FirstLoad, Integers, LawPiece, LoadingSegment, Params, Setup, State
 from stickslip.engine.state.workspace import counts_in, lend_problem, memory_of, params_in
 from stickslip.engine_input.branch_table import branch_of, is_algebraic, table_of_branches
-from stickslip.engine_input.forcing import inflow_of, pressing_of, steady_inflow, wave_before
+from stickslip.engine_input.forcing import breaks_of, inflow_of, pressing_of, steady_inflow, wave_before
 from stickslip.engine_input.limits import set_length, set_lumping
+from stickslip.engine_input.shaking import force_steps, shaking_of, tone_of
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief
 from stickslip.problem.parameters import normal_field
@@ -107,7 +108,8 @@ def parameters_of(problem: Problem) -> Params:
     else:
         params.stiffness = body.stiffness
     if problem.varies:
-        params.tone, params.tone_frequency, params.tone_phase = inflow_of(problem).tone
+        params.tone_frequency = tone_of(problem).frequency
+        params.inflow_from = 0.0 if problem.ground is not None else 0.5 * problem.round_trip_time
     elif not body.has_waves:
         params.ramp = body.stiffness * problem.first_pull_rate * problem.round_trip_time
     else:
@@ -173,7 +175,7 @@ def first_load_varying(problem: Problem) -> at.Floats:
 
 def _parts(problem: Problem, pieces: at.Floats) -> at.Floats:
     """Return the same load in shorter pieces; the phase of a tone changes by at most LARGEST_TURN in each."""
-    known, tone = FirstLoad.of(pieces), inflow_of(problem).tone
+    known, tone = FirstLoad.of(pieces), tone_of(problem)
     phase = known.phase
     if tone.amplitude == 0.0:
         return pieces
@@ -204,11 +206,21 @@ def loading_of(problem: Problem) -> at.Floats:
     if not problem.varies:
         return NOT_VARYING
     inflow, pressing = inflow_of(problem), pressing_of(problem)
-    start = np.union1d(inflow.start, pressing.start)
+    shaken = shaking_of(problem) if problem.ground is not None and problem.body.has_waves else None
+    start = np.union1d(inflow.start if shaken is None else shaken.start, pressing.start)
     table = LoadingSegment.table(len(start))
     segments = LoadingSegment.of(table)
-    segments.trip, segments.offset = zip(*replace(inflow, start=start).breaks(), strict=True)
-    for one, value, slope in ((inflow, "value", "slope"), (pressing, "pressing", "pressing_rate")):
+    segments.trip, segments.offset = zip(*breaks_of(start, problem.round_trip_time, problem.ground is not None), strict=True)
+    segments.tone, segments.tone_phase = inflow.tone.amplitude, inflow.tone.phase
+    straight: list[tuple[Any, str, str]] = [(pressing, "pressing", "pressing_rate")]
+    if shaken is None:
+        straight.append((inflow, "value", "slope"))
+    else:
+        shaken.put(segments, start)
+    if problem.ground is not None and not problem.body.has_waves:
+        segments.step = force_steps(problem, start)
+        segments.jump[1:] = segments.step[1:] != 0.0
+    for one, value, slope in straight:
         of = np.searchsorted(one.start, start, side="right") - 1
         begins, grows = one.value[of] + one.slope[of] * (start - one.start[of]), one.slope[of]
         ends = begins[:-1] + grows[:-1] * np.diff(start)
@@ -295,6 +307,7 @@ def start_of(problem: Problem) -> tuple[State, Counts]:
     count.is_algebraic = is_algebraic(problem)
     count.states, count.sticks = len(problem.contact_law.states), problem.friction.sticks
     count.given = problem.contact_law.given
+    count.one_way = problem.one_way
     count.reverses = sum(2**n for n in problem.friction.reverses)
     if problem.has_initial_rate or not problem.friction.sticks:
         state.rate_now = problem.rate

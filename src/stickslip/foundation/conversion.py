@@ -111,7 +111,7 @@ def _from_text(text: str, unit: str) -> float:
 
 
 def unit_among(value: Any, units: str) -> str:
-    """Return the unit of "m/s or Pa or N" that fits a text or a quantity of pint; "" for anything else."""
+    """Return the unit of "m/s or m/s^2 or Pa or N" that fits a text or a quantity of pint; "" for anything else."""
     parts = split_quantity(value) if isinstance(value, str) else (1.0, _name_of(value.units)) if has_unit(value) else None
     for unit in units.split(" or "):
         try:

@@ -74,6 +74,8 @@ COLUMNS: Mapping[str, HeadingColumn] = {
     "slip_rate_deviation": HeadingColumn("m/s", ("slip rate error", "sd slip rate")),
     "pull_rate": HeadingColumn("m/s", signed=True),
     "far_stress": HeadingColumn("Pa", signed=True),
+    "ground_velocity": HeadingColumn("m/s", signed=True),
+    "ground_acceleration": HeadingColumn("m/s^2", ("acceleration", "acc"), signed=True),
 }
 """The columns that are known, by their plain heading. Capitals, spaces, dots, - and _ make no difference, nor does CamelCase."""
 LARGEST: Mapping[str, float] = {"slip": 100.0, "slip_rate": 100.0, "load_point": 100.0, "load_rate": 100.0}

@@ -108,12 +108,18 @@ def split_quantity(text: str) -> tuple[float, str] | None:
     return (float(found["number"]), found["unit"]) if found else None
 
 
+_ACCELERATIONS = {"g": Fraction(980_665, 100_000), "gal": Fraction(1, 100), "Gal": Fraction(1, 100)}
+"""Units of acceleration whose names mean another thing elsewhere: g is also a gram, and pint's gal is a gallon."""
+
+
 def si_factor(unit: str, si: str) -> Fraction:
     """Return the exact factor that converts a value in `unit` to a value in `si`. A year is the Julian year of 31 557 600 s.
 
     Raises InputError for an unknown unit and for a unit of another dimension; the message is meant to follow the place of the
     fault.
     """
+    if si == "m/s^2" and unit in _ACCELERATIONS:
+        return _ACCELERATIONS[unit]
     factor, dimensionality = _read_unit(unit, f"; write it like {si}")
     target, wanted = _read_unit(si)
     if dimensionality != wanted:

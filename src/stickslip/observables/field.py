@@ -43,7 +43,8 @@ class Field(NamedTuple):
     """Displacement, velocity and stress in a slab at given places and times: arrays of the same shape."""
 
     displacement: Floats
-    """Displacement u, m: absolute, as the slip is; in a window, relative to the contact at the start of the event."""
+    """Displacement u, m: absolute, as the slip is where the ground does not move; in a window, relative to the contact at the start
+    of the event. It includes that of moving ground, as velocity does."""
     velocity: Floats
     """Velocity v, m/s."""
     stress: Floats
@@ -70,7 +71,11 @@ def field(history: History, slip: Callable[[ArrayLike], Floats], x: ArrayLike, t
     for number in np.unique(batch):
         chosen = batch == number
         rise[chosen], velocity[chosen], stress[chosen] = _InsideOfSlab(waves, moment[chosen]).field(away[chosen], side)
-    return Field(*(np.reshape(values, place.shape) for values in (at_contact.ravel() + rise, velocity, stress)))
+    displacement = at_contact.ravel() + rise
+    if (ground := history.problem.ground) is not None:
+        begun = waves.begun(history.epoch)
+        displacement += ground.displacement_at(begun + moment) - ground.displacement_at(begun)
+    return Field(*(np.reshape(values, place.shape) for values in (displacement, velocity, stress)))
 
 
 def slab_of(problem: Problem) -> ElasticSlab:

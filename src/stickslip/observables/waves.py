@@ -1,9 +1,9 @@
 """Waves inside the slab, as its contact sent and received them: the basis of its stored energy and of the driver's work.
 
 Everything is written in terms of the wave that leaves the contact, w = 2 Z v - beta, plus the reference strength; this sum is
-small if the slab is near its strength. The load that arrives one round trip later is r w + inflow, so the past alone determines
-the present waves. With the load beta0 and the slip rate v0 at t = 0, w(-y) = G (V - v0) y / h - (beta0 - 2 Z v0) for 0 < y < h/c
-before then; the load is beta0 + G (V - v0) t / h up to h/c.
+small if the slab is near its strength. Where the ground moves, v here is absolute. The load that arrives
+one round trip later is r w + inflow, so the past alone determines the present waves. With the load beta0 and the slip rate v0 at
+t = 0, w(-y) = G (V - v0) y / h - (beta0 - 2 Z v0) for 0 < y < h/c before then; the load is beta0 + G (V - v0) t / h up to h/c.
 """
 
 from __future__ import annotations
@@ -63,8 +63,13 @@ class Waves:
         self._seen: tuple[Epoch, Sampled, Sampled] | None = None  # the waves at the last moment that was asked for
 
     def leaving(self, at: Positions) -> Floats:
-        """Return w plus the reference, Pa."""
-        return 2.0 * self.body.impedance * self.history.rate(at) - self.history.excess(at)
+        """Return w plus the reference, Pa. Where the ground moves, the contact moves with it."""
+        leaving = 2.0 * self.body.impedance * self.history.rate(at) - self.history.excess(at)
+        ground, mass = self.history.problem.ground, self.body.contact_mass
+        if ground is None:
+            return leaving
+        times = self.history.times_inside(at)
+        return leaving + self.body.impedance * ground.velocity_at(*times) - mass * ground.acceleration_at(*times)
 
     def arriving(self, leaving: Floats, left: Floats) -> Floats:
         """Return the load minus the reference (Pa) one round trip after a wave left the contact.

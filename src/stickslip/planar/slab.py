@@ -113,6 +113,9 @@ class PlanarSlab(CheckedArguments):
             raise InputError(f"PlanarSlab: the damping of this {name} is not its impedance, which the solver takes it for")
         if problem.normal_varies:
             raise InputError("PlanarSlab: a normal_load that varies is followed at one place only: leave it out")
+        if problem.ground is not None or problem.one_way:
+            what = "one_way" if problem.one_way else "ground that moves"
+            raise InputError(f"PlanarSlab: {what} is followed at one place only: leave it out")
         if law.reverses:
             raise InputError(
                 f"PlanarSlab: {type(law).__name__} has a state that reverses with slip, which planar slabs do not follow"

@@ -21,16 +21,21 @@ from stickslip.friction.contract import STATE_NAMES
 from stickslip.friction.custom.from_function import as_law
 from stickslip.friction.pressed import Pressed
 from stickslip.loading import VARYING, LoadingHistory
+from stickslip.problem.ground import Ground
 from stickslip.problem.selection_rule import SelectionRule, checked
 
-MAY_VARY = ("pull_rate", "far_stress", "normal_load")
-"""Fields of a problem that may be a loading history instead of a number; the last one is nothing else."""
+HISTORIES_ONLY = ("normal_load", "ground_velocity", "ground_acceleration")
+"""Fields of a problem that are a loading history or nothing."""
+GROUND = HISTORIES_ONLY[1:]
+"""Those of them that move the ground: at most one is given."""
+MAY_VARY = ("pull_rate", "far_stress", *HISTORIES_ONLY)
+"""Fields of a problem that may be a loading history."""
 A_HISTORY = "; what varies in time is one of stickslip.loading, such as Steps([0.0, 10.0], [1e-6, 1e-5])"
 """Hint for a value that is no number."""
 LOAD = si_unit("load")
 """Unit of a load: Pa on a slab, N on a block."""
-CONSTANT = "a constant one is normal_stress or normal_force of the body"
-"""Hint for a normal load that is a number."""
+CONSTANT = {"normal_load": "a constant one is normal_stress or normal_force of the body"}
+"""Hints for a number in place of what is nothing but a history."""
 SAME = 1e-12
 """Relative difference (1) between two normal loads that is rounding."""
 STEADY = "steady"
@@ -69,6 +74,13 @@ class ProblemFields(CheckedArguments):
     normal_load: Converted[LoadingHistory | None, LoadingHistory | None] = quantity(
         LOAD, "normal load that varies in time and begins with that of the body", default=None
     )
+    ground_velocity: Converted[LoadingHistory | None, LoadingHistory | None] = quantity(
+        "m/s", "velocity of the ground under the contact, at rest before the start", default=None
+    )
+    ground_acceleration: Converted[LoadingHistory | None, LoadingHistory | None] = quantity(
+        "m/s^2", "acceleration of the ground under the contact, at rest before the start", default=None
+    )
+    one_way: bool = False
     selection: str | SelectionRule = "perfect-delay"
 
     def __post_init__(self) -> None:
@@ -86,6 +98,7 @@ class ProblemFields(CheckedArguments):
         self._check_state()
         object.__setattr__(self, "selection", checked(self.selection))
         self._check_far_side()
+        self._check_one_way()
 
     def _check_varying(self) -> None:
         for name in MAY_VARY:
@@ -94,21 +107,36 @@ class ProblemFields(CheckedArguments):
                 unit = self.body.load_unit if declared.unit == LOAD else declared.unit
                 if value.unit not in (VARYING, unit):
                     raise InputError(f"Problem: {name} must be in {unit}, got a history of values in {value.unit}")
-            elif name == "normal_load" and value is not None:
-                raise InputError(f"Problem: normal_load must be a loading history, got {shown(value)}: {CONSTANT}")
+            elif name in HISTORIES_ONLY and value is not None:
+                hint = f": {CONSTANT[name]}" if name in CONSTANT else A_HISTORY
+                raise InputError(f"Problem: {name} must be a loading history, got {shown(value)}{hint}")
             elif value is not None or name == "pull_rate":
                 try:
                     declared.check("Problem", name, value)
                 except InputError as error:
                     raise InputError(f"{error}{'' if is_number(value) else A_HISTORY}") from None
-        if len(self._varying) - self.normal_varies > 1:
+        if sum(name not in HISTORIES_ONLY for name in self._varying) > 1:
             raise InputError("Problem: only one of pull_rate and far_stress may vary in time")
+        if self.ground_velocity is not None and self.ground_acceleration is not None:
+            raise InputError(
+                "Problem: only one of ground_velocity and ground_acceleration may be given: one follows from the other"
+            )
         if isinstance(self.far_stress_rate, LoadingHistory):
             raise InputError("Problem: far_stress_rate must be a number in Pa/s: what may vary in time is pull_rate or far_stress")
         for name in self._varying:
             getattr(self, name).check()
         if self.normal_load is not None:
             self._check_normal_load(self.normal_load)
+        if self.ground is not None:
+            self._check_ground(self.ground)
+
+    def _check_ground(self, ground: Ground) -> None:
+        if self.body.has_inertia and ground.velocity_jumps:
+            why = "an infinite force on a mass: join the points (piecewise-linear), beginning with 0 m/s"
+            raise InputError(f"Problem: ground_velocity jumps, which is {why}, or give ground_acceleration")
+        pulls = [getattr(self, name) for name in self._varying if name not in HISTORIES_ONLY]
+        if ground.tone.amplitude != 0.0 and any(one.tone.amplitude != 0.0 for one in pulls):
+            raise InputError("Problem: only one of the ground and the pull may have a sinusoid: give the other as straight lines")
 
     def _check_normal_load(self, history: LoadingHistory) -> None:
         unit, field_name = self.body.load_unit, "normal_stress" if self.body.has_waves else "normal_force"
@@ -166,13 +194,22 @@ class ProblemFields(CheckedArguments):
         if self.body.is_driven_rigidly and (self.far_stress is not None or self.far_stress_rate != 0.0):
             raise InputError("Problem: far_stress and far_stress_rate need a slab with a finite driver_impedance")
 
+    def _check_one_way(self) -> None:
+        if not isinstance(self.one_way, bool):
+            raise InputError(f"Problem: one_way must be True or False, got {shown(self.one_way)}")
+        if self.one_way and not self.friction.sticks:
+            name = type(self.friction).__name__
+            raise InputError(f"Problem: one_way needs a law with a static strength, and {name} never sticks")
+        if self.one_way and is_number(self.initial_rate) and self.initial_rate < 0.0:  # type: ignore[operator]
+            raise InputError("Problem: initial_rate is backwards, where a contact that slips one way only does not go")
+
     @property
     def _varying(self) -> tuple[str, ...]:
         return tuple(name for name in MAY_VARY if isinstance(getattr(self, name), LoadingHistory))
 
     @property
     def varies(self) -> bool:
-        """True if pull rate, far stress or normal load is a loading history; a constant far_stress_rate does not count."""
+        """True if anything is a loading history, the motion of the ground too; a constant far_stress_rate does not count."""
         return len(self._varying) > 0
 
     def normal_at(self, t: ArrayLike) -> NDArray[np.float64]:
@@ -187,7 +224,12 @@ class ProblemFields(CheckedArguments):
     @property
     def loading_varies(self) -> bool:
         """True if the pull rate or the far stress is a loading history."""
-        return len(self._varying) > self.normal_varies
+        return any(name not in HISTORIES_ONLY for name in self._varying)
+
+    @cached_property
+    def ground(self) -> Ground | None:
+        """The motion of the ground; None if it is at rest."""
+        return Ground.of(self.ground_velocity, self.ground_acceleration)
 
     @cached_property
     def contact_law(self) -> FrictionLaw:

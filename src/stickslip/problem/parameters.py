@@ -27,11 +27,11 @@ from stickslip.foundation.quantities import (
 from stickslip.foundation.show import brief
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.loading import VARYING, LoadingHistory
-from stickslip.problem.fields import ProblemFields
+from stickslip.problem.fields import HISTORIES_ONLY, ProblemFields
 
 PRESSING = "pressing"
 """Name of the normal load with the initial load and the far stress in proportion: pressed harder, a contact is as near to slip."""
-LOADING = ("pull_rate", "far_stress", "far_stress_rate", "normal_load")
+LOADING = ("pull_rate", "far_stress", "far_stress_rate", *HISTORIES_ONLY)
 """Fields of a problem that are in the table [loading] of a scenario."""
 STRESSES = ("far_stress", "far_stress_rate")
 """Those of them that follow the normal load when a contact is pressed harder."""
@@ -125,7 +125,7 @@ def entries_of(problem: ProblemFields) -> Iterator[ProblemEntry]:
     for name in LOADING:
         declared, value = quantities_of(type(problem))[name], getattr(problem, name)
         varies = isinstance(value, LoadingHistory)
-        if name != "normal_load":  # which is nothing but a history
+        if name not in HISTORIES_ONLY:
             yield ProblemEntry(f"loading.{name}", declared, None if varies else value)
         if varies:
             unit = problem.load_unit if name == "normal_load" else declared.unit

@@ -68,6 +68,11 @@ class Problem(ProblemFields):
     normal_load
         Normal stress (Pa) or normal force (N) that varies in time: a loading history that begins with that of the body and stays
         above 0 (see Notes).
+    ground_velocity, ground_acceleration
+        Velocity (m/s) or acceleration (m/s^2, or texts in "g" or "gal") of the ground under the contact: a loading history. The
+        ground is at rest before the start (see Notes).
+    one_way
+        True forbids backward slip, as of a block on a slope that is never shaken uphill.
     selection
         The rule that selects one slip rate if several solve the contact equation, or its name (`stickslip.selection`).
 
@@ -93,6 +98,10 @@ class Problem(ProblemFields):
     `normal_load` may vary beside one of them: steps, straight lines or a sinusoid. Friction is S(t) mu(u, v, state), and the
     strength at rest S(t) mu_static; `body.normal_stress` or `body.normal_force` is S(0). A contact without mass then needs a slip
     rate that is unique under every normal load: a run under a law whose friction falls faster with the slip rate is refused.
+
+    Where the ground moves, slip and slip rate are relative to it. A block's spring hangs on the ground, and its load gains -m a(t);
+    `initial_load` is the load before the ground moves. The driver and the far stress of a slab do not move with the ground: the
+    load of its contact is beta - Z v_ground, in which beta is the wave that arrives.
 
     See Also
     --------
@@ -174,6 +183,8 @@ class Problem(ProblemFields):
                 ("far_stress", self.far_stress, self.load_unit),
                 ("far_stress_rate", self.far_stress_rate or None, "Pa/s"),
                 ("normal_load", self.normal_load, self.load_unit),
+                ("ground_velocity", self.ground_velocity, "m/s"),
+                ("ground_acceleration", self.ground_acceleration, "m/s^2"),
             )
             if value is not None
         }
@@ -194,7 +205,7 @@ class Problem(ProblemFields):
         period = self.body.round_trip_time
         if self.body.has_waves or self.friction.sticks:
             return period
-        tones = [one.tone for one in (self.pull_rate, self.normal_load) if isinstance(one, LoadingHistory)]
+        tones = [getattr(self, name).tone for name in self._varying]
         swing = min((2.0 * math.pi / tone.frequency for tone in tones if tone.amplitude != 0.0), default=math.inf)
         return max(period, min(DAY, LONGEST_ROUND_TRIP * period, swing))
 

@@ -114,7 +114,7 @@ class Scenario(CheckedArguments):
         tables |= {"body": to_table(problem.body), "friction": to_table(problem.friction), "loading": {}, "initial": {}}
         for f in fields(problem):
             value = getattr(problem, f.name)
-            if value is not None and f.name not in ("body", "friction", "selection"):
+            if value is not None and value is not False and f.name not in ("body", "friction", "selection"):
                 table = "initial" if f.name.startswith("initial_") else "loading"
                 tables[table][f.name.removeprefix("initial_")] = to_table(value) if isinstance(value, LoadingHistory) else value
         if self.contact is not None:

@@ -115,6 +115,8 @@ def keys_of(table: str, kind: type, states: tuple[StateVariable, ...] = ()) -> M
     if table == "run":
         keys["events"] = Key(lambda value, place: check_events(value, place.source.file, str(place)), None)
         keys["selection"] = Key(lambda value, place: check_rule(value, place.source.file, str(place)), SELECTION_RULES[0])
+    if table == "loading":
+        keys["one_way"] = Key(partial(_read_as, bool, "true or false"), False)
     if table == CONTACT:
         keys["replicas"] = Key(partial(_read_as, bool, "true or false"), True)
         keys["along"] = Key(partial(_read_as, dict, "a table of what varies along the contact"), MappingProxyType({}))

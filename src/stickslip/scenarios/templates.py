@@ -15,6 +15,7 @@ from stickslip.foundation.show import clean
 from stickslip.friction import LAWS, FrictionLaw
 from stickslip.friction.contract import STATE_NAMES, StateVariable, states_in
 from stickslip.loading import HISTORIES
+from stickslip.problem.fields import HISTORIES_ONLY
 from stickslip.problem.selection_rule import SELECTION_RULES
 from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source, describe, key_of, to_table
@@ -159,7 +160,7 @@ def _table(table: str, kind: type, example: dict[str, Any], states: tuple[StateV
         lines.append(f"kind = {json.dumps(kind.kind)}  # {_first_line(kind)}")  # type: ignore[attr-defined] # registered
     for name, (entry, default) in entries_in(table, kind, states).items():
         value = example.get(name)
-        if value is None and f"{table}.{name}" == "loading.normal_load":  # which is nothing but a table
+        if value is None and table == "loading" and name in HISTORIES_ONLY:
             lines.append(f"# {name} = {{...}}  # {describe(entry)}: a table [{table}.{name}], of the kinds named above")
             continue
         if table == "loading" and isinstance(value, dict):

@@ -174,7 +174,10 @@ def check_suitable(problem: Problem) -> None:
     if problem.varies:
         raise InputError(
             "schemes: a pull rate, far stress or normal load that varies in time is not in the schemes: give constant ones"
+            + ", and ground at rest" * (problem.ground is not None)
         )
+    if problem.one_way:
+        raise InputError("schemes: one_way is not in the schemes: leave it out")
     GridContact(problem)
 
 

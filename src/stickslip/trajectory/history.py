@@ -285,6 +285,14 @@ class History:
         (trip, offset), (later_trip, later_offset) = self.placed(begin), self.placed(end)
         return np.asarray((later_trip - trip) * self.round_trip_time + (later_offset - offset))
 
+    def times_inside(self, at: Positions) -> tuple[Floats, Floats]:
+        """Return the times of positions (s since the start of the run), and a time inside the piece of each."""
+        store = self.store
+        middle = store.phase_from[at.piece] + 0.5 * store.speed[at.piece] + 0.25 * store.bend[at.piece]
+        trip, offset = self.placed(at)
+        inside = np.where(at.before, offset, middle)
+        return np.asarray(trip * self.round_trip_time + offset), np.asarray(trip * self.round_trip_time + inside)
+
     def xi(self, piece: NDArray[np.intp], local: Floats) -> Floats:
         """Return the place xi in [0, 1] of a time `local` s after the start of a piece."""
         speed, bend = self.store.speed[piece], self.store.bend[piece]

@@ -105,7 +105,12 @@ def rest_limit(run: Run) -> float:
 
 @kernel
 def towards(run: Run, load: float, direction: int) -> float:
-    """Return the load (Pa or N, minus the reference) as seen in the direction of slip, again minus the reference."""
+    """Return the load (Pa or N, minus the reference) as seen in the direction of slip, again minus the reference.
+
+    A contact that slips one way only sees no load at all in the other direction.
+    """
+    if direction < 0 and run.counts.one_way == 1:
+        return -math.inf
     return load if direction > 0 else -load - 2.0 * run.params.reference
 
 
@@ -135,6 +140,8 @@ def onset_of_slip(run: Run, load: Floats, strength: Floats) -> tuple[float, int]
     """
     part, onset, direction = run.trial, NONE, 0
     for way in (1, -1):
+        if way < 0 and run.counts.one_way == 1:
+            break
         for k in range(at.TERMS):
             part[k] = strength[k] - way * load[k]
         part[0] = 0.0 if run.counts.leaving_rest == way else strength[0] - towards(run, load[0], way)

@@ -54,9 +54,8 @@ class Params(MemoryRecord):
     rate_floor: float  # m/s: errors of an implicit step are relative to the slip rate, or to this if it is larger
     healed_piece: float  # piece of the law that holds after healing, for a law that forgets slip at an arrest; else -1
     shortest: float  # s: pieces of load shorter than this are lumped while `Counts.lumps` is set
-    tone: float  # Pa (slab) or N/s (block): amplitude of the tone in an inflow, tone sin(tone_frequency t + tone_phase)
-    tone_frequency: float  # rad/s: angular frequency of the tone
-    tone_phase: float  # rad: phase of the tone at t = 0
+    tone_frequency: float  # rad/s: angular frequency of the tone in an inflow (`LoadingSegment.tone`)
+    inflow_from: float  # s: phase of the first round trip from which a slab's inflow is added: h/c, or 0 where the ground moves
     pressing_tone: float  # 1: amplitude of the tone in the normal load, as a share of that at t = 0 (`contact.pressing`)
     pressing_frequency: float  # rad/s: angular frequency of that tone
     pressing_phase: float  # rad: phase of that tone at t = 0
@@ -148,6 +147,7 @@ class Counts(MemoryRecord):
     pause_for: int  # number of round trips that the next pause waits, set by the caller
     creep_leaps: int  # number of leaps over creep so far
     varies: int  # 1 if the loading varies in time other than as a ramp
+    one_way: int  # 1 if the contact never slips backwards
     segment: int  # segment of the loading that holds at present
     trip_segment: int  # segment of the loading at the end of the round trip before
     waits: int  # 1 if explicit steps of slip are left to the caller
@@ -356,6 +356,11 @@ class LoadingSegment(MemoryRecord):
     jump: float  # 1 if the inflow or the normal load jumps there, else 0
     pressing: float  # 1: growth of the normal load since t = 0 there, but for its tone, as a share of that at t = 0
     pressing_rate: float  # 1/s: how fast it grows
+    curve: float  # Pa/s^2: half the second derivative of a slab's inflow
+    step: float  # N: by how much the load of a block jumps where the segment begins
+    tone: float  # Pa (slab) or N/s (block): amplitude of a tone in the inflow, tone sin(tone_frequency t + tone_phase)
+    tone_phase: float  # rad: phase of the tone at t = 0
+    shakes: float  # 1 while the ground under a slab moves, or its motion is on its way back, else 0
 
 
 class HistoryPiece(MemoryRecord):

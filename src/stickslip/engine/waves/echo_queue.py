@@ -135,6 +135,8 @@ def room(run: Run, n: int, way: int, limit: float) -> float:
 @kernel
 def breaks(run: Run, n: int, way: int, limit: float, trip: int) -> bool:
     """Return True if the contact may slip in a direction under the echo of piece n in round trip `trip`."""
+    if way < 0 and run.counts.one_way == 1:
+        return False
     return way * run.params.ramp * (trip - run.echoes[n].trip) > room(run, n, way, limit)
 
 
@@ -172,7 +174,10 @@ def next_trip(run: Run, n: int, limit: float) -> int:
     if any_breaks(run, n, limit, coming):
         return coming
     way = 1 if run.params.ramp > 0.0 else -1
-    growth, first = abs(run.params.ramp), run.echoes[n].first_up if way > 0 else run.echoes[n].first_down
+    growth, first = (
+        abs(run.params.ramp) if way > 0 or run.counts.one_way == 0 else 0.0,
+        run.echoes[n].first_up if way > 0 else run.echoes[n].first_down,
+    )
     trips = math.floor(room(run, first, way, limit) / growth) if growth > 0.0 else math.inf
     if not trips < 4e18:
         return NEVER

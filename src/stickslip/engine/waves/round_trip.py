@@ -26,6 +26,8 @@ def trips_certain_at_rest(run: Run, limit: float) -> int:
         return int(call_part(run.loading_history, run, Task.COUNT_TRIPS_AT_REST, limit))
     if not is_ramp(run):
         return 0
+    if run.counts.one_way == 1 and ramp < 0.0:
+        return NEVER
     top, bottom = -math.inf, -math.inf
     for n in range(run.counts.trip_from, run.counts.length):
         load = run.history[n].load

@@ -1,6 +1,7 @@
 """Loading that varies in time: how it adds to a piece of load and cuts it, and how long a contact at rest withstands it.
 
-The inflow F (slab: Pa, block: N/s) is linear in time between breaks, plus a tone. A piece of load is cut where a new segment of F
+The inflow F (slab: Pa, block: N/s) is linear in time between breaks, or a parabola where the ground under a slab moves, plus a
+tone. A piece of load is cut where a new segment of F
 arrives; from then on the break is an edge between pieces, and so are its echoes. The load at rest grows by F from one round trip
 to the next on a slab, and by the integral of F on a block. As long as only the tone changes over some round trips, both sums are
 closed forms in F at their mean time.
@@ -85,7 +86,7 @@ def add_loading(run: Run) -> None:
     trip = float(run.counts.trip)
     if run.counts.is_block == 1:
         pull_block(run)
-    elif trip > 0.0 or run.state.phase_from >= 0.5 * run.params.round_trip_time:
+    elif trip > 0.0 or run.state.phase_from >= run.params.inflow_from:
         leaped = 0.0
         if trip > 0.0 and is_rigid(run):
             leaped = trip - 1.0 - run.history[run.counts.echo_of].trip
@@ -104,11 +105,25 @@ def add_inflow(run: Run, trips: float, mean_trip: float, segment: int) -> None:
     run.load[0] += trips * run.loading[segment].value + slope * since
     run.load[1] += slope * run.state.speed
     run.load[2] += slope * run.state.bend
-    if run.params.tone != 0.0:
+    if run.loading[segment].curve != 0.0:  # no round trips are leaped over then
+        add_curve(run, run.loading[segment].curve, since)
+    if run.loading[segment].tone != 0.0:
         weight = dirichlet(trips, run.params.tone_frequency * run.params.round_trip_time)
-        tone_series(run, weight * run.params.tone, mean_trip * run.params.round_trip_time + run.state.phase_from)
+        time = mean_trip * run.params.round_trip_time + run.state.phase_from
+        tone_series(run, weight * run.loading[segment].tone, run.loading[segment].tone_phase, time)
         for k in range(TERMS):
             run.load[k] += run.spare[k]
+
+
+@kernel
+def add_curve(run: Run, curve: float, since: float) -> None:
+    """Add curve t^2 to a slab's load, where t is the time since the segment began: `since` (s) at the start of the piece."""
+    speed, bend = run.state.speed, run.state.bend
+    run.load[0] += curve * since * since
+    run.load[1] += curve * 2.0 * since * speed
+    run.load[2] += curve * (2.0 * since * bend + speed * speed)
+    run.load[3] += curve * 2.0 * speed * bend
+    run.load[4] += curve * bend * bend
 
 
 @kernel
@@ -121,14 +136,14 @@ def dirichlet(count: float, step: float) -> float:
 
 
 @kernel
-def tone_series(run: Run, amplitude: float, time: float) -> None:
+def tone_series(run: Run, amplitude: float, phase: float, time: float) -> None:
     """Write into run.spare the coefficients in xi of amplitude sin(frequency t + phase) on a piece that begins at `time` (s).
 
     They follow from s' = frequency t' c and c' = -frequency t' s for the sine s and the cosine c.
     """
     frequency = run.params.tone_frequency
     turn, bend = frequency * run.state.speed, 2.0 * frequency * run.state.bend
-    angle = frequency * time + run.params.tone_phase
+    angle = frequency * time + phase
     sine, cosine = run.spare, run.trial
     sine[0], cosine[0] = amplitude * math.sin(angle), amplitude * math.cos(angle)
     for k in range(TERMS - 1):
@@ -140,23 +155,37 @@ def tone_series(run: Run, amplitude: float, time: float) -> None:
 
 @kernel
 def pull_block(run: Run) -> None:
-    """Set a block's load: its value at the end of the history, plus the force that the pull has added to the spring since."""
+    """Set a block's load: its value at the end of the history, plus what pull and ground have added to it since."""
     n = run.counts.length - 1
     if n >= 0:
         run.load[0] = total(run.history[n].load)
         trips = float(run.counts.trip - run.history[n].trip - 1)
         if trips > 0.0:
             run.load[0] += pulled_in_trips(run, trips)
+    run.load[0] += step_here(run)
     segment, pace = run.counts.segment, run.state.speed
     since = (run.counts.trip - run.loading[segment].trip) * run.params.round_trip_time
     since += run.state.phase_from - run.loading[segment].offset
     slope = run.loading[segment].slope
     run.load[1] += pace * (run.loading[segment].value + slope * since)
     run.load[2] += 0.5 * pace * pace * slope
-    if run.params.tone != 0.0:
-        tone_series(run, run.params.tone, run.counts.trip * run.params.round_trip_time + run.state.phase_from)
+    if run.loading[segment].tone != 0.0:
+        time = run.counts.trip * run.params.round_trip_time + run.state.phase_from
+        tone_series(run, run.loading[segment].tone, run.loading[segment].tone_phase, time)
         for k in range(1, TERMS):
             run.load[k] += pace * RECIPROCAL[k] * run.spare[k - 1]
+
+
+@kernel
+def step_here(run: Run) -> float:
+    """Return by how much (N) a block's load jumps where the piece of load begins: the steps of the segments entered there."""
+    total_step, tie = 0.0, AT_EDGE * run.params.round_trip_time
+    for n in range(run.counts.segment, -1, -1):
+        one = run.loading[n]
+        if one.trip != run.counts.trip or not abs(one.offset - run.state.phase_from) <= tie:
+            break
+        total_step += one.step
+    return total_step
 
 
 @kernel
@@ -166,10 +195,10 @@ def pulled_in_trips(run: Run, trips: float) -> float:
     middle = (run.counts.trip - 0.5 * trips) * run.params.round_trip_time
     since = (run.counts.trip - 0.5 * trips - run.loading[segment].trip) * run.params.round_trip_time - run.loading[segment].offset
     gained = lasting * (run.loading[segment].value + run.loading[segment].slope * since)
-    if run.params.tone != 0.0:
+    if run.loading[segment].tone != 0.0:
         frequency = run.params.tone_frequency
-        swing = math.sin(frequency * middle + run.params.tone_phase)
-        gained += run.params.tone * 2.0 / frequency * math.sin(0.5 * frequency * lasting) * swing
+        swing = math.sin(frequency * middle + run.loading[segment].tone_phase)
+        gained += run.loading[segment].tone * 2.0 / frequency * math.sin(0.5 * frequency * lasting) * swing
     return gained
 
 
@@ -187,12 +216,15 @@ def trips_withstood(run: Run, limit: float) -> int:
     room = run.loading[following].trip - run.counts.trip - 1.0 if following < run.segments else float(NEVER)
     if is_pressing(run) or (run.counts.given > 0 and segment != run.counts.trip_segment):
         return 0  # the round trip just past does not predict the next one
-    is_dead = run.loading[segment].slope == 0.0 and run.params.tone == 0.0
+    if run.loading[segment].shakes == 1.0:
+        return 0  # the ground does work, which nothing but the history of each round trip knows
+    is_dead = run.loading[segment].slope == 0.0 and run.loading[segment].tone == 0.0
     if run.counts.is_block == 0 and not is_rigid(run):
         return int(max(room, 0.0)) if is_dead and has_faded(run) else 0
     if is_dead and run.loading[segment].value == 0.0:
         return int(max(room, 0.0))
     top, bottom = limit - tops(run, 1.0), limit + 2.0 * run.params.reference - tops(run, -1.0)
+    bottom = math.inf if run.counts.one_way == 1 else bottom
     low, high = 0.0, max(room, 0.0)
     if withstands(run, high, top, bottom):
         return int(high)
@@ -234,8 +266,8 @@ def growth_bound(run: Run, trips: float, sign: float) -> float:
     is_block = run.counts.is_block == 1
     lasting = trips * period if is_block else trips
     bound = lasting * largest
-    if run.params.tone != 0.0:
-        amplitude, phase = sign * run.params.tone, run.params.tone_phase
+    if run.loading[segment].tone != 0.0:
+        amplitude, phase = sign * run.loading[segment].tone, run.loading[segment].tone_phase
         steepest = largest_sine(frequency * begin + phase, frequency * end + phase, amplitude)
         half = abs(math.sin(0.5 * frequency * period))
         swing = 2.0 / frequency if is_block else 1.0 / half if half > 0.0 else math.inf

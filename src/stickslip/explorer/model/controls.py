@@ -17,7 +17,7 @@ from stickslip.foundation.units import split_quantity, to_si
 from stickslip.friction import LAWS
 from stickslip.friction.contract import STATE_NAMES, StateVariable
 from stickslip.loading import HISTORIES
-from stickslip.problem.fields import STEADY
+from stickslip.problem.fields import HISTORIES_ONLY, STEADY
 from stickslip.problem.selection_rule import SELECTION_RULES, names
 from stickslip.run.planar_run import FRAMES
 from stickslip.scenarios import library
@@ -170,7 +170,7 @@ class _Tables:
             others = ControlGroup("loading", others.title, CONSTANT, (CONSTANT, *HISTORIES), others.controls)
         if others.controls:
             yield others
-        for name in ("far_stress", "normal_load"):
+        for name in ("far_stress", *HISTORIES_ONLY):
             history = self.setting.value(f"loading.{name}")
             if isinstance(history, Mapping):
                 yield self.of(
@@ -256,7 +256,7 @@ class _Tables:
         """Return False for an entry that this problem cannot have, and for a number that a table replaces."""
         if path in ("loading.far_stress", "loading.far_stress_rate") and self.problem.body.is_driven_rigidly:
             return False
-        if path == "loading.normal_load":  # which is nothing but a table
+        if path.removeprefix("loading.") in HISTORIES_ONLY:
             return False
         if path in ("initial.state", "initial.second_state") and (not self.problem.friction.states or self.starts_steadily):
             return False

@@ -115,7 +115,8 @@ def _draw_loading(panel: Axes, readings: Readings, name: str, start: float, end:
     if not is_band:
         values = values + tone.amplitude * np.sin(tone.frequency * time + tone.phase)
     spread, what = swing if is_band else 0.0, name.replace("_", " ")
-    si = si_unit("slip_rate" if name == "pull_rate" else "load", readings.problem.load_unit)
+    kinds = {"pull_rate": "slip_rate", "ground_velocity": "m/s", "ground_acceleration": "m/s^2"}
+    si = si_unit(kinds.get(name, "load"), readings.problem.load_unit)
     unit, scale = readable_unit(si, np.abs(values) + spread)
     time = (time - begun) / size
     if is_band:

@@ -44,6 +44,9 @@ def parts_of(
         raise InputError(f"infer: sensor {ascii(sensor)[:40]} is unknown; {nearest(str(sensor), SENSORS)}")
     if sensor == "spring" and problem.body.has_waves:
         raise InputError("infer: sensor 'spring' is the load cell behind the spring of a block: a slab has none")
+    if problem.ground is not None or problem.one_way:
+        what = "one_way" if problem.one_way else "ground that moves"
+        raise InputError(f"infer: {what} is not fitted: leave it out")
     if problem.normal_varies:
         raise InputError("infer: a normal_load that varies is not fitted yet: records of friction are divided by one normal load")
     if start is not None and start not in STARTS:

@@ -1,0 +1,131 @@
+"""What moving ground adds to the load of a contact, as segments for the engine.
+
+A block's load gains -m a(t), with a the acceleration of the ground: its growth is in `forcing.Inflow`, and its jumps are here. At
+the contact of a slab m d(v + v_g)/dt + Z (v + v_g) + tau = beta, with m its mass, if it has one, v the slip rate and v_g the
+velocity of the ground. The load of the engine is beta - Z v_g - m v_g', so that its inflow gains that and, from the wave 2 Z (v +
+v_g) - beta that comes back, r (Z v_g - m v_g')(t - R): parabolas and a sinusoid.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from stickslip.engine_input.forcing import Inflow, inflow_of
+from stickslip.foundation.arrays import Floats
+from stickslip.loading import Tone
+from stickslip.problem.ground import Ground
+from stickslip.problem.problem import Problem
+
+STILL = 1e-15
+"""Ground whose velocity is below this share of its largest one (1) is at rest: the rest is rounding of sums."""
+
+
+def tone_of(problem: Problem) -> Tone:
+    """Return the sinusoid of the loading: that of the pull or, if it has none, that of the ground (of its velocity, m/s)."""
+    inflow = inflow_of(problem).tone
+    return inflow if problem.ground is None or inflow.amplitude != 0.0 or not problem.body.has_waves else problem.ground.tone
+
+
+def force_steps(problem: Problem, start: Floats) -> Floats:
+    """Return the jumps (N) of a block's load at times (s) where segments begin, the first of which is 0 s."""
+    ground, mass = problem.ground, problem.body.inertia
+    assert ground is not None
+    acceleration = ground.acceleration.copy()
+    acceleration[1:] -= acceleration[:-1] + ground.jerk[:-1] * np.diff(ground.start)
+    size = np.abs(ground.acceleration).max()
+    acceleration[1:][np.abs(acceleration[1:]) <= 1e-14 * size] = 0.0
+    amplitude, frequency, phase = ground.tone
+    acceleration[0] += amplitude * frequency * math.cos(phase)
+    steps = np.zeros(len(start))
+    steps[np.searchsorted(start, ground.start)] = -mass * acceleration
+    return steps
+
+
+@dataclass(frozen=True, eq=False)
+class Shaking:
+    """The inflow of a slab on moving ground, by segments: parabolas and the phasor of a sinusoid, in Pa."""
+
+    start: Floats
+    value: Floats
+    slope: Floats
+    curve: Floats  # Pa/s^2: half the second derivative
+    phasor: Floats  # complex: amplitude times exp(i phase) of the sinusoid
+    jump: Floats  # 1 where the inflow jumps, else 0
+    shakes: Floats  # 1 while the ground moves or its motion is on its way back
+
+    def put(self, segments: Any, start: Floats) -> None:
+        """Write the inflow into segments (`LoadingSegment.of` a table) that begin at times (s), those of the inflow among them."""
+        of = np.searchsorted(self.start, start, side="right") - 1
+        since = start - self.start[of]
+        segments.value = self.value[of] + since * (self.slope[of] + since * self.curve[of])
+        segments.slope, segments.curve = self.slope[of] + 2.0 * since * self.curve[of], self.curve[of]
+        segments.tone, segments.tone_phase = np.abs(self.phasor)[of], np.angle(self.phasor)[of]
+        segments.jump, segments.shakes = np.where(since == 0.0, self.jump[of], 0.0), self.shakes[of]
+
+
+def shaking_of(problem: Problem) -> Shaking:
+    """Return the inflow of a slab on moving ground: that of its driver from h/c on, and that of the ground."""
+    ground, driver, body = problem.ground, inflow_of(problem), problem.body
+    assert ground is not None
+    delay, trip = 0.5 * body.round_trip_time, body.round_trip_time
+    parts = [(0.0, -body.impedance, -body.inertia), (trip, body.reflection * body.impedance, -body.reflection * body.inertia)]
+    parts = [one for one in parts if one[1] != 0.0]
+    starts = [driver.start[driver.start > delay], np.array([0.0, delay]), *(ground.start + late for late, _, _ in parts)]
+    start = _without_doubles(np.concatenate(starts), trip)
+    middle = start + 0.5 * np.diff(np.append(start, start[-1] + trip))  # which segment holds, whatever the rounding of its start
+    known = _driven(driver, start, middle)  # as if it had come since the start, to tell where the inflow jumps
+    all_straight, phasor = known.copy(), np.zeros(len(start), complex)
+    all_straight[:, middle < delay] = 0.0
+    if driver.tone.amplitude != 0.0:
+        phasor += np.where(middle < delay, 0.0, driver.tone.amplitude * np.exp(1j * driver.tone.phase))
+    shakes = np.zeros(len(start))
+    for late, impedance, mass in parts:
+        velocity, acceleration, swing, moving = _moved(ground, start - late, middle - late)
+        known += impedance * velocity + mass * acceleration
+        all_straight += impedance * velocity + mass * acceleration
+        phasor += (impedance + 1j * ground.tone.frequency * mass) * swing * np.exp(-1j * ground.tone.frequency * late)
+        shakes = np.maximum(shakes, moving)
+    value, slope, curve = all_straight
+    return Shaking(start, value, slope, curve, phasor, _jumps(start, known, phasor, tone_of(problem)), shakes)
+
+
+def _without_doubles(start: Floats, trip: float) -> Floats:
+    """Return times (s) in order, those that differ by rounding as one."""
+    start = np.unique(start)
+    return start[np.append(True, np.diff(start) > max(1e-13 * trip, 8.0 * float(np.spacing(start[-1]))))]
+
+
+def _driven(driver: Inflow, start: Floats, middle: Floats) -> Floats:
+    """Return value, slope and curve (rows) of the driver's inflow at times (s), each in the segment that holds at `middle`."""
+    n = driver.segment(middle)
+    return np.array([driver.value[n] + driver.slope[n] * (start - driver.start[n]), driver.slope[n], np.zeros(len(n))])
+
+
+def _moved(ground: Ground, start: Floats, middle: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    """Return value, slope and curve (rows) of the ground's velocity and acceleration at times (s), and the velocity's phasor.
+
+    The last result is 1 where the ground moves and 0 where it rests.
+    """
+    n = np.maximum(np.searchsorted(ground.start, middle, side="right") - 1, 0)
+    since, begun = start - ground.start[n], middle >= 0.0
+    v = ground.velocity[n] + since * (ground.acceleration[n] + 0.5 * since * ground.jerk[n])
+    v[np.abs(v) <= STILL * np.abs(ground.velocity).max()] = 0.0
+    a = ground.acceleration[n] + since * ground.jerk[n]
+    velocity = np.array([v, a, 0.5 * ground.jerk[n]]) * begun
+    acceleration = np.array([a, ground.jerk[n], np.zeros(len(n))]) * begun
+    phasor = ground.tone.amplitude * np.exp(1j * ground.tone.phase) * begun
+    return velocity, acceleration, phasor, ((velocity != 0.0).any(axis=0) | (phasor != 0.0)).astype(float)
+
+
+def _jumps(start: Floats, straight: Floats, phasor: Floats, tone: Tone) -> Floats:
+    """Return 1 where the inflow jumps as a segment begins, and 0 elsewhere."""
+    lasting = np.diff(start)
+    value, slope, curve = straight
+    begins = value + (phasor * np.exp(1j * tone.frequency * start)).imag
+    ends = value[:-1] + lasting * (slope[:-1] + lasting * curve[:-1]) + (phasor[:-1] * np.exp(1j * tone.frequency * start[1:])).imag
+    size = np.abs(begins).max()
+    return np.append(0.0, np.abs(begins[1:] - ends) > 1e-12 * size)

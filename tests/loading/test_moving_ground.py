@@ -1,0 +1,338 @@
+"""Ground that moves: parabolas by hand, an own integrator, echoes summed by hand, energy, one-way slip, files and refusals."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+import stickslip as ss
+from stickslip.loading import LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
+
+MASS, FORCE, LOOSE = 1.0, 10.0, 1e-12
+"""kg, N; a spring (N/m) so loose that its force does not change by a digit."""
+BLOCK = ss.SpringBlock(MASS, LOOSE, FORCE)
+DENSITY, SPEED, THICKNESS = 2000.0, 500.0, 25.0
+IMPEDANCE, TRIP = DENSITY * SPEED, 2.0 * THICKNESS / SPEED
+LAW = ss.friction.Coulomb(static=0.6, dynamic=0.5)
+
+
+def slab(driver: float = 0.0, mass: float = 0.0, normal: float = 1e6) -> ss.ElasticSlab:
+    """Return a slab that is free at its top unless it has a driver."""
+    return ss.ElasticSlab(DENSITY, SPEED, THICKNESS, normal, driver_impedance=driver, contact_mass=mass)
+
+
+def record(seed: int, step: float = 0.02, points: int = 60, size: float = 12.0) -> PiecewiseLinear:
+    """Return a record of acceleration at random (m/s^2) that begins and ends with 0."""
+    values = size * np.random.default_rng(seed).normal(size=points)
+    values[0] = values[-1] = 0.0
+    return PiecewiseLinear(step * np.arange(points), values)  # type: ignore[arg-type]
+
+
+def by_hand(history: PiecewiseLinear, pull: float, end: float, *, one_way: bool) -> float:
+    """Return the slip (m) of a rigid block by the cubics between the points of the record, and the events on them."""
+    times, values = [*history.times, end], [*history.values, history.values[-1]]
+    v = u = 0.0
+    for begin, until, first, last in zip(times, times[1:], values, values[1:], strict=False):
+        slope = (last - first) / (until - begin)
+        now, left = 0.0, until - begin
+        while now < left:
+            load = pull - MASS * (first + slope * now)
+            if v == 0.0:
+                way = 1 if load > 0.6 * FORCE else -1 if load < -0.6 * FORCE and not one_way else 0
+                if way == 0:  # when a straight load reaches one of its limits
+                    limits = (0.6 * FORCE,) if one_way else (0.6 * FORCE, -0.6 * FORCE)
+                    reached = [(pull - limit) / MASS / slope - first / slope for limit in limits] if slope else []
+                    later = [t for t in reached if t > now + 1e-15]
+                    now = min([*later, left])
+                    if now == left:
+                        break
+                    load = pull - MASS * (first + slope * now)
+                    way = 1 if load > 0.0 else -1
+            else:
+                way = 1 if v > 0.0 else -1
+            a = (load - way * 0.5 * FORCE) / MASS
+            roots = np.roots([-0.5 * slope, a, v]) if slope else np.array([-v / a])
+            real = [t.real for t in roots if abs(t.imag) < 1e-12 and 1e-13 < t.real < left - now]
+            lasting = min([*real, left - now])
+            u += lasting * (v + lasting * (0.5 * a - slope * lasting / 6.0))
+            v = 0.0 if real else v + lasting * (a - 0.5 * slope * lasting)
+            now += lasting
+    assert v == 0.0
+    return u
+
+
+@pytest.mark.parametrize("one_way", [False, True])
+@pytest.mark.parametrize("seed", range(4))
+def test_a_rigid_block_under_a_record_slips_as_cubics_by_hand_say(seed: int, one_way: bool) -> None:
+    problem = ss.Problem(BLOCK, LAW, initial_load=2.0, ground_acceleration=record(seed), one_way=one_way)
+    run = ss.simulate(problem, 9.0)
+    assert float(run.slip(9.0)) == pytest.approx(by_hand(record(seed), 2.0, 9.0, one_way=one_way), rel=1e-9, abs=1e-12)
+    rates = run.slip_rate(np.linspace(0.0, 2.0, 997))
+    assert bool(rates.min() >= 0.0) is one_way
+
+
+def test_a_rectangular_pulse_is_the_closed_form_of_newmark() -> None:
+    """Ground A g for a time t0, then at rest: slip V^2 / (2 N g) (1 - N/A), with N g the yield acceleration and V = A g t0."""
+    yields, pulse, lasting = 3.0, 5.0, 0.4
+    law = ss.friction.Coulomb(static=yields * MASS / FORCE, dynamic=yields * MASS / FORCE)
+    pushed = Steps([0.0, lasting], [-pulse, 0.0])
+    event = ss.simulate(ss.Problem(BLOCK, law, initial_load=0.0, ground_acceleration=pushed), 3.0).events.iloc[0]
+    slip = (pulse * lasting) ** 2 / (2.0 * yields) * (1.0 - yields / pulse)
+    assert [event.start, event.end, event.slip] == pytest.approx([0.0, pulse * lasting / yields, slip], rel=1e-12)
+
+
+def test_velocity_and_acceleration_of_one_motion_give_one_run() -> None:
+    velocity = PiecewiseLinear([0.0, 0.3, 0.7, 1.1], [0.0, -3.0, 2.0, 0.0])
+    accelerates = Steps([0.0, 0.3, 0.7, 1.1], [-10.0, 12.5, -5.0, 0.0])
+    slips = [
+        ss.simulate(ss.Problem(BLOCK, LAW, initial_load=0.0, **ground), 4.0).slip(np.linspace(0.0, 4.0, 9))
+        for ground in ({"ground_velocity": velocity}, {"ground_acceleration": accelerates})
+    ]
+    assert slips[0] == pytest.approx(slips[1], rel=1e-12)
+    assert slips[0][-1] < -0.1
+
+
+@pytest.mark.parametrize(("size", "period", "phase"), [(9.0, 0.5, 0.0), (14.0, 0.31, 1.0)])
+def test_a_block_under_a_sinusoid_follows_an_integrator_with_events(size: float, period: float, phase: float) -> None:
+    """To 1e-9 of the slip, with a spring, whose force is that of the slip relative to the ground."""
+    stiffness, pull, omega, end = 40.0, 0.3, 2.0 * math.pi / period, 3.0
+    body = ss.SpringBlock(MASS, stiffness, FORCE)
+    ground = Sinusoidal(0.0, size, period, phase)
+    run = ss.simulate(ss.Problem(body, LAW, pull_rate=pull, initial_load=1.0, ground_acceleration=ground), end)
+
+    def load(t: float, u: float) -> float:
+        return 1.0 + stiffness * (pull * t - u) - MASS * size * math.sin(omega * t + phase)
+
+    t, u, v, way = 0.0, 0.0, 0.0, 0
+    while t < end:
+        if v == 0.0:
+            here = load(t, u)
+            way = int(math.copysign(1.0, here)) if abs(here) > 6.0 else 0
+            if way == 0:
+                grid = np.linspace(t, end, 20000)
+                past = np.flatnonzero([abs(load(s, u)) > 6.0 for s in grid])
+                if not len(past):
+                    break
+                low, high = grid[past[0] - 1], grid[past[0]]
+                t = brentq(lambda s, u=u: abs(load(s, u)) - 6.0, low, high, xtol=1e-15)
+                way = int(math.copysign(1.0, load(t, u)))
+
+        def motion(s: float, y: list[float], sign: int = way) -> list[float]:
+            return [y[1], (load(s, y[0]) - sign * 5.0) / MASS]
+
+        def stops(s: float, y: list[float], begun: float = t, sign: int = way) -> float:
+            return float(y[1]) if s > begun + 1e-9 else float(sign)
+
+        stops.terminal = True  # type: ignore[attr-defined] # read by scipy
+        found = solve_ivp(motion, (t, end), [u, v], "DOP853", rtol=1e-13, atol=1e-15, events=stops, max_step=0.01)
+        t, u, v = found.t[-1], found.y[0, -1], 0.0 if found.status == 1 else found.y[1, -1]
+    assert [float(run.slip(end)), float(run.slip_rate(end))] == pytest.approx([u, v], rel=1e-9, abs=1e-9)
+    assert run.energy([1.0, end]).balance.to_numpy() == pytest.approx(0.0, abs=1e-9)
+
+
+GROUNDS: dict[str, dict[str, LoadingHistory]] = {
+    "sinusoid of velocity": {"ground_velocity": Sinusoidal(0.01, 0.3, 0.37, 0.3)},
+    "sinusoid of acceleration": {"ground_acceleration": Sinusoidal(0.0, 9.0, 0.37, 0.3)},
+    "record of acceleration": {"ground_acceleration": record(2, size=9.0)},
+    "steps of velocity": {"ground_velocity": Steps([0.0, 0.13, 0.31], [0.1, -0.2, 0.0])},
+}
+
+
+@pytest.mark.parametrize("driver", [0.0, math.inf, 0.4 * IMPEDANCE])
+@pytest.mark.parametrize("ground", GROUNDS.values(), ids=GROUNDS)
+def test_a_slab_is_the_sum_of_its_echoes(ground: dict[str, LoadingHistory], driver: float) -> None:
+    """Z (v + v_g) + S mu(v) = beta, and beta is what left a round trip before: r (2 Z (v + v_g) - beta) + a constant."""
+    law, start, body = ss.friction.FromExpression("0.4 + 0.05*log(1 + v/v1)", {"v1": "0.1 m/s"}), 1e5, slab(driver)
+    problem = ss.Problem(body, law, initial_load=start, **ground)
+    run = ss.simulate(problem, 1.0)
+    assert problem.ground is not None
+    moves, reflection = problem.ground.velocity_at, body.reflection
+
+    def rate(load: float) -> float:
+        if abs(load) <= 4e5:
+            return 0.0
+        slips = brentq(lambda v: IMPEDANCE * v + 1e6 * (0.4 + 0.05 * math.log1p(v / 0.1)) - abs(load), 0.0, 10.0, xtol=1e-16)
+        return math.copysign(slips, load)
+
+    def arriving(t: float) -> float:
+        if t < TRIP:
+            return start
+        before, velocity = arriving(t - TRIP), float(moves(t - TRIP))
+        return (
+            reflection * (2.0 * IMPEDANCE * (rate(before - IMPEDANCE * velocity) + velocity) - before) + (1.0 + reflection) * start
+        )
+
+    times = np.linspace(0.0031, 0.9963, 83)
+    loads = [arriving(t) - IMPEDANCE * float(moves(t)) for t in times]
+    assert run.load(times) == pytest.approx(loads, rel=1e-9, abs=1e-4)
+    assert run.slip_rate(times) == pytest.approx([rate(load) for load in loads], rel=1e-8, abs=1e-10)
+    energy = run.energy(times)
+    assert np.abs(energy.balance).max() < 1e-11 * np.abs(energy.stored).max()
+
+
+@pytest.mark.parametrize("mass", [0.0, 3000.0])
+def test_the_field_in_a_slab_is_that_of_the_absolute_motion(mass: float) -> None:
+    """At the contact it moves with slip and ground; inside, velocity is the derivative of displacement, and stress that in x."""
+    ground = record(5, size=9.0)
+    law = ss.friction.LinearSlipWeakening(0.6, 0.5, 0.1)
+    problem = ss.Problem(slab(mass=mass), law, initial_load=1e5, ground_acceleration=ground)
+    run, moves = ss.simulate(problem, 1.5), problem.ground
+    assert moves is not None
+    assert run.slip(1.5) > 0.01
+    times = np.linspace(0.01, 1.49, 31)
+    at_contact = run.field(0.0, times)
+    assert at_contact.displacement == pytest.approx(run.slip(times) + moves.displacement_at(times), abs=1e-12)
+    assert at_contact.velocity == pytest.approx(run.slip_rate(times) + moves.velocity_at(times), abs=1e-12)
+    grows = run.slip_rate(times + 1e-6) - run.slip_rate(times - 1e-6)
+    inertia = mass * (grows / 2e-6 + moves.acceleration_at(times))
+    assert at_contact.stress == pytest.approx(run.traction(times) + inertia, abs=30.0)
+    x = np.array([[3.3], [11.1], [21.7]])
+    later, before, here = (run.field(x, times + by) for by in (1e-6, -1e-6, 0.0))
+    assert (later.displacement - before.displacement) / 2e-6 == pytest.approx(here.velocity, abs=2e-3)
+    above, below = (run.field(x + by, times) for by in (1e-3, -1e-3))
+    assert DENSITY * SPEED**2 * (above.displacement - below.displacement) / 2e-3 == pytest.approx(here.stress, abs=2e3)
+    energy = run.energy(times)
+    assert np.abs(energy.balance).max() < 1e-10 * np.abs(energy.stored).max()
+
+
+def test_before_slip_the_free_top_moves_by_the_ground_over_the_cosine() -> None:
+    """V [sin(w t) - (-1)^N sin(w (t - 2 N T))] / cos(w T) after N waves, with T = h/c: each echo of the free top, summed."""
+    omega, size, half = 2.0 * math.pi / 0.37, 0.1, 0.5 * TRIP
+    run = ss.simulate(ss.Problem(slab(), LAW, initial_load=1e5, ground_velocity=Sinusoidal(0.0, size, 0.37)), 2.0)
+    times = np.linspace(0.06, 1.98, 77)
+    waves = np.floor((times - half) / TRIP) + 1.0
+    swings = np.sin(omega * times) - (-1.0) ** waves * np.sin(omega * (times - waves * TRIP))
+    assert len(run.events) == 0
+    assert run.field(THICKNESS, times).velocity == pytest.approx(size * swings / math.cos(omega * half), abs=1e-12)
+
+
+def test_a_slab_whose_top_lets_waves_out_moves_by_its_transfer_function() -> None:
+    omega, size, driver = 2.0 * math.pi / 0.37, 0.1, 0.3 * IMPEDANCE
+    body = slab(driver)
+    run = ss.simulate(ss.Problem(body, LAW, initial_load=1e5, ground_velocity=Sinusoidal(0.0, size, 0.37)), 6.4)
+    times, r, late = np.linspace(6.0, 6.4, 33), body.reflection, np.exp(-1j * omega * TRIP)
+    top = size * (1.0 + r) * np.exp(-0.5j * omega * TRIP) / (1.0 + r * late)
+    stress = -IMPEDANCE * size * (1.0 - r * late) / (1.0 + r * late)
+    turns = np.exp(1j * omega * times)
+    assert run.field(THICKNESS, times).velocity == pytest.approx((top * turns).imag, abs=1e-11)
+    assert run.traction(times) == pytest.approx(1e5 + (stress * turns).imag, abs=1e-4)
+
+
+def test_a_stiff_slab_slips_as_the_rigid_block() -> None:
+    """The difference falls with h/c: the masses are the same, and the free top follows the sooner."""
+    ground, mass, law = record(1, size=6.0), DENSITY * THICKNESS, ss.friction.Coulomb(static=0.5, dynamic=0.5)
+    rigid = ss.simulate(
+        ss.Problem(ss.SpringBlock(mass, LOOSE, 2.5e5), law, initial_load=0.0, ground_acceleration=ground, one_way=True), 1.3
+    )
+    missed = []
+    for trips in (4, 8, 16):  # in each step of the record
+        body = ss.ElasticSlab(DENSITY, 2.0 * THICKNESS * trips / 0.02, THICKNESS, 2.5e5, driver_impedance=0.0)
+        slips = ss.simulate(ss.Problem(body, law, initial_load=0.0, ground_acceleration=ground, one_way=True), 1.3)
+        missed.append(abs(float(slips.slip(1.3)) / float(rigid.slip(1.3)) - 1.0))
+    assert missed[0] < 0.04
+    assert missed[1] < 0.4 * missed[0]
+    assert missed[2] < 0.4 * missed[1]
+
+
+def test_one_way_rest_under_a_falling_load_costs_nothing_and_never_ends() -> None:
+    for body, load in ((ss.SpringBlock(1.0, 100.0, 10.0), 0.0), (ss.ElasticSlab(2700.0, 3000.0, 3000.0, 1e7), 0.0)):
+        problem = ss.Problem(body, LAW, pull_rate=-1e-9, initial_load=load, one_way=True)
+        run = ss.simulate(problem, "1e6 years")
+        assert (len(run.events), len(run.history) < 20) == (0, True)
+        assert len(ss.simulate(replace(problem, one_way=False), "1e6 years", max_events=2).events) == 2
+
+
+def test_a_scenario_reads_a_record_in_g_and_a_saved_run_is_the_same(tmp_path: Path) -> None:
+    (tmp_path / "shaking.csv").write_text("time (s),ground_acceleration (g)\n0,0\n0.1,-1.2\n0.2,0.9\n0.3,0\n")
+    scenario = tmp_path / "shaken.toml"
+    scenario.write_text(
+        '[body]\nkind = "spring-block"\nmass = 1.0\nstiffness = 1e-6\nnormal_force = 9.8\n'
+        '[friction]\nkind = "coulomb"\nstatic = 0.5\ndynamic = 0.4\n[loading]\none_way = true\n'
+        '[loading.ground_acceleration]\nkind = "piecewise-linear"\nfile = "shaking.csv"\n'
+        "[initial]\nload = 1.0\n[run]\nduration = 2.0\n"
+    )
+    read = ss.load_scenario(scenario)
+    assert read.problem.ground_acceleration is not None
+    assert read.problem.ground_acceleration.at(0.1) == pytest.approx(-1.2 * 9.80665, rel=1e-15)
+    run = ss.simulate(read)
+    saved = ss.open_solution(run.to_netcdf(tmp_path / "run.nc"))
+    times = np.linspace(0.0, 2.0, 41)
+    assert saved.slip(times).tobytes() == run.slip(times).tobytes()
+    assert saved.problem == read.problem
+    assert float(run.slip(2.0)) > 0.0
+    half = ss.simulate(read.problem, 0.15).to_netcdf(tmp_path / "half.nc")
+    assert ss.resume(half, 2.0).slip(times).tobytes() == run.slip(times).tobytes()
+    scaled = read.with_values({"loading.ground_acceleration.values[1]": "-1500 gal"}).problem
+    assert scaled.ground_acceleration.at(0.1) == pytest.approx(-15.0)  # type: ignore[union-attr]
+
+
+PULSE = PiecewiseLinear([0.0, 0.1, 0.2], ["0 g", "0.5 g", "0 g"])
+SHAKEN = ss.Problem(slab(), LAW, initial_load=1e5, ground_acceleration=PULSE)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (
+            lambda: replace(SHAKEN, ground_velocity=PiecewiseLinear([0.0, 1.0], [0.0, 1.0])),
+            "Problem: only one of ground_velocity and ground_acceleration may be given: one follows from the other",
+        ),
+        (
+            lambda: replace(SHAKEN, ground_acceleration=None, ground_velocity=PULSE),
+            "Problem: ground_velocity must be in m/s, got a history of values in m/s^2",
+        ),
+        (
+            lambda: ss.Problem(BLOCK, LAW, initial_load=0.0, ground_velocity=Steps([0.0, 1.0], [0.0, 1.0])),
+            "Problem: ground_velocity jumps, which is an infinite force on a mass: join the points (piecewise-linear), beginning"
+            " with 0 m/s, or give ground_acceleration",
+        ),
+        (
+            lambda: replace(SHAKEN, body=slab(1e5), far_stress=Sinusoidal(1e5, 1e3, 1.0), ground_acceleration=Sinusoidal(0, 1, 1)),
+            "Problem: only one of the ground and the pull may have a sinusoid: give the other as straight lines",
+        ),
+        (
+            lambda: ss.Problem(BLOCK, LAW, initial_load=0.0, ground_acceleration=3.0),  # type: ignore[arg-type]
+            "Problem: ground_acceleration must be a loading history, got 3.0; what varies in time is one of stickslip.loading,"
+            " such as Steps([0.0, 10.0], [1e-6, 1e-5])",
+        ),
+        (
+            lambda: PiecewiseLinear(np.arange(1e6), np.zeros(10**6)),  # type: ignore[arg-type]
+            "PiecewiseLinear: times must have 2 to 10000 numbers, got 1000000",
+        ),
+        (
+            lambda: replace(SHAKEN, friction=ss.friction.RateAndState(0.6, 0.01, 0.008, 1e-4), initial_state=1.0, one_way=True),
+            "Problem: one_way needs a law with a static strength, and RateAndState never sticks",
+        ),
+        (
+            lambda: replace(SHAKEN, one_way="yes"),  # type: ignore[arg-type]
+            "Problem: one_way must be True or False, got 'yes'",
+        ),
+        (
+            lambda: replace(SHAKEN, initial_rate=-1.0, body=slab(mass=1.0), one_way=True),
+            "Problem: initial_rate is backwards, where a contact that slips one way only does not go",
+        ),
+        (
+            lambda: ss.PlanarSlab(SHAKEN, length=1e3, nodes=16),
+            "PlanarSlab: ground that moves is followed at one place only: leave it out",
+        ),
+        (
+            lambda: ss.studies.schemes(SHAKEN, 0.5),
+            "schemes: a pull rate, far stress or normal load that varies in time is not in the schemes: give constant ones, and"
+            " ground at rest",
+        ),
+        (
+            lambda: ss.simulate(SHAKEN, 1.0, creep_rtol=1e-3),
+            "simulate: creep_rtol must be 0 here: leaps over creep need a rigid driver (no driver_impedance)",
+        ),
+    ],
+)
+def test_what_cannot_be_is_refused_in_one_line(make: object, message: str) -> None:
+    with pytest.raises(ss.InputError) as refused:
+        make()  # type: ignore[operator]
+    assert str(refused.value) == message
