@@ -263,9 +263,9 @@ REFUSED: dict[str, tuple[Callable[[], Any], str]] = {
         lambda: ss.Problem(FAULT, two_state("ageing").law, initial_load=6e6, initial_state="steady", initial_second_state=1.0),
         "initial_state 'steady': the pull rate is 0 at first: give a number",
     ),
-    "a too small": (
-        lambda: TwoStateRateAndState(0.6, 0.001, 0.01, 1e-3, 0.006, 1e-2),
-        "TwoStateRateAndState: a must be at least 0.0026 with this reference, b and second_b, got 0.001",
+    "no direct effect": (
+        lambda: TwoStateRateAndState(0.6, 0.0, 0.01, 1e-3, 0.006, 1e-2),
+        "TwoStateRateAndState: a must be greater than 0",
     ),
     "a second state that is not there": (
         lambda: ss.simulate(ss.Problem(AXIS, ss.friction.Dahl(0.1, 1e4), initial_load=0.0), 0.01).second_state(0.0),

@@ -227,8 +227,8 @@ def test_bad_starts_are_refused_in_one_line(given: dict[str, float], message: st
 
 
 def test_bad_laws_are_refused_in_one_line() -> None:
-    with pytest.raises(ss.InputError, match=r"^RateAndState: a must be at least 0.0025[^\n]*$"):
-        ss.friction.RateAndState(0.6, 1e-3, 0.015, 1e-5)
+    with pytest.raises(ss.InputError, match=r"^RateAndState: a must be greater than 0[^\n]*$"):
+        ss.friction.RateAndState(0.6, 0.0, 0.015, 1e-5)
     with pytest.raises(ss.InputError, match=r"evolution 'agein' is unknown; did you mean 'ageing'"):
         ss.friction.RateAndState(0.6, 0.01, 0.015, 1e-5, evolution="agein")
     with pytest.raises(ss.InputError, match=r"^SlipPlusRate: rate must be a law without a state"):

@@ -56,8 +56,9 @@ from stickslip.engine.waves.round_trip import close_round_trip
 
 ROOM = 8
 """Free rows that the history needs for another pass of the loop (1); a pass appends fewer."""
-LARGEST_STALL = 200
-"""A run ends after more than this many consecutive steps that take no time (1), because they would never stop."""
+LARGEST_STALL = 1000
+"""A run ends after more than this many consecutive steps that take no time (1), because they would never stop. A contact that never
+sticks may take hundreds as it comes to rest: its slip rate falls by tens of orders of magnitude in less time than is resolved."""
 LARGEST_STORM = 10_000
 """A run ends if slips too short to be resolved outnumber all others by more than this (1), because they would never stop."""
 

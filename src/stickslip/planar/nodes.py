@@ -134,7 +134,7 @@ def node_values(problem: Problem, along: Mapping[str, Floats], shape: tuple[int,
             for place in np.flatnonzero(~varying(problem)[full][0].allows(values))[:1]:
                 at([place])  # says what is wrong
         problems, found = at(_extremes(rows)), _of_many(problem, different)
-    if any(one.friction.trees() != problems[0].friction.trees() for one in problems):
+    if any(one.friction.trees() != problem.friction.trees() for one in problems):
         raise InputError(f"PlanarSlab: {', '.join(names)}: the formula of friction would differ from node to node")
 
     def spread(values: Any) -> Floats:

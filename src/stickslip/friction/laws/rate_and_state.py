@@ -12,11 +12,17 @@ from stickslip.foundation.conversion import Number
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Choice, declare, quantity
 from stickslip.friction.contract import Formula, StateVariable
-from stickslip.friction.formula.functions import arcsinh, exp, expm1, log, sqrt
+from stickslip.friction.formula.functions import arcsinh, exp, expm1, log, sqrt, tanh
 from stickslip.friction.law import FrictionLaw
 
 LARGEST_EXPONENT = 600.0
-"""Largest exponent (reference + b w) / a: the exponential, which overflows at 709, must be finite for every state w in reach."""
+"""Largest exponent (reference + b w) / a in an exponential, which overflows at 709; a law that may reach more has another form."""
+QUARTER = math.exp(-50.0)
+"""Fourth root (1) of the smallest v / (2 rate) that this other form resolves: 1e-93 m/s, which is rest on any scale of time."""
+LOWEST = 2800.0
+"""The exponent must exceed minus this (1) in this form."""
+FASTEST = 1e3
+"""A slip rate (m/s) that no contact exceeds."""
 FARTHEST_STATE = 60.0
 """Largest w = ln(rate theta / distance) allowed for: that of a contact that has healed for longer than the age of the Earth."""
 SLOWEST = 1e-24
@@ -29,18 +35,16 @@ class DirectEffect(FrictionLaw):
 
     sticks = False
     effects: ClassVar[tuple[str, ...]] = ("b",)
-    """Fields with the changes of friction by the states, which must not make an exponential overflow."""
+    """Fields with the changes of friction by the states."""
 
     reference: float = quantity("1", "friction coefficient of steady sliding at `rate`", above=0)
     a: float = quantity("1", "direct effect a: immediate increase of friction per factor e of slip rate", above=0)
 
-    @override
-    def check(self) -> None:
-        largest = self.reference + FARTHEST_STATE * sum(abs(getattr(self, name)) for name in self.effects)
-        if largest / self.a > LARGEST_EXPONENT:
-            known = " and ".join(", ".join(("reference", *self.effects)).rsplit(", ", 1))
-            least = largest / LARGEST_EXPONENT
-            raise InputError(f"{type(self).__name__}: a must be at least {least:.3g} with this {known}, got {self.a:g}")
+    @property
+    def overflows(self) -> bool:
+        """True if a is so small that an exponential could overflow in a state within reach."""
+        largest: float = self.reference + FARTHEST_STATE * sum(abs(getattr(self, name)) for name in self.effects)
+        return largest / self.a > LARGEST_EXPONENT
 
     @override
     def range(self) -> tuple[float, float]:
@@ -52,12 +56,34 @@ class DirectEffect(FrictionLaw):
         return self.a
 
 
+def _direct(law: Any, v: Any, x: Any) -> Any:
+    """Return a arcsinh(v / (2 rate) exp(x))."""
+    return law.a * arcsinh(v / (2.0 * law.rate) * exp(x))
+
+
+def _direct_of_small_a(law: Any, v: Any, x: Any) -> Any:
+    """Return a arcsinh(v / (2 rate) exp(x)), where exp(x) may overflow."""
+    return law.a * _arcsinh(v / (2.0 * law.rate), x)
+
+
+def _arcsinh(y: Any, x: Any) -> Any:
+    """Return arcsinh(y exp(x)) for x > -2800, in two terms without overflow.
+
+    With l = (exp(-x/4) + QUARTER)^4 it is arcsinh(y / l) + (x + ln l) tanh(y / QUARTER^4). Where exp(x) is not large, l is exp(-x),
+    and the second term is rounding. Where y exp(x) is large, the sum is x + ln(2 y). It differs from the function for y of about
+    QUARTER^4 and below, through which it passes smoothly to zero, and where y is below 1e-22 although its value is about 1.
+    """
+    root = exp(-0.25 * x) + QUARTER
+    return arcsinh(y / root**4) + (x + 4.0 * log(root)) * tanh(y / QUARTER**4)
+
+
 @dataclass(frozen=True)
 class RateAndState(DirectEffect):
     """mu(v, theta) = a arcsinh(v / (2 rate) exp((reference + b ln(rate theta / distance)) / a)), theta by `evolution`.
 
     With y = v theta / distance, d theta/dt is 1 - y for the ageing law, -y ln y for the slip law and 1 - (y/2)^2 for the PRZ law.
-    The contact never sticks: friction passes smoothly through v = 0. `a` must not be so small that the exponential could overflow.
+    The contact never sticks: friction passes smoothly through v = 0. For an `a` so small that the exponential could overflow,
+    friction is computed by the logarithm, and slip rates below e^-200 times `rate` are not resolved.
 
     Under a normal load S(t) that varies, d theta/dt gains -alpha theta S'/(b S), with alpha = `normal_stress_coupling`. A jump from
     S- to S+ multiplies theta by (S-/S+)^(alpha/b).
@@ -88,7 +114,6 @@ class RateAndState(DirectEffect):
 
     @override
     def check(self) -> None:
-        super().check()
         if self.normal_stress_coupling > 0.0 and self.b == 0.0:
             raise InputError("RateAndState: normal_stress_coupling needs b > 0: it acts through the state")
 
@@ -100,7 +125,7 @@ class RateAndState(DirectEffect):
     @property
     @override
     def pieces(self) -> tuple[Formula, ...]:
-        return (_friction,)
+        return (_friction_of_small_a if self.overflows else _friction,)
 
     @property
     @override
@@ -131,7 +156,11 @@ class RateAndState(DirectEffect):
 
 def _friction(law: Any, u: Any, v: Any, w: Any) -> Any:
     """Return mu at slip rate v (m/s) and state w = ln(rate theta / distance)."""
-    return law.a * arcsinh(v / (2.0 * law.rate) * exp((law.reference + law.b * w) / law.a))
+    return _direct(law, v, (law.reference + law.b * w) / law.a)
+
+
+def _friction_of_small_a(law: Any, u: Any, v: Any, w: Any) -> Any:
+    return _direct_of_small_a(law, v, (law.reference + law.b * w) / law.a)
 
 
 def _ageing(law: Any, u: Any, v: Any, w: Any, *_: Any) -> Any:
@@ -193,7 +222,7 @@ class TwoStateRateAndState(DirectEffect):
     @property
     @override
     def pieces(self) -> tuple[Formula, ...]:
-        return (_two_state_friction,)
+        return (_two_state_friction_of_small_a if self.overflows else _two_state_friction,)
 
     @property
     @override
@@ -228,7 +257,11 @@ class TwoStateRateAndState(DirectEffect):
 
 
 def _two_state_friction(law: Any, u: Any, v: Any, w: Any, w2: Any) -> Any:
-    return law.a * arcsinh(v / (2.0 * law.rate) * exp((law.reference + law.b * w + law.second_b * w2) / law.a))
+    return _direct(law, v, (law.reference + law.b * w + law.second_b * w2) / law.a)
+
+
+def _two_state_friction_of_small_a(law: Any, u: Any, v: Any, w: Any, w2: Any) -> Any:
+    return _direct_of_small_a(law, v, (law.reference + law.b * w + law.second_b * w2) / law.a)
 
 
 def _second_ageing(law: Any, u: Any, v: Any, w: Any, w2: Any) -> Any:
@@ -274,40 +307,75 @@ class FlashHeating(DirectEffect):
     weakening_rate: Number = quantity("m/s", "slip rate above which asperities melt", above=0)
     rate: Number = quantity("m/s", "reference slip rate", above=0, default=1e-6)
 
+    @override
+    def check(self) -> None:
+        lowest = self.reference - (self.b - self.a) * math.log(FASTEST / self.rate)
+        if self.overflows and lowest < -LOWEST * self.a:
+            least = -lowest / LOWEST
+            raise InputError(f"FlashHeating: a must be at least {least:.3g} with this reference, b and rate, got {self.a:g}")
+
     @property
     @override
     def pieces(self) -> tuple[Formula, ...]:
-        return (_flash_friction,)
+        return (_flash_friction_of_small_a if self.overflows else _flash_friction,)
 
     @property
     @override
     def state_rate(self) -> Formula:
-        return _flash_renewal
+        return _flash_renewal_of_small_a if self.overflows else _flash_renewal
+
+    def _steady(self, v: ArrayLike) -> tuple[Any, Any]:
+        return (_flash_steady_of_small_a if self.overflows else _flash_steady)(self, np.asarray(v, float))
 
     def steady_coefficient(self, v: ArrayLike) -> NDArray[np.float64]:
         """Return the friction coefficient mu_ss (no unit) of steady sliding at slip rates v > 0 (m/s)."""
-        return np.asarray(self.a * _flash_steady(self, np.asarray(v, float))[0])
+        return np.asarray(self.a * self._steady(v)[0])
 
     @override
     def steady_state(self, v: ArrayLike) -> NDArray[np.float64]:
         """Return the state psi (no unit) of steady sliding at slip rates v > 0 (m/s)."""
-        x, logarithm = _flash_steady(self, np.asarray(v, float))
+        x, logarithm = self._steady(v)
         return np.asarray(self.a * (x + np.log(-np.expm1(-2.0 * x)) - logarithm))
 
 
 def _flash_friction(law: Any, u: Any, v: Any, psi: Any) -> Any:
-    return law.a * arcsinh(v / (2.0 * law.rate) * exp(psi / law.a))
+    return _direct(law, v, psi / law.a)
+
+
+def _flash_friction_of_small_a(law: Any, u: Any, v: Any, psi: Any) -> Any:
+    return _direct_of_small_a(law, v, psi / law.a)
 
 
 def _flash_renewal(law: Any, u: Any, v: Any, psi: Any) -> Any:
     """Return dpsi/dt (1/s); the logarithm of the slip rate is finite at rest, where it is multiplied by zero."""
-    x, logarithm = _flash_steady(law, v)
+    return _towards(law, v, psi, *_flash_steady(law, v))
+
+
+def _flash_renewal_of_small_a(law: Any, u: Any, v: Any, psi: Any) -> Any:
+    return _towards(law, v, psi, *_flash_steady_of_small_a(law, v))
+
+
+def _towards(law: Any, v: Any, psi: Any, x: Any, logarithm: Any) -> Any:
     return -(v / law.distance) * (psi - law.a * (x + log(-expm1(-2.0 * x)) - logarithm))
 
 
 def _flash_steady(law: Any, v: Any) -> tuple[Any, Any]:
     """Return mu_ss / a (no unit), which is above zero, and ln(v / rate)."""
     logarithm = _logarithm(law, v)
-    low = arcsinh(0.5 * exp((law.reference - (law.b - law.a) * logarithm) / law.a))
+    return _melted(law, v, arcsinh(0.5 * exp(_low(law, logarithm)))), logarithm
+
+
+def _flash_steady_of_small_a(law: Any, v: Any) -> tuple[Any, Any]:
+    logarithm = _logarithm(law, v)
+    return _melted(law, v, _arcsinh(0.5, _low(law, logarithm))), logarithm
+
+
+def _low(law: Any, logarithm: Any) -> Any:
+    """Return mu_low / a from ln(v / rate)."""
+    return (law.reference - (law.b - law.a) * logarithm) / law.a
+
+
+def _melted(law: Any, v: Any, low: Any) -> Any:
+    """Return mu_ss / a from its value `low` far below the weakening rate."""
     share = 1.0 / sqrt(sqrt(sqrt(1.0 + (v / law.weakening_rate) ** 8)))
-    return share * low + (1.0 - share) * law.weakened / law.a, logarithm
+    return share * low + (1.0 - share) * law.weakened / law.a
