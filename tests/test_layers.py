@@ -111,7 +111,7 @@ ROOMS = {
         ("benchmarks",),
     ),
     "inference": (("record",), ("fit",), ("certainty",), ("fitted_record",), ("inference",), ("infer",)),
-    "trajectory": (("phase_index", "status", "turning_points"), ("history",), ("slip_events", "tables")),
+    "trajectory": (("machine_motion", "phase_index", "status", "turning_points"), ("history",), ("slip_events", "tables")),
     "contact": (
         ("roots", "sliding", "wave_modes", "wave_proof"),
         ("disturbance", "slopes", "steady_proof"),

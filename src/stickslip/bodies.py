@@ -80,6 +80,21 @@ class BodyOnCharacteristics(Body, Protocol):
         ...
 
     @property
+    def has_machine(self) -> bool:
+        """True if the driver has a motion of its own: a mass, or a gain that integrates."""
+        ...
+
+    @property
+    def driver_inertia(self) -> float:
+        """The mass of such a driver (kg/m^2)."""
+        ...
+
+    @property
+    def driver_integral_gain(self) -> float:
+        """The force of such a driver per way that it lags behind its pull rate (Pa/m)."""
+        ...
+
+    @property
     def reflection(self) -> float:
         """The share of an outgoing wave that comes back from the driver, between -1 and 1; 0 without waves."""
         ...
@@ -88,6 +103,10 @@ class BodyOnCharacteristics(Body, Protocol):
     def round_trip_time(self) -> float:
         """The time (s) after which slip acts on the contact again: 2 h/c of a slab, the period of a block."""
         ...
+
+
+MACHINE = "a driver with a mass or an integral gain"
+"""Words for a driver that is a machine (`BodyOnCharacteristics.has_machine`)."""
 
 
 def has_dashpot(body: BodyOnCharacteristics) -> bool:
@@ -121,6 +140,9 @@ class SpringBlock(Declared):
     driver_impedance: ClassVar[float] = math.inf
     """The end of the spring is displaced as prescribed, as the face of a slab is by a rigid driver."""
     is_driven_rigidly: ClassVar[bool] = True
+    has_machine: ClassVar[bool] = False
+    driver_inertia: ClassVar[float] = 0.0
+    driver_integral_gain: ClassVar[float] = 0.0
     reflection: ClassVar[float] = 0.0
 
     mass: Number = quantity("kg", "mass m", above=0)
@@ -163,8 +185,10 @@ class SpringBlock(Declared):
 class ElasticSlab(Declared):
     """A slab of given thickness in antiplane or in-plane shear: rho u_tt = G u_xx, friction at x = 0, a driver at x = h.
 
-    A driver of finite impedance is a half-space. With a contact mass the slip rate has no jumps (shocks). Raises InputError if a
-    number is out of range, or `p_wave_speed` does not exceed sqrt(4/3) `wave_speed`.
+    A driver of finite impedance is a half-space. With a mass or an integral gain it is a machine, and the impedance is its
+    proportional gain: M dVd/dt = Zd (V - Vd) + ki phi + far stress - stress, with dphi/dt = V - Vd. With a contact mass the slip
+    rate has no jumps (shocks). Raises InputError if a number is out of range, or `p_wave_speed` does not exceed sqrt(4/3)
+    `wave_speed`.
     """
 
     kind: ClassVar[str] = "elastic-slab"
@@ -184,6 +208,12 @@ class ElasticSlab(Declared):
         word="rigid",
         default=math.inf,
     )
+    driver_inertia: Number = quantity(
+        "kg/m^2", "mass of the driver, per unit area: inf for a rigid driver", at_least=0, infinite=True, word="rigid", default=0.0
+    )
+    driver_integral_gain: Number = quantity(
+        "Pa/m", "stress with which the driver makes up for each metre that it lags behind its pull rate", at_least=0, default=0.0
+    )
     contact_mass: Number = quantity("kg/m^2", "mass of the sliding face, per unit area", at_least=0, default=0.0)
     p_wave_speed: OptionalNumber = quantity(
         "m/s", "compressional wave speed: only for the (constant) normal strain", above=0, default=None
@@ -191,10 +221,24 @@ class ElasticSlab(Declared):
 
     def __post_init__(self) -> None:
         check_fields(self)
+        self._check_driver()
         if self.p_wave_speed is not None and self.p_wave_speed <= self.wave_speed * math.sqrt(4 / 3):
             limit = self.wave_speed * math.sqrt(4 / 3)
             raise InputError(
                 f"ElasticSlab: p_wave_speed must exceed sqrt(4/3) wave_speed = {limit:g} m/s, got {self.p_wave_speed:g}"
+            )
+
+    def _check_driver(self) -> None:
+        rigid, gain = np.isinf(self.driver_impedance), np.greater(self.driver_integral_gain, 0.0)
+        heavy = np.greater(self.driver_inertia, 0.0) & ~np.isinf(self.driver_inertia)
+        for name, given in (("driver_inertia", heavy), ("driver_integral_gain", gain)):
+            if np.any(given & rigid):
+                why = "a rigid driver holds its rate whatever its mass and gains"
+                raise InputError(f"ElasticSlab: {name} needs a finite driver_impedance, the proportional gain: {why}")
+        if np.any(gain & np.equal(self.driver_impedance, 0.0)):
+            why = "nothing damps the driver, and its swings grow where friction falls with the slip rate"
+            raise InputError(
+                f"ElasticSlab: driver_integral_gain needs a driver_impedance, the proportional gain, above 0: without it {why}"
             )
 
     @property
@@ -241,16 +285,28 @@ class ElasticSlab(Declared):
     def reflection(self) -> float:
         """The reflection coefficient of the driver, r = (Z - Zd) / (Z + Zd).
 
-        It is -1 for a rigid driver, 0 for a matched half-space and +1 for a dead load.
+        It is -1 for a rigid driver, 0 for a matched half-space and +1 for a dead load. A driver with a mass or an integral gain
+        sends back a wave that depends on how long the one that it meets lasts: r holds where neither is felt.
         """
-        if np.all(np.isinf(self.driver_impedance)):
+        if np.all(np.isinf(self.driver_impedance) | np.isinf(self.driver_inertia)):
             return RIGID
         return (self.impedance - self.driver_impedance) / (self.impedance + self.driver_impedance)
+
+    @property
+    def front_reflection(self) -> float:
+        """The share of a sharp wave front that the driver sends back: a mass has no time to give way."""
+        return RIGID if np.any(np.greater(self.driver_inertia, 0.0)) else self.reflection
 
     @cached_property
     def is_driven_rigidly(self) -> bool:
         """True if the driver reflects the whole wave with its sign reversed, r = -1."""
         return bool(np.all(self.reflection == RIGID))
+
+    @cached_property
+    def has_machine(self) -> bool:
+        """True if the driver has a motion of its own: a mass or an integral gain."""
+        own = np.greater(self.driver_inertia, 0.0) | np.greater(self.driver_integral_gain, 0.0)
+        return bool(np.any(own)) and not self.is_driven_rigidly
 
     @property
     def stiffness(self) -> float:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.batch.kernels.reduction import COLUMNS
-from stickslip.bodies import ElasticSlab
+from stickslip.bodies import MACHINE, ElasticSlab
 from stickslip.contact.rules.selection import OF_LEVELS
 from stickslip.engine.compile.uncompiled import UNCOMPILED
 from stickslip.engine.state.layout import Floats
@@ -174,10 +174,13 @@ def why_not(scenario: Scenario, parameters: Sequence[str], quantities: Sequence[
 
 
 def _of_run(scenario: Scenario, parameters: Sequence[str]) -> Iterator[str]:
-    """Yield a reason if the run has a limit of events, a varying load, or leaps over creep from its start."""
+    """Yield a reason if the run has a limit of events, a machine as driver, a varying load, or leaps over creep from its start."""
     if scenario.max_events is not None:
         yield "[run] events: a batch runs for a time, not until a number of events"
-    if scenario.problem.varies:
+    machine = ("body.driver_inertia", "body.driver_integral_gain")
+    if scenario.problem.body.has_machine or any(name in parameters for name in machine):
+        yield f"[body] {MACHINE} is followed one run at a time"
+    elif scenario.problem.varies:
         yield "[loading] a batch needs a loading that does not vary in time"
     if scenario.problem.one_way:
         yield "[loading] one_way: a batch slips both ways"

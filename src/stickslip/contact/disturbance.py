@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 from stickslip.bodies import BodyOnCharacteristics
 from stickslip.contact.wave_modes import MOST_STEPS, Growth, Polynomial, WaveModes, first_of
+from stickslip.foundation.constants import RIGID
 
 CANCELLED = 2e-15
 """A difference that is smaller than this share of its terms is their rounding, and counts as 0."""
@@ -60,8 +61,19 @@ class Disturbed:
     def _waves(self) -> WaveModes:
         body, (above, below) = self.body, self.response
         own = poly.polymul([body.damping - body.impedance, body.inertia], below)
-        a = poly.polytrim(poly.polyadd(own, self.normal * above))
-        return WaveModes(a, body.impedance * below, float(body.reflection), body.round_trip_time)
+        a, z = poly.polytrim(poly.polyadd(own, self.normal * above)), body.impedance * below
+        if not body.has_machine:
+            return WaveModes(a, z, float(body.reflection), body.round_trip_time)
+        # The machine resists with x = M s + kp + ki/s, so that r = -(x - Z) / (x + Z): both sides times x + Z.
+        resists, one = np.array([body.driver_impedance, body.driver_inertia]), np.ones(1)
+        if body.driver_integral_gain > 0.0:
+            resists, one = np.append(body.driver_integral_gain, resists), np.array([0.0, 1.0])
+
+        def mixed(f: Polynomial, g: Polynomial) -> Polynomial:
+            found: Polynomial = poly.polyadd(poly.polymul(f, resists), poly.polymul(body.impedance * g, one))
+            return poly.polytrim(found)
+
+        return WaveModes(mixed(a, z), mixed(z, a), RIGID, body.round_trip_time)
 
     def _of_block(self) -> Polynomial:
         """Return the polynomial in s (lowest order first) whose roots are those of a block."""

@@ -75,8 +75,13 @@ class _Steady:
 
     @cached_property
     def is_soft(self) -> bool:
-        """True if the driver gives way."""
-        return not self.problem.body.is_driven_rigidly
+        """True if the driver gives way in the long run: an integral gain does not."""
+        return not self.problem.body.is_driven_rigidly and self.problem.body.driver_integral_gain == 0.0
+
+    @property
+    def varies(self) -> bool:
+        """True if what pulls or presses the contact varies in time."""
+        return self.problem.loading_varies or self.problem.normal_varies
 
     @cached_property
     def far_stress(self) -> float | None:
@@ -125,7 +130,7 @@ class _Steady:
             can_rest=rests and not why,
             proven=proven,
             sticks=problem.friction.sticks,
-            varies=problem.varies,
+            varies=self.varies,
             is_damped=damped,
             traction_at_pull_rate=self._at_pull_rate() if slidings else math.nan,
             why_none=why,
@@ -141,7 +146,8 @@ class _Steady:
         of it. A contact with mass may overshoot: then no rate may be unstable.
         """
         problem = self.problem
-        if problem.varies or (problem.friction.states and not self._starts_steadily) or (problem.body.inertia and changes):
+        swings = problem.body.inertia or problem.body.has_machine
+        if self.varies or (problem.friction.states and not self._starts_steadily) or (swings and changes):
             return False
         if problem.friction.sticks and not math.isclose(problem.strength, abs(self.traction(CRAWL)), rel_tol=SAME):
             return False
@@ -150,7 +156,7 @@ class _Steady:
     def why_none(self) -> str:
         """Return why nothing slides steadily, "" if something may."""
         problem, law = self.problem, self.problem.friction
-        first = " at first" if problem.varies else ""
+        first = " at first" if self.varies else ""
         if problem.far_stress_rate:
             return "the far stress keeps changing"
         if self.drive == 0.0:
@@ -283,7 +289,8 @@ class _Steady:
     def _changes_under_states(self) -> tuple[tuple[StabilityChange, ...], bool]:
         problem = self.problem
         ends = (float(RATES[0]), float(RATES[-1]))
-        found = proven_changes(problem.body, problem.normal, problem.friction, self.slip, ends) if self.proves else None
+        proves = self.proves and not problem.body.has_machine
+        found = proven_changes(problem.body, problem.normal, problem.friction, self.slip, ends) if proves else None
         if found is None:
             return tuple(self._change(rate, above, None) for rate, above in self._searched()), False
         return tuple(self._change(self._edge(*one), one.stable_above, (one.low, one.high)) for one in found), True
@@ -294,12 +301,26 @@ class _Steady:
         body = self.problem.body
         if not body.has_waves:
             return body.damping
+        if body.driver_inertia > 0.0 and not body.has_inertia:
+            return body.damping - body.impedance  # a mass sends sharp fronts back whole
+        if body.has_machine:
+            return _largest(lambda fall: self._withstands(fall), self._surely_falls())
         if not self.is_soft:
             return body.damping - body.impedance
         driver, own = body.driver_impedance, body.impedance
         if not body.has_inertia:
             return body.damping - own + min(driver, own * own / driver if driver else 0.0)
         return _largest(lambda fall: self._withstands(fall), driver + body.damping - own)
+
+    def _surely_falls(self) -> float:
+        """Return a fall of friction with the slip rate (Pa s/m) that a slab under a machine does not withstand.
+
+        A disturbance exp(t/R) grows under it: friction gives what body, waves and machine take at s = 1/R.
+        """
+        body, s = self.problem.body, 1.0 / self.problem.round_trip_time
+        machine = body.driver_inertia * s + body.driver_impedance + body.driver_integral_gain / s
+        echo = math.exp(-1.0) * (body.impedance - machine) / (body.impedance + machine)
+        return body.impedance * (1.0 - echo) / (1.0 + echo) + body.inertia * s + body.damping - body.impedance
 
     def _withstands(self, fall: float) -> bool:
         """Return True if sliding is stable where friction falls with the slip rate by `fall` (Pa s/m)."""

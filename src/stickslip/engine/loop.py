@@ -127,6 +127,8 @@ def missing_part(run: Run) -> int:
     """Return a part that the run needs now, as its problem or its checkpoint says, and that has not been lent; or Part.NONE."""
     if run.loading_history == 0 and run.counts.varies == 1:
         return EnginePart.LOADING_HISTORY
+    if run.driver == 0 and run.counts.driven == 1:
+        return EnginePart.DRIVER
     if run.moving_folds == 0 and run.counts.folds_move == 1:
         return EnginePart.MOVING_FOLDS
     return EnginePart.ECHO_QUEUE if run.echo_queue == 0 and run.counts.sparse == 1 else EnginePart.NONE

@@ -15,6 +15,7 @@ from stickslip.engine.memory.addresses import PART
 from stickslip.engine.radau.step import collocate
 from stickslip.engine.state.layout import Counts, EnginePart, Integers, Params, Task
 from stickslip.engine.state.workspace import Run, borrow
+from stickslip.engine.waves.driver import drive
 from stickslip.engine.waves.echo_queue import build_queue, end_trip, next_echo
 from stickslip.engine.waves.varying_forcing import enter_segment, take_loading, trips_withstood
 from stickslip.foundation.constants import RIGID
@@ -55,6 +56,12 @@ def moving_folds(memory: int, task: int, unit: float) -> float:
     return way_to_fold(borrow(memory), unit)
 
 
+@kernel
+def driver(memory: int, task: int, number: float) -> float:
+    """Add what a machine sends to the piece of load; return the share of the piece that is kept."""
+    return drive(borrow(memory))
+
+
 @cache
 def part_at(part: Any) -> int:
     """Return the address of a part. Compiles it, or takes it from the cache on disk."""
@@ -69,6 +76,7 @@ PARTS = {
     EnginePart.LOADING_HISTORY: loading_history,
     EnginePart.ECHO_QUEUE: echo_queue,
     EnginePart.MOVING_FOLDS: moving_folds,
+    EnginePart.DRIVER: driver,
 }
 """The function of each part; its address is the field of the same name in `workspace.Run`."""
 

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from stickslip.bodies import BodyOnCharacteristics
 from stickslip.engine.waves.varying_forcing import dirichlet
 from stickslip.foundation.arrays import Floats
 from stickslip.loading import SILENT, LoadingHistory, Segment, Tone
@@ -154,11 +155,53 @@ def steady_inflow(problem: Problem) -> tuple[float, float]:
         return body.stiffness * problem.first_pull_rate, 0.0
     if body.is_driven_rigidly:
         return 2.0 * body.impedance * problem.first_pull_rate, 0.0
-    gain, far = 1.0 + body.reflection, problem.far_stress
+    gain, far = gain_of(body), problem.far_stress
     assert not isinstance(far, LoadingHistory)
     excess = far_excess(problem) if far is None else far - problem.strength
     growth, delay = problem.far_stress_rate, 0.5 * body.round_trip_time
     return gain * body.driver_impedance * problem.first_pull_rate + gain * (excess - growth * delay), gain * growth
+
+
+def gain_of(body: BodyOnCharacteristics) -> Any:
+    """Return the share (1) of the stress of a driver that it sends to the contact; 1 for a machine, which the stress moves."""
+    return 1.0 if body.has_machine else 1.0 + body.reflection
+
+
+def machine_at_first(problem: Problem) -> tuple[float, float]:
+    """Return the rate (m/s) of a machine when the first wave of the run leaves it, and the force of its integral gain (Pa).
+
+    It starts at the pull rate, in balance with the stress in the slab: that is the default of its far stress, and an integral gain
+    makes up for any other one. Without either it moves off, and without mass it does so at once.
+    """
+    body = problem.body
+    far, push = problem.far_stress, 0.0
+    if body.driver_integral_gain > 0.0 and far is not None:
+        first = far.first if isinstance(far, LoadingHistory) else far
+        push = far_excess(problem) - (first - problem.strength)
+    if body.driver_inertia > 0.0:
+        return problem.first_pull_rate, push
+    force = float(inflow_of(problem).at(np.array(0.5 * body.round_trip_time)))
+    left = body.impedance * problem.initial_shear - wave_before(problem)
+    return (force + push + left) / (body.impedance + body.driver_impedance), push
+
+
+def settled_rate(problem: Problem, time: Floats) -> Floats:
+    """Return the rate (m/s) that a machine tends to while the contact rests, under the loading that has arrived at times (s).
+
+    See `engine.waves.driver_at_rest`.
+    """
+    body, pull, driven = problem.body, pull_of(problem), inflow_of(problem)
+    gain = body.driver_integral_gain
+    grows = driven.slope[driven.segment(time)] - body.driver_impedance * pull.slope[pull.segment(time)]
+    stiffness = 2.0 * body.impedance / problem.round_trip_time
+    return np.asarray((gain * pull.value[pull.segment(time)] + grows) / (gain + stiffness))
+
+
+def pull_of(problem: Problem) -> Inflow:
+    """Return the pull rate (m/s) of a machine, as it arrives at the contact."""
+    if isinstance(problem.pull_rate, LoadingHistory):
+        return _inflow(*_scaled(problem.pull_rate, 1.0), 0.5 * problem.round_trip_time, problem)
+    return _inflow([Segment(0.0, problem.pull_rate, 0.0)], SILENT, 0.0, problem)
 
 
 @lru_cache(maxsize=64)
@@ -199,7 +242,7 @@ def _lossy(problem: Problem) -> tuple[list[Segment], Tone]:
     One of the two varies.
     """
     body, far = problem.body, problem.far_stress
-    gain = 1.0 + body.reflection
+    gain = gain_of(body)
     if isinstance(far, LoadingHistory):
         segments, tone = _scaled(far, gain)
         steady = gain * (body.driver_impedance * problem.first_pull_rate - problem.strength)

@@ -18,11 +18,13 @@ from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, FirstLoad, Integers, LawPiece, LoadingSegment, Params, Setup, State
 from stickslip.engine.state.workspace import counts_in, lend_problem, memory_of, params_in
 from stickslip.engine_input.branch_table import branch_of, is_algebraic, table_of_branches
-from stickslip.engine_input.forcing import breaks_of, inflow_of, pressing_of, steady_inflow, wave_before
+from stickslip.engine_input.forcing import breaks_of, inflow_of, machine_at_first, pressing_of, pull_of, steady_inflow, wave_before
 from stickslip.engine_input.limits import set_length, set_lumping
 from stickslip.engine_input.shaking import force_steps, shaking_of, tone_of
+from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief
+from stickslip.loading import LoadingHistory
 from stickslip.problem.parameters import normal_field
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SelectionRule
@@ -59,6 +61,7 @@ def _prepared(problem: Problem, rule: SelectionRule, rtol: float, shortest: floa
 @lru_cache(maxsize=32)
 def _of_problem(problem: Problem, _: SelectionRule) -> tuple[Setup, State, Counts]:  # keyed by the rule: its name may be reused
     check_unique(problem)
+    check_machine(problem)
     params = parameters_of(problem)
     branches, params.stick_to = table_of_branches(problem, 0.0)
     first = first_load_varying(problem) if problem.varies else first_load(problem)
@@ -81,6 +84,20 @@ def check_unique(problem: Problem) -> None:
         at = f"under {brief(most.normal, problem.load_unit)}"
         why = f"{at} several slip rates solve the contact equation, and the folds between them would move"
         raise InputError(f"normal_load: {why}: give the contact a mass (contact_mass), or a constant normal load")
+
+
+def check_machine(problem: Problem) -> None:
+    """Raise InputError for a driver that moves so quickly by itself that a round trip would need more than MOST_PARTS parts."""
+    body = problem.body
+    if not body.has_machine:
+        return
+    heavy, resists = body.driver_inertia > 0.0, body.driver_impedance + body.impedance
+    changes = body.driver_integral_gain / resists
+    if heavy:
+        changes = resists / body.driver_inertia + math.sqrt(body.driver_integral_gain / body.driver_inertia)
+    if changes * body.round_trip_time > MOST_PARTS:
+        cure = "leave driver_inertia out" if heavy else "lower driver_integral_gain, or make the driver rigid"
+        raise InputError(f"ElasticSlab: the driver answers within {1.0 / changes:.3g} s, too short to be followed: {cure}")
 
 
 def parameters_of(problem: Problem) -> Params:
@@ -115,6 +132,12 @@ def parameters_of(problem: Problem) -> Params:
     else:
         params.inflow, params.inflow_rate = steady_inflow(problem)
         params.ramp = params.inflow if body.is_driven_rigidly else problem.far_stress_rate * body.round_trip_time
+    if body.has_machine:
+        params.reflection = RIGID
+        params.driver_inertia, params.driver_impedance = body.driver_inertia, body.driver_impedance
+        params.driver_gain = body.driver_integral_gain
+        pulled = isinstance(problem.pull_rate, LoadingHistory) and body.driver_impedance > 0.0
+        params.pull_share = 1.0 / body.driver_impedance if pulled else 0.0
     if problem.normal_varies:
         params.pressing_tone, params.pressing_frequency, params.pressing_phase = pressing_of(problem).tone
         params.coupling = problem.friction.normal_coupling
@@ -162,13 +185,13 @@ def first_load_varying(problem: Problem) -> at.Floats:
     body, excess = problem.body, problem.excess
     if not body.has_waves:
         return _parts(problem, _pieces([0.0, problem.round_trip_time], [excess], [0.0]))
-    r, half = body.reflection, 0.5 * body.round_trip_time
+    r, half = RIGID if body.has_machine else body.reflection, 0.5 * body.round_trip_time
     slope = body.impedance * problem.initial_shear / half
-    before, back, comes = (
-        excess + slope * half,
-        r * (slope * half - wave_before(problem)),
-        float(inflow_of(problem).at(np.array(half))),
-    )
+    before, back = excess + slope * half, r * (slope * half - wave_before(problem))
+    if body.has_machine:
+        comes = 2.0 * body.impedance * machine_at_first(problem)[0]
+    else:
+        comes = float(inflow_of(problem).at(np.array(half)))
     jump = abs(back + comes - before) > 1e-12 * max(abs(problem.strength), abs(before))
     return _parts(problem, _pieces([0.0, half, 2.0 * half], [excess, back], [slope, -r * slope], [0.0, jump]))
 
@@ -213,6 +236,8 @@ def loading_of(problem: Problem) -> at.Floats:
     segments.trip, segments.offset = zip(*breaks_of(start, problem.round_trip_time, problem.ground is not None), strict=True)
     segments.tone, segments.tone_phase = inflow.tone.amplitude, inflow.tone.phase
     straight: list[tuple[Any, str, str]] = [(pressing, "pressing", "pressing_rate")]
+    if problem.body.has_machine:
+        straight.append((pull_of(problem), "pull", "pull_slope"))
     if shaken is None:
         straight.append((inflow, "value", "slope"))
     else:
@@ -301,7 +326,9 @@ def start_of(problem: Problem) -> tuple[State, Counts]:
     state, count = State(np.zeros(State.total)), Counts(np.zeros(Counts.total, np.int64))
     state.last_step = math.inf
     count.piece = int(problem.friction.piece_at(problem.law_slip))
-    count.varies = problem.varies
+    count.varies, count.driven = problem.varies, problem.body.has_machine
+    if count.driven:
+        state.driver_rate, state.driver_push = machine_at_first(problem)
     count.is_block = not problem.body.has_waves
     count.has_inertia = problem.body.has_inertia
     count.is_algebraic = is_algebraic(problem)

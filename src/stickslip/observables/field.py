@@ -117,7 +117,7 @@ class _InsideOfSlab:
         of_start = (until - since) * (waves.excess + 0.5 * waves.slope * (since + until))
         low, high = (np.maximum(time, first + waves.half) - waves.round for time in (self.time, self.time + away))
         inflow = waves.inflow.total(low + waves.round - first, high + waves.round - first)
-        return np.asarray(of_start + waves.body.reflection * self._left(low, high) + inflow)
+        return np.asarray(of_start + waves.share * self._left(low, high) + inflow)
 
     def _left(self, low: Floats, high: Floats) -> Floats:
         """Return the integral between two times of the wave that leaves the contact plus the reference, Pa s."""

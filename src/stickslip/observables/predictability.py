@@ -102,7 +102,7 @@ def predictability(run: PredictedRun) -> Predictability:
         raise InputError(f"predictability: needs a Solution, got {shown(run)}")
     history, problem, body, store = run.history, run.history.problem, run.history.problem.body, run.history.store
     if not is_followed(problem):
-        raise InputError("predictability: needs a slab without contact mass under a law of slip rate only")
+        raise InputError("predictability: needs a slab without masses or an integral gain, under a law of slip rate only")
     waves = 2.0 * body.impedance * float(np.abs(store.rate[:, 0]).max())
     # the load is stored as a difference from the strength, so only this difference is rounded
     rounding = float(np.finfo(float).eps * np.abs(store.load[:, 0]).max())
@@ -125,4 +125,4 @@ def attributes_of(prediction: Predictability | None) -> dict[str, str | float]:
 
 def is_followed(problem: Problem) -> bool:
     """Return True if the growth of a disturbance is known for this problem."""
-    return is_algebraic(problem) and not problem.folds_move
+    return is_algebraic(problem) and not (problem.folds_move or problem.body.has_machine)

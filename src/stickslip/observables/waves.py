@@ -17,8 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.bodies import ElasticSlab
-from stickslip.engine_input.forcing import inflow_of, wave_before
+from stickslip.engine_input.forcing import Inflow, inflow_of, wave_before
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import InputError
 from stickslip.observables.quadrature import NODES, WEIGHTS, over, places_in
 from stickslip.trajectory.history import START, Epoch, History, Positions
@@ -50,6 +51,28 @@ class Sampled(NamedTuple):
 NOWHERE = Sampled(np.empty(0), np.empty(0), np.empty(0))
 
 
+class FromMachine:
+    """What a driver that is a machine adds to the echo, 2 Z Vd, as it arrives at the contact (Pa): in the form of an `Inflow`."""
+
+    def __init__(self, history: History) -> None:
+        problem = history.problem
+        self.motion, self.doubled, self.delay = history.machine, 2.0 * problem.body.impedance, 0.5 * problem.round_trip_time
+        self.breaks = inflow_of(problem).breaks
+
+    def at(self, time: Floats) -> Floats:
+        """Return it at times (s since the start of the run)."""
+        return np.asarray(self.doubled * self.motion.at(time - self.delay))
+
+    def total(self, low: Floats, high: Floats) -> Floats:
+        """Return its integral between times (s)."""
+        return np.asarray(self.doubled * self.motion.way(low - self.delay, high - self.delay))
+
+    def edges(self, low: float, high: float) -> Floats:
+        """Return the times (s) between two others when parts of its motion arrive."""
+        start = self.motion.start + self.delay
+        return np.asarray(start[(start > low) & (start < high)])
+
+
 class Waves:
     """Integrals over the waves in a slab; energies are in J/m^2."""
 
@@ -59,7 +82,8 @@ class Waves:
         self.round, self.half = body.two_way_time, 0.5 * body.two_way_time
         self.slope = body.impedance * history.problem.initial_shear / self.half  # G (V - v0) / h
         self.before: float = wave_before(history.problem)
-        self.inflow = inflow_of(history.problem)
+        self.inflow: Inflow | FromMachine = FromMachine(history) if body.has_machine else inflow_of(history.problem)
+        self.share = RIGID if body.has_machine else body.reflection
         self._seen: tuple[Epoch, Sampled, Sampled] | None = None  # the waves at the last moment that was asked for
 
     def leaving(self, at: Positions) -> Floats:
@@ -76,7 +100,7 @@ class Waves:
 
         `left` is the time when it left (s since the start of the run).
         """
-        return np.asarray(self.body.reflection * leaving + self.inflow.at(left + self.round))
+        return np.asarray(self.share * leaving + self.inflow.at(left + self.round))
 
     def first_load(self, time: Floats) -> Floats:
         """Return the load minus the reference (Pa) that the initial state brings, at times (s) up to h/c after the start."""
@@ -99,7 +123,8 @@ class Waves:
         both = down.integral(lambda load, _: load * (doubled + load)) + up.integral(
             lambda leaving, _: leaving * (leaving - doubled)
         )
-        return both / (4.0 * self.body.impedance)
+        machine = self.history.machine.kinetic(self.begun(now)) if self.body.has_machine else 0.0
+        return both / (4.0 * self.body.impedance) + machine
 
     def trapped(self, now: Epoch) -> float:
         """Return the energy of the waves inside the slab: the stored energy beyond the energy of the same mean stress at rest.
@@ -121,11 +146,11 @@ class Waves:
         It is (A + B) / (2 Z), with A the wave that the driver sends and B the one that it receives.
         """
         incoming = self.inflow.at(left + self.round)
-        return np.asarray(((1.0 + self.body.reflection) * leaving + incoming) / (2.0 * self.body.impedance))
+        return np.asarray(((1.0 + self.share) * leaving + incoming) / (2.0 * self.body.impedance))
 
     def power(self, leaving: Floats, left: Floats) -> Floats:
         """Return sigma v at the driver (W/m^2) h/c after a wave left the contact: (A^2 - B^2) / (4 Z), without cancellation."""
-        drop = 2.0 * self.reference + (self.body.reflection - 1.0) * leaving + self.inflow.at(left + self.round)
+        drop = 2.0 * self.reference + (self.share - 1.0) * leaving + self.inflow.at(left + self.round)
         return 0.5 * self.driver_rate(leaving, left) * drop
 
     def power_growth(self, leaving: Floats, left: Floats) -> Floats:
@@ -133,7 +158,9 @@ class Waves:
         return self.history.ramp * self.driver_rate(leaving, left)
 
     def work(self, now: Epoch) -> float:
-        """Return the work of the driver since the start of the run."""
+        """Return the work of the driver since the start of the run; of a machine, the work of its gains and of the far stress."""
+        if self.body.has_machine:
+            return self.history.machine.work(0.0, self.begun(now))
         end = Epoch(now.trip, now.offset - self.half) if now.offset >= self.half else Epoch(now.trip - 1, now.offset + self.half)
         if end.trip < 0:
             return self._before(-self.half, end.offset - self.round).integral(self.power)
@@ -179,6 +206,8 @@ class Waves:
 
     def work_between(self, first: Epoch, last: Epoch) -> float:
         """Return the work of the driver from one moment to a later one, not long after; nothing outside this interval enters."""
+        if self.body.has_machine:
+            return self.history.machine.work(self.begun(first), self.begun(last))
         lasting = (last.trip - first.trip) * self.round + (last.offset - first.offset)
         begun = self.begun(last)
         left = self._between(last, -self.half - lasting, -self.half)
@@ -314,10 +343,14 @@ class Radiation(Waves):
 
     def work(self, now: Epoch) -> float:
         """Return the energy radiated since the start of the run; it is zero for a rigid driver."""
+        if self.body.has_machine:
+            return self.history.machine.dissipated(0.0, self.begun(now))
         return 0.0 if self.body.is_driven_rigidly else super().work(now)
 
     def work_between(self, first: Epoch, last: Epoch) -> float:
         """Return the energy radiated between two moments; it is zero for a rigid driver."""
+        if self.body.has_machine:
+            return self.history.machine.dissipated(self.begun(first), self.begun(last))
         return 0.0 if self.body.is_driven_rigidly else super().work_between(first, last)
 
     def power_growth(self, leaving: Floats, left: Floats) -> Floats:

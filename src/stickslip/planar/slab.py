@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.bodies import ElasticSlab, has_dashpot
+from stickslip.bodies import MACHINE, ElasticSlab, has_dashpot
 from stickslip.contact.uniqueness import regime_of
 from stickslip.foundation.arguments import CheckedArguments, shown
 from stickslip.foundation.conversion import Number, OptionalNumber, has_unit, without_unit
@@ -111,6 +111,8 @@ class PlanarSlab(CheckedArguments):
         if has_dashpot(problem.body):
             name = type(problem.body).__name__
             raise InputError(f"PlanarSlab: the damping of this {name} is not its impedance, which the solver takes it for")
+        if problem.body.has_machine:
+            raise InputError(f"PlanarSlab: {MACHINE} is followed in 1D only: set driver_inertia and driver_integral_gain to 0")
         if problem.normal_varies:
             raise InputError("PlanarSlab: a normal_load that varies is followed at one place only: leave it out")
         if problem.ground is not None or problem.one_way:

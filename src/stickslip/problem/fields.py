@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.bodies import BODIES, BodyOnCharacteristics
+from stickslip.bodies import BODIES, MACHINE, BodyOnCharacteristics
 from stickslip.foundation.arguments import CheckedArguments, check_type, is_number, shown
 from stickslip.foundation.conversion import Converted, Number, OptionalNumber, WithUnit
 from stickslip.foundation.errors import InputError
@@ -131,6 +131,8 @@ class ProblemFields(CheckedArguments):
             self._check_ground(self.ground)
 
     def _check_ground(self, ground: Ground) -> None:
+        if self.body.has_machine:
+            raise InputError(f"Problem: ground that moves is not followed under {MACHINE}: set those to 0, or leave it out")
         if self.body.has_inertia and ground.velocity_jumps:
             why = "an infinite force on a mass: join the points (piecewise-linear), beginning with 0 m/s"
             raise InputError(f"Problem: ground_velocity jumps, which is {why}, or give ground_acceleration")
@@ -209,8 +211,8 @@ class ProblemFields(CheckedArguments):
 
     @property
     def varies(self) -> bool:
-        """True if anything is a loading history, the motion of the ground too; a constant far_stress_rate does not count."""
-        return len(self._varying) > 0
+        """True if the load at rest is no ramp: if anything is a loading history, the ground too, or the driver moves by itself."""
+        return len(self._varying) > 0 or self.body.has_machine
 
     def normal_at(self, t: ArrayLike) -> NDArray[np.float64]:
         """Return the normal load S (Pa or N) at times (s since the start of the run) of any shape."""

@@ -56,7 +56,7 @@ def _steady_rate(problem: ProblemFields) -> float:
     It then is the fastest at which friction and a driver of impedance Zd balance, Zd v + S mu(v) = far stress + Zd V.
     """
     pull, driver, far = problem.first_pull_rate, problem.body.driver_impedance, problem.far_stress
-    if problem.body.is_driven_rigidly or far is None:
+    if problem.body.is_driven_rigidly or problem.body.driver_integral_gain > 0.0 or far is None:
         return pull
     drive = (far.first if isinstance(far, LoadingHistory) else far) + driver * pull
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.bodies import ElasticSlab
+from stickslip.bodies import MACHINE, ElasticSlab
 from stickslip.foundation.errors import InputError
 
 
@@ -157,6 +157,10 @@ class StuckSlab:
     pull_rate: float
     far_stress: float = 0.0
     far_stress_rate: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.body.has_machine:
+            raise InputError(f"{type(self).__name__}: {MACHINE} is not in it: set driver_inertia and driver_integral_gain to 0")
 
     @property
     def loading_rate(self) -> float:

@@ -166,12 +166,13 @@ def _derived(problem: Problem) -> list[Fact]:
             Fact("K V", body.stiffness * problem.first_pull_rate, "N/s", f"rate of loading while stuck{first}"),
             *start,
         ]
+    of = "of sharp fronts" if body.has_machine else "of waves"
     return [
         Fact("Z", body.impedance, "Pa s/m", "impedance rho c"),
         Fact("G", as_slab(body).shear_modulus, "Pa", "shear modulus rho c^2"),
         Fact("R", body.round_trip_time, "s", "two-way travel time 2 h/c"),
         Fact("G/h", body.stiffness, "Pa/m", "load lost per metre of slow slip"),
-        Fact("r", body.reflection, "1", "reflection at the driver: -1 rigid, 0 matched, +1 dead load"),
+        Fact("r", as_slab(body).front_reflection, "1", f"reflection {of} at the driver: -1 rigid, 0 matched, +1 dead load"),
         Fact("G V/h", body.stiffness * problem.first_pull_rate, "Pa/s", "rate of loading at first"),
         *start,
         *_pulses(problem),
@@ -295,7 +296,7 @@ def _chaos(body: ElasticSlab, contact: Uniqueness) -> list[str]:
     if contact.resistance is None:
         return []
     rates = [jump.rate_after for jump in contact.jumps if jump.rate_after > 0]
-    gains = [abs(body.reflection * (1.0 - 2.0 * body.impedance / float(contact.resistance.slope(rate)))) for rate in rates]
+    gains = [abs(body.front_reflection * (1.0 - 2.0 * body.impedance / float(contact.resistance.slope(rate)))) for rate in rates]
     gain = max(gains, default=0.0)
     if gain <= 1.0:
         return []

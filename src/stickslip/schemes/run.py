@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
-from stickslip.bodies import as_slab, has_dashpot
+from stickslip.bodies import MACHINE, as_slab, has_dashpot
 from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
@@ -171,6 +171,8 @@ def check_suitable(problem: Problem) -> None:
         raise InputError(f"schemes: a contact_mass of {slab.contact_mass:g} kg/m^2 is not in the schemes: set it to 0")
     if has_dashpot(slab):
         raise InputError(f"schemes: the damping of this {type(slab).__name__} is not its impedance, which the schemes take it for")
+    if slab.has_machine:
+        raise InputError(f"schemes: {MACHINE} is not in the schemes: set driver_inertia and driver_integral_gain to 0")
     if problem.varies:
         raise InputError(
             "schemes: a pull rate, far stress or normal load that varies in time is not in the schemes: give constant ones"

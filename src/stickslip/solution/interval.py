@@ -24,7 +24,7 @@ def fronts_of(readings: Readings, start: float, end: float) -> list[Floats]:
     Raises InputError for a block.
     """
     body = slab_of(readings.problem)
-    return [bounces_of(time, end, body.two_way_time, body.reflection) for time in origins_of(readings, start, end)]
+    return [bounces_of(time, end, body.two_way_time, body.front_reflection) for time in origins_of(readings, start, end)]
 
 
 def origins_of(readings: Readings, start: float, end: float) -> Floats:

@@ -11,11 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.state.layout import Integers, Store
-from stickslip.engine_input.forcing import inflow_of
+from stickslip.engine_input.forcing import inflow_of, settled_rate
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.friction.contract import one_argument
 from stickslip.problem.problem import Problem
+from stickslip.trajectory.machine_motion import MachineMotion, machine_motion
 from stickslip.trajectory.phase_index import Phases
 
 Side = Literal["left", "right"]
@@ -300,6 +301,11 @@ class History:
         pace = speed + root  # zero only at the very start of a piece that starts at a fold
         return np.clip(2.0 * local / np.where(pace > 0.0, pace, 1.0), 0.0, 1.0)
 
+    @cached_property
+    def machine(self) -> MachineMotion:
+        """The motion of the driver, if it is a machine."""
+        return machine_motion(self.problem, self.store, self.duration)
+
     # ---- values at positions ------------------------------------------------------------------------------------------------
 
     def excess(self, at: Positions) -> Floats:
@@ -315,6 +321,9 @@ class History:
         if not self.problem.varies or not at.at_rest.any():
             return at.leaped * self.ramp
         offset = self.store.phase_from[at.piece] + at.xi * (self.store.speed[at.piece] + at.xi * self.store.bend[at.piece])
+        if self.problem.body.has_machine:
+            after = (self.store.trip[at.piece] + 1.0) * self.round_trip_time
+            return np.asarray(at.leaped * 2.0 * self.problem.body.impedance * settled_rate(self.problem, after))
         return inflow_of(self.problem).gathered(self.store.trip[at.piece].astype(float), offset, at.leaped)
 
     def rate(self, at: Positions) -> Floats:

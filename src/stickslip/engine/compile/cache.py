@@ -47,6 +47,7 @@ COMPILED_FILES = (
     "foundation/constants.py",
     "friction/formula/expression.py",
     "trajectory/history.py",
+    "trajectory/machine_motion.py",
     "trajectory/phase_index.py",
     "trajectory/slip_events.py",
     "trajectory/status.py",

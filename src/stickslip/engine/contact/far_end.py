@@ -6,6 +6,8 @@ nothing comes back.
 
 from __future__ import annotations
 
+import math
+
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.state.workspace import Run
 from stickslip.foundation.constants import DEAD_LOAD, RIGID
@@ -13,14 +15,23 @@ from stickslip.foundation.constants import DEAD_LOAD, RIGID
 
 @kernel
 def sent_back(run: Run) -> float:
-    """Return the factor (1) that a wave has gained on its way back: -1 rigid driver, 0 if nothing comes back, +1 dead load."""
+    """Return the factor (1) that a wave has gained on its way back: -1 rigid driver, 0 if nothing comes back, +1 dead load.
+
+    It is -1 for a machine, too: what its own motion sends is added to the echo (`waves.driver`).
+    """
     return run.params.reflection
+
+
+@kernel
+def gain_of_echo(run: Run) -> float:
+    """Return the factor (1) from the size of an error of a wave to that of its echo; NaN if it depends on its duration."""
+    return math.nan if run.counts.driven == 1 else abs(sent_back(run))
 
 
 @kernel
 def is_rigid(run: Run) -> bool:
     """Return True for a slab under a rigid driver: a load at rest comes back whole, plus the same ramp in each round trip."""
-    return run.counts.is_block == 0 and run.params.reflection == RIGID
+    return run.counts.is_block == 0 and run.counts.driven == 0 and run.params.reflection == RIGID
 
 
 @kernel

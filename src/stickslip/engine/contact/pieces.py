@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from stickslip.engine.compile.kernels import inlined, kernel
-from stickslip.engine.contact.far_end import sent_back
+from stickslip.engine.contact.far_end import gain_of_echo
 from stickslip.engine.series.polynomial import degree, fill
 from stickslip.engine.state.workspace import Run
 
@@ -59,7 +59,7 @@ def record(run: Run, xi_to: float) -> None:
         kept.bend = run.state.bend * width * width
         kept.slip, kept.law_slip = run.state.slip_now, run.state.law_slip
         kept.amplified = run.state.amplified
-        kept.gain = abs(sent_back(run)) * (run.state.gain if run.counts.mode != 0 else 1.0)
+        kept.gain = gain_of_echo(run) * (run.state.gain if run.counts.mode != 0 else 1.0)
         kept.residual = run.state.residual
         if run.state.residual > run.state.largest_residual:
             run.state.largest_residual = run.state.residual

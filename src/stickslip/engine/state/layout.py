@@ -59,6 +59,10 @@ class Params(MemoryRecord):
     pressing_tone: float  # 1: amplitude of the tone in the normal load, as a share of that at t = 0 (`contact.pressing`)
     pressing_frequency: float  # rad/s: angular frequency of that tone
     pressing_phase: float  # rad: phase of that tone at t = 0
+    driver_inertia: float  # kg/m^2: mass of a driver that is a machine (`waves.driver`)
+    driver_impedance: float  # Pa s/m: its proportional gain
+    driver_gain: float  # Pa/m: its integral gain
+    pull_share: float  # m/(Pa s): tone of its pull rate over the tone of its drive
     coupling: float  # 1: how far a state falls as the normal load grows by a factor e (Linker & Dieterich 1992: alpha / b)
     state_scale: Floats = floats_inside(
         STATES
@@ -95,6 +99,9 @@ class State(MemoryRecord):
     roughest: float  # 1: largest error of the slip rate by rounding in the law, relative, in any rough step (`Counts.rough`)
     exit: float  # 1: xi where an algebraic contact leaves its branch; inf if not on this piece, NaN if not known yet
     hanging: float  # m/s: slip rate below which a contact with bristles hangs in them; 0 under any other law
+    driver_rate: float  # m/s: rate of a driver that is a machine, h/c before its wave reaches the end of the present piece of load
+    driver_push: float  # Pa: force of its integral gain then
+    driver_swing: float  # m/s: bound on how far its rate has been from that of a long rest, in this round trip
 
 
 SAVED = State.places["taken"].first
@@ -160,6 +167,8 @@ class Counts(MemoryRecord):
     rough: int  # number of steps in which rounding in the law hides more than the tolerance
     breach: int  # OFF_THE_LAW, NEGATIVE_FRICTION or FAILED if no step can be made from here, else 0
     given: int  # number of states, the last ones, that follow from time alone (`contact.pressing`)
+    driven: int  # 1 if the driver is a machine (`waves.driver`)
+    driver_trip: int  # round trip up to which a machine has been followed
     degree: int  # degree of the present piece of load: its coefficients beyond are zero
 
 
@@ -254,6 +263,7 @@ class EnginePart(IntEnum):
     LOADING_HISTORY = 2
     ECHO_QUEUE = 3
     MOVING_FOLDS = 4
+    DRIVER = 5
 
 
 class Task(IntEnum):
@@ -275,6 +285,8 @@ class Task(IntEnum):
     """Build the queue of echoes."""
     LOOK_FOR_FOLD = 7
     """Find the way to the moving fold into which the series runs."""
+    DRIVE = 8
+    """Add what a driver that is a machine sends, and cut the piece of load where its series would not be exact enough."""
 
 
 class Stop(IntEnum):
@@ -351,8 +363,10 @@ class LoadingSegment(MemoryRecord):
 
     trip: float  # round trip of the segment's arrival at the contact
     offset: float  # s: phase of its arrival
-    value: float  # inflow there
+    value: float  # inflow there; of a machine the force that drives it, kp V0 + far stress, minus the reference strength (Pa)
     slope: float  # its growth per second
+    pull: float  # m/s: pull rate V0 of a machine there, but for its tone
+    pull_slope: float  # m/s^2: how fast it grows
     jump: float  # 1 if the inflow or the normal load jumps there, else 0
     pressing: float  # 1: growth of the normal load since t = 0 there, but for its tone, as a share of that at t = 0
     pressing_rate: float  # 1/s: how fast it grows

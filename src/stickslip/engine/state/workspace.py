@@ -62,6 +62,7 @@ class Run(MemoryRecord):
     loading_history: int
     echo_queue: int
     moving_folds: int
+    driver: int
     missing: int  # the part that the engine has asked for, as a code of `Part`
 
     params: Params = inside(Params)
@@ -84,6 +85,10 @@ class Run(MemoryRecord):
     saved: State = inside(State, 2 * TERMS)  # the first SAVED fields of the state that belong to it
     trial: Floats = floats_inside(TERMS)  # room for polynomials that are only tested
     spare: Floats = floats_inside(TERMS)  # further room of this kind
+    machine_force: Floats = floats_inside(TERMS)  # Pa: series of what moves a driver that is a machine, but for its own motion
+    machine_pull: Floats = floats_inside(TERMS)  # m/s: of its pull rate
+    machine_rate: Floats = floats_inside(TERMS)  # m/s: of its rate
+    machine_push: Floats = floats_inside(TERMS)  # Pa: of the force of its integral gain
     state_jet: Floats = floats_inside(STATES * TERMS)  # polynomials of the law's states over an implicit step
     stage_rate: Floats = floats_inside(TERMS)  # m/s: slip rate at Radau's points of an implicit step
     stage_state: Floats = floats_inside(STATES * TERMS)  # states of the law at these points

@@ -15,9 +15,12 @@ from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.far_end import has_faded, is_rigid
 from stickslip.engine.contact.pieces import xi_at
 from stickslip.engine.contact.pressing import couple, is_pressing, press, pressing_at
+from stickslip.engine.memory.addresses import call_part
 from stickslip.engine.series.polynomial import RECIPROCAL, copy, maximum, restrict, total
-from stickslip.engine.state.layout import NEVER, TERMS
+from stickslip.engine.state.layout import NEVER, TERMS, Task
 from stickslip.engine.state.workspace import Run
+from stickslip.engine.waves.driver_at_rest import trips_of_machine
+from stickslip.engine.waves.tone import tone_series
 
 AT_EDGE = 1e-13
 """A break of the loading lies on the edge of a piece if it is closer to it than this share of a round trip (1), by rounding."""
@@ -36,7 +39,12 @@ def take_loading(run: Run) -> None:
         end, phase_to = min(xi_at(run, change), 1.0), change
     if begin > 0.0 or end < 1.0:
         cut(run, begin, end, phase, phase_to)
-    add_loading(run)
+    if run.counts.driven == 0:
+        add_loading(run)
+    elif run.counts.trip > 0 or run.state.phase_from >= 0.5 * run.params.round_trip_time:
+        kept = call_part(run.driver, run, Task.DRIVE, 0.0)
+        if kept < 1.0:
+            end, phase_to = begin + kept * (end - begin), run.state.phase_to
     if run.counts.given > 0:
         press(run, run.state.phase_from)
     run.state.taken, run.state.taken_to_phase = (end, phase_to) if end < 1.0 else (0.0, 0.0)
@@ -136,24 +144,6 @@ def dirichlet(count: float, step: float) -> float:
 
 
 @kernel
-def tone_series(run: Run, amplitude: float, phase: float, time: float) -> None:
-    """Write into run.spare the coefficients in xi of amplitude sin(frequency t + phase) on a piece that begins at `time` (s).
-
-    They follow from s' = frequency t' c and c' = -frequency t' s for the sine s and the cosine c.
-    """
-    frequency = run.params.tone_frequency
-    turn, bend = frequency * run.state.speed, 2.0 * frequency * run.state.bend
-    angle = frequency * time + phase
-    sine, cosine = run.spare, run.trial
-    sine[0], cosine[0] = amplitude * math.sin(angle), amplitude * math.cos(angle)
-    for k in range(TERMS - 1):
-        before = k - 1 if k > 0 else 0
-        bent = bend if k > 0 else 0.0
-        sine[k + 1] = RECIPROCAL[k + 1] * (turn * cosine[k] + bent * cosine[before])
-        cosine[k + 1] = -RECIPROCAL[k + 1] * (turn * sine[k] + bent * sine[before])
-
-
-@kernel
 def pull_block(run: Run) -> None:
     """Set a block's load: its value at the end of the history, plus what pull and ground have added to it since."""
     n = run.counts.length - 1
@@ -218,6 +208,8 @@ def trips_withstood(run: Run, limit: float) -> int:
         return 0  # the round trip just past does not predict the next one
     if run.loading[segment].shakes == 1.0:
         return 0  # the ground does work, which nothing but the history of each round trip knows
+    if run.counts.driven == 1:
+        return trips_of_machine(run, limit, room, tops(run, 1.0), tops(run, -1.0))
     is_dead = run.loading[segment].slope == 0.0 and run.loading[segment].tone == 0.0
     if run.counts.is_block == 0 and not is_rigid(run):
         return int(max(room, 0.0)) if is_dead and has_faded(run) else 0

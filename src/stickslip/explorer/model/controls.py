@@ -36,6 +36,8 @@ PARTS_OF_PATCH = {"y[0]": "from y", "y[1]": "to y", "taper": "taper"}
 RARE_IN_CONTACT = ("frames", "courant", "taper")
 """Numbers of a contact and its patches that are seldom changed."""
 DEFAULTS_OF_CONTACT = {one.name: one.default for one in fields(Contact)} | {"taper": 0.0}
+FINITE_DRIVER = ("loading.far_stress", "loading.far_stress_rate", "body.driver_inertia", "body.driver_integral_gain")
+"""Numbers that a rigid driver does not have."""
 RARE = ("run.rtol", "run.creep_rtol", "run.shortest_event", "body.p_wave_speed", "run.events", "loading.far_stress_rate")
 """Numbers that are seldom changed: a page may hide them at first."""
 TITLES: dict[str, str] = {"body": "Body", "friction": "Friction", "loading": "Loading", "initial": "Start", "run": "Run"}
@@ -254,7 +256,7 @@ class _Tables:
 
     def applies(self, path: str) -> bool:
         """Return False for an entry that this problem cannot have, and for a number that a table replaces."""
-        if path in ("loading.far_stress", "loading.far_stress_rate") and self.problem.body.is_driven_rigidly:
+        if path in FINITE_DRIVER and self.problem.body.is_driven_rigidly:
             return False
         if path.removeprefix("loading.") in HISTORIES_ONLY:
             return False

@@ -111,7 +111,9 @@ def _with_body(setting: Setting, kind: str) -> Setting:
     if setting.value("body.kind") == kind:
         return setting
     if kind == "spring-block":
-        slab = replace(as_slab(setting.scenario().problem.body), driver_impedance=math.inf)
+        slab = replace(
+            as_slab(setting.scenario().problem.body), driver_impedance=math.inf, driver_inertia=0.0, driver_integral_gain=0.0
+        )
         body = to_table(slab.equivalent_block())
         loading = {key: value for key, value in (setting.value("loading") or {}).items() if not key.startswith("far_stress")}
         setting = setting.with_value("loading", loading)

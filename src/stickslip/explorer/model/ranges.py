@@ -87,6 +87,10 @@ def _special(path: str, anchor: float, problem: Problem) -> SliderRange | None:
         return SliderRange(0.0, max(5.0 * body.impedance, 1.5 * anchor if math.isfinite(anchor) else 0.0))
     if path == "body.contact_mass":
         return SliderRange(0.0, max(0.1 * body.impedance * body.round_trip_time, REACH * anchor))
+    if path == "body.driver_inertia":
+        return SliderRange(0.0, max(body.impedance * body.round_trip_time, REACH * anchor if math.isfinite(anchor) else 0.0))
+    if path == "body.driver_integral_gain":
+        return SliderRange(0.0, max(body.stiffness, REACH * anchor))
     if path == "body.damping":
         return SliderRange(0.0, max(2.0 * body.impedance, REACH * anchor))
     if path == "loading.pull_rate" and anchor <= 0.0:

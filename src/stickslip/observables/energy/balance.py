@@ -31,7 +31,7 @@ LONG_NAMES = {
     "work": "work of the driver, and of moving ground",
     "stored": "elastic and kinetic energy",
     "elastic": "elastic energy",
-    "kinetic": "kinetic energy, including that of a contact mass",
+    "kinetic": "kinetic energy, including that of a contact mass and of a driver's",
     "heat": "friction heat, from the law",
     "damped": "dissipated by the block's damping",
     "radiated": "energy radiated through a driver of finite impedance; work is net of it",
@@ -142,6 +142,8 @@ def _slab(history: History, at: Positions) -> dict[str, Floats]:
     waves, radiation, now = Waves(history, body), Radiation(history, body), epochs(history, at)
     contact = 0.5 * body.contact_mass * _speed(history, at) ** 2
     each = np.array([(waves.stored(epoch), waves.trapped(epoch), kinetic(waves, epoch)) for epoch in now]).reshape(-1, 3)
+    if body.has_machine:
+        each[:, 2] += [history.machine.kinetic(waves.begun(epoch)) for epoch in now]
     stored, trapped, moving = each[:, 0] + contact, each[:, 1], each[:, 2] + contact
     shaken = 0.0 if history.problem.ground is None else up_to(history, at, _shaking(history))
     return {

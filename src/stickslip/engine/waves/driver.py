@@ -1,0 +1,133 @@
+"""A driver that is a machine: a mass with a proportional and an integral gain, which the waves of the slab move.
+
+    M dVd/dt = kp (V0 - Vd) + q + s - sigma,    dq/dt = ki (V0 - Vd),    sigma = Z Vd - w
+
+w = 2 Z v - beta is the wave that left the contact h/c ago, s the far stress. What the machine sends is the load at the contact h/c
+later, beta = 2 Z Vd - w. The equations are linear with constant coefficients, so that the wave's polynomial gives the Taylor
+series of Vd and of q term by term. The series of a piece of load ends with its last term K; the sum of what it leaves out is at
+most the next term over 1 - A / (K + 2), where A = ((kp + Z) / M + sqrt(ki / M)) dt, or ki dt / (kp + Z) without mass, is kept
+below 1. Where the load would be off by more than the tolerance, the piece of load is cut.
+"""
+
+from __future__ import annotations
+
+import math
+
+from stickslip.engine.compile.kernels import kernel
+from stickslip.engine.contact.pieces import phase_at
+from stickslip.engine.series.polynomial import RECIPROCAL, copy, restrict, total
+from stickslip.engine.state.layout import TERMS
+from stickslip.engine.state.workspace import Run
+from stickslip.engine.waves.driver_at_rest import settled_rate
+from stickslip.engine.waves.tone import tone_series
+
+HALVINGS = 60
+"""Largest number of times (1) that a piece of load is halved."""
+
+
+@kernel
+def drive(run: Run) -> float:
+    """Add what the machine sends to the piece of load, which is its echo so far; return the share of the piece that is kept."""
+    leap(run)
+    pace = pace_of(run)
+    share = 1.0 / max(math.ceil(pace * (abs(run.state.speed) + 2.0 * abs(run.state.bend))), 1.0)
+    shorten(run, share)
+    for _ in range(HALVINGS):
+        force_machine(run)
+        if move_machine(run, pace):
+            break
+        share *= 0.5
+        shorten(run, 0.5)
+    settled, swing = settled_rate(run, run.counts.segment), 0.0
+    for k in range(TERMS):
+        run.load[k] += 2.0 * run.params.impedance * run.machine_rate[k]
+        swing += abs(run.machine_rate[k] - (settled if k == 0 else 0.0))
+    run.state.driver_swing = max(run.state.driver_swing, swing)
+    run.state.driver_rate, run.state.driver_push = total(run.machine_rate), total(run.machine_push)
+    return share
+
+
+@kernel
+def leap(run: Run) -> None:
+    """Carry the echo and the machine over the round trips at rest that were leaped over, in which the machine had settled."""
+    if run.counts.trip == 0:
+        return
+    params, before = run.params, run.counts.trip_segment
+    settled = settled_rate(run, before)
+    leaped = float(run.counts.trip - 1 - run.history[run.counts.echo_of].trip)
+    run.load[0] += 2.0 * params.impedance * settled * leaped
+    if run.counts.driver_trip < run.counts.trip:
+        trips = float(run.counts.trip - 1 - run.counts.driver_trip)
+        run.state.driver_push += params.driver_gain * (run.loading[before].pull - settled) * trips * params.round_trip_time
+        run.counts.driver_trip, run.state.driver_swing = run.counts.trip, 0.0
+
+
+@kernel
+def pace_of(run: Run) -> float:
+    """Return how fast (1/s) the motion of a machine may change by its own size."""
+    params = run.params
+    if params.driver_inertia == 0.0:
+        return params.driver_gain / (params.driver_impedance + params.impedance)
+    damped = (params.driver_impedance + params.impedance) / params.driver_inertia
+    return damped + math.sqrt(params.driver_gain / params.driver_inertia)
+
+
+@kernel
+def shorten(run: Run, share: float) -> None:
+    """Keep only the given share of the piece of load, from its start."""
+    if share == 1.0:
+        return
+    phase_to = phase_at(run, share)
+    restrict(run.load, 0.0, share, run.spare)
+    copy(run.spare, run.load, TERMS)
+    run.state.speed *= share
+    run.state.bend *= share * share
+    run.state.phase_to = phase_to
+
+
+@kernel
+def force_machine(run: Run) -> None:
+    """Write the series of what drives the machine, without its own motion, and of its pull rate, along the piece of load."""
+    params, segment = run.params, run.loading[run.counts.segment]
+    since = (run.counts.trip - segment.trip) * params.round_trip_time + (run.state.phase_from - segment.offset)
+    force, pull = run.machine_force, run.machine_pull
+    for k in range(TERMS):
+        force[k], pull[k] = -run.load[k], 0.0
+    force[0] += segment.value + segment.slope * since
+    force[1] += segment.slope * run.state.speed
+    force[2] += segment.slope * run.state.bend
+    pull[0] = segment.pull + segment.pull_slope * since
+    pull[1], pull[2] = segment.pull_slope * run.state.speed, segment.pull_slope * run.state.bend
+    if segment.tone != 0.0:
+        tone_series(run, segment.tone, segment.tone_phase, run.counts.trip * params.round_trip_time + run.state.phase_from)
+        for k in range(TERMS):
+            force[k] += run.spare[k]
+            pull[k] += params.pull_share * run.spare[k]
+
+
+@kernel
+def move_machine(run: Run, pace: float) -> bool:
+    """Write the series of the machine's rate and of its integral force along the piece; return False if they end too early."""
+    params, speed, bend = run.params, run.state.speed, 2.0 * run.state.bend
+    force, pull, rate, push = run.machine_force, run.machine_pull, run.machine_rate, run.machine_push
+    weight, resists = params.driver_inertia, params.driver_impedance + params.impedance
+    rate[0], push[0] = run.state.driver_rate, run.state.driver_push
+    faster = faster_before = growth = growth_before = 0.0
+    for k in range(TERMS):
+        if weight == 0.0:
+            rate[k] = (force[k] + push[k]) / resists
+        growth_before, growth = growth, params.driver_gain * (pull[k] - rate[k])
+        pushed = RECIPROCAL[k + 1] * (speed * growth + bend * growth_before)
+        faster_before, faster = faster, (force[k] + push[k] - resists * rate[k]) / weight if weight > 0.0 else 0.0
+        quicker = RECIPROCAL[k + 1] * (speed * faster + bend * faster_before)
+        if k + 1 < TERMS:
+            push[k + 1] = pushed
+            if weight > 0.0:
+                rate[k + 1] = quicker
+    stiff = math.sqrt(params.driver_gain * weight) if weight > 0.0 else resists
+    next_term = abs(quicker) + (abs(pushed) / stiff if stiff > 0.0 else 0.0)
+    along = pace * (abs(speed) + abs(bend)) / (TERMS + 1)
+    changes = 0.0
+    for k in range(1, TERMS):
+        changes += abs(run.load[k]) + 2.0 * params.impedance * abs(rate[k])
+    return 2.0 * params.impedance * next_term <= (1.0 - along) * params.tolerance * changes
