@@ -19,6 +19,8 @@ import pytest
 from matplotlib import pyplot
 from matplotlib.figure import Figure
 
+from tests.loading.test_moving_ground import by_hand
+
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.py"))
 TRIP = 2 * 10e3 / 3500
 """Two-way travel time of the paper's slab (s)."""
@@ -277,6 +279,17 @@ def fault_in_2d(names: Names) -> None:
     assert abs(np.median(run.rupture_speed[names["outside"]]) / run.slab.body.wave_speed - 1.0) < 0.02
     assert not run.slip_rate[-1].any()
     assert run.slip[:, np.abs(run.slab.y) > 18e3].max() == 0.0
+
+
+@check
+def sliding_block(names: Names) -> None:
+    """The rigid block slips as cubics between the points of its record say."""
+    problem, table = names["runs"]["rigid"].problem, names["table"]
+    strength, mass = problem.strength, problem.body.mass
+    slip = by_hand(problem.ground_acceleration, problem.load, 8.0, one_way=True, mass=mass, limits=(strength, strength))
+    close(table.loc["permanent displacement (m)", "rigid"], slip, 1e-5)  # the spring's force is 1e-6 of gravity's
+    close(table.loc["yield acceleration (g)"], (strength - problem.load) / mass / 9.80665)
+    assert table.loc["permanent displacement (m)", "deformable"] > 2.0 * slip
 
 
 def name_of(path: Path) -> str:

@@ -34,29 +34,41 @@ def record(seed: int, step: float = 0.02, points: int = 60, size: float = 12.0) 
     return PiecewiseLinear(step * np.arange(points), values)  # type: ignore[arg-type]
 
 
-def by_hand(history: PiecewiseLinear, pull: float, end: float, *, one_way: bool) -> float:
-    """Return the slip (m) of a rigid block by the cubics between the points of the record, and the events on them."""
+def by_hand(
+    history: PiecewiseLinear,
+    pull: float,
+    end: float,
+    *,
+    one_way: bool,
+    mass: float = MASS,
+    limits: tuple[float, float] = (0.6 * FORCE, 0.5 * FORCE),
+) -> float:
+    """Return the slip (m) of a rigid block by the cubics between the points of the record, and the events on them.
+
+    `limits` are the strength at rest and the friction of sliding (N).
+    """
+    strength, sliding = limits
     times, values = [*history.times, end], [*history.values, history.values[-1]]
     v = u = 0.0
     for begin, until, first, last in zip(times, times[1:], values, values[1:], strict=False):
         slope = (last - first) / (until - begin)
         now, left = 0.0, until - begin
         while now < left:
-            load = pull - MASS * (first + slope * now)
+            load = pull - mass * (first + slope * now)
             if v == 0.0:
-                way = 1 if load > 0.6 * FORCE else -1 if load < -0.6 * FORCE and not one_way else 0
+                way = 1 if load > strength else -1 if load < -strength and not one_way else 0
                 if way == 0:  # when a straight load reaches one of its limits
-                    limits = (0.6 * FORCE,) if one_way else (0.6 * FORCE, -0.6 * FORCE)
-                    reached = [(pull - limit) / MASS / slope - first / slope for limit in limits] if slope else []
+                    ends = (strength,) if one_way else (strength, -strength)
+                    reached = [(pull - limit) / mass / slope - first / slope for limit in ends] if slope else []
                     later = [t for t in reached if t > now + 1e-15]
                     now = min([*later, left])
                     if now == left:
                         break
-                    load = pull - MASS * (first + slope * now)
+                    load = pull - mass * (first + slope * now)
                     way = 1 if load > 0.0 else -1
             else:
                 way = 1 if v > 0.0 else -1
-            a = (load - way * 0.5 * FORCE) / MASS
+            a = (load - way * sliding) / mass
             roots = np.roots([-0.5 * slope, a, v]) if slope else np.array([-v / a])
             real = [t.real for t in roots if abs(t.imag) < 1e-12 and 1e-13 < t.real < left - now]
             lasting = min([*real, left - now])

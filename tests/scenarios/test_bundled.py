@@ -13,7 +13,8 @@ ULP = 2.3e-16
 YEAR = 31_557_600.0
 
 
-VARYING = ("slide-hold-slide-block", "stress-pulse-slab", "tides-block", "velocity-steps-block")
+SHAKEN = ("sliding-block-shaken", "sliding-slab-shaken")
+VARYING = (*SHAKEN, "slide-hold-slide-block", "stress-pulse-slab", "tides-block", "velocity-steps-block")
 LABORATORY = ("bowed-string-slab", "direct-shear-block", "granite-slab", "kolsky-slab", "reversing-axis")
 PLANAR = ("planar-patch", "planar-plane")
 CYCLES = ("cycles-block", "cycles-slab", "rate-and-state-block", "rate-and-state-slab")

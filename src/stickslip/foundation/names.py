@@ -134,7 +134,7 @@ def for_readers(unit: str) -> str:
     """Return a unit, of a file or declared, as readers expect to see it: "m/s" for "m s-1", "kg/m³" for "kg/m^3"."""
     known = {"m^-1 s": "s/m", "1/m": "m⁻¹"}.get(unit, unit)
     plain = re.sub(r" ([a-z]+)-(\d)$", r"/\1^\2", known).removesuffix("^1")
-    return re.sub(r"(?<=/m)\^([23])$", lambda found: "²³"[int(found[1]) - 2], plain)
+    return re.sub(r"(?<=/[ms])\^([23])$", lambda found: "²³"[int(found[1]) - 2], plain)
 
 
 def has_prefixes(unit: str) -> bool:

@@ -22,7 +22,7 @@ from stickslip.figures.runs.curves import (
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import GREY, INK, PALE, styled, time_unit, title_of
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.names import readable_unit, si_unit
+from stickslip.foundation.names import for_readers, readable_unit, si_unit
 from stickslip.foundation.place import Place
 from stickslip.loading import LoadingHistory
 from stickslip.problem.fields import MAY_VARY
@@ -130,7 +130,7 @@ def _draw_loading(panel: Axes, readings: Readings, name: str, start: float, end:
         fit_height(panel, [values / scale])
     elif low < 0.0 < high:
         zero_line(panel)
-    panel.set_ylabel(f"{what}\n({unit})")
+    panel.set_ylabel(f"{what}\n({for_readers(unit)})")
 
 
 def _straight(history: LoadingHistory, start: float, end: float, turns: float) -> tuple[Floats, Floats]:
