@@ -13,6 +13,7 @@ from scipy.optimize import brentq
 
 import stickslip as ss
 from stickslip.loading import LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
+from tests.loading.sliding_by_hand import by_hand
 
 MASS, FORCE, LOOSE = 1.0, 10.0, 1e-12
 """kg, N; a spring (N/m) so loose that its force does not change by a digit."""
@@ -34,57 +35,13 @@ def record(seed: int, step: float = 0.02, points: int = 60, size: float = 12.0) 
     return PiecewiseLinear(step * np.arange(points), values)  # type: ignore[arg-type]
 
 
-def by_hand(
-    history: PiecewiseLinear,
-    pull: float,
-    end: float,
-    *,
-    one_way: bool,
-    mass: float = MASS,
-    limits: tuple[float, float] = (0.6 * FORCE, 0.5 * FORCE),
-) -> float:
-    """Return the slip (m) of a rigid block by the cubics between the points of the record, and the events on them.
-
-    `limits` are the strength at rest and the friction of sliding (N).
-    """
-    strength, sliding = limits
-    times, values = [*history.times, end], [*history.values, history.values[-1]]
-    v = u = 0.0
-    for begin, until, first, last in zip(times, times[1:], values, values[1:], strict=False):
-        slope = (last - first) / (until - begin)
-        now, left = 0.0, until - begin
-        while now < left:
-            load = pull - mass * (first + slope * now)
-            if v == 0.0:
-                way = 1 if load > strength else -1 if load < -strength and not one_way else 0
-                if way == 0:  # when a straight load reaches one of its limits
-                    ends = (strength,) if one_way else (strength, -strength)
-                    reached = [(pull - limit) / mass / slope - first / slope for limit in ends] if slope else []
-                    later = [t for t in reached if t > now + 1e-15]
-                    now = min([*later, left])
-                    if now == left:
-                        break
-                    load = pull - mass * (first + slope * now)
-                    way = 1 if load > 0.0 else -1
-            else:
-                way = 1 if v > 0.0 else -1
-            a = (load - way * sliding) / mass
-            roots = np.roots([-0.5 * slope, a, v]) if slope else np.array([-v / a])
-            real = [t.real for t in roots if abs(t.imag) < 1e-12 and 1e-13 < t.real < left - now]
-            lasting = min([*real, left - now])
-            u += lasting * (v + lasting * (0.5 * a - slope * lasting / 6.0))
-            v = 0.0 if real else v + lasting * (a - 0.5 * slope * lasting)
-            now += lasting
-    assert v == 0.0
-    return u
-
-
 @pytest.mark.parametrize("one_way", [False, True])
 @pytest.mark.parametrize("seed", range(4))
 def test_a_rigid_block_under_a_record_slips_as_cubics_by_hand_say(seed: int, one_way: bool) -> None:
     problem = ss.Problem(BLOCK, LAW, initial_load=2.0, ground_acceleration=record(seed), one_way=one_way)
     run = ss.simulate(problem, 9.0)
-    assert float(run.slip(9.0)) == pytest.approx(by_hand(record(seed), 2.0, 9.0, one_way=one_way), rel=1e-9, abs=1e-12)
+    hand = by_hand(record(seed), 2.0, 9.0, one_way=one_way, mass=MASS, limits=(0.6 * FORCE, 0.5 * FORCE))
+    assert float(run.slip(9.0)) == pytest.approx(hand, rel=1e-9, abs=1e-12)
     rates = run.slip_rate(np.linspace(0.0, 2.0, 997))
     assert bool(rates.min() >= 0.0) is one_way
 

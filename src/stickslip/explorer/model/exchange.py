@@ -90,6 +90,7 @@ def _started(setting: Setting) -> Setting:
             return setting.with_value("initial", dict(began.value("initial")))
     if law.sticks:
         return setting.with_value("initial", initial | {"excess": 0.0})
+    setting = setting.with_value("loading.one_way", None)  # which needs rest
     body = read_part("body", dict(setting.value("body")), Source(setting.name))
     load = law.start["coefficient"] * body.normal_load
     states = {name: law.start[name] for name in STATE_NAMES if name in law.start}
