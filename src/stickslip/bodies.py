@@ -128,6 +128,15 @@ def as_block(body: BodyOnCharacteristics) -> SpringBlock:
     return body
 
 
+def _check_body(body: SpringBlock | ElasticSlab, normal: str) -> None:
+    """Check the fields of a body whose normal load is called `normal`: a number, whereas a history belongs to the problem."""
+    value = getattr(body, normal)
+    if hasattr(value, "segments"):
+        one = f"{type(body).__name__}: {normal} is one number, that at the start"
+        raise InputError(f"{one}: a history is normal_load of the Problem, [loading.normal_load] in a scenario")
+    check_fields(body)
+
+
 @dataclass(frozen=True)
 class SpringBlock(Declared):
     """A rigid block pulled through a spring: m dv/dt + damping v + tau = K (D0 + V t - u). Loads and tractions are forces, in N."""
@@ -151,7 +160,7 @@ class SpringBlock(Declared):
     damping: Number = quantity("N s/m", "viscous resistance to slip", at_least=0, default=0.0)
 
     def __post_init__(self) -> None:
-        check_fields(self)
+        _check_body(self, "normal_force")
 
     @property
     def period(self) -> float:
@@ -220,7 +229,7 @@ class ElasticSlab(Declared):
     )
 
     def __post_init__(self) -> None:
-        check_fields(self)
+        _check_body(self, "normal_stress")
         self._check_driver()
         if self.p_wave_speed is not None and self.p_wave_speed <= self.wave_speed * math.sqrt(4 / 3):
             limit = self.wave_speed * math.sqrt(4 / 3)

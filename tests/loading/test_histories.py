@@ -137,7 +137,7 @@ def test_mistakes_are_refused_in_one_line(make: Callable[[], Any], message: str)
     ("how", "message"),
     [
         ({"creep_rtol": 1e-6}, "creep_rtol must be 0 here: leaps over creep need a constant pull rate"),
-        ({"shortest_event": 1e-6}, "shortest_event must be 0 here: events are lumped under a constant pull only"),
+        ({"shortest_event": 1e-6}, "shortest_event must be 0 here: events are lumped under a constant pull and normal load only"),
     ],
 )
 def test_options_that_need_a_constant_pull_refuse_another(how: dict[str, float], message: str) -> None:

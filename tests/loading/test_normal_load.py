@@ -6,6 +6,7 @@ Times are compared to 1e-9 of a second and slips to 1e-9 of a metre, absolutely,
 from __future__ import annotations
 
 import math
+import tempfile
 from dataclasses import replace
 from pathlib import Path
 
@@ -186,7 +187,53 @@ def test_pressing_a_problem_scales_its_history() -> None:
 
 HELD_FORCE = Steps([0.0, 1.0], [10.0, 9.0])
 HELD = Steps([0.0, 1.0], [1e7, 9e6])
+PLANAR = ss.Problem(SLAB, ss.friction.LinearSlipWeakening(0.8, 0.5, 0.1), pull_rate=1e-3, initial_load=7.9e6)
+IN_BODY = """normal_force = { kind = "steps", times = [0, 1], values = [10, 9] }"""
+IN_PASCAL = ["10 N", "9 Pa"]
 IRREGULAR = ss.Problem(SLAB, ss.friction.HyperbolicRate(0.8, 0.3, "10 s/m"), initial_load=8.1e6)
+
+
+def written(values: object = (10.0, 9.0), *, body: str = "normal_force = 10.0", folder: Path | None = None) -> ss.Scenario:
+    """Return the scenario of a block whose normal load steps to the last of some values at 1 s; `body` has its normal force."""
+    text = f"""
+[body]
+kind = "spring-block"
+mass = 1.0
+stiffness = 100.0
+{body}
+[friction]
+kind = "coulomb"
+static = 0.6
+dynamic = 0.4
+[loading.normal_load]
+kind = "steps"
+{values if isinstance(values, str) else f"times = [0, 1]{chr(10)}values = {list(values)}"}
+[initial]
+load = 5.0
+[run]
+duration = 3.0
+"""
+    path = (folder or Path(tempfile.mkdtemp())) / "pressed.toml"
+    path.write_text(text, encoding="utf-8")
+    return ss.load_scenario(str(path))
+
+
+@pytest.mark.parametrize("heading", ["normal_force (kN)", "normal load (kN)"])
+def test_a_measured_normal_load_is_read_from_a_file_in_its_unit(tmp_path: Path, heading: str) -> None:
+    (tmp_path / "pressed.csv").write_text(f"time (min),{heading}\n0,0.01\n0.5,0.009\n", encoding="utf-8")
+    assert written('file = "pressed.csv"', folder=tmp_path).problem.normal_load == Steps([0.0, 30.0], [10.0, 9.0])
+    (tmp_path / "pressed.csv").write_text("time (s),normal_stress (Pa)\n0,10\n1,9\n", encoding="utf-8")
+    with pytest.raises(ss.InputError, match=r"pressed\.csv', line 1: no column 'normal_force' in the header"):
+        written('file = "pressed.csv"', folder=tmp_path)
+
+
+@pytest.mark.parametrize("pull", [PULL, Steps([0.0, 1.0], [PULL, 0.1])])
+def test_check_tells_under_which_load_and_at_which_rate_steady_sliding_is_examined(pull: object) -> None:
+    law = ss.friction.RateAndState(0.6, 0.01, 0.015, "1 mm")
+    for pressed in (None, Sinusoidal(10.0, 3.0, 0.37)):
+        lines = ss.studies.steady(ss.Problem(BODY, law, pull_rate=pull, normal_load=pressed)).lines()  # type: ignore[arg-type]
+        first = "under the first normal load, " if pressed else ""
+        assert lines[0].startswith(f"{first}at {'' if pull == PULL else 'the first pull rate, '}")
 
 
 @pytest.mark.parametrize(
@@ -200,6 +247,14 @@ IRREGULAR = ss.Problem(SLAB, ss.friction.HyperbolicRate(0.8, 0.3, "10 s/m"), ini
         (lambda: block(Sinusoidal("10 Pa", "1 Pa", "1 s")), r"^Problem: normal_load must be in N, got a history of values in Pa$"),
         (lambda: ss.simulate(replace(IRREGULAR, normal_load=HELD), 2.0), r"several slip rates.*contact_mass"),
         (lambda: ss.studies.schemes(replace(IRREGULAR, normal_load=HELD), 2.0), r"^schemes: .*normal load that varies"),
+        (lambda: ss.PlanarSlab(replace(PLANAR, normal_load=HELD), length=9e3, nodes=8), r"^PlanarSlab: .*normal_load"),
+        (lambda: ss.simulate(block(HELD_FORCE), 1.0, shortest_event=1e-9), r"shortest_event must be 0 here"),
+        (lambda: ss.simulate(replace(PLANAR, normal_load=HELD), 1.0, creep_rtol=1e-3), r"creep_rtol must be 0 .* and normal load"),
+        (lambda: replace(BODY, normal_force=HELD_FORCE), r"^SpringBlock: normal_force is one number.* normal_load of the Problem"),
+        (lambda: replace(SLAB, normal_stress=HELD), r"^ElasticSlab: normal_stress is one number.*\[loading\.normal_load\]"),
+        (lambda: written(body=IN_BODY), r"toml: \[body\] normal_force is one number, .* a history is \[loading\.normal_load\]$"),
+        (lambda: written(IN_PASCAL), r"toml: \[loading\.normal_load\] must be in N, as the loads of this body are$"),
+        (lambda: written([10.0, math.nan]), r"\[loading\.normal_load\] values\[1\] must be finite"),
         (lambda: ss.studies.infer(block(HELD_FORCE), {"time": [0, 1], "mu": [0.5, 0.5]}, ["friction.static"]), r"^infer: a normal"),
     ],
 )  # fmt: skip

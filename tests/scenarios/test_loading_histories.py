@@ -111,7 +111,7 @@ def test_every_kind_can_be_a_far_stress(kind: str) -> None:
         ),
         (
             document(PULL, run="shortest_event = 1e-6\n"),
-            "[run] shortest_event must be 0 here: events are lumped under a constant pull only",
+            "[run] shortest_event must be 0 here: events are lumped under a constant pull and normal load only",
         ),
         (
             document(PULL, run="creep_rtol = 1e-6\n").replace(

@@ -181,7 +181,7 @@ def _of_run(scenario: Scenario, parameters: Sequence[str]) -> Iterator[str]:
     if scenario.problem.body.has_machine or any(name in parameters for name in machine):
         yield f"[body] {MACHINE} is followed one run at a time"
     elif scenario.problem.varies:
-        yield "[loading] a batch needs a loading that does not vary in time"
+        yield "[loading] a batch needs a pull, far stress and normal load that do not vary in time"
     if scenario.problem.one_way:
         yield "[loading] one_way: a batch slips both ways"
     if scenario.creep_rtol is not None and scenario.creep_rtol > 0.0:

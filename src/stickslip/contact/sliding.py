@@ -154,10 +154,15 @@ class SteadySlidings:
     """Motion from rest at pull rates with stable steady sliding; None if it was not examined."""
 
     @property
+    def is_pressed(self) -> bool:
+        """True if the normal load varies in time: all results are then for its value at the start."""
+        return self.problem is not None and self.problem.normal_varies
+
+    @property
     def regained(self) -> float | None:
         """The critical pull rate (m/s, magnitude) if sliding is stable above it, though a contact from rest may stick; or None."""
         last = self.changes[-1] if self.changes else None
-        if not self.sticks or self.varies or last is None or not last.stable_above or last.pull_rate is None:
+        if not self.sticks or self.varies or self.is_pressed or last is None or not last.stable_above or last.pull_rate is None:
             return None
         is_against = self.far_stress is not None and last.pull_rate * self.pull_rate <= 0.0
         return None if is_against else abs(last.pull_rate)
@@ -196,6 +201,7 @@ class SteadySlidings:
         if self.why_none:
             return [f"none: {self.why_none}"]
         at = "at the first pull rate, " if self.varies else "at "
+        at = f"under the first normal load, {at}" if self.is_pressed else at
         found = [f"{at}{brief(one.rate, 'm/s')}, traction {brief(one.traction, self.unit)}: {one}" for one in self.slidings]
         if self.is_calm and self.settled and all(one.rate > abs(self.settled.rate) for one in self.changes):
             found.append(slides_on(self.settled, is_driven_rigidly=self.far_stress is None))

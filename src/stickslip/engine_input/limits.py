@@ -119,7 +119,7 @@ def check_shortest_event(problem: Problem, shortest: float | None, where: str, n
     if not (body.has_waves and body.is_driven_rigidly):
         raise InputError(f"{where}: {name} must be 0 here: only under a slab with a rigid driver do echoes get ever shorter")
     if problem.varies:
-        raise InputError(f"{where}: {name} must be 0 here: events are lumped under a constant pull only")
+        raise InputError(f"{where}: {name} must be 0 here: events are lumped under a constant pull and normal load only")
     largest = LARGEST_SHARE * body.round_trip_time
     if not 0.0 < shortest <= largest:
         raise InputError(f"{where}: {name} must be 0 or at most {largest:g} s (1 % of the two-way travel time), got {shortest:g} s")

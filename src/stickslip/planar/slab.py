@@ -114,7 +114,9 @@ class PlanarSlab(CheckedArguments):
         if problem.body.has_machine:
             raise InputError(f"PlanarSlab: {MACHINE} is followed in 1D only: set driver_inertia and driver_integral_gain to 0")
         if problem.normal_varies:
-            raise InputError("PlanarSlab: a normal_load that varies is followed at one place only: leave it out")
+            raise InputError(
+                "PlanarSlab: a normal_load that varies is not followed along a contact: leave it out, or run the slab without width"
+            )
         if problem.ground is not None or problem.one_way:
             what = "one_way" if problem.one_way else "ground that moves"
             raise InputError(f"PlanarSlab: {what} is followed at one place only: leave it out")

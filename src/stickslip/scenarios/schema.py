@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 from stickslip.bodies import BODIES
 from stickslip.foundation.arguments import check_type, check_whole, shown
+from stickslip.foundation.conversion import unit_among
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import Field as Declared
 from stickslip.foundation.quantities import LawField, Quantity, fields_of, in_units
@@ -97,6 +98,10 @@ def entries_in(table: str, kind: type, states: tuple[StateVariable, ...] = ()) -
     return {key_of(name, entry): (in_units(entry, {VARYING: unit}), default) for name, (entry, default) in fields_of(kind).items()}
 
 
+NORMAL_LOADS = ("normal_stress", "normal_force")
+"""Keys of [body] with the normal load: a history of it has a table of its own, [loading.normal_load]."""
+
+
 def has_kind(table: str) -> bool:
     """Return True if a table has a key `kind`, which names a class."""
     return table in KINDS or "." in table
@@ -130,7 +135,14 @@ def _read_entry(declared: Declared, value: Any, place: DocumentPlace) -> Any:
         return value
     varies = place.table == "loading" and place.key in MAY_VARY
     if varies and isinstance(value, dict):
-        return read_part(place.inner, value, place.source)
+        unit = declared.unit if isinstance(declared, Quantity) else ""
+        texts = [one for entry in value.values() for one in (entry if isinstance(entry, list) else (entry,))]
+        if place.key == "normal_load" and not {unit_among(one, VARYING) for one in texts} <= {"", unit}:
+            raise InputError(f"{place.source.file}: [{place.inner}] must be in {unit}, as the loads of this body are")
+        heading = {"Pa": "normal_stress", "N": "normal_force"}[unit] if place.key == "normal_load" else ""
+        return read_part(place.inner, value, place.source, heading)
+    if place.table == "body" and place.key in NORMAL_LOADS and isinstance(value, dict):
+        raise InputError(f"{place.source.file}: {place} is one number, that at the start: a history is [loading.normal_load]")
     try:
         return read_entry(value, declared, place, _law_in)
     except InputError as error:
@@ -151,10 +163,13 @@ def _law_in(raw: dict[str, Any], source: Source, table: str) -> Any:
     return read_part(table, raw, source)
 
 
-def read_part(table: str, raw: dict[str, Any], source: Source) -> Any:
-    """Return the body, law or loading history that a table describes. Raises InputError."""
+def read_part(table: str, raw: dict[str, Any], source: Source, heading: str = "") -> Any:
+    """Return the body, law or loading history that a table describes. Raises InputError.
+
+    `heading` is that of the values in a data file if it is not the name of the table.
+    """
     kind = kind_of(table, raw, source.file)
-    content = read_table(table, kind, raw, source)
+    content = read_table(table, kind, raw, source, heading=heading)
     keys = {name: key_of(name, entry) for name, (entry, _) in fields_of(kind).items()}
     try:
         return kind(**{name: content[key] for name, key in keys.items()})
@@ -193,10 +208,10 @@ def read_document(raw: Mapping[str, Any], source: Source) -> dict[str, Any]:
 
 
 def read_table(
-    table: str, kind: type, raw: dict[str, Any], source: Source, states: tuple[StateVariable, ...] = ()
+    table: str, kind: type, raw: dict[str, Any], source: Source, states: tuple[StateVariable, ...] = (), *, heading: str = ""
 ) -> dict[str, Any]:
     """Check one table and return it, with the points from a data file if the table names one. Raises InputError."""
-    columns = columns_of(table, kind)
+    columns = columns_of(table, kind, heading)
     if columns and "file" in raw:
         name = raw["file"]
         both = next((key for key in columns.values() if key in raw), None)
@@ -210,13 +225,13 @@ def read_table(
     return _read_keys(keys_of(table, kind, states), raw, source, table)
 
 
-def columns_of(table: str, kind: type) -> dict[str, str]:
+def columns_of(table: str, kind: type, heading: str = "") -> dict[str, str]:
     """Return the columns of a data file that may replace lists in a table, each with the key of its list.
 
-    The last one is the dependent variable.
+    The last one is the dependent variable, whose column has the given heading, or that of the table.
     """
     columns: dict[str, str] = getattr(kind, "columns", {}) if has_kind(table) else {}
-    varies = table.partition(".")[2]
+    varies = heading or table.partition(".")[2]
     return {varies if column == "value" else column: of for column, of in columns.items()}
 
 

@@ -127,11 +127,12 @@ def _critical_stiffness(problem: Problem, law: RateAndState) -> str:
     body, rate, pull = problem.body, abs(problem.first_pull_rate), "first pull rate" if problem.loading_varies else "pull rate"
     if rate == 0.0:
         return "not pulled at first" if problem.loading_varies else "not pulled: it creeps to a halt, ever more slowly"
+    under = ", under the first normal load" if problem.normal_varies else ""
     sliding = SteadySliding(problem.normal, law.a, law.b, law.distance, rate)
     if not body.has_waves:
         critical, text, unit = sliding.critical_stiffness(body.inertia, body.damping), "stiffness K", "N/m"
     elif body.is_driven_rigidly and not body.has_inertia:
         critical, text, unit = sliding.critical_stiffness(), "stiffness G/h", "Pa/m"
     else:
-        return f"critical stiffness of slow sliding S (b - a) / Dc = {sliding.critical_stiffness():.6g} Pa/m"
-    return f"{text} = {body.stiffness:.6g} against the critical {critical:.6g} {unit} of steady sliding at the {pull}"
+        return f"critical stiffness of slow sliding S (b - a) / Dc = {sliding.critical_stiffness():.6g} Pa/m{under}"
+    return f"{text} = {body.stiffness:.6g} against the critical {critical:.6g} {unit} of steady sliding at the {pull}{under}"
