@@ -19,6 +19,7 @@ from tests.adversarial.truth import truth_of
 
 F = ss.friction
 SLAB = ss.ElasticSlab(2800, 3500, 1e4, 1e8)
+HEAVY = replace(SLAB, contact_mass=1e3)
 BLOCK = ss.SpringBlock(2.8e12, 3.43e13, 1e14)
 STRIBECK = F.ExponentialStribeck(static=0.8, dynamic=0.3, rate=0.01, exponent=1)
 
@@ -36,55 +37,37 @@ def bump_case(body: Any, amplitude: float, width: float, excess: float, duration
     return Case("bump", problem, recipe.value, recipe, duration, slip=1.0, rate=1.0)
 
 
-def test_steps_meet_an_exponential_tail_while_a_mass_on_a_belt_slows_down() -> None:
-    """The first event ends at 0.33240 s (the first engine: 0.33378 s)."""
+def tail_case(problem: ss.Problem, duration: float, slip: float, rate: float) -> Case:
+    """Slip under STRIBECK, whose tail begins at rest."""
     recipe = Recipe(0.3, (Feature("tail", "v", 0.5, 0.0, 0.01),))
-    problem = ss.Problem(ss.SpringBlock(1.0, 100.0, 10.0), STRIBECK, pull_rate=0.01, initial_excess=0.0)
-    case = Case("belt", problem, recipe.value, recipe, 0.5, slip=0.1, rate=1.0)
-    truth = truth_of(case)
-    assert truth.end == pytest.approx(0.33240, abs=5e-6)
-    found = errors(ss.simulate(problem, 0.5), truth)
-    assert found.largest < CLAIM
+    return Case("tail", problem, recipe.value, recipe, duration, slip, rate)
 
 
-def test_steps_meet_an_exponential_tail_while_a_slab_is_unloaded() -> None:
-    """Traction on the law to 1e-9 S (the first engine: 1.7e-4 S)."""
-    problem = ss.Problem(SLAB, STRIBECK, pull_rate=-20.0, initial_excess=2e7)
-    run = ss.simulate(problem, 0.99 * SLAB.two_way_time)
-    recipe = Recipe(0.3, (Feature("tail", "v", 0.5, 0.0, 0.01),))
-    case = Case("tail", problem, recipe.value, recipe, 0.99 * SLAB.two_way_time, slip=20.0, rate=8.0)
-    found = errors(run, truth_of(case))
-    assert found.largest < CLAIM
-    share = off_the_law(run)
-    assert share < 1e-9
+BELT = ss.Problem(ss.SpringBlock(1.0, 100.0, 10.0), STRIBECK, pull_rate=0.01, initial_excess=0.0)
+UNLOADED = ss.Problem(SLAB, STRIBECK, pull_rate=-20.0, initial_excess=2e7)
+MET: dict[str, tuple[Case, str, float]] = {
+    "tail while a mass on a belt slows down": (tail_case(BELT, 0.5, 0.1, 1.0), "end", 0.33240),  # the first engine: 0.33378 s
+    "tail while a slab is unloaded": (tail_case(UNLOADED, 0.99 * SLAB.two_way_time, 20.0, 8.0), "law", 1e-9),  # 1.7e-4
+    "bump in the way of a slab": (bump_case(SLAB, 0.05, 0.1, 1e7, 4.0), "law", 1e-9),  # 5 % off
+    "bump in the way of a block": (bump_case(BLOCK, 0.3, 0.1, 3e13, 2.5), "total", 1.54913),  # 1.70768 m
+    "narrow bump in the way of a mass": (
+        bump_case(replace(SLAB, contact_mass=1e3), 0.05, 0.01, 1e7, 4.0),
+        "total",
+        4.0672,
+    ),  # 4.0815 m
+}
+"""A case; the end of its first event (s) or its slip (m), known beforehand, or how far traction may be off the law (of S)."""
 
 
-def test_steps_meet_a_bump_in_the_way_of_a_slab() -> None:
-    """Traction on the law (the first engine: 5 % of S off), slip as in truth."""
-    case = bump_case(SLAB, 0.05, 0.1, 1e7, 4.0)
-    run = ss.simulate(case.problem, 4.0)
-    share = off_the_law(run)
-    assert share < 1e-9
-    found = errors(run, truth_of(case))
-    assert found.largest < CLAIM
-
-
-def test_steps_meet_a_bump_in_the_way_of_a_block() -> None:
-    """Slip of 1.54913 m (the first engine: 1.70768 m)."""
-    case = bump_case(BLOCK, 0.3, 0.1, 3e13, 2.5)
-    truth = truth_of(case)
-    assert truth.total == pytest.approx(1.54913, abs=5e-6)
-    found = errors(ss.simulate(case.problem, 2.5), truth)
-    assert found.largest < CLAIM
-
-
-def test_steps_meet_a_narrow_bump_in_the_way_of_a_contact_with_mass() -> None:
-    """Slip of 4.0672 m at 4 s (the first engine: 4.0815 m)."""
-    case = bump_case(replace(SLAB, contact_mass=1e3), 0.05, 0.01, 1e7, 4.0)
-    truth = truth_of(case)
-    assert truth.total == pytest.approx(4.0672, abs=5e-5)
-    found = errors(ss.simulate(case.problem, 4.0), truth)
-    assert found.largest < CLAIM
+@pytest.mark.parametrize("name", MET)
+def test_steps_meet_a_feature_on_their_way(name: str) -> None:
+    case, what, known = MET[name]
+    truth, run = truth_of(case), ss.simulate(case.problem, case.duration)
+    assert errors(run, truth).largest < CLAIM
+    if what == "law":
+        assert off_the_law(run) < known
+    else:
+        assert getattr(truth, what) == pytest.approx(known, rel=2e-5)
 
 
 @pytest.mark.parametrize("start", [0.0, 0.2, 0.5, 0.8])

@@ -90,6 +90,9 @@ CASES = {
         {"friction.distance": (0.01, 1.4), "initial.slip": (-0.2, 0.2)},
         pull_rate=1e-3,
     ),
+    "power of slip": case(
+        SLAB, _f.PowerSlipWeakening(0.6, 0.4, 0.2, 0.4), 60.0, {"friction.distance": (0.05, 1.0)}, pull_rate=0.01
+    ),
     "parabolic": case(
         SLAB,
         _f.ParabolicSlipWeakening(0.6, 0.4, 0.4),

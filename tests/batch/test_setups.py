@@ -15,6 +15,7 @@ from stickslip.batch.kernels.tables import Setups
 from stickslip.batch.setups import set_up
 from stickslip.batch.vectorised_problem import groups
 from stickslip.contact.rules.selection import OF_LEVELS
+from stickslip.contact.uniqueness import regime_of
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Params
 from stickslip.engine.state.workspace import counts_in, state_in
@@ -42,8 +43,8 @@ def run(members):
     run_members(scenario, {"friction.alpha": np.linspace(0.9, 1.1, members)}, ("slip", "events"), threads=2)
     return resident()
 
-run(10_000), run(100_000)
-print(run(100_000), run(400_000))
+run(10_000), run(50_000)
+print(run(50_000), run(200_000))
 """
 BYTES_OF_A_MEMBER = 8 * (1 + 2 + 1)
 """What varies, two quantities, status."""
@@ -52,7 +53,7 @@ BYTES_OF_A_MEMBER = 8 * (1 + 2 + 1)
 def test_memory_grows_only_by_the_results_of_each_member() -> None:
     done = subprocess.run([sys.executable, "-c", CODE], capture_output=True, text=True, check=True)
     before, after = (int(word) for word in done.stdout.split())
-    assert after - before < 300_000 * BYTES_OF_A_MEMBER + 12e6  # a history would take thousands of bytes a member
+    assert after - before < 150_000 * BYTES_OF_A_MEMBER + 12e6  # a history would take thousands of bytes a member
 
 
 LEVEL = 4e-16
@@ -110,15 +111,14 @@ def test_branches_of_a_batch_equal_those_of_the_contact_equation(name: str, rule
     key = "friction.alpha" if name == "rate" else "friction.rate"
     critical = ss.uniqueness(scenario.problem).critical_value
     assert critical is not None
-    shares = np.concatenate((10.0 ** np.random.default_rng(2).uniform(-3, 3, 20), 1.0 + np.array([-1e-3, 1e-3, 1e-6, -1e-6])))
+    shares = np.concatenate((10.0 ** np.random.default_rng(2).uniform(-3, 3, 8), 1.0 + np.array([-1e-3, 1e-3, 1e-6, -1e-6])))
     case, values = Case(scenario, {}), {key: critical * shares}
     setups = set_up(scenario, values)
     assert {0.0, 1.0} == set(setups.irregular)
     for n in range(len(shares)):
         problem = one(case, values, n).problem
-        contact = ss.uniqueness(problem)
         setup = prepare(problem, scenario.rtol)[0]
-        assert setups.irregular[n] == (contact.regime == "irregular")
+        assert setups.irregular[n] == (regime_of(problem) == "irregular")
         assert branch_of(setups, n)[:2] == pytest.approx(setup.branches.T[:2], rel=1e-9, abs=0)
         assert branch_of(setups, n)[2:] == pytest.approx(setup.branches.T[2:], rel=0, abs=LEVEL * problem.strength)
         assert Params(row_of(setups.params, n)).stick_to == pytest.approx(

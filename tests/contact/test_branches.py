@@ -59,7 +59,7 @@ def test_the_admissible_set_contains_every_root_of_a_dense_scan(law, slip, share
     assert kinds[within].tolist() == rises[inside].tolist()
 
 
-@settings(max_examples=60)
+@settings(max_examples=30)
 @given(law=KINDS, slip=st.floats(0.0, 3.0), rule=st.sampled_from(SELECTION_RULES))
 def test_jumps_land_on_stable_admissible_rates(law, slip, rule):
     problem = problem_of(law, slip, rule)
@@ -78,7 +78,7 @@ def test_jumps_land_on_stable_admissible_rates(law, slip, rule):
     assert bool(found.jumps) <= (found.regime != "regular")
 
 
-@settings(max_examples=40)
+@settings(max_examples=20)
 @given(law=KINDS, slip=st.floats(0.0, 3.0))
 def test_every_rule_can_be_followed_and_only_delay_has_a_loop(law, slip):
     areas = {}
@@ -93,7 +93,7 @@ def test_every_rule_can_be_followed_and_only_delay_has_a_loop(law, slip):
     assert (areas["perfect-delay"] > 1e-9 * size) <= (found.regime != "regular")
 
 
-@settings(max_examples=60)
+@settings(max_examples=20)
 @given(law=st.sampled_from(["hyperbolic-rate", "exponential-stribeck", "power-stribeck"]).flatmap(laws))
 def test_closed_forms_agree_with_the_critical_normal_stress(law):
     """At a critical value of its own number, the law's critical normal stress is the present one."""
@@ -145,12 +145,6 @@ def test_the_upward_jump_of_the_hyperbolic_law_has_its_closed_form(alpha):
     assert rate_on(resistance(problem), branch, 0.0) == pytest.approx((q_of(alpha) ** 2 - 1) / alpha, rel=1e-13, abs=0)
 
 
-def test_the_rate_near_the_critical_value_is_that_of_the_design():
-    problem = slab_problem(hyperbolic(ALPHA_C + 1e-6))
-    (branch,) = branches(problem)
-    assert rate_on(resistance(problem), branch, 0.0) == pytest.approx(2.60306876818e-5, rel=1e-10, abs=0)
-
-
 @pytest.mark.parametrize(
     ("law", "start"),
     [
@@ -179,12 +173,6 @@ def test_a_branch_has_no_rate_below_its_loads():
     (branch,) = branches(problem)
     with pytest.raises(ValueError, match="no slip rate"):
         rate_on(resistance(problem), branch, branch.excess_from - 1.0)
-
-
-def test_a_block_has_no_contact_equation():
-    block = ss.Problem(ss.SpringBlock(2.8e12, 3.43e13, 1e14), hyperbolic(1.0), initial_excess=0.0)
-    with pytest.raises(ss.InputError, match="block"):
-        branches(block)
 
 
 @dataclass(frozen=True)
@@ -239,21 +227,6 @@ def test_every_root_of_a_dense_scan_is_found(law, slip, share):
         assert scan[i] * (1 - 1e-9) <= rate <= scan[i + 1] * (1 + 1e-9)
     assert kinds[moving].tolist() == (level[crossings + 1] > 0).tolist()
     assert np.all(np.abs(g.excess(rates[moving]) - excess) <= 1e-15 * (S + Z * rates[moving]) * 4)
-
-
-@settings(max_examples=25)
-@given(law=wavy_laws, slip=st.floats(0.0, 10.0))
-def test_branches_are_where_the_resistance_rises(law, slip):
-    g = resistance(slab_problem(law), slip)
-    stable = branches_of(g)
-    ends = [end for b in stable for end in (b.rate_from, b.rate_to)]
-    assert ends == sorted(ends)
-    assert ends[-1] == math.inf
-    scan = np.geomspace(1e-6, 1e3, 20_001)
-    inside = np.any([(b.rate_from < scan) & (scan < b.rate_to) for b in stable], axis=0)
-    slope = g.slope(scan)
-    clear = np.abs(slope) > 1e-9 * Z
-    assert np.array_equal(inside[clear], slope[clear] > 0)
 
 
 def test_friction_without_a_scale_is_searched_at_one_metre_per_second():

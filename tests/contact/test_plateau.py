@@ -73,14 +73,6 @@ def test_bad_axes_are_refused(x, y, message):
         regime_map(slab_problem(hyperbolic(1.0)), Axis(*x), Axis(*y))
 
 
-def test_inertia_has_no_map():
-    axes = Axis("alpha", 0.1, 1.0, 2), Axis("static", 0.1, 1.0, 2)
-    block = ss.Problem(ss.SpringBlock(2.8e12, 3.43e13, 1e14), hyperbolic(1.0), initial_excess=0.0)
-    for problem in (block, slab_problem(hyperbolic(1.0), contact_mass=1.0)):
-        with pytest.raises(ss.InputError):
-            regime_map(problem, *axes)
-
-
 def test_along_slip_a_product_leaves_the_irregular_regime():
     law = F.SlipTimesRate(F.LinearSlipWeakening(0.7, 0.05, 0.4), F.HyperbolicRate(1.0, 0.5, 1.0))
     first, second = regimes_along_slip(slab_problem(law))

@@ -39,16 +39,6 @@ def test_the_loop_of_the_hyperbolic_law_has_the_area_of_the_closed_form(alpha):
     assert loop.area > 0.0
 
 
-@pytest.mark.parametrize("alpha", [0.3, 1.0, 100.0])
-def test_the_area_is_the_integral_of_the_rate_difference_over_the_load(alpha):
-    """Integral over the load of the slip rate on the way down minus that on the way up, by scipy."""
-    integrate = pytest.importorskip("scipy.integrate")
-    found = ss.uniqueness(slab_problem(hyperbolic(alpha)))
-    (branch,) = found.branches
-    area, error = integrate.quad(lambda excess: rate_on(found.resistance, branch, excess), branch.excess_from, 0.0, epsrel=1e-11)
-    assert found.loop_area == pytest.approx(area, rel=1e-9, abs=error)
-
-
 @pytest.mark.parametrize("rule", MEMORYLESS)
 def test_a_rule_without_memory_retraces_its_way(rule):
     for law in (hyperbolic(1.0), Wavy(mean=0.7, amplitude=0.25, beat=2.0, fade=5.0, turn=1.3)):
@@ -126,26 +116,10 @@ def test_the_maxwell_level_of_the_hyperbolic_law_cuts_equal_areas(alpha):
     assert rate_on(resistance(slab_problem(hyperbolic(alpha))), branch, table.stick_to) == pytest.approx(rate, rel=1e-12, abs=0)
 
 
-def test_the_maxwell_level_is_that_of_the_design():
-    (branch,), table = selection_table(slab_problem(hyperbolic(1.0), "maxwell"))
-    assert table.stick_to + 0.8 * S == pytest.approx(67_215_203.566, rel=0, abs=5e-4)
-    assert rate_on(resistance(slab_problem(hyperbolic(1.0))), branch, table.stick_to) == pytest.approx(2.20613081, rel=0, abs=5e-9)
-
-
 def test_the_maxwell_level_just_above_critical_is_three_quarters_of_the_fold():
     # There g - S muS = -a s + b s^2 up to a relative 1e-5, and equal areas lie at 3/4 of the fold's depth
     (branch,), table = selection_table(slab_problem(hyperbolic(ALPHA_C + 1e-6), "maxwell"))
     assert table.stick_to == pytest.approx(0.75 * branch.excess_from, rel=1e-5, abs=0)
-
-
-def test_rules_differ_in_where_the_hyperbolic_law_leaves_rest_and_returns():
-    (branch,), delay = selection_table(slab_problem(hyperbolic(1.0)))
-    fold = branch.excess_from
-    tables = {rule: selection_table(slab_problem(hyperbolic(1.0), rule))[1] for rule in ("minimal", "maximal")}
-    assert (delay.stick_to, delay.keep_from, delay.keep_to) == (0.0, (fold,), (math.inf,))
-    assert (tables["minimal"].stick_to, tables["minimal"].keep_from) == (0.0, (0.0,))
-    assert (tables["maximal"].stick_to, tables["maximal"].keep_from) == (fold, (fold,))
-    assert all(table.keep_to == (math.inf,) for table in tables.values())
 
 
 @pytest.mark.parametrize(
@@ -190,7 +164,7 @@ def best(rule, g, stable, excess):
     return min(alive, key=lambda i: 0.0 if i < 0 else area(g, 0.0, rate_on(g, stable[i], excess), excess))
 
 
-@settings(max_examples=10)
+@settings(max_examples=5)
 @given(law=wavy_laws, slip=st.floats(0.0, 10.0), share=st.floats(-0.5, 1.0), rule=st.sampled_from(SELECTION_RULES[1:]))
 def test_memoryless_rules_agree_with_brute_force(law, slip, share, rule):
     g = resistance(slab_problem(law), slip)

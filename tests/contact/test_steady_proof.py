@@ -83,7 +83,7 @@ def test_two_states_over_the_same_distance_act_as_one(evolution: str):
     assert change.enclosure[0] < exact < change.enclosure[1] < change.enclosure[0] * (1.0 + 1e-6)
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(4))
 def test_blocks_under_two_states_change_where_eigenvalues_do(seed: int):
     """Eigenvalues of four equations of motion, at 15 rates away from the changes; slopes from states alone, by hand."""
     drawn = np.random.default_rng(seed)
@@ -230,7 +230,7 @@ def is_said_stable(found: Any, rate: float) -> bool:
     return not above[0].stable_above if above else bool(found.slidings[0].stable)
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(6))
 def test_laws_drawn_at_random_change_where_eigenvalues_do(seed: int):
     """Eigenvalues of three equations of motion, at 15 rates away from the changes, have the sign that the proof says."""
     drawn = np.random.default_rng(seed)
@@ -250,7 +250,7 @@ def test_laws_drawn_at_random_change_where_eigenvalues_do(seed: int):
             assert roots_are_left(law, body, rate) == is_said_stable(found, rate), rate
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("seed", range(16))
 def test_slabs_drawn_at_random_change_where_eigenvalues_do(seed: int):
     """Eigenvalues of a slab whose waves are polynomials have the sign that the proof says, at 15 rates away from the changes."""
@@ -330,7 +330,7 @@ def close_to_its_edge(drawn: np.random.Generator, slab: ss.ElasticSlab, slopes: 
     return replace(slab, thickness=slab.thickness * (1.0 + width * drawn.uniform(-1.0, 1.0)))
 
 
-@pytest.mark.parametrize("width", [0.0, 1e-2, 0.3])
+@pytest.mark.parametrize("width", [0.0, 0.3])
 @pytest.mark.parametrize("late", [-1.0, 1.0])
 def test_no_slopes_in_a_cell_that_is_decided_have_another_count_of_roots(width: float, late: float):
     """Nyquist's count of roots at slopes in 60 cells: rigid drivers, soft ones and dead loads, with mass and without.

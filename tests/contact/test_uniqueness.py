@@ -6,7 +6,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import stickslip as ss
+from stickslip.contact.branches import branches
+from stickslip.contact.regime_map import regime_map
 from stickslip.contact.uniqueness import regime_of, uniqueness_of
+from stickslip.foundation.axis import Axis
 from stickslip.problem.selection_rule import SELECTION_RULES
 
 from .laws import ALPHA_C, S, Wavy, Z, hyperbolic, q_of, slab_problem
@@ -113,10 +116,23 @@ def test_the_summary_says_why_the_rule_has_no_effect(rule):
         assert (found.regime, found.jumps, found.folds, found.window) == ("regular", (), (), None)
 
 
-def test_a_contact_with_mass_has_no_admissible_rates():
-    found = uniqueness_of(slab_problem(hyperbolic(1.0), contact_mass=10.0))
-    with pytest.raises(ss.InputError, match="state"):
-        found.admissible(7e7)
+NEEDS_A_CONTACT_EQUATION = {
+    "admissible": (lambda problem: uniqueness_of(problem).admissible(7e7), "inertia or a state"),
+    "branches": (branches, "block|contact mass"),
+    "critical value": (lambda problem: ss.studies.critical_value(problem, "alpha"), "block|contact mass"),
+    "map": (lambda problem: regime_map(problem, Axis("alpha", 0.1, 1.0, 2), Axis("static", 0.1, 1.0, 2)), "block|contact mass"),
+}
+
+
+@pytest.mark.parametrize("name", NEEDS_A_CONTACT_EQUATION)
+def test_where_inertia_decides_the_slip_rate_there_is_no_contact_equation(name):
+    ask, message = NEEDS_A_CONTACT_EQUATION[name]
+    block = ss.Problem(ss.SpringBlock(2.8e12, 3.43e13, 1e14), hyperbolic(1.0), initial_excess=0.0)
+    for problem in (block, slab_problem(hyperbolic(1.0), contact_mass=10.0)):
+        if name == "branches" and problem is not block:
+            continue  # those of the contact without its mass
+        with pytest.raises(ss.InputError, match=message):
+            ask(problem)
 
 
 def test_coulomb_friction_is_irregular():

@@ -12,7 +12,6 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import stickslip as ss
-from stickslip.creep import stepper
 from stickslip.creep.pattern import Pattern, monotone_parts
 from stickslip.engine.state.layout import TERMS
 from stickslip.trajectory.history import Epoch, horner
@@ -215,17 +214,6 @@ def test_the_printed_slab_creeps_for_years_without_gaps() -> None:
 
 
 # ---- the machinery ------------------------------------------------------------------------------------------------------------
-
-
-def test_a_leap_that_lands_wrongly_is_undone(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Exact round trips behind the landing do not go on as predicted: as if there had been no leap."""
-    land = stepper.landing
-    monkeypatch.setattr(stepper, "landing", lambda averaged, creep: land(averaged, replace(creep, slip=1.3 * creep.slip)))
-    problem = printed(300)
-    solution, exact = ss.simulate(problem, 70 * ROUND, creep_rtol=1e-3), brute_force(problem, 70)
-    assert len(solution.creep) == 0
-    time = np.linspace(0.0, 70 * ROUND, 1000)
-    np.testing.assert_array_equal(solution.slip(time), exact.slip(time))
 
 
 def test_leaps_are_stored_and_listed_and_shown(tmp_path) -> None:  # type: ignore[no-untyped-def]

@@ -32,10 +32,10 @@ ALPHA_ONE_EVENTS = 57
 MICRO_EVENTS = 8216
 """All of the first generation."""
 ROUNDING = 16 * np.finfo(float).eps
-FAST = Table("", Slab(alpha=1.0, pull_rate=0.1234), 120)
-"""Pulled so fast that whole events break into fragments within the first 350 round trips; worked out here."""
+FAST = Table("", Slab(alpha=1.0, pull_rate=0.1234), 60)
+"""Pulled so fast that whole events break into fragments within the first round trips; worked out here."""
 
-GENERATIONS = Table("", Slab(alpha=JUST_ABOVE_CRITICAL.slab.alpha, pull_rate=3e-7), 400)
+GENERATIONS = Table("", Slab(alpha=JUST_ABOVE_CRITICAL.slab.alpha, pull_rate=3e-7), 120)
 """The second generation of micro-events begins at event 45, the third at 3 961: too long to work out in a test."""
 
 

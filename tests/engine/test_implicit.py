@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any
 
@@ -12,6 +13,7 @@ from scipy.integrate import solve_ivp
 import stickslip as ss
 from stickslip.engine.series.radau_nodes import DERIVATIVE, INTEGRAL, POINT, POINTS, STAGES, interpolate, last_terms
 from stickslip.engine.state.layout import TERMS
+from tests.engine.states_truth import Truth, block_truth
 
 SLAB = ss.ElasticSlab(2800, 3500, 1e4, 1e8)
 STRENGTHENING = ss.friction.VelocityStrengthening(0.6, 0.01, 1e-6)
@@ -135,16 +137,15 @@ def test_a_lag_with_a_direct_effect_agrees_with_scipy() -> None:
     block = ss.SpringBlock(1e3, 1e6, 1e5)
     problem = ss.Problem(block, law, initial_excess=5e3)
 
-    def derivative(t: float, y: Any) -> list[float]:
-        force = problem.load - block.stiffness * y[0] - 1e5 * float(law.coefficient(0.0, max(y[1], 0.0), y[2]))
-        return [y[1], force / block.mass, (y[1] - y[2]) / law.time]
+    def friction(v: float, w: float) -> float:
+        return 0.4 + 0.2 * math.exp(-w / 0.1) + 0.01 * (math.asinh(v / 2e-3) - math.asinh(w / 2e-3))
 
-    times = np.linspace(0.0, 0.04, 30)
-    theirs = solve_ivp(derivative, (0.0, 0.04), [0.0, 0.0, 0.0], method="Radau", rtol=1e-10, atol=1e-14, t_eval=times)
-    run = ss.simulate(problem, 0.04)
+    times, run = np.linspace(0.0, 0.04, 30), ss.simulate(problem, 0.04)
+    one = Truth(law, friction, lambda v, w: ((v - w) / 0.02,))
+    slip, _, state = block_truth(one, block, lambda _: problem.load, (0.0, 0.0, 0.0), times)
     assert run.slip_rate(times).max() > 0.1
-    assert run.slip(times) == pytest.approx(theirs.y[0], rel=0.0, abs=1e-8 * theirs.y[0].max())
-    assert run.state(times) == pytest.approx(theirs.y[2], rel=0.0, abs=1e-7 * theirs.y[2].max())
+    assert run.slip(times) == pytest.approx(slip, rel=0.0, abs=1e-8 * slip.max())
+    assert run.state(times) == pytest.approx(state, rel=0.0, abs=1e-7 * state.max())
 
 
 def test_laws_that_cannot_lag_are_refused() -> None:

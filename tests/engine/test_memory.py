@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -128,19 +127,6 @@ def test_healing_matters_to_the_random_problems() -> None:
     assert matters >= 8
 
 
-@pytest.mark.parametrize("kind", ["slab", "slab with mass"])
-def test_backwards_is_the_mirror_image(kind: str) -> None:
-    body = problems.slab(np.random.default_rng(3), contact_mass=1e6 if kind == "slab with mass" else 0.0)
-    law = F.LinearSlipWeakening(0.6, 0.3, 0.1 * problems.slip_scale(body), memory="since-arrest")
-    pull, load = 0.06 * problems.rate_scale(body), 0.61 * body.normal_stress
-    duration = 9 * body.two_way_time
-    ways = [ss.Problem(body, law, pull_rate=sign * pull, initial_load=sign * load) for sign in (1, -1)]
-    runs = [ss.simulate(way, duration) for way in ways]
-    times = np.linspace(0.0, duration, 301)
-    assert len(runs[0].events) > 1
-    assert runs[1].slip(times) == pytest.approx(-runs[0].slip(times), rel=0.0, abs=1e-9 * float(runs[0].slip(times[-1])))
-
-
 @pytest.mark.parametrize("pull", [1e-3, -1e-3])
 def test_touching_rest_does_not_heal(pull: float) -> None:
     """Stable creep from rest at the strength, v ~ 1 - cos(w t), touches v = 0 once a swing: no arrest, it goes on weakening."""
@@ -218,14 +204,3 @@ def test_a_composite_remembers_as_its_slip_law(kind: str) -> None:
     times = np.linspace(0.0, 20.0, 81)
     assert len(run.events) > 2
     assert run.slip(times) == pytest.approx(theirs.slip(times), rel=0.0, abs=1e-7 * float(run.slip(20.0)))
-
-
-def test_a_saved_run_keeps_what_it_forgot(tmp_path: Path) -> None:
-    run = ss.simulate(pulled(WEAKENING, 0.02), 12.0)
-    again = ss.open_solution(run.to_netcdf(tmp_path / "run.nc"))
-    times = np.linspace(0.0, 12.0, 121)
-    assert len(run.events) > 2
-    assert again.problem == run.problem
-    assert (again.traction(times) == run.traction(times)).all()
-    assert (again.energy(times).heat == run.energy(times).heat).all()
-    assert float(run.traction(times[times > run.events.end[0]]).max()) > 5.0  # healed: 6 N, not 4

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.creep import steady_landing
 from stickslip.creep.steady import Multiplier
 from stickslip.engine_input.limits import PATIENCE
 from stickslip.friction import FrictionLaw
@@ -165,15 +164,6 @@ def test_a_sweep_leaps_as_a_run_does() -> None:
     for excess, slip in zip((0.0, 1e3), found.slip.to_numpy().tolist(), strict=True):
         run = ss.simulate(replace(scenario.problem, initial_excess=excess), 1e7)
         assert slip == float(run.slip(1e7))
-
-
-def test_a_leap_that_lands_wrongly_is_undone(monkeypatch: pytest.MonkeyPatch) -> None:
-    def shifted(run: object, leap: object, deviation: object) -> None:
-        write(run, leap, replace(deviation, load_there=deviation.load_there + 5000.0))  # type: ignore[attr-defined,type-var,arg-type]
-
-    write = steady_landing.write
-    monkeypatch.setattr(steady_landing, "write", shifted)
-    assert len(ss.simulate(CASES["fades at once"], 3.0).creep) == 0
 
 
 def test_an_examination_says_that_no_event_will_come_where_the_run_finds_none() -> None:

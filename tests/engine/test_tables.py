@@ -35,7 +35,7 @@ CASES: dict[str, tuple[ss.Problem, float]] = {
     "events that heal": RUNS["slab that heals"],
     "leaps, rate law": RUNS["rate law, maximal"],
     "leaps, block": RUNS["block that heals"],
-    "micro-events": (ss.load_scenario("fig7-slab-critical").problem, 1.0002e5),
+    "micro-events": (ss.load_scenario("fig7-slab-critical").problem, 9.6e4),
     "contact mass": RUNS["contact mass"],
     "creep": RUNS["rate and state, slab"],
     "left open": (RUNS["slip law, slab"][0], 3.0),

@@ -6,7 +6,6 @@ Tolerances are relative, 1e-9 where the table carries the digits (`digits` says 
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import pytest
 
@@ -157,19 +156,6 @@ def test_block_rate_law() -> None:
     assert close(event.peak_time, "1.839772")
     assert close(event.end, "2.226453818")
     assert close(event.slip, "2.061159848")
-
-
-def test_loop_of_figure_four_walked_by_a_dead_load() -> None:
-    slab = replace(SLAB, driver_impedance=0.0)
-    run = ss.simulate(ss.Problem(slab, RATE_LAW, pull_rate=2.6, initial_load=60e6), 6.0)
-    assert float(run.load(ROUND / 2, side="left")) == pytest.approx(85.48e6, rel=1e-12, abs=0.0)
-    assert float(run.load(ROUND, side="left")) == pytest.approx(60e6, rel=1e-9, abs=0.0)
-    up, down = run.shocks.iloc[0], run.shocks.iloc[1]
-    assert list(run.shocks.cause) == ["fold", "fold"]
-    assert close(up.time, "2.243")
-    assert close(down.time, "5.213")
-    assert up.traction_before == pytest.approx(80e6, rel=1e-12, abs=0.0)
-    assert float(run.load(down.time)) == pytest.approx(64_471_887.242, rel=1e-10, abs=0.0)
 
 
 @pytest.mark.parametrize(("rule", "years"), [("perfect-delay", "468.80"), ("minimal", "468.80"), ("maxwell", "394.26")])

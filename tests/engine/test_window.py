@@ -137,21 +137,6 @@ def test_block_and_slab_catalogues_have_the_same_columns() -> None:
         assert not run.catalogue(0.0, energy=True).drop(columns=may_lack).isna().any(axis=None)
 
 
-def test_columns_of_the_catalogue_agree_with_each_other() -> None:
-    run = ss.simulate(rate_law_slab(selection="maximal"), 380 * ss.YEAR)
-    events = run.events
-    assert len(events) == 3
-    assert events.start.to_numpy() == pytest.approx(events.start_row * ROUND + events.start_offset, rel=1e-15, abs=0.0)
-    assert (events.end - events.start).to_numpy() == pytest.approx(events.duration, rel=0.0, abs=1e-5)
-    assert (events.peak_time - events.start).to_numpy() == pytest.approx(events.peak_after, rel=0.0, abs=1e-5)
-    assert np.isnan(events.recurrence[0])
-    assert events.start.diff()[1:].to_numpy() == pytest.approx(events.recurrence[1:], rel=1e-15, abs=1e-5)
-    assert events.phase.to_numpy() == pytest.approx(events.start_offset / ROUND, rel=1e-15, abs=0.0)
-    assert (events.traction_before - events.traction_after).to_numpy() == pytest.approx(events.traction_drop, rel=0.0, abs=1e-7)
-    before = [float(run.window(n).traction(0.0, side="left")) for n in range(3)]
-    assert events.traction_before.to_numpy() == pytest.approx(before, rel=1e-12, abs=0.0)
-
-
 def test_a_run_without_events_has_the_columns_too() -> None:
     still = ss.simulate(ss.Problem(SLAB, RATE, initial_load=1e6), 10.0)
     table = still.catalogue(energy=True)

@@ -55,16 +55,16 @@ def test_reversals_are_those_of_the_sequence_without_plateaus() -> None:
     assert reversals([1.0, 2.0, 2.0, 3.0]) == 0
 
 
-NOISY: dict[str, Any] = {"friction": measured(RATE_LAW, None, np.linspace(0.0, 2.0, 500), 0.01).friction.tolist()}
+NOISY: dict[str, Any] = {"friction": measured(RATE_LAW, None, np.linspace(0.0, 2.0, 200), 0.01).friction.tolist()}
 
 
 @pytest.mark.parametrize(
     ("law", "fields"),
     [
-        (FromTable, {"rate": np.linspace(0, 2, 500), "friction": NOISY["friction"]}),
-        (FromTable, {"slip": np.linspace(0, 2, 500), "friction": NOISY["friction"]}),
-        (PiecewiseLinearRate, {"rates": np.linspace(0, 2, 500), "coefficients": NOISY["friction"]}),
-        (PiecewiseLinearSlip, {"slips": np.linspace(0, 2, 500), "coefficients": NOISY["friction"]}),
+        (FromTable, {"rate": np.linspace(0, 2, 200), "friction": NOISY["friction"]}),
+        (FromTable, {"slip": np.linspace(0, 2, 200), "friction": NOISY["friction"]}),
+        (PiecewiseLinearRate, {"rates": np.linspace(0, 2, 200), "coefficients": NOISY["friction"]}),
+        (PiecewiseLinearSlip, {"slips": np.linspace(0, 2, 200), "coefficients": NOISY["friction"]}),
     ],
 )
 def test_a_law_through_noisy_points_warns_at_the_users_line(law: Any, fields: dict[str, Any]) -> None:
@@ -75,13 +75,13 @@ def test_a_law_through_noisy_points_warns_at_the_users_line(law: Any, fields: di
 
 def test_an_examination_says_how_many_folds_noise_makes() -> None:
     with warnings.catch_warnings(action="ignore", category=InputWarning):
-        law = FromTable(rate=np.linspace(0, 2, 500), **NOISY)
+        law = FromTable(rate=np.linspace(0, 2, 200), **NOISY)
         problem = ss.Problem(SLAB, law, initial_excess=0.0)
-        few = FromTable(rate=np.linspace(0, 0.4, 100), friction=NOISY["friction"][:100])  # the examination looks along all slips
+        few = FromTable(rate=np.linspace(0, 0.4, 40), friction=NOISY["friction"][:40])  # the examination looks along all slips
         part = ss.friction.SlipPlusRate(ss.friction.ExponentialSlipWeakening(0.2, 0.1, 1.0), few)
         mixed = ss.Problem(SLAB, part, initial_excess=0.0)
     folds = len(ss.uniqueness(problem).folds)
-    assert folds > 100
+    assert folds > 40
     said = examine(Scenario(problem, 12.0)).warnings[0]
     assert said.startswith("the points look noisy (about 0.01 in friction)")
     assert f"they make {folds} folds; smooth them or fit a law with `stickslip fit`" in said

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import stickslip as ss
@@ -144,6 +144,7 @@ def test_everything_else_is_refused_in_one_line(text: str, message: str) -> None
     assert any(part in said for part in message.split("|"))
 
 
+@settings(max_examples=40)
 @given(st.text(max_size=60))
 def test_no_text_does_anything_but_give_a_tree_or_one_line(text: str) -> None:
     _, refusal = tried(text, ("a",))

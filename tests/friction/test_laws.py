@@ -117,7 +117,7 @@ def inside(law: FrictionLaw, i: int, data: st.DataObject) -> tuple[float, float]
 @KINDS
 @given(data=st.data())
 @quick
-def test_friction_stays_in_its_range_and_dissipates(kind: str, data: st.DataObject) -> None:
+def test_friction_stays_in_its_range_is_continuous_at_knots_and_depends_on_what_is_declared(kind: str, data: st.DataObject) -> None:
     law = data.draw(laws(kind))
     low, high = law.range()
     mu = law.coefficient(SLIPS[:, None], RATES)
@@ -129,31 +129,14 @@ def test_friction_stays_in_its_range_and_dissipates(kind: str, data: st.DataObje
     assert (law.static_coefficient(SLIPS) >= mu[:, 0] - 1e-15).all()
     assert 0.0 <= law.variation < math.inf
     assert all(0.0 < scale < math.inf for scale in law.rate_scales)
-
-
-@KINDS
-@given(data=st.data())
-@quick
-def test_friction_is_continuous_at_knots(kind: str, data: st.DataObject) -> None:
-    law = data.draw(laws(kind))
+    assert law.depends_on_slip or np.ptp(mu, axis=0).max() == 0.0
+    assert law.depends_on_rate or np.ptp(mu, axis=1).max() == 0.0
     assert len(law.pieces) == len(law.knots) + 1 == len(law.trees())
     assert list(law.knots) == sorted(set(law.knots))
     for i, knot in enumerate(law.knots):
         at = (knot, 0.3) if law.knot_variable == "slip" else (0.3, knot)
         assert law.piece_at(*at) == i + 1
         assert law.piece_coefficient(i, *at) == pytest.approx(law.piece_coefficient(i + 1, *at), rel=0, abs=1e-12)
-
-
-@KINDS
-@given(data=st.data())
-@quick
-def test_declared_dependence_is_real(kind: str, data: st.DataObject) -> None:
-    law = data.draw(laws(kind))
-    mu = law.coefficient(SLIPS[:, None], RATES)
-    if not law.depends_on_slip:
-        assert np.ptp(mu, axis=0).max() == 0.0
-    if not law.depends_on_rate:
-        assert np.ptp(mu, axis=1).max() == 0.0
 
 
 @KINDS

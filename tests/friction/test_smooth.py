@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from functools import cache
 from typing import Any, Literal
 
@@ -11,8 +10,7 @@ import pytest
 from scipy.interpolate import make_smoothing_spline
 
 import stickslip as ss
-from stickslip.foundation.errors import InputWarning
-from stickslip.friction import FromTable, Points, smooth
+from stickslip.friction import Points, smooth
 from stickslip.friction.custom.penalised_spline import PenalisedSpline
 from stickslip.scenarios.scenario import Scenario, read_scenario
 from tests.problems import RATE_LAW, SLAB, measured
@@ -55,7 +53,7 @@ def hat(x: Any, strength: float) -> Any:
     return np.column_stack([make_smoothing_spline(x, unit, lam=len(x) * strength)(x) for unit in np.eye(len(x))])
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(2))
 def test_cross_validation_finds_the_smallest_score_of_scipys_splines(seed: int) -> None:
     x, y = drawn(40, seed)
     n, spline, smoothed = len(x), PenalisedSpline.of(x, y), cache(lambda strength: hat(x, strength))
@@ -67,7 +65,7 @@ def test_cross_validation_finds_the_smallest_score_of_scipys_splines(seed: int) 
     for inflation in (1.0, 1.4):
         chosen = spline.cross_validated(inflation)
         assert spline.score(chosen, inflation) == pytest.approx(score(chosen, inflation), rel=1e-5)
-        others = np.geomspace(1e-8, 1.0, 17).tolist()
+        others = np.geomspace(1e-8, 1.0, 9).tolist()
         smallest = min(score(one, inflation) for one in others if n > inflation * spline.freedom(one))
         assert spline.score(chosen, inflation) <= smallest * (1.0 + 1e-6)
 
@@ -148,19 +146,16 @@ def test_a_monotone_curve_lies_no_farther_from_a_falling_truth(strength: float, 
 
 def test_the_curve_lies_closer_to_the_truth_than_the_points() -> None:
     truth, errors, residuals = RATE_LAW.coefficient(0.0, RATES), [], []
-    for seed in range(20):
+    for seed in range(8):
         found = smooth(measured(RATE_LAW, None, RATES, 0.01, seed))
         errors.append(np.sqrt(np.mean((found.law.coefficient(0.0, RATES) - truth) ** 2)))
         residuals.append(found.residual)
     assert np.median(errors) < 0.002
-    assert np.mean(residuals) == pytest.approx(0.01, rel=5 / np.sqrt(2 * 20 * 490))
+    assert np.mean(residuals) == pytest.approx(0.01, rel=5 / np.sqrt(2 * 8 * 490))
 
 
 def test_smoothing_removes_the_folds_that_noise_made() -> None:
-    with warnings.catch_warnings(action="ignore", category=InputWarning):
-        exact = ss.Problem(SLAB, FromTable(NOISY), initial_excess=0.0)
     found = smooth(NOISY)
-    assert len(ss.uniqueness(exact).folds) > 100
     (fold,) = ss.uniqueness(ss.Problem(SLAB, found.law, initial_excess=0.0)).folds
     (true,) = ss.uniqueness(ss.Problem(SLAB, RATE_LAW, initial_excess=0.0)).folds
     assert fold.rate == pytest.approx(true.rate, rel=0.05)

@@ -165,3 +165,18 @@ def test_an_own_history_runs_and_is_saved_once_it_is_known(tmp_path: Path, monke
     loaded = ss.open_solution(mine.to_netcdf(tmp_path / "mine.nc"))
     assert loaded.problem == mine.problem
     assert (loaded.slip(times) == mine.slip(times)).all()
+
+
+def test_a_run_says_how_it_is_loaded() -> None:
+    said = repr(ss.simulate("stress-pulse-slab"))
+    assert "loading   pull rate 0 m/s, far stress piecewise-linear, 5.9 MPa at first, initial load 5.9 MPa" in said
+    said = repr(ss.simulate("tides-block"))
+    assert "loading   pull rate sinusoidal, 0.035 m/year at first, initial load 59 TN" in said
+    assert "loading   pull rate 0.05 m/year, initial load 80 MPa" in repr(ss.simulate("fig6-slab"))
+
+
+def test_an_export_says_how_it_is_loaded(tmp_path: Path) -> None:
+    run = ss.simulate("stress-pulse-slab")
+    head = run.to_scec(tmp_path / "wave.txt", 10.0).read_text(encoding="utf-8").splitlines()
+    assert "# pull_rate=0 m/s" in head
+    assert "# far_stress=piecewise-linear, 5.9 MPa at first" in head

@@ -2,6 +2,7 @@
 
 import contextlib
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from unittest.mock import patch
 
@@ -14,22 +15,30 @@ from tests.docs.pages import PAPER, run_page
 
 
 @pytest.fixture(scope="package")
-def verdicts() -> dict[int, ClaimVerdict]:
-    runs = Runs()
-    return {number: measure(runs) for number, measure in CLAIMS.items()}
+def made(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[int, ClaimVerdict]]:
+    """The folder that the command on the page about the paper writes, and its verdicts; the other examples of the page run, too."""
+    home, steps, found = tmp_path_factory.mktemp("page"), list[str](), dict[int, ClaimVerdict]()
 
-
-@pytest.fixture(scope="package")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder that the command on the page about the paper writes. The page's other examples, which read it, are run, too."""
-    home, steps = tmp_path_factory.mktemp("page"), list[str]()
+    def kept(number: int, measure: Callable[[Runs], ClaimVerdict], runs: Runs) -> ClaimVerdict:
+        return found.setdefault(number, measure(runs))
 
     def make_deep(out: Path, tell: Callable[[str], None]) -> Path:
         made = make(out.with_name("deep") / "folder", lambda step: (steps.append(step), tell(step)))
         made.parent.rename(out)
         return out / made.name
 
-    with contextlib.chdir(home), patch("stickslip.paper.make", make_deep):
+    claims = {number: partial(kept, number, measure) for number, measure in CLAIMS.items()}
+    with contextlib.chdir(home), patch("stickslip.paper.make", make_deep), patch.dict(CLAIMS, claims):
         run_page(PAPER, whole=True)
     assert len(steps) == 8 + 20 + 2
-    return home / "paper"
+    return home / "paper", found
+
+
+@pytest.fixture(scope="package")
+def verdicts(made: tuple[Path, dict[int, ClaimVerdict]]) -> dict[int, ClaimVerdict]:
+    return made[1]
+
+
+@pytest.fixture(scope="package")
+def folder(made: tuple[Path, dict[int, ClaimVerdict]]) -> Path:
+    return made[0]

@@ -41,7 +41,7 @@ def test_a_uniform_contact_has_the_energies_of_the_slab_in_1d(driver: str) -> No
     slab = replace(SLAB, driver_impedance=IMPEDANCES[driver])
     problem = ss.Problem(slab, LAW, initial_excess=5e6, **DRIVERS[driver])
     exact = ss.simulate(problem, 2.5 * SLAB.two_way_time)
-    run = ss.simulate(ss.PlanarSlab(problem, nodes=8, length=250.0), 2.5 * SLAB.two_way_time, frames=1280)
+    run = ss.simulate(ss.PlanarSlab(problem, nodes=8, length=250.0), 2.5 * SLAB.two_way_time, frames=640)
     times = np.linspace(0.1, 14.0, 20)
     found, wanted = run.energy(times), exact.energy(times)
     heat = float(wanted.heat[-1])

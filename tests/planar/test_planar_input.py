@@ -97,13 +97,6 @@ def test_what_is_for_problems_refuses_a_planar_slab(call: Any) -> None:
     assert "\n" not in str(error.value)
 
 
-def test_progress_is_told() -> None:
-    told: list[Any] = []
-    ss.simulate(patch(**GRID), 3.0, frames=10, progress=told.append)
-    assert str(told[-1]).startswith("3 of 3 s, slips at up to") or "of 3 s" in str(told[-1])
-    assert [one.time for one in told] == sorted(one.time for one in told)
-
-
 ROUGH = np.random.default_rng(1)
 PLACES = (32, 16)
 STATES = ss.Problem(

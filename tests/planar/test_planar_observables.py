@@ -111,13 +111,3 @@ def test_films_of_too_little_are_refused(tmp_path: Path) -> None:
     with pytest.raises(ss.InputError, match=r"fault\.avi: the name must end in \.gif"):
         run.plot.animation(tmp_path / "fault.avi")
     assert list(tmp_path.iterdir()) == []
-
-
-def test_a_dataset_has_axes_with_units() -> None:
-    found = ss.simulate(patch(nodes=32, length=2e4), 1.0, frames=10).dataset()
-    assert found.slip.dims == ("time", "y")
-    assert {name: found[name].attrs["units"] for name in ("time", "y", "slip_rate")} == {
-        "time": "s",
-        "y": "m",
-        "slip_rate": "m s-1",
-    }

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +14,6 @@ from stickslip.schemes.contract import Meeting, Series
 from stickslip.schemes.implicit import Elements
 from stickslip.schemes.run import SCHEMES, SEARCHES, GridContact, grid_of, run_scheme
 from stickslip.schemes.sbp import NORMS, difference
-from stickslip.studies.benchmarks import judge_series
 from stickslip.studies.regularisations import LAB
 from stickslip.studies.scheme_measures import arrest_in, period_of, pulses_in
 from stickslip.studies.schemes import schemes
@@ -123,22 +121,6 @@ def test_pulses_and_arrest_are_counted_as_in_the_events() -> None:
     assert pulses_in(np.zeros(5), 1e-6) == 0
     assert arrest_in(np.arange(10.0), rate, 1e-6) == 8.0
     assert np.isnan(arrest_in(np.arange(3.0), np.array([0.0, 1.0, 1.0]), 1e-6))
-
-
-def test_a_series_of_another_program_is_judged(tmp_path: Path) -> None:
-    run = ss.simulate(LOOP)
-    file = run.to_scec(tmp_path / "other.txt", 200.0) if hasattr(run, "to_scec") else None
-    time = np.linspace(0.0, 5.7, 1141)
-    if file is None:
-        file = tmp_path / "other.csv"
-        rows = np.column_stack([time, run.slip(time), run.slip_rate(time), run.traction(time)])
-        np.savetxt(file, rows, delimiter=",", header="time_s,slip_m,slip_rate_m_per_s,traction_Pa", comments="")
-    study = judge_series(read_series(file), LOOP)
-    row = study.table.iloc[0]
-    assert (row.rule, row.scheme, row.pulses) == ("perfect-delay", "other", 1)
-    assert row.slip_error < 1e-9
-    wrong = replace(read_series(file), slip=1.5 * read_series(file).slip)
-    assert judge_series(wrong, LOOP).table.rule.iloc[0] == "none"
 
 
 def test_files_keep_every_number(tmp_path: Path) -> None:

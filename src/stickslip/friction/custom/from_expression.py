@@ -284,12 +284,15 @@ class FromExpression(RemembersSlip):
         """
         if not self.evolution:
             return None
-        changes = [partial(evaluate, tree, self.numbers(), 0.0) for tree in self._changes]
-        found = [steady([partial(change, rate) for change in changes]) for rate in np.ravel(v)]
-        if any(one is None for one in found):
+        rates = np.ravel(np.asarray(v, float))
+
+        def change(tree: Expression, cases: NDArray[np.int64], *states: NDArray[np.float64]) -> NDArray[np.float64]:
+            return np.asarray(evaluate(tree, self.numbers(), 0.0, rates[cases], *states))
+
+        found = steady([partial(change, tree) for tree in self._changes], len(rates))
+        if found is None:
             return None
-        shape = np.shape(v) if len(changes) == 1 else (len(changes), *np.shape(v))
-        return np.reshape(np.transpose(np.array(found, float)), shape)
+        return found.reshape(np.shape(v) if len(found) == 1 else (len(found), *np.shape(v)))
 
     @property
     @override

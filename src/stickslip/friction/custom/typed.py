@@ -56,53 +56,57 @@ def read_evolution(text: str, taken: tuple[str, ...]) -> dict[str, str]:
     return equations
 
 
-def steady(changes: Sequence[Callable[..., Floats]]) -> tuple[float, ...] | None:
-    """Return the steady values of one or two states, whose rates of change are functions of all states, or None.
+def steady(changes: Sequence[Callable[..., Floats]], many: int) -> Floats | None:
+    """Return the steady values of one or two states in each of many cases, shape (states, cases); None if one has none.
 
-    Each state in turn takes its steady value while the other is held, until nothing changes any more.
+    The rates of change are functions of the places of cases and of all states. Each state in turn takes its steady value while the
+    other is held, until nothing changes any more in any case; a case that has settled is left as it is.
     """
-    states = [0.0] * len(changes)
+    states, open_ = np.zeros((len(changes), many)), np.arange(many)
     for _ in range(ROUNDS):
-        before = tuple(states)
+        before = states[:, open_]
         for n, change in enumerate(changes):
-            found = _steady(partial(_with_others, change, states, n))
+            found = _steady(partial(_with_others, change, open_, states[:, open_], n), len(open_))
             if found is None:
                 return None
-            states[n] = found
-        if np.allclose(states, before, rtol=SETTLED, atol=0.0) or len(states) == 1:
-            return tuple(states)
+            states[n, open_] = found
+        if len(changes) == 1:
+            return states
+        settled = np.isclose(states[:, open_], before, rtol=SETTLED, atol=0.0).all(axis=0)
+        open_ = open_[~settled]
+        if not len(open_):
+            return states
     return None
 
 
-def _with_others(change: Callable[..., Floats], states: list[float], n: int, one: Floats) -> Floats:
+def _with_others(change: Callable[..., Floats], cases: NDArray[np.int64], states: Floats, n: int, one: Floats) -> Floats:
     """Return a rate of change for many values of state n, with the other state as it is."""
-    return change(*states[:n], one, *states[n + 1 :])
+    return change(cases, *states[:n], one, *states[n + 1 :])
 
 
-def _steady(change: Callable[[Floats], Floats]) -> float | None:
-    """Return the stable steady state nearest 0, or None: its rate of change falls through zero as the state grows.
+def _steady(change: Callable[[Floats], Floats], many: int) -> Floats | None:
+    """Return in each case the stable steady state nearest 0: its rate of change falls through zero as the state grows.
 
-    The state returns there after a disturbance. If the rate of change is zero at every state, the result is 0.
+    The state returns there after a disturbance. If the rate of change is zero at every state, the result is 0. The result is None
+    if there is a case without any.
     """
+    states = STATES[:, None]
     with np.errstate(all="ignore"):
-        sign = np.sign(np.broadcast_to(change(STATES), STATES.shape))
-        if (sign == 0.0).all() or sign[len(SIZES)] == 0.0:
-            return 0.0
-        falls = np.flatnonzero((sign[:-1] > 0.0) & (sign[1:] < 0.0))
-        exact = np.flatnonzero(sign == 0.0)
-        if not len(falls):
-            return float(STATES[exact[np.argmin(abs(STATES[exact]))]]) if len(exact) else None
-        k = falls[np.argmin(abs(STATES[falls]))]
+        sign = np.sign(np.broadcast_to(change(states), (len(STATES), many)))
+        at_zero = (sign == 0.0).all(axis=0) | (sign[len(SIZES)] == 0.0)
+        falls, exact = (sign[:-1] > 0.0) & (sign[1:] < 0.0), sign == 0.0
+        if not (at_zero | falls.any(axis=0) | exact.any(axis=0)).all():
+            return None
+        k, other = (np.where(mask, abs(states[: len(mask)]), np.inf).argmin(axis=0) for mask in (falls, exact))
         low, high = STATES[k], STATES[k + 1]
         for _ in range(HALVINGS):
             middle = 0.5 * (low + high)
-            if not low < middle < high:
+            cuts = (low < middle) & (middle < high)
+            if not cuts.any():
                 break  # no float lies between them
-            if float(change(np.array([middle]))[0]) > 0.0:
-                low = middle
-            else:
-                high = middle
-        return float(high)
+            rises = np.broadcast_to(change(middle) > 0.0, (many,))
+            low, high = np.where(cuts & rises, middle, low), np.where(cuts & ~rises, middle, high)
+    return np.where(at_zero, 0.0, np.where(falls.any(axis=0), high, STATES[other]))
 
 
 LARGEST_RATE = 10.0
