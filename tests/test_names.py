@@ -1,26 +1,24 @@
-"""Names, symbols and units stand in one table: a body of a new kind needs one more row of it to be spoken of rightly everywhere."""
+"""Names, symbols and units stand in one table: a body that turns is spoken of rightly everywhere by its row of it."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 import pytest
 import xarray as xr
 from matplotlib import pyplot
 
 import stickslip as ss
-from stickslip.bodies import BODIES, as_block
+from stickslip.bodies import as_block
 from stickslip.cli.output.summary import show_solution
 from stickslip.explorer.model.solve import solve
 from stickslip.explorer.page.panels import view_of
 from stickslip.foundation.names import (
-    KINDS,
     QUANTITIES,
-    KindOfBody,
     for_readers,
     in_files,
     name_of,
@@ -32,23 +30,17 @@ from stickslip.foundation.show import brief, with_unit
 from stickslip.scenarios.scenario import Scenario
 
 
-@dataclass(frozen=True)
-class Rotor(ss.SpringBlock):
-    """A made-up body: a disc on a torsion spring, which slips by an angle under torques."""
-
-    kind: ClassVar[str] = "rotor"
-    load_unit: ClassVar[str] = "N m"
+def turning(problem: ss.Problem) -> ss.Problem:
+    """Return the problem of a block with a disc in its place, which slips by an angle under torques."""
+    block = as_block(problem.body)
+    return replace(problem, body=ss.RotatingBlock(block.mass, block.stiffness, block.normal_force))
 
 
 @pytest.fixture
-def rotor(monkeypatch: pytest.MonkeyPatch) -> Scenario:
-    """A scenario of the made-up body, for which nothing is added but a row of the table and the name in scenario files."""
-    monkeypatch.setitem(KINDS, "N m", KindOfBody("rad", "J", "torque", {"traction": "friction torque", "load": "spring torque"}))
-    monkeypatch.setitem(BODIES, Rotor.kind, Rotor)
+def rotor() -> Scenario:
+    """A scenario of a body that turns."""
     scenario = ss.load_scenario("fig5-block-reconstructed-k")
-    block = as_block(scenario.problem.body)
-    body = Rotor(mass=block.mass, stiffness=block.stiffness, normal_force=block.normal_force)
-    return replace(scenario, problem=replace(scenario.problem, body=body))
+    return replace(scenario, problem=turning(scenario.problem))
 
 
 def test_units_of_a_new_kind_follow_from_its_row(rotor: Scenario) -> None:
@@ -56,7 +48,7 @@ def test_units_of_a_new_kind_follow_from_its_row(rotor: Scenario) -> None:
     words = ("slip", "event_slip", "slip_rate", "peak_rate", "load", "traction", "energy", "heat", "friction", "time", "kg")
     assert [si_unit(word, "N m") for word in words] == ["rad", "rad", "rad/s", "rad/s", "N m", "N m", "J", "J", "1", "s", "kg"]
     assert (si_unit("slip"), si_unit("load"), si_unit("energy")) == ("m or rad", "Pa or N or N m", "J/m^2 or J")
-    assert (name_of("traction", "N m"), name_of("slip_rate", "N m")) == ("friction torque", "slip rate")
+    assert (name_of("traction", "N m"), name_of("slip_rate", "N m")) == ("friction torque", "rotation rate")
     assert readable_unit("N m", 2.5e4) == ("kN m", 1e3)
     assert (with_unit(2.5e4, "N m"), brief(2.5e4, "N m"), with_unit(1e-6, "rad/s")) == (
         *("25 kN m", "25 kN m"),
@@ -100,22 +92,19 @@ def test_figures_name_the_quantities_of_a_new_kind(rotor: Scenario) -> None:
     plot = ss.simulate(rotor).plot
     drawn: Any = {name: getattr(plot, name)().axes[0].get_ylabel() for name in ("slip", "slip_rate", "traction", "load", "energy")}
     assert drawn == {
-        "slip": "slip $u$ (rad)",
-        "slip_rate": "slip rate $v$ (rad/s)",
+        "slip": "angle $u$ (rad)",
+        "slip_rate": "rotation rate $v$ (rad/s)",
         "traction": r"friction torque $\tau$ (TN m)",
-        "load": r"spring torque $\beta$ (TN m)",
+        "load": r"load torque $\beta$ (TN m)",
         "energy": "energy (TJ)",
     }
-    assert "friction and\nspring torque (TN m)" in [axes.get_ylabel() for axes in plot().axes]
-    assert {"slip (rad)", "slip $u$ (rad)"} <= {axes.get_ylabel() for axes in plot.catalogue().axes}
-    assert plot.friction(against="slip").axes[0].get_xlabel() == "slip $u$ (rad)"
+    assert "friction and\nload torque (TN m)" in [axes.get_ylabel() for axes in plot().axes]
+    assert {"angle (rad)", "angle $u$ (rad)"} <= {axes.get_ylabel() for axes in plot.catalogue().axes}
+    assert plot.friction(against="slip").axes[0].get_xlabel() == "angle $u$ (rad)"
 
 
 def test_steady_sliding_of_a_new_kind_has_its_units(rotor: Scenario) -> None:
-    problem = ss.load_scenario("rate-and-state-block").problem
-    block = as_block(problem.body)
-    body = Rotor(mass=block.mass, stiffness=block.stiffness, normal_force=block.normal_force)
-    axes = ss.studies.steady(replace(problem, body=body)).plot().axes[0]
+    axes = ss.studies.steady(turning(ss.load_scenario("rate-and-state-block").problem)).plot().axes[0]
     assert [text.partition(" (")[2] for text in (axes.get_xlabel(), axes.get_ylabel())] == ["rad/s)", "MN m)"]
 
 
@@ -127,14 +116,14 @@ def test_tables_and_sentences_have_the_units_of_a_new_kind(rotor: Scenario, caps
     assert {"rad", "rad/s"} <= set(text.split())
     assert "of the normal torque" in text
     assert re.search(r"largest slip [\d.]+ rad, peak rate [\d.]+ rad/s", repr(run))
-    assert {"slip (m or rad)", "static_drop (Pa or N or N m)"} <= set(ss.studies.compare(run, run)._shown_table().index)
+    assert {"slip (rad)", "static_drop (N m)"} <= set(ss.studies.compare(run, run)._shown_table().index)
 
 
 def test_the_explorer_names_the_quantities_of_a_new_kind(rotor: Scenario) -> None:
     view = view_of(solve(rotor))
     assert [view.titles[name] for name in ("slip", "rate", "traction")] == [
-        "Slip u (rad)",
-        "Slip rate v (rad/s)",
+        "Angle u (rad)",
+        "Rotation rate v (rad/s)",
         "Friction torque τ (TN m)",
     ]
     assert [(one["symbol"], one["unit"]) for one in view.facts["read"]] == [("u", "rad"), ("v", "rad/s"), ("τ", "TN m")]

@@ -3,7 +3,7 @@
 # What slides, what resists it, what drives it
 # Many runs
 from . import figures, friction, loading, studies
-from .bodies import ElasticSlab, SpringBlock
+from .bodies import ElasticSlab, RotatingBlock, SpringBlock, TorsionalString
 from .explorer.notebook import explore
 
 # One run
@@ -28,8 +28,10 @@ __all__ = [
     "InputError",
     "PlanarSlab",
     "Problem",
+    "RotatingBlock",
     "Solution",
     "SpringBlock",
+    "TorsionalString",
     "catalogue",
     "explore",
     "figures",

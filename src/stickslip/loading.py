@@ -21,12 +21,13 @@ from typing_extensions import override
 
 from stickslip.foundation.conversion import Number, Numbers, unit_among
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.names import si_unit
 from stickslip.foundation.quantities import NumberSeries, Quantity, check_fields, declare, fields_of, quantity
 from stickslip.foundation.show import Declared, brief_repr
 
-VARYING = "m/s or m/s^2 or Pa or N"
-"""Unit of the varying quantity: m/s for a pull rate or a velocity of the ground, m/s^2 for its acceleration, Pa for a far stress or
-a normal stress, N for a normal force.
+VARYING = f"{si_unit('slip_rate')} or {si_unit('slip_acceleration')} or {si_unit('load')}"
+"""Unit of the varying quantity: m/s or rad/s for a pull rate or a velocity of the ground, m/s^2 or rad/s^2 for its acceleration,
+and Pa, N or N m for a far stress or a normal load.
 """
 
 
@@ -73,7 +74,7 @@ class LoadingHistory(Declared, ABC):
     """Plausible values of the fields, in the form of a scenario file."""
 
     unit: str = VARYING
-    """Unit of the values, "m/s", "m/s^2", "Pa" or "N", if they were given with one; plain numbers fit all."""
+    """Unit of the values, such as "m/s" or "Pa", if they were given with one; plain numbers fit all."""
 
     def __post_init__(self) -> None:
         units = [unit for value in self._varying() if (unit := unit_among(value, VARYING))]
@@ -246,4 +247,14 @@ HISTORIES: dict[str, type[LoadingHistory]] = {
 }
 """Every built-in loading history by its name in scenario files."""
 
-__all__ = ["HISTORIES", "HoldAndSlide", "LoadingHistory", "PiecewiseLinear", "Segment", "Sinusoidal", "Steps", "Tone"]
+__all__ = [
+    "HISTORIES",
+    "VARYING",
+    "HoldAndSlide",
+    "LoadingHistory",
+    "PiecewiseLinear",
+    "Segment",
+    "Sinusoidal",
+    "Steps",
+    "Tone",
+]

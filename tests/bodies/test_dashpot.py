@@ -34,9 +34,14 @@ WEAKENING = ss.friction.LinearSlipWeakening(0.8, 0.5, 2.0)
 
 
 def test_no_body_of_the_package_has_one_beside_its_waves() -> None:
-    plain = {"slab": ss.ElasticSlab(2800, 3500, 1e4, 1e8), "block": ss.SpringBlock(1.0, 1e3, 10.0, damping=2.0)}
-    assert {type(body) for body in plain.values()} == set(BODIES.values())
-    assert not any(has_dashpot(body) for body in plain.values())
+    plain = (
+        ss.ElasticSlab(2800, 3500, 1e4, 1e8),
+        ss.SpringBlock(1.0, 1e3, 10.0, damping=2.0),
+        ss.RotatingBlock(1.0, 1e3, 10.0, damping=2.0),
+        ss.TorsionalString(2e3, 7850.0, 8e10, polar_moment=1e-5, normal_torque=10.0),
+    )
+    assert {type(body) for body in plain} == set(BODIES.values())
+    assert not any(has_dashpot(body) for body in plain)
     assert has_dashpot(SLAB)
 
 

@@ -19,7 +19,7 @@ LOSSY = replace(SLAB, driver_impedance=2e6)
 BLOCK = ss.SpringBlock(2.8e12, 3.43e13, 1e14)
 LAW = ss.friction.LinearSlipWeakening(0.8, 0.7, 0.1)
 STEPS = Steps([0.0, 1.0], [1.0, 2.0])
-VALUE = 'a number in m/s or m/s^2 or Pa or N, or a text with a unit such as "10 m/s"'
+VALUE = f'a number in {VARYING}, or a text with a unit such as "10 m/s"'
 HINT = "; what varies in time is one of stickslip.loading, such as Steps([0.0, 10.0], [1e-6, 1e-5])"
 NUMBER = 'a number in {0} or a text with a unit such as "10 {0}", got {1}'
 FAR = "Problem: far_stress and far_stress_rate need a slab with a finite driver_impedance"
@@ -76,7 +76,7 @@ class Bare(LoadingHistory):
     [
         (lambda: Steps(5, [1]), "Steps: times must be a list of numbers in s, got int"),  # type: ignore[arg-type]
         (lambda: Steps([0, 1], [1, 2, 3]), "Steps: 2 times but 3 values"),
-        (lambda: Steps([0, 1], "ab"), "Steps: values must be a list of numbers in m/s or m/s^2 or Pa or N, got str"),
+        (lambda: Steps([0, 1], "ab"), f"Steps: values must be a list of numbers in {VARYING}, got str"),
         (lambda: Steps([0, 1], [1, "a"]), f"Steps: values[1] must be {VALUE}, got 'a'"),
         (lambda: Steps([0, 2, 1], [1, 2, 3]), "Steps: times must ascend, but [2] = 1 follows 2; sort the points"),
         (lambda: Steps([0, 0], [1, 2]), "Steps: times must ascend, but [1] = 0 follows 0; keep one point of each, or their mean"),

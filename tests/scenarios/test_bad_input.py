@@ -12,6 +12,7 @@ LENGTH = 'must be a number in m or a text with a unit such as "10 m"'
 DENSITY = 'must be a number in kg/m^3 or a text with a unit such as "10 kg/m^3"'
 STRESS = 'must be a number in Pa or a text with a unit such as "10 Pa"'
 CREEP = "must be 0 (no leaps over creep, every round trip is run) or at most 0.01"
+BODIES = "elastic-slab, rotating-block, spring-block, torsional-string"
 FAR = "far_stress and far_stress_rate need a slab with a finite driver_impedance"
 
 CASES = [
@@ -36,8 +37,8 @@ CASES = [
     ("thickness =", '"th ick\\n" =', "[body] 'th ick\\n' is unknown; did you mean 'thickness'?"),
     ('thickness = "10 km"\n', "", "[body] thickness is missing: thickness h, in m, above 0"),
     ('kind = "elastic-slab"', 'kind = "elastic-slap"', "[body] kind 'elastic-slap' is unknown; did you mean 'elastic-slab'?"),
-    ('kind = "elastic-slab"', "kind = 3", "[body] kind 3 is unknown; allowed: elastic-slab, spring-block"),
-    ('kind = "elastic-slab"\n', "", "[body] kind is missing; allowed: elastic-slab, spring-block"),
+    ('kind = "elastic-slab"', "kind = 3", f"[body] kind 3 is unknown; allowed: {BODIES}"),
+    ('kind = "elastic-slab"\n', "", f"[body] kind is missing; allowed: {BODIES}"),
     ('kind = "hyperbolic-rate"', 'kind = "hyperbolic"', "[friction] kind 'hyperbolic' is unknown; did you mean 'hyperbolic-rate'?"),
     ("static = 0.8", 'static = "0.8"', "[friction] static must be a number, got '0.8': write a number without quotes"),
     ("static = 0.8", "static = -0.8", "[friction] static must be at least 0 (a pure number), got -0.8"),

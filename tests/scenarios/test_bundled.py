@@ -15,7 +15,7 @@ YEAR = 31_557_600.0
 
 SHAKEN = ("sliding-block-shaken", "sliding-slab-shaken")
 VARYING = (*SHAKEN, "slide-hold-slide-block", "stress-pulse-slab", "tides-block", "velocity-steps-block")
-LABORATORY = ("bowed-string-slab", "direct-shear-block", "granite-slab", "kolsky-slab", "reversing-axis")
+LABORATORY = ("bowed-string-slab", "direct-shear-block", "drill-string", "granite-slab", "kolsky-slab", "reversing-axis")
 PLANAR = ("planar-patch", "planar-plane")
 CYCLES = ("cycles-block", "cycles-slab", "rate-and-state-block", "rate-and-state-slab")
 OURS = ("block-or-slab", *LABORATORY, *CYCLES, *VARYING, *PLANAR)

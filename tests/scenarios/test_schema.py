@@ -9,23 +9,24 @@ import tomli_w
 from hypothesis import given
 from hypothesis import strategies as st
 
-from stickslip import ElasticSlab, InputError, Problem, SpringBlock
+from stickslip import ElasticSlab, InputError, Problem, SpringBlock, TorsionalString
 from stickslip.bodies import BODIES
-from stickslip.foundation.quantities import LawField, fields_of, quantities_of, quantity
+from stickslip.foundation.quantities import LawField, quantities_of, quantity
 from stickslip.friction import LAWS, FrictionLaw
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.scenarios import templates
-from stickslip.scenarios.entries import describe, key_of
+from stickslip.scenarios.entries import describe
 from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
 from stickslip.scenarios.schema import entries_in, quantities_in
 
 
 def values(kind: type) -> str:
-    return "".join(f"{name} = 1.5\n" for name, (_, default) in quantities_in("body", kind).items() if default is MISSING)
+    more = "polar_moment = 1.5\nnormal_torque = 1.5\n" if kind is TorsionalString else ""
+    return more + "".join(f"{name} = 1.5\n" for name, (_, default) in quantities_in("body", kind).items() if default is MISSING)
 
 
 def document(body: type, law: type) -> str:
-    example = {key_of(name, entry): law.example[name] for name, (entry, _) in fields_of(law).items() if name in law.example}
+    example = templates.example_of(law, body.load_unit)
     friction = (
         tomli_w.dumps({"friction": {"kind": law.kind} | example}) if example else f'[friction]\nkind = "{law.kind}"\n{values(law)}'
     )
@@ -87,13 +88,14 @@ def test_starters_explain_every_key_and_run_as_they_are(name: str) -> None:
 def test_a_starter_with_any_law_explains_every_key_of_it(name: str, law: type[FrictionLaw]) -> None:
     text = templates.template(name, law.kind)
     assert type(read_scenario(text, name).problem.friction) is law
-    for key, (declared, _) in entries_in("friction", law).items():
+    load_unit = read_scenario(text, name).problem.load_unit
+    for key, (declared, _) in entries_in("friction", law, (), load_unit).items():
         place = (f"{key} = ", f"[friction.{key}]")
         assert any(line.lstrip("# ").startswith(place) for line in text.splitlines())
         assert isinstance(declared, LawField) or describe(declared) in text
     with pytest.raises(InputError, match=r"^new: \[friction\] kind 'hyperbolic' is unknown; did you mean 'hyperbolic-rate'\?$"):
         templates.template(name, "hyperbolic")
-    with pytest.raises(InputError, match=r"^new: only slab, lab-slab and block take a friction law; fig6-slab has its own$"):
+    with pytest.raises(InputError, match=r"^new: only slab, .* and string take a friction law; fig6-slab has its own$"):
         templates.template("fig6-slab", "coulomb")
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.batch.kernels.reduction import COLUMNS
-from stickslip.bodies import MACHINE, ElasticSlab
+from stickslip.bodies import MACHINE, BodyOnCharacteristics, BodyWithWaves, ElasticSlab, TorsionalString, as_waves
 from stickslip.contact.rules.selection import OF_LEVELS
 from stickslip.engine.compile.uncompiled import UNCOMPILED
 from stickslip.engine.state.layout import Floats
@@ -122,9 +122,12 @@ def are_fine(scenario: Scenario, values: Values) -> Booleans:
     with np.errstate(all="ignore"):  # members that are refused already may overflow or divide by zero
         longest = MOST_ROUND_TRIPS * np.asarray(problem.round_trip_time)
         fine &= np.asarray(values.get("run.duration", scenario.duration)) <= longest
-    if isinstance(body, ElasticSlab):
-        if body.p_wave_speed is not None:
-            fine &= np.asarray(body.p_wave_speed > body.wave_speed * math.sqrt(4 / 3))
+    if isinstance(body, ElasticSlab) and body.p_wave_speed is not None:
+        fine &= np.asarray(body.p_wave_speed > body.wave_speed * math.sqrt(4 / 3))
+    if isinstance(body, TorsionalString) and body.outer_diameter is not None:
+        fine &= np.asarray(body.inner_diameter < body.outer_diameter)
+    if body.has_waves:
+        body = as_waves(body)
         if scenario.shortest_event is not None and scenario.shortest_event > 0.0:
             fine &= driven_rigidly(body) & (scenario.shortest_event <= LARGEST_SHARE * np.asarray(body.two_way_time))
         pushed = (problem.far_stress is not None) | (np.asarray(problem.far_stress_rate) != 0.0)
@@ -132,8 +135,8 @@ def are_fine(scenario: Scenario, values: Values) -> Booleans:
     return fine
 
 
-def driven_rigidly(body: ElasticSlab) -> Booleans:
-    """Return True for the slabs whose driver reflects everything with the opposite sign (reflection coefficient r = -1)."""
+def driven_rigidly(body: BodyWithWaves) -> Booleans:
+    """Return True for the bodies whose driver reflects everything with the opposite sign (reflection coefficient r = -1)."""
     driver = np.asarray(body.driver_impedance)
     with np.errstate(invalid="ignore"):  # inf / inf
         return np.isinf(driver) | ((body.impedance - driver) / (body.impedance + driver) == RIGID)
@@ -148,9 +151,9 @@ def groups(scenario: Scenario, values: Values) -> Iterator[tuple[int, Places, di
     problem, count = _members(scenario, values), len(next(iter(values.values())))
     kind = np.broadcast_to(4 * pieces_at_start(problem), (count,)).copy()
     body = problem.body
-    if isinstance(body, ElasticSlab):
-        rigid = driven_rigidly(body)
-        kind += 2 * rigid + (np.asarray(body.contact_mass) > 0.0)
+    if body.has_waves:
+        rigid = driven_rigidly(as_waves(body))
+        kind += 2 * rigid + (np.asarray(body.inertia) > 0.0)
         if "body.driver_impedance" in values:  # a driver with r = -1 to rounding is rigid, whatever its finite impedance
             values = {**values, "body.driver_impedance": np.where(rigid, math.inf, body.driver_impedance)}
     for one in np.unique(kind):
@@ -198,15 +201,20 @@ def _of_law(scenario: Scenario, parameters: Sequence[str]) -> Iterator[str]:
         yield f"{name}: memory '{law.memory}' is not followed by a batch"
     if problem.initial_rate is not None or "initial.rate" in parameters:
         yield "[initial] rate: a batch starts from rest"
-    if not law.sticks and (problem.body.has_inertia or "body.contact_mass" in parameters):
+    if not law.sticks and (problem.body.has_inertia or _varies_mass(problem.body, parameters)):
         yield f"{name}: a contact with mass that never sticks starts at a slip rate of its own"
     if problem.folds_move:
         yield f"{name}: branches of the contact equation move with slip"
-    chooses = is_algebraic(problem) or ("body.contact_mass" in parameters and law.depends_on_rate)
+    chooses = is_algebraic(problem) or (_varies_mass(problem.body, parameters) and law.depends_on_rate)
     if chooses and problem.rule not in OF_LEVELS:
         yield f"selection rule '{problem.rule}' is calculated for one problem at a time; a batch supports {', '.join(OF_LEVELS)}"
     if not law.variation < float("inf") or not law.range()[1] < float("inf"):
         yield f"{name}: friction grows without bound"
+
+
+def _varies_mass(body: BodyOnCharacteristics, parameters: Sequence[str]) -> bool:
+    """Return True if a parameter is the mass of a contact that may have none."""
+    return body.has_waves and f"body.{as_waves(body).mass_field}" in parameters
 
 
 def _of_parameters(scenario: Scenario, parameters: Sequence[str]) -> Iterator[str]:

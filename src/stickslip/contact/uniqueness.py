@@ -25,6 +25,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import quantities_of
 from stickslip.foundation.show import brief, html_table
 from stickslip.friction.law import rises_with_rate
+from stickslip.problem.parameters import normal_name
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SELECTION_RULES
 from stickslip.resistance import Branch, Plateau, Resistance
@@ -276,7 +277,7 @@ def _critical(problem: Problem, g: Resistance, slip: float | None) -> tuple[str,
     value = nearest_critical(problem, name, slip) if name else None
     if value is not None:
         return name, value
-    return None if stress is None else ("normal_stress", stress)
+    return None if stress is None else (normal_name(problem), stress)
 
 
 def _folds(g: Resistance, stable: tuple[Branch, ...], proof: Certificate) -> tuple[Fold, ...]:

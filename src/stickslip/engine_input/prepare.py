@@ -25,7 +25,6 @@ from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief
 from stickslip.loading import LoadingHistory
-from stickslip.problem.parameters import normal_field
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SelectionRule
 
@@ -78,7 +77,7 @@ def check_unique(problem: Problem) -> None:
     """Raise InputError if the normal load varies, and a contact without mass may have several slip rates under the largest one."""
     if problem.normal_load is None or problem.body.has_inertia or problem.friction.states:
         return
-    body, name = problem.body, normal_field(problem)
+    body, name = problem.body, problem.body.normal_field
     most = replace(problem, body=replace(body, **{name: problem.normal_load.highest}), normal_load=None)
     if problem.friction.depends_on_rate and regime_of(most) != "regular":
         at = f"under {brief(most.normal, problem.load_unit)}"

@@ -6,9 +6,11 @@ Files, figures, tables, the explorer and records read this. A unit may depend on
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -23,21 +25,36 @@ class KindOfBody:
     slip: str
     energy: str
     loads: str
+    impedance: str
     names: Mapping[str, str] = field(default_factory=dict)
     """Names of quantities where they differ from those in `QUANTITIES`."""
+    moves: str = "slides"
+    """What a contact does, for messages."""
 
 
 KINDS = {
-    "Pa": KindOfBody("m", "J/m^2", "stress"),
-    "N": KindOfBody("m", "J", "force", {"traction": "friction force", "load": "spring force"}),
+    "Pa": KindOfBody("m", "J/m^2", "stress", "Pa s/m"),
+    "N": KindOfBody("m", "J", "force", "N s/m", {"traction": "friction force", "load": "spring force"}),
+    "N m": KindOfBody(
+        "rad",
+        "J",
+        "torque",
+        "N m s",
+        {
+            **{"slip": "angle", "event_slip": "angle in the event", "slip_rate": "rotation rate"},
+            **{"peak_rate": "peak rotation rate", "traction": "friction torque", "load": "load torque"},
+            **{"displacement": "angle", "velocity": "rotation rate", "stress": "torque"},
+        },
+        "turns",
+    ),
 }
-"""Each kind of body by the SI unit of its loads: a slab's are stresses, a block's are forces."""
+"""Each kind of body by the SI unit of its loads: a slab's are stresses, a block's are forces, those of what turns are torques."""
 
 
 class Name(NamedTuple):
     """Name and symbol (mathtext without dollar signs) of a quantity, its SI unit, and its meaning in files.
 
-    The unit may be "slip", "slip_rate", "load" or "energy": it then depends on the body.
+    The unit may be "slip", "slip_rate", "load", "load_rate", "stiffness", "impedance" or "energy": it then depends on the body.
     """
 
     name: str
@@ -45,6 +62,9 @@ class Name(NamedTuple):
     unit: str
     meaning: str = ""
 
+
+TURNS = "N m"
+"""Unit of the loads of bodies that turn."""
 
 QUANTITIES = {
     "time": Name("time", "t", "s", "time since the start of the run"),
@@ -71,8 +91,12 @@ QUANTITIES = {
     "duration": Name("duration", r"\delta t", "s"),
     "peak_rate": Name("peak slip rate", "v_{max}", "slip_rate"),
     "heat": Name("friction heat", "", "energy"),
+    "displacement": Name("displacement", "u", "slip"),
+    "velocity": Name("velocity", r"\dot u", "slip_rate"),
+    "stress": Name("shear stress", r"\sigma", "load"),
 }
-"""The curves of a run by their names in `Solution.curve`, what a record may hold of samples and of slip events, and heat.
+"""The curves of a run by their names in `Solution.curve`, what a record may hold of samples and of slip events, heat, and the field
+inside a body with waves.
 
 The unit of a state is that of its law.
 """
@@ -84,7 +108,7 @@ GREEK = {
 """Greek letters by the names under which declarations and formulas write them."""
 
 _PREFIXES = ((1e12, "T"), (1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"))
-_PREFIXED = ("Pa", "Pa/m", "Pa s/m", "Pa m/s", "N", "N/m", "N s/m", "J", "J/m²")
+_PREFIXED = ("Pa", "Pa/m", "Pa s/m", "Pa m/s", "N", "N/m", "N s/m", "N m/rad", "N m s", "N m^2", "J", "J/m²")
 """Units that are read with a prefix, besides those of loads."""
 _READABLE = {
     "s": ((YEAR, "year"), (86_400.0, "day"), (1.0, "s"), (1e-3, "ms"), (1e-6, "µs")),
@@ -96,6 +120,8 @@ _SHORT = {
     "m": (("km", 1e3), ("mm", 1e-3), ("um", 1e-6)),
     "s": (("years", YEAR), ("ms", 1e-3)),
     "m/s": (("km/s", 1e3), ("mm/s", 1e-3), ("um/s", 1e-6), ("m/year", 1.0 / YEAR)),
+    "rad": (("deg", math.pi / 180.0),),
+    "rad/s": (("rpm", math.pi / 30.0),),
 }
 """Units, with their sizes in SI units, among which the shortest text of one number is looked for (`show.brief`)."""
 DECADES = 1e6
@@ -108,11 +134,31 @@ def si_unit(what: str, *load_units: str) -> str:
     Any other text is a unit already. Different units are joined, as in "Pa or N"; by default they are those of all kinds of bodies.
     """
     known = QUANTITIES[what].unit if what in QUANTITIES else what
-    units = []
-    for load in load_units or KINDS:
-        kind = KINDS[load]
-        units.append({"slip": kind.slip, "slip_rate": f"{kind.slip}/s", "load": load, "energy": kind.energy}.get(known, known))
-    return " or ".join(dict.fromkeys(units))
+    return " or ".join(dict.fromkeys(_of_kind(load).get(known, known) for load in load_units or KINDS))
+
+
+@cache
+def _of_kind(load_unit: str) -> Mapping[str, str]:
+    """Return the units of a kind of body by the words that columns name in their place."""
+    kind = KINDS[load_unit]
+    units = {"slip": kind.slip, "slip_rate": f"{kind.slip}/s", "slip_acceleration": f"{kind.slip}/s^2"}
+    units |= {"load": load_unit, "load_rate": f"{load_unit}/s", "stiffness": f"{load_unit}/{kind.slip}"}
+    return units | {"impedance": kind.impedance, "energy": kind.energy}
+
+
+@cache
+def own_units(load_unit: str) -> Mapping[str, str]:
+    """Return the units that take the place of those in which laws, loading histories and problems are declared.
+
+    Declared are m, m/s, m/s^2, s/m, 1/m, Pa and Pa/s, and "Pa or N or N m" for a load; a body whose loads have the unit `load_unit`
+    may slip by an angle.
+    """
+    slip = KINDS[load_unit].slip
+    units = {si_unit("load"): load_unit}
+    if slip != "m":
+        units |= {one: one.replace("m", slip) for one in ("m", "m/s", "m/s^2", "s/m", "1/m")}
+        units |= {"Pa": load_unit, "Pa/s": f"{load_unit}/s"}
+    return units
 
 
 def name_of(quantity: str, load_unit: str = "Pa") -> str:

@@ -19,10 +19,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.foundation.arguments import shown
-from stickslip.foundation.conversion import as_text, has_unit, to_number
+from stickslip.foundation.conversion import as_text, has_unit, to_number, unit_among
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.units import si_base
 
+_BY_ANGLE = {"m": "rad", "m/s": "rad/s", "s/m": "s/rad", "1/m": "1/rad"}
+"""Units in which a law is declared, with those that its numbers have where the contact turns."""
 LARGEST_WHOLE = 16
 """Largest magnitude of a whole-numbered quantity; such quantities are exponents."""
 LARGEST, SMALLEST = 1e50, 1e-50
@@ -320,6 +322,24 @@ def check_fields(owner: Any, but: Collection[str] = (), units: Mapping[str, str]
         value = getattr(owner, name)
         if name not in but and (value is not None or default is not None):
             object.__setattr__(owner, name, in_units(declared, units).check(type(owner).__name__, name, value))
+
+
+def given_in(owner: Any) -> str:
+    """Return "rad" if a field that is declared in m, m/s, s/m or 1/m was given with an angle in its unit, "m" if as declared.
+
+    Returns "" if no such field was given with a unit.
+    """
+    found = ""
+    for name, (declared, _) in fields_of(type(owner)).items():
+        item, value = declared.item if isinstance(declared, NumberSeries) else declared, getattr(owner, name)
+        if not (isinstance(item, Quantity) and item.unit in _BY_ANGLE):
+            continue
+        turned = _BY_ANGLE[item.unit]
+        for one in value if isinstance(value, list | tuple) else (value,):
+            if isinstance(one, str) or has_unit(one):
+                unit = unit_among(one, f"{item.unit} or {turned}")
+                found = "rad" if unit == turned else found or ("m" if unit else "")
+    return found
 
 
 def in_units(declared: _Declared, units: Mapping[str, str]) -> _Declared:

@@ -193,17 +193,23 @@ def shown_fields(owner: Any, units: Mapping[str, str] = MappingProxyType({})) ->
             continue
         if declared is None and field.name in plain:
             declared = Quantity(plain[field.name], "")
-        yield field.name, _text(value, in_units(declared, units) if declared else None)
+        if isinstance(declared, LawField) and units:
+            yield field.name, brief_repr(value, units)
+        else:
+            yield field.name, _text(value, in_units(declared, units) if declared else None)
 
 
-def fields_in(owner: Any, place: str) -> Iterator[tuple[str, str, str]]:
-    """Yield name, value and meaning of each declared field of a body, a law or a history; names begin with `place`."""
+def fields_in(owner: Any, place: str, units: Mapping[str, str] = MappingProxyType({})) -> Iterator[tuple[str, str, str]]:
+    """Yield name, value and meaning of each declared field of a body, a law or a history; names begin with `place`.
+
+    `units` are as for `in_units`.
+    """
     for name, (declared, _) in fields_of(type(owner)).items():
         value = getattr(owner, name)
         if isinstance(declared, LawField):
-            yield from ((f"{place}{name}", type(value).__name__, declared.meaning), *fields_in(value, f"{place}{name}."))
+            yield from ((f"{place}{name}", type(value).__name__, declared.meaning), *fields_in(value, f"{place}{name}.", units))
         elif value is not None:
-            yield f"{place}{name}", _text(value, declared).strip("'"), declared.meaning
+            yield f"{place}{name}", _text(value, in_units(declared, units)).strip("'"), declared.meaning
 
 
 def _same(value: Any, default: Any) -> bool:

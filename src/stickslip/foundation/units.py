@@ -19,6 +19,7 @@ LONGEST = 64
 COMMON_UNITS = (
     *("m", "mm", "cm", "km", "s", "ms", "min", "hour", "day", "year", "kg", "tonne", "m/s", "m/year"),
     *("Pa", "kPa", "MPa", "GPa", "bar", "N", "kN", "MN", "GN", "kg/m^3", "g/cm^3", "N/m", "GN/m", "Pa s/m", "1/m", "s/m"),
+    *("rad", "deg", "rad/s", "rpm", "kg m^2", "N m", "kN m", "N m s", "N m/rad"),
 )
 """Units among which the nearest one to an unknown name is looked for; every unit of the unit library is accepted."""
 Dimensions = dict[str, int]
@@ -31,13 +32,18 @@ UNIT = rf"(?:/\s*)?{_FACTOR}(?:\s*[*/ ]\s*{_FACTOR})*"
 _ONE_FACTOR = re.compile(rf"(?P<stroke>/?)\s*(?P<name>{_NAME})(?:\s*(?:\^|\*\*)\s*(?P<power>-?[1-9]))?")
 _WHOLE = re.compile(rf"1?\s*{UNIT}\s*")
 _QUANTITY = re.compile(rf"\s*(?P<number>[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{{1,3}})?)(?:\s+1(?=/)|\s*)(?P<unit>{UNIT})\s*")
+_PER_TURN = re.compile(r"(Hz|hertz)(?![A-Za-z])")
+"""A frequency: the unit library has it as 1/s, where drillers and turners mean turns per second."""
 _BASES = ("[length]", "[mass]", "[time]")
 _PREFIXES = {
     **{"p": -12, "n": -9, "u": -6, "µ": -6, "m": -3, "c": -2, "d": -1, "h": 2, "k": 3, "M": 6, "G": 9, "T": 12},
     **{"pico": -12, "nano": -9, "micro": -6, "milli": -3, "centi": -2, "kilo": 3, "mega": 6, "giga": 9, "tera": 12},
 }
 """Powers of ten."""
+_PI = Fraction("3.1415926535897932384626433832795028841971693993751")
+"""Pi as in pint."""
 _SYMBOLS = {
+    "rad": (1, (0, 0, 0)),
     "m": (1, (1, 0, 0)),
     "g": (1, (0, 1, 0)),
     "s": (1, (0, 0, 1)),
@@ -51,7 +57,7 @@ _SYMBOLS = {
 _NAMES = {
     **{"meter": "m", "metre": "m", "gram": "g", "second": "s", "newton": "N", "pascal": "Pa", "joule": "J", "watt": "W"},
     **{"meters": "m", "metres": "m", "grams": "g", "seconds": "s", "newtons": "N", "pascals": "Pa", "joules": "J", "watts": "W"},
-    "hertz": "Hz",
+    **{"hertz": "Hz", "radian": "rad", "radians": "rad"},
 }
 """Names that take a prefix that is a name, and their symbols."""
 _OTHERS: dict[str, tuple[int | Fraction, tuple[int, ...]]] = {
@@ -66,6 +72,9 @@ _OTHERS: dict[str, tuple[int | Fraction, tuple[int, ...]]] = {
     "bar": (100_000_000, (-1, 1, -2)),
     "mbar": (100_000, (-1, 1, -2)),
     "kbar": (100_000_000_000, (-1, 1, -2)),
+    **dict.fromkeys(("deg", "degree", "degrees"), (_PI / 180, (0, 0, 0))),
+    **dict.fromkeys(("turn", "turns", "revolution", "revolutions"), (2 * _PI, (0, 0, 0))),
+    "rpm": (_PI / 30, (0, 0, -1)),
 }
 """Units that are not taken apart into a prefix and a symbol. A year is the Julian one."""
 
@@ -124,6 +133,8 @@ def si_factor(unit: str, si: str) -> Fraction:
     target, wanted = _read_unit(si)
     if dimensionality != wanted:
         raise InputError(f"'{unit}' does not convert to {si}")
+    if "rad" in si and _PER_TURN.search(unit):
+        raise InputError(f"'{unit}' may be turns or radians per second: write rpm or rad/s")
     return factor / target
 
 

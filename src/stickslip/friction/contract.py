@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import check_fields
+from stickslip.foundation.names import TURNS, own_units
+from stickslip.foundation.quantities import LawField, check_fields, fields_of, given_in
 from stickslip.foundation.show import Declared
 
 Formula = Callable[..., Any]
@@ -202,8 +203,19 @@ class LawContract(Declared, ABC):
 
     # ---------------------------------------------------------------------------------------------------------------------------
 
+    @property
+    def slips_in(self) -> str:
+        """The unit of slip, "m" or "rad", in which numbers of the law were given with a unit; "" if none was.
+
+        A law of plain numbers fits a contact that slides, where they are in m and m/s, and one that turns: in rad and rad/s.
+        """
+        parts = [getattr(self, name).slips_in for name, (one, _) in fields_of(type(self)).items() if isinstance(one, LawField)]
+        return next((one for one in (vars(self).get("_slips_in", ""), *parts) if one), "")
+
     def __post_init__(self) -> None:
-        check_fields(self)
+        given = given_in(self)
+        object.__setattr__(self, "_slips_in", given)
+        check_fields(self, units=own_units(TURNS) if given == "rad" else {})
         self.check()
         if len(self.states) - self.given > MOST_STATES:
             raise InputError(f"{type(self).__name__}: a law has at most {MOST_STATES} states, this one {len(self.states)}")

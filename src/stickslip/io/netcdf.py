@@ -17,7 +17,7 @@ from stickslip.foundation import netcdf_file
 from stickslip.foundation.arguments import as_path, for_users
 from stickslip.foundation.constants import PAPER
 from stickslip.foundation.errors import InputError, printable
-from stickslip.foundation.names import QUANTITIES, in_files, si_unit
+from stickslip.foundation.names import QUANTITIES, in_files, name_of, si_unit
 from stickslip.foundation.netcdf_file import FullDiskError, Variable, write_variables
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.io.soundness import check_history, history_table, number
@@ -138,10 +138,9 @@ def _field(readings: Readings, t: NDArray[np.float64], x: NDArray[np.float64]) -
     """Return displacement (m), velocity (m/s) and shear stress (Pa) over times t (s) and distances x (m) from the contact."""
     found = readings.field(x, t[:, None])._asdict()
     since = "since the event began, from where the contact stood then" if "event_slip" in readings.curves else "u"
+    load_unit, symbols = readings.problem.load_unit, {"displacement": since, "velocity": "v", "stress": "sigma"}
     about = {
-        "displacement": ("m", f"displacement, {since}"),
-        "velocity": ("m s-1", "velocity, v"),
-        "stress": ("Pa", "shear stress, sigma"),
+        name: (in_files(si_unit(name, load_unit)), f"{name_of(name, load_unit)}, {symbol}") for name, symbol in symbols.items()
     }
     return {name: Variable(("time", "x"), found[name], {"units": unit, "long_name": text}) for name, (unit, text) in about.items()}
 

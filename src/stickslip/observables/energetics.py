@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stickslip.bodies import as_slab
+from stickslip.bodies import as_waves
 from stickslip.foundation.arrays import Floats
 from stickslip.observables.energy.balance import epochs, event_energies, kinetic
 from stickslip.observables.energy.pulses import Pulses
@@ -83,11 +83,11 @@ def _energies(history: History, begin: Positions, end: Positions) -> dict[str, F
 
 
 def _of_slab(history: History, begin: Positions, end: Positions) -> dict[str, Floats]:
-    body = as_slab(history.problem.body)
+    body = as_waves(history.problem.body)
     waves, radiation = Waves(history, body), Radiation(history, body)
     first, last = epochs(history, begin), epochs(history, end)
     before, after = (np.array([kinetic(waves, epoch) for epoch in moments]) for moments in (first, last))
-    contact = 0.5 * body.contact_mass * (history.rate(end) ** 2 - history.rate(begin) ** 2)
+    contact = 0.5 * body.inertia * (history.rate(end) ** 2 - history.rate(begin) ** 2)
     return {
         "kinetic": after - before + contact,
         "radiated": np.array([radiation.work_between(*span) for span in zip(first, last, strict=True)]),

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.bodies import ElasticSlab, as_slab
+from stickslip.bodies import BodyWithWaves, as_waves
 from stickslip.engine.state.layout import TERMS
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
@@ -60,8 +60,8 @@ def field(history: History, slip: Callable[[ArrayLike], Floats], x: ArrayLike, t
     """
     body = slab_of(history.problem)
     place, time = np.broadcast_arrays(np.asarray(x, float), np.asarray(t, float))
-    if not np.all((place >= 0.0) & (place <= body.thickness)):
-        raise InputError(f"field: x must lie between 0 (the contact) and the thickness, {body.thickness:g} m (the driver)")
+    if not np.all((place >= 0.0) & (place <= body.distance)):
+        raise InputError(f"field: x must lie between 0 (the contact) and {body.distance:g} m (the driver)")
     if side not in get_args(Side):
         raise InputError(f"side must be 'left' or 'right', got {side!r}")
     at_contact = np.broadcast_to(slip(t), time.shape)  # raises InputError for times outside the run
@@ -78,9 +78,9 @@ def field(history: History, slip: Callable[[ArrayLike], Floats], x: ArrayLike, t
     return Field(*(np.reshape(values, place.shape) for values in (displacement, velocity, stress)))
 
 
-def slab_of(problem: Problem) -> ElasticSlab:
+def slab_of(problem: Problem) -> BodyWithWaves:
     """Return the slab of a problem. Raises InputError for a block."""
-    return as_slab(problem.body, "field: a block is rigid and has no interior field: only an ElasticSlab has a field")
+    return as_waves(problem.body, "field: a block is rigid and has no interior field: only a slab or a string has one")
 
 
 class _InsideOfSlab:

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.bodies import ElasticSlab
+from stickslip.bodies import BodyWithWaves
 from stickslip.engine_input.forcing import Inflow, inflow_of, wave_before
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import RIGID
@@ -76,7 +76,7 @@ class FromMachine:
 class Waves:
     """Integrals over the waves in a slab; energies are in J/m^2."""
 
-    def __init__(self, history: History, body: ElasticSlab) -> None:
+    def __init__(self, history: History, body: BodyWithWaves) -> None:
         self.history, self.body = history, body
         self.reference, self.excess = history.problem.strength, history.problem.excess
         self.round, self.half = body.two_way_time, 0.5 * body.two_way_time
@@ -89,7 +89,7 @@ class Waves:
     def leaving(self, at: Positions) -> Floats:
         """Return w plus the reference, Pa. Where the ground moves, the contact moves with it."""
         leaving = 2.0 * self.body.impedance * self.history.rate(at) - self.history.excess(at)
-        ground, mass = self.history.problem.ground, self.body.contact_mass
+        ground, mass = self.history.problem.ground, self.body.inertia
         if ground is None:
             return leaving
         times = self.history.times_inside(at)

@@ -57,7 +57,7 @@ def cases_table(runs: Runs) -> pd.DataFrame:
 
 
 def _stacked(runs: Runs, table: str, units: Mapping[str, str]) -> pd.DataFrame:
-    shown = {name: si_unit(unit) for name, unit in units.items() if unit not in ("", "1")}
+    shown = {name: si_unit(unit, "Pa", "N") for name, unit in units.items() if unit not in ("", "1")}
     parts: dict[str, pd.DataFrame] = {name: getattr(runs.case(name), table) for name in READINGS}
     # Leave out cases without a row: they would make the types of the columns ambiguous.
     whole = pd.concat([part.assign(case=name) for name, part in parts.items() if len(part)], ignore_index=True)

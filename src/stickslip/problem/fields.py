@@ -14,8 +14,8 @@ from stickslip.bodies import BODIES, MACHINE, BodyOnCharacteristics
 from stickslip.foundation.arguments import CheckedArguments, check_type, is_number, shown
 from stickslip.foundation.conversion import Converted, Number, OptionalNumber, WithUnit
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.names import si_unit
-from stickslip.foundation.quantities import Quantity, check_fields, quantities_of, quantity
+from stickslip.foundation.names import KINDS, TURNS, own_units, si_unit
+from stickslip.foundation.quantities import Quantity, check_fields, in_units, quantities_of, quantity
 from stickslip.friction import FrictionLaw
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.friction.custom.from_function import as_law
@@ -33,7 +33,7 @@ MAY_VARY = ("pull_rate", "far_stress", *HISTORIES_ONLY)
 A_HISTORY = "; what varies in time is one of stickslip.loading, such as Steps([0.0, 10.0], [1e-6, 1e-5])"
 """Hint for a value that is no number."""
 LOAD = si_unit("load")
-"""Unit of a load: Pa on a slab, N on a block."""
+"""Unit of a load: Pa on a slab, N on a block, N m on what turns."""
 CONSTANT = {"normal_load": "a constant one is normal_stress or normal_force of the body"}
 """Hints for a number in place of what is nothing but a history."""
 SAME = 1e-12
@@ -88,11 +88,12 @@ class ProblemFields(CheckedArguments):
         if isinstance(self.body, FrictionLaw) and isinstance(self.friction, bodies):
             names = f"{shown(self.body)} as body and {shown(self.friction)} as friction"
             raise InputError(f"Problem: body comes first, then friction: got {names}")
-        check_type("Problem: body", self.body, bodies, "an ElasticSlab or a SpringBlock")
+        check_type("Problem: body", self.body, bodies, " or ".join(body.__name__ for body in bodies))
         object.__setattr__(self, "friction", as_law("Problem: friction", self.friction))
         self._check_varying()
         steady = ("initial_rate",) if str(self.initial_rate) == STEADY else ()
-        check_fields(self, but=(*self._varying, *steady), units={LOAD: self.body.load_unit})
+        check_fields(self, but=(*self._varying, *steady), units=own_units(self.body.load_unit))
+        self._check_kind()
         self._check_slip()
         self._check_load()
         self._check_state()
@@ -102,11 +103,10 @@ class ProblemFields(CheckedArguments):
 
     def _check_varying(self) -> None:
         for name in MAY_VARY:
-            value, declared = getattr(self, name), quantities_of(type(self))[name]
+            value, declared = getattr(self, name), in_units(quantities_of(type(self))[name], own_units(self.body.load_unit))
             if isinstance(value, LoadingHistory):
-                unit = self.body.load_unit if declared.unit == LOAD else declared.unit
-                if value.unit not in (VARYING, unit):
-                    raise InputError(f"Problem: {name} must be in {unit}, got a history of values in {value.unit}")
+                if value.unit not in (VARYING, declared.unit):
+                    raise InputError(f"Problem: {name} must be in {declared.unit}, got a history of values in {value.unit}")
             elif name in HISTORIES_ONLY and value is not None:
                 hint = f": {CONSTANT[name]}" if name in CONSTANT else A_HISTORY
                 raise InputError(f"Problem: {name} must be a loading history, got {shown(value)}{hint}")
@@ -141,7 +141,7 @@ class ProblemFields(CheckedArguments):
             raise InputError("Problem: only one of the ground and the pull may have a sinusoid: give the other as straight lines")
 
     def _check_normal_load(self, history: LoadingHistory) -> None:
-        unit, field_name = self.body.load_unit, "normal_stress" if self.body.has_waves else "normal_force"
+        unit, field_name = self.body.load_unit, self.body.normal_field
         if not history.lowest > 0.0:
             raise InputError(
                 f"Problem: normal_load must stay above 0 {unit}, but may fall to {history.lowest:g}: the contact would open"
@@ -157,6 +157,16 @@ class ProblemFields(CheckedArguments):
         if (self.initial_load is None) == (self.initial_excess is None) and not (steady and self.initial_load is None):
             found = "neither" if self.initial_load is None else "both"
             raise InputError(f"Problem: needs either initial_load or initial_excess (load minus static strength), got {found}")
+
+    def _check_kind(self) -> None:
+        """Raise InputError if the numbers of the law were given with units of length, and the contact turns, or the other way."""
+        kind, law = KINDS[self.body.load_unit], self.friction
+        if law.slips_in not in ("", kind.slip):
+            name, units = type(self.body).__name__, f"{kind.slip} and {kind.slip}/s" + " (or deg and rpm)" * (kind.slip == "rad")
+            raise InputError(
+                f"Problem: friction: {type(law).__name__} has numbers in {law.slips_in} or {law.slips_in}/s, but a contact of "
+                f"{name} {kind.moves}: give them in {units}"
+            )
 
     def _check_slip(self) -> None:
         try:
@@ -182,7 +192,8 @@ class ProblemFields(CheckedArguments):
                 raise InputError(f"Problem: needs {field_name}, the {state.meaning}, in {state.unit}")
             signed = state.signed or state.reverses
             above = None if law.sticks or signed else 0.0
-            declared = Quantity(state.unit, state.meaning, above=above, at_least=None if signed else 0.0)
+            unit = own_units(self.body.load_unit).get(state.unit, state.unit)
+            declared = Quantity(unit, state.meaning, above=above, at_least=None if signed else 0.0)
             if isinstance(value, str) and value == STEADY:
                 _ = self._steady_states  # refuses where there is none
                 continue
@@ -194,7 +205,8 @@ class ProblemFields(CheckedArguments):
 
     def _check_far_side(self) -> None:
         if self.body.is_driven_rigidly and (self.far_stress is not None or self.far_stress_rate != 0.0):
-            raise InputError("Problem: far_stress and far_stress_rate need a slab with a finite driver_impedance")
+            what = "string" if self.body.load_unit == TURNS else "slab"
+            raise InputError(f"Problem: far_stress and far_stress_rate need a {what} with a finite driver_impedance")
 
     def _check_one_way(self) -> None:
         if not isinstance(self.one_way, bool):

@@ -13,6 +13,7 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError, full_name
+from stickslip.foundation.names import own_units
 from stickslip.foundation.other_values import with_values
 from stickslip.foundation.quantities import (
     Choice,
@@ -120,29 +121,29 @@ class Parameters(Mapping[str, Parameter[P]], Generic[P]):
 
 def entries_of(problem: ProblemFields) -> Iterator[ProblemEntry]:
     """Yield every entry of a problem that can have another value, given or not: numbers, and words such as those of a law."""
-    yield from _entries_in(problem.friction, "friction")
+    units = own_units(problem.load_unit)
+    yield from _entries_in(problem.friction, "friction", units)
     yield from _entries_in(problem.body, "body")
     for name in LOADING:
-        declared, value = quantities_of(type(problem))[name], getattr(problem, name)
+        declared, value = in_units(quantities_of(type(problem))[name], units), getattr(problem, name)
         varies = isinstance(value, LoadingHistory)
         if name not in HISTORIES_ONLY:
             yield ProblemEntry(f"loading.{name}", declared, None if varies else value)
         if varies:
-            unit = problem.load_unit if name == "normal_load" else declared.unit
-            yield from _entries_in(value, f"loading.{name}", {VARYING: unit})
+            yield from _entries_in(value, f"loading.{name}", {VARYING: declared.unit})
     yield from _of_start(problem)
 
 
 def _of_start(problem: ProblemFields) -> Iterator[ProblemEntry]:
     """Yield the entries of the start. An initial load replaces an initial excess, and an excess a load."""
-    declared = quantities_of(type(problem))
+    units = own_units(problem.load_unit)
+    declared = {name: in_units(one, units) for name, one in quantities_of(type(problem)).items()}
     yield ProblemEntry("initial.slip", declared["initial_slip"], problem.initial_slip)
     for name in ("load", "excess"):
-        one = replace(declared[f"initial_{name}"], unit=problem.load_unit)
-        yield ProblemEntry(f"initial.{name}", one, getattr(problem, f"initial_{name}"))
+        yield ProblemEntry(f"initial.{name}", declared[f"initial_{name}"], getattr(problem, f"initial_{name}"))
     given = dict(zip(STATE_NAMES, problem.given_states, strict=False))
     for name, state in zip(STATE_NAMES, problem.friction.states, strict=False):
-        yield ProblemEntry(f"initial.{name}", Quantity(state.unit, state.meaning), given.get(name))
+        yield ProblemEntry(f"initial.{name}", Quantity(units.get(state.unit, state.unit), state.meaning), given.get(name))
     yield ProblemEntry("initial.rate", declared["initial_rate"], problem.initial_rate)
 
 
@@ -165,16 +166,17 @@ def put_many(problem: P, values: Mapping[str, Any], make: Callable[..., Any] = r
     return with_values(problem, changes, make) if changes else problem
 
 
-def normal_field(problem: ProblemFields) -> str:
-    """Return the name of the body's field that holds the normal load."""
-    return "normal_stress" if problem.body.has_waves else "normal_force"
+def normal_name(problem: ProblemFields) -> str:
+    """Return the name of the parameter that is the normal load: the body's own, or `PRESSING` if that is only in proportion."""
+    name = problem.body.normal_field
+    return name if getattr(problem.body, name) == problem.normal else PRESSING
 
 
 def pressing_of(problem: ProblemFields) -> Quantity:
     """Return the declaration of `PRESSING`."""
-    name = normal_field(problem)
+    name = problem.body.normal_field
     meaning = f"{name.replace('_', ' ')}, with the initial load and the far stress in proportion"
-    return replace(quantities_of(type(problem.body))[name], meaning=meaning)
+    return replace(quantities_of(type(problem.body))[name], meaning=meaning, unit=problem.load_unit)
 
 
 def pressed(problem: P, value: float) -> P:
@@ -182,8 +184,9 @@ def pressed(problem: P, value: float) -> P:
 
     Raises InputError if the problem does not allow the value.
     """
-    factor = value / problem.normal
-    body = replace(problem.body, **{normal_field(problem): value})
+    factor, field_name = value / problem.normal, problem.body.normal_field
+    given = getattr(problem.body, field_name)
+    body = replace(problem.body, **{field_name: value if given == problem.normal else factor * given})
     changes = {name: getattr(problem, name) for name in ("initial_load", "initial_excess", *STRESSES, "normal_load")}
     scaled = {name: _scaled(one, factor) for name, one in changes.items() if one is not None}
     return replace(problem, body=body, **scaled)
@@ -217,4 +220,4 @@ def _entries_in(owner: Any, place: str, units: Mapping[str, str] | None = None) 
                 number = Quantity(one.unit or "1", "parameter of the formula")
                 yield ProblemEntry(f"{place}.{declared.key}.{one.name}", number, one.value, one.unit)
         elif isinstance(declared, LawField):
-            yield from _entries_in(value, f"{place}.{name}")
+            yield from _entries_in(value, f"{place}.{name}", units)

@@ -12,12 +12,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.names import si_unit
+from stickslip.foundation.names import own_units, si_unit
 from stickslip.foundation.quantities import quantities_of
-from stickslip.foundation.show import brief, brief_repr, fields_in, html_table, shown_fields
+from stickslip.foundation.show import Declared, brief, brief_repr, fields_in, html_table, shown_fields
 from stickslip.friction.contract import one_argument
 from stickslip.loading import VARYING, LoadingHistory
-from stickslip.problem.fields import INITIAL_STATES, LOAD, STEADY, ProblemFields
+from stickslip.problem.fields import INITIAL_STATES, STEADY, ProblemFields
 from stickslip.problem.parameters import Parameters
 from stickslip.problem.selection_rule import PERFECT_DELAY, SELECTION_RULES, name_of
 from stickslip.problem.start import Start, start_of
@@ -34,7 +34,8 @@ class Problem(ProblemFields):
     Parameters
     ----------
     body
-        An `ElasticSlab`, whose loads are stresses (Pa), or a `SpringBlock`, whose loads are forces (N).
+        An `ElasticSlab`, whose loads are stresses (Pa), a `SpringBlock`, whose loads are forces (N), or a body that turns, a
+        `TorsionalString` or a `RotatingBlock`, whose loads are torques (N m) and whose slip is an angle: read rad for m below.
     friction
         The friction law of the contact. A Python function of slip `u` (m), of slip rate `v` (m/s) or of both is made a law by
         `stickslip.friction.FromFunction`, and a text such as "0.3 + 0.5/(1 + v)" by `stickslip.friction.FromExpression`. Its
@@ -129,15 +130,24 @@ class Problem(ProblemFields):
 
     def _shown(self) -> dict[str, str]:
         """Return the texts of the fields that differ from their defaults, by name; body and friction come first."""
-        shown = dict(shown_fields(self, {LOAD: self.load_unit}))
+        units = own_units(self.load_unit)
+        shown = dict(shown_fields(self, units))
+        shown["friction"] = self.law_text
         for name in self._varying:
             unit = quantities_of(Problem)[name].unit
-            shown[name] = brief_repr(getattr(self, name), {VARYING: self.load_unit if unit == LOAD else unit})
+            shown[name] = brief_repr(getattr(self, name), {VARYING: units.get(unit, unit)})
         for name, state in zip(INITIAL_STATES, self.friction.states, strict=False):
             if getattr(self, name) is not None:
                 value = getattr(self, name)
-                shown[name] = f"'{value if value == STEADY else brief(value, state.unit)}'"
+                shown[name] = f"'{value if value == STEADY else brief(value, units.get(state.unit, state.unit))}'"
         return shown | ({"selection": f"'{self.rule}'"} if "selection" in shown else {})
+
+    @property
+    def law_text(self) -> str:
+        """The friction law as the call that makes it, with the units that its numbers have on this contact."""
+        law = self.friction
+        declared = type(law).__repr__ is Declared.__repr__  # some laws show themselves otherwise
+        return brief_repr(law, own_units(self.load_unit)) if declared else repr(law)
 
     def __repr__(self) -> str:
         shown = self._shown()
@@ -148,7 +158,8 @@ class Problem(ProblemFields):
         shown, declared = self._shown(), quantities_of(Problem)
         rows = []
         for name, part in (("body", self.body), ("friction", self.friction)):
-            rows += [(name, type(part).__name__, ""), *fields_in(part, f"{name}.")]
+            units = own_units(self.load_unit) if name == "friction" else {}
+            rows += [(name, type(part).__name__, ""), *fields_in(part, f"{name}.", units)]
         for name in [name for name in shown if name not in ("body", "friction")]:
             rows.append((name, shown[name].strip("'"), declared[name].meaning if name in declared else ""))
         return html_table("stickslip Problem", rows)
@@ -181,10 +192,10 @@ class Problem(ProblemFields):
             for name, value, unit in (
                 ("pull_rate", self.pull_rate, si_unit("slip_rate", self.load_unit)),
                 ("far_stress", self.far_stress, self.load_unit),
-                ("far_stress_rate", self.far_stress_rate or None, "Pa/s"),
+                ("far_stress_rate", self.far_stress_rate or None, si_unit("load_rate", self.load_unit)),
                 ("normal_load", self.normal_load, self.load_unit),
-                ("ground_velocity", self.ground_velocity, "m/s"),
-                ("ground_acceleration", self.ground_acceleration, "m/s^2"),
+                ("ground_velocity", self.ground_velocity, si_unit("slip_rate", self.load_unit)),
+                ("ground_acceleration", self.ground_acceleration, si_unit("slip_acceleration", self.load_unit)),
             )
             if value is not None
         }

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.bodies import MACHINE, ElasticSlab
+from stickslip.bodies import MACHINE, BodyWithWaves, ElasticSlab
 from stickslip.foundation.errors import InputError
 
 
@@ -202,7 +202,7 @@ class StuckSlab:
         return np.where(t < 0.5 * trip, early, late)
 
 
-def growth_rate(slab: ElasticSlab, weakening: float) -> float:
+def growth_rate(slab: BodyWithWaves, weakening: float) -> float:
     """Return the growth rate (1/s) of a perturbation of a slab that weakens with slip by -mu'(u) (1/m); 0 if the slab is stable.
 
     A perturbation u = exp(lambda t) sinh(lambda (h - x) / c) satisfies the friction law at x = 0 if lambda coth(lambda h / c) =
@@ -213,11 +213,11 @@ def growth_rate(slab: ElasticSlab, weakening: float) -> float:
     """
     from scipy.optimize import brentq  # here, because it takes a quarter of a second to import
 
-    target = slab.normal_stress * weakening / slab.shear_modulus * slab.thickness
+    target = slab.normal_load * weakening / slab.modulus * slab.distance
     if target <= 1.0:
         return 0.0
     x: float = brentq(lambda x: _excess(x) - (target - 1.0), 0.0, target + 1.0, xtol=1e-300)
-    return x * slab.wave_speed / slab.thickness
+    return x * slab.wave_speed / slab.distance
 
 
 def _excess(x: float) -> float:

@@ -31,12 +31,14 @@ class Source(NamedTuple):
     """The origin of a document: its name in messages and, for a document in a file, the folder of its data files.
 
     `most_nodes` is the largest number of nodes of a [contact] that whoever reads the document can use; a contact with more of them
-    is refused before it is made.
+    is refused before it is made. `load_unit` is the unit of the body's loads once that is known: laws and loading then have its
+    units.
     """
 
     file: str
     folder: Path | None = None
     most_nodes: float = math.inf
+    load_unit: str = ""
 
 
 def key_of(name: str, entry: Field) -> str:

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from stickslip.bodies import ElasticSlab, as_slab
+from stickslip.bodies import BodyWithWaves, as_waves
 from stickslip.contact.critical import critical_normal_stress
 from stickslip.contact.regime_map import regimes_along_slip
 from stickslip.contact.sliding import SteadySlidings
 from stickslip.contact.steady import proven_slidings
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
 from stickslip.engine_input.limits import MOST_PIECES, PATIENCE, automatic_length, creep_tolerance, leaps_over, lumps_by_itself
-from stickslip.foundation.names import si_unit
+from stickslip.foundation.names import own_units, si_unit
 from stickslip.foundation.quantities import Choice, LawField, NamedNumbers, NumberSeries, Quantity, Text, fields_of, in_units
 from stickslip.foundation.show import brief
 from stickslip.friction import FrictionLaw, RateAndState, SinusoidalSlip
@@ -24,6 +25,7 @@ from stickslip.friction.laws.combined import LawOfParts
 from stickslip.friction.piecewise import PiecewiseLaw, noise_in
 from stickslip.loading import VARYING, LoadingHistory
 from stickslip.problem.fields import STEADY
+from stickslip.problem.parameters import normal_name
 from stickslip.problem.problem import Problem
 from stickslip.reference.slab import PulseTrain
 from stickslip.scenarios.entries import key_of
@@ -85,7 +87,7 @@ def examine(scenario: Scenario) -> Examination:
 
 def _given(scenario: Scenario) -> dict[str, list[Fact]]:
     problem = scenario.problem
-    facts = {"body": list[Fact](), "friction": _of_law(problem.friction)}
+    facts = {"body": list[Fact](), "friction": _of_law(problem.friction, units=own_units(problem.load_unit))}
     owners = {"body": (problem.body, ""), "loading": (problem, ""), "initial": (problem, "initial_"), "run": (scenario, "")}
     for table, (owner, prefix) in owners.items():
         facts[table] = []
@@ -119,17 +121,17 @@ def _facts(name: str, value: Any, declared: Quantity) -> list[Fact]:
     """Return what was given for a quantity: a number, or the kind of a loading history and its fields."""
     if not isinstance(value, LoadingHistory):
         return [Fact(name, value, declared.unit, declared.meaning)]
-    return [Fact(name, value.kind, "", declared.meaning), *_of_law(value, f"{name}.", declared.unit)]
+    return [Fact(name, value.kind, "", declared.meaning), *_of_law(value, f"{name}.", units={VARYING: declared.unit})]
 
 
-def _of_law(law: FrictionLaw | LoadingHistory, prefix: str = "", varying: str = "") -> list[Fact]:
-    """Return all fields of a law, or of a loading history of a quantity whose unit is `varying`.
+def _of_law(law: FrictionLaw | LoadingHistory, prefix: str = "", *, units: Mapping[str, str]) -> list[Fact]:
+    """Return all fields of a law or of a loading history; `units` are as for `in_units`.
 
     A series of points is summarised by their number and the two ends of its range.
     """
     facts: list[Fact] = []
     for name, (entry, _) in fields_of(type(law)).items():
-        declared = in_units(entry, {VARYING: varying})
+        declared = in_units(entry, units)
         value, place = getattr(law, name), f"{prefix}{key_of(name, declared)}"
         if name in OF_SLIP and isinstance(law, FrictionLaw) and not law.depends_on_slip:
             continue
@@ -142,7 +144,7 @@ def _of_law(law: FrictionLaw | LoadingHistory, prefix: str = "", varying: str = 
         elif isinstance(declared, NamedNumbers):
             facts += [Fact(f"{place}.{one.name}", one.value, one.unit or "1", "") for one in value]
         elif isinstance(declared, LawField):
-            facts += [Fact(place, value.kind, "", declared.meaning), *_of_law(value, f"{place}.")]
+            facts += [Fact(place, value.kind, "", declared.meaning), *_of_law(value, f"{place}.", units=units)]
         elif isinstance(declared, Text | Choice):
             facts.append(Fact(place, value, "", declared.meaning))
     return facts
@@ -150,6 +152,7 @@ def _of_law(law: FrictionLaw | LoadingHistory, prefix: str = "", varying: str = 
 
 def _derived(problem: Problem) -> list[Fact]:
     body, unit = problem.body, problem.load_unit
+    impedance, stiffness, load_rate = (si_unit(name, unit) for name in ("impedance", "stiffness", "load_rate"))
     start = [Fact("load", problem.load, unit, "shear load on the contact at the start")]
     if problem.friction.sticks:
         start.insert(0, Fact("strength", problem.strength, unit, "static strength S mu at the start"))
@@ -159,21 +162,25 @@ def _derived(problem: Problem) -> list[Fact]:
     start += _steady(problem)
     first = ", at first" if problem.loading_varies else ""
     if not body.has_waves:
-        impedance = math.sqrt(body.stiffness) * math.sqrt(body.inertia)
+        size = math.sqrt(body.stiffness) * math.sqrt(body.inertia)
         return [
             Fact("period", body.round_trip_time, "s", "period 2 pi sqrt(m/K) of free oscillation"),
-            Fact("sqrt(K m)", impedance, "N s/m", "impedance of the block, in place of Z"),
-            Fact("K V", body.stiffness * problem.first_pull_rate, "N/s", f"rate of loading while stuck{first}"),
+            Fact("sqrt(K m)", size, impedance, "impedance of the block, in place of Z"),
+            Fact("K V", body.stiffness * problem.first_pull_rate, load_rate, f"rate of loading while stuck{first}"),
             *start,
         ]
     of = "of sharp fronts" if body.has_machine else "of waves"
+    slab = unit == "Pa"
+    gh, slip = ("G/h", "metre") if slab else ("GJ/h", "radian")
     return [
-        Fact("Z", body.impedance, "Pa s/m", "impedance rho c"),
-        Fact("G", as_slab(body).shear_modulus, "Pa", "shear modulus rho c^2"),
+        Fact("Z", body.impedance, impedance, "impedance rho c" if slab else "impedance sqrt(I G J)"),
+        Fact("G", as_waves(body).modulus, "Pa", "shear modulus rho c^2")
+        if slab
+        else Fact("GJ", as_waves(body).modulus, "N m^2", "torque per twist of a metre"),
         Fact("R", body.round_trip_time, "s", "two-way travel time 2 h/c"),
-        Fact("G/h", body.stiffness, "Pa/m", "load lost per metre of slow slip"),
-        Fact("r", as_slab(body).front_reflection, "1", f"reflection {of} at the driver: -1 rigid, 0 matched, +1 dead load"),
-        Fact("G V/h", body.stiffness * problem.first_pull_rate, "Pa/s", "rate of loading at first"),
+        Fact(gh, body.stiffness, stiffness, f"load lost per {slip} of slow slip"),
+        Fact("r", as_waves(body).front_reflection, "1", f"reflection {of} at the driver: -1 rigid, 0 matched, +1 dead load"),
+        Fact(f"{gh[:-2]} V/h", body.stiffness * problem.first_pull_rate, load_rate, "rate of loading at first"),
         *start,
         *_pulses(problem),
     ]
@@ -213,21 +220,21 @@ def _critical(problem: Problem, contact: Uniqueness) -> list[Fact]:
     """Return the critical value of the law's own parameter, if it has one, and of the normal stress."""
     if contact.resistance is None:
         return []
-    named = {contact.critical_parameter: contact.critical_value, "normal_stress": critical_normal_stress(contact.resistance)}
+    named = {contact.critical_parameter: contact.critical_value, normal_name(problem): critical_normal_stress(contact.resistance)}
     facts = []
     for name, value in named.items():
         if name is not None and value is not None:
             one = problem.parameters[name]
             side = "at" if one.value == value else "above" if one.value > value else "below"
-            proof = _proof(contact) if one.name == "body.normal_stress" else ""
+            proof = _proof(contact, problem.load_unit) if name == normal_name(problem) else ""
             facts.append(Fact(one.name, value, one.unit, f"here {side} it, at {brief(one.value, one.unit, 9)}{proof}"))
     return facts
 
 
-def _proof(contact: Uniqueness) -> str:
+def _proof(contact: Uniqueness, unit: str) -> str:
     """Return how closely the critical normal stress is proven, as the end of a sentence."""
     between = contact.critical_stress_between
-    return "" if between is None else f"; proven to within {between[1] - between[0]:.1g} Pa"
+    return "" if between is None else f"; proven to within {between[1] - between[0]:.1g} {unit}"
 
 
 def _along_slip(problem: Problem, contact: Uniqueness) -> str:
@@ -236,7 +243,8 @@ def _along_slip(problem: Problem, contact: Uniqueness) -> str:
     if contact.resistance is None or not (law.depends_on_slip and law.depends_on_rate):
         return ""
     intervals = regimes_along_slip(problem)
-    texts = [f"{one.regime} from {one.slip_from:.6g} to {one.slip_to:.6g} m" for one in intervals]
+    unit = si_unit("slip", problem.load_unit)
+    texts = [f"{one.regime} from {one.slip_from:.6g} to {one.slip_to:.6g} {unit}" for one in intervals]
     return f"{', '.join(texts)} of slip: the folds move as it slips"
 
 
@@ -250,7 +258,7 @@ def warnings_of(scenario: Scenario, contact: Uniqueness) -> list[str]:
     if held and steady and not problem.varies and wait_of(problem) > scenario.duration:
         found.append("the run ends before loading reaches the static strength: nothing will slip")
     if problem.body.has_waves:
-        found += _slab_warnings(scenario, as_slab(problem.body), contact)
+        found += _slab_warnings(scenario, as_waves(problem.body), contact)
     rule = problem.rule
     if problem.why_not_run:
         found.append(f"it cannot be run: {problem.why_not_run}")
@@ -268,12 +276,12 @@ def _noise(law: FrictionLaw, contact: Uniqueness) -> list[str]:
     return [noise.warning(folds) for noise in noises if noise is not None]
 
 
-def _slab_warnings(scenario: Scenario, body: ElasticSlab, contact: Uniqueness) -> list[str]:
+def _slab_warnings(scenario: Scenario, body: BodyWithWaves, contact: Uniqueness) -> list[str]:
     found, problem = [], scenario.problem
-    strain = abs(problem.load) / body.shear_modulus
+    strain = abs(problem.load) / body.modulus if problem.load_unit == "Pa" else 0.0  # of a string: its radius is not known
     if strain > LARGE_STRAIN:
         found.append(f"the shear strain at the start is {strain:.3g}: linear elasticity is doubtful beyond {LARGE_STRAIN:g}")
-    if problem.friction.memory == "since-arrest" and body.contact_mass == 0.0 and body.is_driven_rigidly:
+    if problem.friction.memory == "since-arrest" and body.inertia == 0.0 and body.is_driven_rigidly:
         found.append(
             "friction heals instantly and the slab has no contact_mass:"
             " under slow loading it creeps in tiny slips after the first event"
@@ -291,7 +299,7 @@ def _slab_warnings(scenario: Scenario, body: ElasticSlab, contact: Uniqueness) -
     return found
 
 
-def _chaos(body: ElasticSlab, contact: Uniqueness) -> list[str]:
+def _chaos(body: BodyWithWaves, contact: Uniqueness) -> list[str]:
     """Return a warning if echoes amplify disturbances: on a slipping branch each multiplies them by |r (1 - 2 Z/g'(v))|."""
     if contact.resistance is None:
         return []

@@ -27,7 +27,7 @@ from stickslip.scenarios import library
 from stickslip.scenarios.contact import Contact
 from stickslip.scenarios.contact_table import contact_table, read_contact
 from stickslip.scenarios.entries import Source, to_table
-from stickslip.scenarios.schema import CONTACT, KINDS, read_document, read_part, read_table, without_owner
+from stickslip.scenarios.schema import CONTACT, read_document, read_part, read_table, without_owner
 from stickslip.scenarios.text_of_files import about_suffix, read_text, why_not_toml
 
 UNNAMED = "scenario"
@@ -177,7 +177,9 @@ def read_scenario(text: str, file: str, name: str | None = None, folder: Path | 
 def scenario_of(raw: Mapping[str, Any], source: Source) -> Scenario:
     """Return a scenario from a parsed TOML document. Raises InputError as `load_scenario` does."""
     document, file = read_document(raw, source), source.file
-    body, law = (read_part(table, document[table], source) for table in KINDS)
+    body = read_part("body", document["body"], source)
+    source = source._replace(load_unit=body.load_unit)
+    law = read_part("friction", document["friction"], source)
     others = ("loading", "initial", "run")
     loading, initial, run = (read_table(table, type(body), document[table], source, law.states) for table in others)
     start = {f"initial_{name}": value for name, value in initial.items()}

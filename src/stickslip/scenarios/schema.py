@@ -15,12 +15,13 @@ from stickslip.bodies import BODIES
 from stickslip.foundation.arguments import check_type, check_whole, shown
 from stickslip.foundation.conversion import unit_among
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.names import own_units
 from stickslip.foundation.quantities import Field as Declared
 from stickslip.foundation.quantities import LawField, Quantity, fields_of, in_units
 from stickslip.friction import LAWS
 from stickslip.friction.contract import STATE_NAMES, StateVariable
 from stickslip.loading import HISTORIES, VARYING
-from stickslip.problem.fields import LOAD, MAY_VARY, STEADY
+from stickslip.problem.fields import MAY_VARY, STEADY
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import CREEP_RTOL, DURATION, RTOL, SHORTEST_EVENT
 from stickslip.problem.selection_rule import SELECTION_RULES, names, unknown
@@ -83,23 +84,32 @@ def quantities_in(table: str, kind: type, states: tuple[StateVariable, ...] = ()
         automatic = {"creep_rtol": (CREEP_RTOL, None), "shortest_event": (SHORTEST_EVENT, None)}
         return {"duration": (DURATION, MISSING), "rtol": (RTOL, 1e-10), **automatic}
     ours = {name: entry for name, entry in _declared(Problem).items() if name.startswith("initial_") == (table == "initial")}
-    units = {LOAD: getattr(kind, "load_unit", LOAD)}
+    units = own_units(kind.load_unit) if hasattr(kind, "load_unit") else {}
     found = {name.removeprefix("initial_"): (in_units(declared, units), default) for name, (declared, default) in ours.items()}
-    remembered = {name: Quantity(state.unit, state.meaning) for name, state in zip(STATE_NAMES, states, strict=False)}
+    remembered = {
+        name: Quantity(units.get(state.unit, state.unit), state.meaning) for name, state in zip(STATE_NAMES, states, strict=False)
+    }
     return found | {name: (entry, None) for name, entry in (remembered or NO_STATE).items()} if table == "initial" else found
 
 
-def entries_in(table: str, kind: type, states: tuple[StateVariable, ...] = ()) -> dict[str, tuple[Declared, Any]]:
-    """Return every field of a table by its key, with its default: quantities, and other fields of a law or a loading history."""
+def entries_in(
+    table: str, kind: type, states: tuple[StateVariable, ...] = (), load_unit: str = ""
+) -> dict[str, tuple[Declared, Any]]:
+    """Return every field of a table by its key, with its default: quantities, and other fields of a law or a loading history.
+
+    With the unit of a body's loads, the fields of laws and histories have the units that they take with that body.
+    """
     if not has_kind(table):
         return dict(quantities_in(table, kind, states))
     of = table.partition(".")[2]
-    unit = _declared(Problem)[of][0].unit if of in MAY_VARY else ""
-    return {key_of(name, entry): (in_units(entry, {VARYING: unit}), default) for name, (entry, default) in fields_of(kind).items()}
+    own = own_units(load_unit) if load_unit and table != "body" else {}
+    unit = in_units(_declared(Problem)[of][0], own).unit if of in MAY_VARY else ""
+    units = {**own, VARYING: unit}
+    return {key_of(name, entry): (in_units(entry, units), default) for name, (entry, default) in fields_of(kind).items()}
 
 
-NORMAL_LOADS = ("normal_stress", "normal_force")
-"""Keys of [body] with the normal load: a history of it has a table of its own, [loading.normal_load]."""
+NORMAL_LOADS = {"Pa": "normal_stress", "N": "normal_force", "N m": "normal_torque"}
+"""Keys of [body] with the normal load, by its unit: a history of it has a table of its own, [loading.normal_load]."""
 
 
 def has_kind(table: str) -> bool:
@@ -139,10 +149,12 @@ def _read_entry(declared: Declared, value: Any, place: DocumentPlace) -> Any:
         texts = [one for entry in value.values() for one in (entry if isinstance(entry, list) else (entry,))]
         if place.key == "normal_load" and not {unit_among(one, VARYING) for one in texts} <= {"", unit}:
             raise InputError(f"{place.source.file}: [{place.inner}] must be in {unit}, as the loads of this body are")
-        heading = {"Pa": "normal_stress", "N": "normal_force"}[unit] if place.key == "normal_load" else ""
+        heading = NORMAL_LOADS.get(unit, "") if place.key == "normal_load" else ""
         return read_part(place.inner, value, place.source, heading)
-    if place.table == "body" and place.key in NORMAL_LOADS and isinstance(value, dict):
+    if place.table == "body" and place.key in NORMAL_LOADS.values() and isinstance(value, dict):
         raise InputError(f"{place.source.file}: {place} is one number, that at the start: a history is [loading.normal_load]")
+    if place.source.load_unit:
+        declared = in_units(declared, own_units(place.source.load_unit))
     try:
         return read_entry(value, declared, place, _law_in)
     except InputError as error:

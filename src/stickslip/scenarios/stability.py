@@ -5,8 +5,9 @@ from __future__ import annotations
 import cmath
 import math
 
-from stickslip.bodies import SpringBlock, as_block, as_slab
+from stickslip.bodies import BodyOnCharacteristics, as_waves
 from stickslip.contact.rules.loop import first_rate, resolved
+from stickslip.foundation.names import si_unit
 from stickslip.friction import RateAndState
 from stickslip.problem.problem import Problem
 from stickslip.reference.rate_and_state import SteadySliding
@@ -26,14 +27,15 @@ def loading_rate(problem: Problem) -> float:
 
 def start_of(problem: Problem) -> str:
     """Return a sentence on the motion of the contact at t = 0+ and, if it sticks, on the time when it will slip."""
+    slip_rate = si_unit("slip_rate", problem.load_unit)
     if problem.has_initial_rate:
-        return f"slides from the start, at {problem.rate:.6g} m/s: {_why_it_slides(problem)}"
+        return f"slides from the start, at {problem.rate:.6g} {slip_rate}: {_why_it_slides(problem)}"
     if not problem.friction.sticks:
         return "creeps from the start, from rest: friction with a state of its own never sticks"
     excess, unit, pulled = problem.excess, problem.load_unit, problem.first_pull_rate > 0
     rate = first_rate(problem)
     rate = resolved(rate, problem.load, problem.body.damping)
-    jump = f"; the slip rate jumps to {rate:.9g} m/s" if rate > 0.0 else ""
+    jump = f"; the slip rate jumps to {rate:.9g} {slip_rate}" if rate > 0.0 else ""
     if problem.load < -problem.strength:
         return f"slips backwards at once: the load is {-problem.load - problem.strength:.6g} {unit} beyond the static strength"
     if excess > 0:
@@ -98,7 +100,7 @@ def stability_of(problem: Problem) -> str:
         return ""
     by_slip, by_rate = law.slopes(problem.law_slip).tolist()
     if not body.has_waves:
-        return _block_stability(as_block(body), by_slip, by_rate)
+        return _block_stability(body, by_slip, by_rate)
     number = -problem.normal * by_slip / body.stiffness
     if by_slip >= 0:
         return "friction does not weaken with slip at the start; what slip rate does to it: see uniqueness"
@@ -106,15 +108,17 @@ def stability_of(problem: Problem) -> str:
         return f"friction weakens with slip: alpha_w h = {number:.6g} (a rigid driver holds it below 1, this one is not rigid)"
     if number < 1:
         return f"statically stable: alpha_w h = {number:.6g} < 1, friction weakens more slowly than the slab unloads: it creeps"
-    rate = growth_rate(as_slab(body), -by_slip)
+    rate = growth_rate(as_waves(body), -by_slip)
     return f"statically unstable: alpha_w h = {number:.6g} > 1; a small disturbance grows at {rate:.6g} /s"
 
 
-def _block_stability(body: SpringBlock, by_slip: float, by_rate: float) -> str:
-    spring, dash = body.stiffness + body.normal_force * by_slip, body.damping + body.normal_force * by_rate
-    fastest = max((-dash + sign * cmath.sqrt(dash * dash - 4 * body.mass * spring) for sign in (1, -1)), key=lambda root: root.real)
-    growth = fastest / (2 * body.mass)
-    values = f"K + S mu'(u) = {spring:.6g} N/m, damping + S mu'(v) = {dash:.6g} N s/m"
+def _block_stability(body: BodyOnCharacteristics, by_slip: float, by_rate: float) -> str:
+    spring, dash = body.stiffness + body.normal_load * by_slip, body.damping + body.normal_load * by_rate
+    swings = cmath.sqrt(dash * dash - 4 * body.inertia * spring)
+    fastest = max((-dash + sign * swings for sign in (1, -1)), key=lambda root: root.real)
+    growth = fastest / (2 * body.inertia)
+    stiffness, impedance = si_unit("stiffness", body.load_unit), si_unit("impedance", body.load_unit)
+    values = f"K + S mu'(u) = {spring:.6g} {stiffness}, damping + S mu'(v) = {dash:.6g} {impedance}"
     if spring < 0 or (growth.real > 0 and growth.imag == 0):
         return f"unstable: {values}; a small disturbance grows at {growth.real:.6g} /s"
     if growth.real > 0:
@@ -128,11 +132,12 @@ def _critical_stiffness(problem: Problem, law: RateAndState) -> str:
     if rate == 0.0:
         return "not pulled at first" if problem.loading_varies else "not pulled: it creeps to a halt, ever more slowly"
     under = ", under the first normal load" if problem.normal_varies else ""
+    unit = si_unit("stiffness", problem.load_unit)
     sliding = SteadySliding(problem.normal, law.a, law.b, law.distance, rate)
     if not body.has_waves:
-        critical, text, unit = sliding.critical_stiffness(body.inertia, body.damping), "stiffness K", "N/m"
+        critical, text = sliding.critical_stiffness(body.inertia, body.damping), "stiffness K"
     elif body.is_driven_rigidly and not body.has_inertia:
-        critical, text, unit = sliding.critical_stiffness(), "stiffness G/h", "Pa/m"
+        critical, text = sliding.critical_stiffness(), "stiffness G/h"
     else:
-        return f"critical stiffness of slow sliding S (b - a) / Dc = {sliding.critical_stiffness():.6g} Pa/m{under}"
+        return f"critical stiffness of slow sliding S (b - a) / Dc = {sliding.critical_stiffness():.6g} {unit}{under}"
     return f"{text} = {body.stiffness:.6g} against the critical {critical:.6g} {unit} of steady sliding at the {pull}{under}"

@@ -5,11 +5,13 @@ from __future__ import annotations
 import json
 import tomllib
 from collections.abc import Mapping, Sequence
+from copy import deepcopy
 from dataclasses import MISSING
 from types import MappingProxyType
 from typing import Any
 
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.names import TURNS
 from stickslip.foundation.quantities import LawField, NamedNumbers, fields_of
 from stickslip.foundation.show import clean
 from stickslip.friction import LAWS, FrictionLaw
@@ -23,7 +25,7 @@ from stickslip.scenarios.parameter_paths import find_parameter, put_into
 from stickslip.scenarios.scenario import scenario_of
 from stickslip.scenarios.schema import KINDS, TABLES, columns_of, entries_in, has_kind, kind_of, read_part
 
-STARTERS = {"slab": "fig6-slab", "lab-slab": "granite-slab", "block": "fig6-block-reconstructed"}
+STARTERS = {"slab": "fig6-slab", "lab-slab": "granite-slab", "block": "fig6-block-reconstructed", "string": "drill-string"}
 """Names of the generic starters, each with the bundled scenario whose values it shows."""
 
 _HEADER = """\
@@ -51,7 +53,7 @@ def template_names() -> list[str]:
 
 
 def template(name: str, friction: str | None = None, pull: str | None = None) -> str:
-    """Return a commented scenario as TOML text: a starter ("slab", "lab-slab" or "block") or a bundled scenario.
+    """Return a commented scenario as TOML text: a starter ("slab", "lab-slab", "block" or "string") or a bundled scenario.
 
     `friction` and `pull` are kinds of another law, which then has plausible values, and of a loading history for the pull rate of a
     starter. Raises InputError for unknown names, and if a bundled scenario is to have another law or pull rate.
@@ -62,7 +64,7 @@ def template(name: str, friction: str | None = None, pull: str | None = None) ->
         raise InputError(f"no scenario '{name}'; {nearest(name, template_names())}")
     if friction is not None or pull is not None:
         chosen = "pull rate" if friction is None else "friction law"
-        raise InputError(f"new: only slab, lab-slab and block take a {chosen}; {name} has its own")
+        raise InputError(f"new: only slab, lab-slab, block and string take a {chosen}; {name} has its own")
     return library.text(name)
 
 
@@ -108,14 +110,17 @@ def _listed(table: dict[str, Any]) -> dict[str, Any]:
 
 
 def _starter(example: dict[str, Any], friction: str | None, pull: str | None) -> str:
+    load_unit = kind_of("body", example["body"], "new").load_unit  # type: ignore[attr-defined] # registered
     if friction is not None:
         law: type[FrictionLaw] = kind_of("friction", {"kind": friction}, "new")
-        example["friction"] = {"kind": friction} | _keyed(law)
+        example["friction"] = {"kind": friction} | example_of(law, load_unit)
         if not law.sticks:
             example["initial"] = _start_of(law, example["body"])
     if pull is not None:
         kind_of("loading", {"kind": pull}, "new")
-        example["loading"] = {"pull_rate": {"kind": pull, **HISTORIES[pull].example}}
+        history = dict(HISTORIES[pull].example)
+        history = _by_angle("loading.pull_rate", {"kind": pull, **history}) if load_unit == TURNS else history
+        example["loading"] = {"pull_rate": {"kind": pull, **history}}
     return _written(example | {"title": "", "description": ""})
 
 
@@ -133,7 +138,7 @@ def _written(example: dict[str, Any], about: str = "") -> str:
         if table == "loading":
             lines.append(f"# A pull rate that varies: `stickslip new slab --pull KIND`, KIND one of {', '.join(HISTORIES)}.")
         states = states_in(getattr(kinds["friction"], "state", None))  # a typed state is not that of the class
-        lines += _table(table, kind, example[table], states)
+        lines += _table(table, kind, example[table], kinds["body"].load_unit, states)  # type: ignore[attr-defined] # registered
         if table == "run":
             given = [f"{key} = {_toml(example[table][key])}" for key in ("events", "selection") if key in example[table]]
             lines += given or [f'# selection = "{SELECTION_RULES[0]}"  # or {", ".join(SELECTION_RULES[1:])}']
@@ -148,25 +153,39 @@ def _start_of(law: type[FrictionLaw], body: dict[str, Any]) -> dict[str, Any]:
     return {"load": law.start["coefficient"] * read.normal_load} | states
 
 
-def _keyed(law: type[FrictionLaw]) -> dict[str, Any]:
-    """Return the example values of a law by their keys in a scenario."""
-    return {key_of(name, entry): law.example[name] for name, (entry, _) in fields_of(law).items() if name in law.example}
+def example_of(law: type[FrictionLaw], load_unit: str) -> dict[str, Any]:
+    """Return the example values of a law by their keys in a scenario, for a body whose loads have this unit.
+
+    Where the contact turns they are the same numbers, in rad in place of m.
+    """
+    made = {key_of(name, entry): deepcopy(law.example[name]) for name, (entry, _) in fields_of(law).items() if name in law.example}
+    return _by_angle("friction", {"kind": law.kind, **made}) if made and load_unit == TURNS else made
 
 
-def _table(table: str, kind: type, example: dict[str, Any], states: tuple[StateVariable, ...] = ()) -> list[str]:
+def _by_angle(table: str, content: dict[str, Any]) -> dict[str, Any]:
+    """Return a law or a history with plain numbers in place of texts with units of length."""
+    made = _listed(to_table(read_part(table, content, Source("example"))))
+    return {key: value for key, value in made.items() if key != "kind"}
+
+
+def _table(table: str, kind: type, example: dict[str, Any], load_unit: str, states: tuple[StateVariable, ...] = ()) -> list[str]:
     """Return the lines of a table with its keys, and of the tables inside it."""
     lines, inner = [f"[{table}]"], []
     if has_kind(table):
         lines.append(f"kind = {json.dumps(kind.kind)}  # {_first_line(kind)}")  # type: ignore[attr-defined] # registered
-    for name, (entry, default) in entries_in(table, kind, states).items():
+    for name, (entry, default) in entries_in(table, kind, states, load_unit).items():
         value = example.get(name)
         if value is None and table == "loading" and name in HISTORIES_ONLY:
             lines.append(f"# {name} = {{...}}  # {describe(entry)}: a table [{table}.{name}], of the kinds named above")
             continue
         if table == "loading" and isinstance(value, dict):
-            inner += ["", f"# {describe(entry)}, as it varies in time", *_table(f"{table}.{name}", HISTORIES[value["kind"]], value)]
+            inner += [
+                "",
+                f"# {describe(entry)}, as it varies in time",
+                *_table(f"{table}.{name}", HISTORIES[value["kind"]], value, load_unit),
+            ]
         elif isinstance(entry, LawField) and value:
-            inner += ["", *_table(f"{table}.{name}", LAWS[value["kind"]], value)]
+            inner += ["", *_table(f"{table}.{name}", LAWS[value["kind"]], value, load_unit)]
         elif isinstance(entry, NamedNumbers):
             inner += ["", f"# {describe(entry)}", f"[{table}.{name}]"]
             inner += [f"{parameter} = {_toml(number)}" for parameter, number in (value or {}).items()]

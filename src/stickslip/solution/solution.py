@@ -227,7 +227,7 @@ class Solution(Exports):
         largest = f", largest slip {brief(most.slip, slip)}, peak rate {most.peak_rate:.6g} {rate}" if len(events) else ""
         return [
             ("body", repr(problem.body)),
-            ("friction", repr(problem.friction)),
+            ("friction", problem.law_text),
             ("loading", f"{loading}, initial load {brief(problem.load, problem.load_unit)}"),
             ("run", f"{self.span_text}, rtol {self.rtol:g}, {len(self.history)} pieces"),
             ("status", str(self.status)),

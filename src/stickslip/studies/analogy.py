@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import pandas as pd
 
-from stickslip.bodies import as_slab
+from stickslip.bodies import as_waves
 from stickslip.contact.critical import margin
 from stickslip.contact.regime_map import put_both, two_parameters
 from stickslip.foundation.arguments import for_users
@@ -97,7 +97,7 @@ def block_for(problem: Problem) -> Problem:
 
     Raises InputError if the body is a block, or if the driver of the slab is not rigid.
     """
-    slab = as_slab(problem.body, "analogy: needs a slab: a block has no other block that stands for it")
+    slab = as_waves(problem.body, "analogy: needs a slab: a block has no other block that stands for it")
     return replace(problem, body=slab.equivalent_block())
 
 
@@ -170,9 +170,9 @@ def weakening(problem: Problem) -> dict[str, float]:
 
     The keys are "weakening_slip" and "weakening_rate".
     """
-    body = as_slab(problem.body)
+    body = as_waves(problem.body)
     by_slip = float(problem.friction.slopes(problem.law_slip)[0])
-    massless = replace(problem, body=replace(body, contact_mass=0.0))
+    massless = replace(problem, body=replace(body, **{body.mass_field: 0.0}))
     return {"weakening_slip": -problem.normal * by_slip / body.stiffness, "weakening_rate": 1.0 - margin(massless)}
 
 

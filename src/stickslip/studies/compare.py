@@ -121,8 +121,9 @@ class Comparison(Study):
 
     @property
     def _headings(self) -> dict[str, str]:
-        """Each column with its unit: that of all bodies, since the table may hold several kinds."""
-        return {name: f"{name} ({si_unit(unit)})" if unit else name for name, (unit, _) in COLUMNS.items()}
+        """Each column with its unit, or units: the table may hold several kinds of bodies."""
+        loads = dict.fromkeys(run.problem.load_unit for run in self.runs.values())
+        return {name: f"{name} ({si_unit(unit, *loads)})" if unit else name for name, (unit, _) in COLUMNS.items()}
 
 
 @for_users

@@ -13,7 +13,9 @@ from stickslip.foundation.errors import InputError
 
 
 def new(
-    name: Annotated[str | None, argument("slab, lab-slab, block, or the name of a bundled scenario.", complete_template)] = None,
+    name: Annotated[
+        str | None, argument("slab, lab-slab, block, string, or the name of a bundled scenario.", complete_template)
+    ] = None,
     *,
     friction: Annotated[str | None, option("A friction law to put into a starter.", autocompletion=complete_law)] = None,
     pull: Annotated[str | None, option("A pull rate that varies in time, for a starter.", autocompletion=complete_pull)] = None,
@@ -21,7 +23,7 @@ def new(
 ) -> None:
     r"""Print a commented scenario to start from.
 
-    "slab", "lab-slab" and "block" are starters that explain every key, its unit and its
+    "slab", "lab-slab", "block" and "string" are starters that explain every key, its unit and its
     range; the others are bundled runs. Redirect the text into a file,
     edit it, and hand it to `stickslip check` and `stickslip run`.
 
@@ -50,6 +52,7 @@ def _print_list() -> None:
     screen, rows = console(), [("slab", "starter: an elastic slab, every key explained")]
     rows.append(("lab-slab", "starter: the same in the size of a laboratory"))
     rows.append(("block", "starter: a block on a spring, every key explained"))
+    rows.append(("string", "starter: a drill string, every key explained"))
     rows += [(name, f"{entry.title}. {entry.description}") for name, entry in library.entries().items()]
     print_words(screen, ("name", "what it shows"), rows)
     registered: tuple[tuple[str, str, Mapping[str, type]], ...] = (("--friction", "law", LAWS), ("--pull", "pull rate", HISTORIES))

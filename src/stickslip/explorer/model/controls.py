@@ -11,6 +11,7 @@ from stickslip.bodies import BODIES
 from stickslip.explorer.model.ranges import SliderRange, range_of
 from stickslip.explorer.model.setting import Setting
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.names import si_unit
 from stickslip.foundation.quantities import Choice, Field, LawField, NamedNumbers, NumberSeries, Quantity, Text, fields_of
 from stickslip.foundation.show import brief
 from stickslip.foundation.units import split_quantity, to_si
@@ -27,6 +28,14 @@ from stickslip.scenarios.parameter_paths import WHOLE, YES_OR_NO, ParameterPath,
 from stickslip.scenarios.schema import CONTACT, check_events, entries_in, kind_of
 
 ControlKind = Literal["number", "whole", "choice", "text", "points"]
+
+
+def bodies_beside(kind: str) -> tuple[str, ...]:
+    """Return the kinds of bodies for which one of a kind can be exchanged: those that slide, or those that turn."""
+    slip = si_unit("slip", BODIES[kind].load_unit)
+    return tuple(name for name, body in BODIES.items() if si_unit("slip", body.load_unit) == slip)
+
+
 CONSTANT = "constant"
 """Kind of a pull rate that does not vary."""
 STARTS, STARTS_IN_MOTION = ("excess", "load"), ("steady", "load")
@@ -161,7 +170,7 @@ class _Tables:
             yield from self.of_fault()
             return
         body, law = self.problem.body, self.problem.friction
-        yield self.of("body", type(body), tuple(BODIES))
+        yield self.of("body", type(body), bodies_beside(body.kind))
         yield from self.of_law("friction", tuple(LAWS))
         pull = self.setting.value("loading.pull_rate")
         others = self.of("loading", type(body), ())
@@ -221,7 +230,7 @@ class _Tables:
         content = self.setting.value(table)
         kind = kind_of(table, content, self.setting.name)
         yield self.of(table, kind, kinds, "" if table == "friction" else f"Friction: {table.partition('.')[2]}")
-        for name, (entry, _) in entries_in(table, kind).items():
+        for name, (entry, _) in entries_in(table, kind, (), self.problem.load_unit).items():
             if isinstance(entry, LawField):
                 yield from self.of_law(f"{table}.{name}", PARTLESS)
 
@@ -229,7 +238,7 @@ class _Tables:
         self, table: str, kind: type, kinds: tuple[str, ...], title: str = "", states: tuple[StateVariable, ...] = ()
     ) -> ControlGroup:
         controls: list[Control] = []
-        for name, (entry, default) in entries_in(table, kind, states).items():
+        for name, (entry, default) in entries_in(table, kind, states, self.problem.load_unit).items():
             if not self.applies(f"{table}.{name}"):
                 continue
             if isinstance(entry, NamedNumbers):

@@ -9,21 +9,22 @@ from copy import deepcopy
 from dataclasses import replace
 from typing import Any
 
-from stickslip.bodies import as_slab
-from stickslip.explorer.model.controls import CONSTANT
+from stickslip.bodies import BODIES, as_waves
+from stickslip.explorer.model.controls import CONSTANT, bodies_beside
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.solve import slab_of_figure
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import Quantity, fields_of
+from stickslip.foundation.names import TURNS
+from stickslip.foundation.quantities import Quantity
 from stickslip.friction import FrictionLaw
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.loading import HISTORIES
 from stickslip.problem.fields import STEADY
 from stickslip.problem.problem import written_out
 from stickslip.scenarios import library
-from stickslip.scenarios.entries import Source, key_of, to_table
+from stickslip.scenarios.entries import Source, to_table
 from stickslip.scenarios.schema import KINDS, entries_in, kind_of, read_part
-from stickslip.scenarios.templates import STARTERS
+from stickslip.scenarios.templates import STARTERS, example_of
 
 
 def with_kind(setting: Setting, table: str, kind: str) -> Setting:
@@ -46,9 +47,10 @@ def with_kind(setting: Setting, table: str, kind: str) -> Setting:
 
 def _law_table(setting: Setting, table: str, kind: str) -> dict[str, Any]:
     """Return the table of a law of another kind, with the numbers of the former one that still fit."""
-    source = Source(setting.name)
+    load_unit = setting.load_unit
+    source = Source(setting.name, load_unit=load_unit)
     law = kind_of("friction", {"kind": kind}, setting.name)
-    made = {"kind": kind} | _began(setting, table, kind, _example(law))
+    made = {"kind": kind} | _began(setting, table, kind, example_of(law, load_unit))
     former = setting.value(table)
     had = entries_in("friction", kind_of("friction", former, setting.name))
     for key, (entry, _) in entries_in("friction", law).items():
@@ -63,10 +65,6 @@ def _law_table(setting: Setting, table: str, kind: str) -> dict[str, Any]:
             continue
         made = kept
     return made
-
-
-def _example(law: type[FrictionLaw]) -> dict[str, Any]:
-    return {key_of(name, entry): deepcopy(law.example[name]) for name, (entry, _) in fields_of(law).items() if name in law.example}
 
 
 def _began(setting: Setting, table: str, kind: str, otherwise: dict[str, Any]) -> dict[str, Any]:
@@ -109,17 +107,19 @@ def _or_started(setting: Setting) -> Setting:
 def _with_body(setting: Setting, kind: str) -> Setting:
     """Return a setting with a body of another kind: a slab's equivalent block, or the slab beside which a block stands."""
     kind_of("body", {"kind": kind}, setting.name)
-    if setting.value("body.kind") == kind:
+    own = setting.scenario().problem.body
+    if own.kind == kind:
         return setting
-    if kind == "spring-block":
-        slab = replace(
-            as_slab(setting.scenario().problem.body), driver_impedance=math.inf, driver_inertia=0.0, driver_integral_gain=0.0
-        )
-        body = to_table(slab.equivalent_block())
+    if kind not in bodies_beside(own.kind):
+        raise InputError(f"{setting.name}: {own.kind} cannot be exchanged for {kind}: one slides, the other turns")
+    if not BODIES[kind].has_waves:
+        plain = {"driver_impedance": math.inf, "driver_inertia": 0.0, "driver_integral_gain": 0.0}
+        whole = replace(as_waves(own), **plain)
+        body = to_table(whole.equivalent_block())
         loading = {key: value for key, value in (setting.value("loading") or {}).items() if not key.startswith("far_stress")}
         setting = setting.with_value("loading", loading)
     else:
-        slab_name = slab_of_figure(setting.name) or STARTERS["slab"]
+        slab_name = STARTERS["string"] if own.load_unit == TURNS else slab_of_figure(setting.name) or STARTERS["slab"]
         body = dict(tomllib.loads(library.text(slab_name))["body"])
     made = {"kind": kind} | _began(setting, "body", kind, body)
     run = {key: value for key, value in setting.value("run").items() if key not in ("creep_rtol", "shortest_event")}

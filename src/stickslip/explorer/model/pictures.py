@@ -187,7 +187,7 @@ def slab_picture(waves: SampledWaves) -> SlabPicture:
     Velocity and stress are means over the time of a cell: a cell that a wave front passes lies between the values before and after,
     so that the edge follows the characteristic, and a pulse that is shorter than a cell is not passed over.
     """
-    shown, thickness = waves.shown, waves.body.thickness
+    shown, thickness = waves.shown, waves.body.distance
     time, place = np.linspace(shown.start, shown.end, COLUMNS), np.linspace(0.0, thickness, ROWS)
     edges = np.concatenate([time[:1], 0.5 * (time[1:] + time[:-1]), time[-1:]])[:, None]
     velocity, stress = waves.velocity_and_stress(edges[:-1], edges[1:], place)
@@ -248,7 +248,7 @@ def _nodes(history: History) -> int:
 def _of_slab(waves: SampledWaves, time: Floats) -> dict[str, Floats]:
     """Return the energies of a slab: what is stored from its waves, the heat from the law, so that they need not balance."""
     at = waves.history.find(time, "right")
-    contact = 0.5 * waves.body.contact_mass * waves.history.rate(at) ** 2
+    contact = 0.5 * waves.body.inertia * waves.history.rate(at) ** 2
     return {
         "work": waves.work(time),
         "heat": heat(waves.history, at, _nodes(waves.history)),

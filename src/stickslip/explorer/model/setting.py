@@ -26,7 +26,7 @@ from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source, typed_number
 from stickslip.scenarios.parameter_paths import place_of
 from stickslip.scenarios.scenario import Scenario, scenario_of
-from stickslip.scenarios.schema import CONTACT, TABLES
+from stickslip.scenarios.schema import CONTACT, TABLES, kind_of
 
 DEEPEST = 5
 """Largest number of parts in a path."""
@@ -126,6 +126,12 @@ class Setting:
         else:
             place[key] = value
         return replace(self, document=document, notes=() if path.partition(".")[0] == "friction" else self.notes)
+
+    @property
+    def load_unit(self) -> str:
+        """The unit of the body's loads: it decides in which units laws and loading are. Raises InputError for an unknown body."""
+        unit: str = kind_of("body", self.value("body") or {}, self.name).load_unit  # type: ignore[attr-defined] # registered
+        return unit
 
     @property
     def is_fault(self) -> bool:

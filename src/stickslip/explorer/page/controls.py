@@ -40,6 +40,7 @@ _SECTIONS = {
     ),
     "In the laboratory": (
         "direct-shear-block",
+        "drill-string",
         "slide-hold-slide-block",
         "velocity-steps-block",
         "kolsky-slab",

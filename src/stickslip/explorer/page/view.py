@@ -78,6 +78,8 @@ class Units:
     on_curve: tuple[str, float]
     """Those of load and slip rate on the contact's curve."""
     place: tuple[str, float]
+    slip_unit: str = "m"
+    """The SI unit of slip."""
 
     def nearby(self, seconds: Any) -> Any:
         """Return times (s) on the axis of the panels of slab and energy."""

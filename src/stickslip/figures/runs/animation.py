@@ -20,7 +20,7 @@ from stickslip.figures.runs.inside import Scales, about, contact_variables, fiel
 from stickslip.figures.style import BLUE, GREEN, GREY, INK, VERMILLION, narrow, styled, unit_shown
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.names import readable_unit
+from stickslip.foundation.names import readable_unit, si_unit
 from stickslip.solution.interval import choose_interval
 
 if TYPE_CHECKING:
@@ -139,8 +139,8 @@ def _draw_stage(figure: Figure, dataset: xr.Dataset) -> tuple[Callable[[int], No
     unit, size = unit_shown(dataset.displacement)
     displacement, stress = dataset.displacement.values / size, scales.stresses(dataset.stress.values)
     lines = [_draw_profile(axes["A"], dataset, displacement, BLUE), _draw_profile(axes["B"], dataset, stress, VERMILLION)]
-    axes["A"].set_xlabel(f"displacement ({unit})")
-    axes["B"].set(xlabel=scales.name_stress("shear stress"), ylabel="")
+    axes["A"].set_xlabel(f"{scales.name('displacement')} ({unit})")
+    axes["B"].set(xlabel=scales.name_stress(scales.name("stress")), ylabel="")
     axes["B"].tick_params(labelleft=False)
     marks = _draw_contact([axes[name] for name in "CDE"], dataset, scales)
     set_title(figure, dataset.attrs["title"])
@@ -175,11 +175,12 @@ def _draw_profile(panel: Any, dataset: xr.Dataset, values: np.ndarray, colour: s
 def _draw_contact(panels: list[Any], dataset: xr.Dataset, scales: Scales) -> list[Any]:
     """Draw the curves of the contact, and return the vertical lines that mark the present moment in each panel."""
     time, slip = dataset.contact_time.values / scales.time, dataset.contact_slip.values - dataset.contact_slip.values[0]
-    (unit, size), (rate_unit, rate_size) = readable_unit("m", slip), unit_shown(dataset.contact_slip_rate)
+    unit, size = readable_unit(si_unit("slip", scales.load_unit), slip)
+    rate_unit, rate_size = unit_shown(dataset.contact_slip_rate)
     curves = (
-        (slip / size, f"slip ({unit})", BLUE),
-        (dataset.contact_slip_rate.values / rate_size, f"slip rate\n({rate_unit})", GREEN),
-        (scales.stresses(dataset.contact_traction.values), narrow(scales.name_stress("traction")), VERMILLION),
+        (slip / size, f"{scales.name('slip')} ({unit})", BLUE),
+        (dataset.contact_slip_rate.values / rate_size, f"{scales.name('slip_rate')}\n({rate_unit})", GREEN),
+        (scales.stresses(dataset.contact_traction.values), narrow(scales.name_stress(scales.name("traction"))), VERMILLION),
     )
     for panel, (values, text, colour) in zip(panels, curves, strict=True):
         panel.plot(time, values, color=colour)

@@ -35,7 +35,7 @@ from stickslip.figures.style import (
 )
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.names import readable_unit, si_unit
+from stickslip.foundation.names import TURNS, name_of, readable_unit, si_unit
 from stickslip.foundation.place import Place
 from stickslip.observables.event_table import that_count
 from stickslip.observables.predictability import is_followed, predictability
@@ -216,7 +216,12 @@ def _draw_time_line(axes: Axes, dataset: xr.Dataset, *, ring: bool) -> None:
     axes.set_ylim(bottom=low)
     if end > 0.0:  # else one event at 0 s is all there is
         axes.set_xlim(-0.02 * end, 1.02 * end)
-    axes.set(xlabel=curve_label("time", unit), ylabel=f"slip ({length})")
+    axes.set(xlabel=curve_label("time", unit), ylabel=f"{name_of('slip', _loads(dataset))} ({length})")
+
+
+def _loads(dataset: xr.Dataset) -> str:
+    """Return the unit of loads of a body whose slip has the unit in the dataset."""
+    return TURNS if dataset["slip"].attrs["units"] == "rad" else "Pa"
 
 
 def _draw_zooms(panels: Mapping[str, Axes], dataset: xr.Dataset) -> None:
@@ -229,7 +234,7 @@ def _draw_zooms(panels: Mapping[str, Axes], dataset: xr.Dataset) -> None:
         axes.plot(time / size, slip / metres, color=GREEN)
         if name == "run":
             axes.axvline(float(dataset["start"][int(dataset["chosen"])]) / size, color=VERMILLION, linewidth=0.8, zorder=0)
-        axes.set(xlabel=f"{clock} ({unit})", ylabel=curve_label(curve, length))
+        axes.set(xlabel=f"{clock} ({unit})", ylabel=curve_label(curve, length, _loads(dataset)))
         axes.xaxis.set_major_locator(MaxNLocator(4))
         zero_line(axes)
 

@@ -36,7 +36,7 @@ from stickslip.figures.style import (
     unit_shown,
 )
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.names import readable_unit
+from stickslip.foundation.names import QUANTITIES, name_of, readable_unit, si_unit
 from stickslip.foundation.place import Place
 from stickslip.observables.field import slab_of
 from stickslip.solution.interval import choose_interval, fronts_of
@@ -68,7 +68,7 @@ def space_time_data(readings: Readings, start: float | None = None, end: float |
     points = max((len(line) for line in lines), default=0)
     across = np.array([np.pad(line, (0, points - len(line)), constant_values=np.nan) for line in lines]).reshape(len(lines), points)
     contents["front_time"] = quantity(("front", "corner"), across, "time of a characteristic", "t", "s")
-    corners = np.where(np.arange(points) % 2, body.thickness, 0.0)
+    corners = np.where(np.arange(points) % 2, body.distance, 0.0)
     contents["front_x"] = quantity("corner", corners, "place of a characteristic", "x", "m")
     return xr.Dataset(contents, attrs=about(readings))
 
@@ -82,14 +82,14 @@ def draw_space_time(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     unit, size = unit_shown(dataset.velocity, dataset.contact_slip_rate)
     velocity, stress = dataset.velocity.values / size, scales.stresses(dataset.stress.values)
     largest = float(np.abs(velocity).max()) or 1.0
-    _draw_image(axes[0], dataset, velocity, f"velocity\n({unit})", cmap="RdBu_r", vmin=-largest, vmax=largest)
-    _draw_image(axes[1], dataset, stress, narrow(scales.name_stress("shear stress")), cmap="viridis")
+    _draw_image(axes[0], dataset, velocity, f"{scales.name('velocity')}\n({unit})", cmap="RdBu_r", vmin=-largest, vmax=largest)
+    _draw_image(axes[1], dataset, stress, narrow(scales.name_stress(scales.name("stress"))), cmap="viridis")
     time = dataset.contact_time.values / scales.time
     axes[2].plot(time, dataset.contact_slip_rate.values / size, color=GREEN)
     axes[2].set_ylabel(narrow(label(dataset.contact_slip_rate, (unit, size))))
     zero_line(axes[2])
     axes[3].plot(time, scales.stresses(dataset.contact_traction.values), color=VERMILLION)
-    axes[3].set(ylabel=narrow(scales.name_stress(r"traction $\tau$")), xlabel=scales.clock, xlim=time[[0, -1]])
+    axes[3].set(ylabel=narrow(scales.name_stress(rf"{scales.name('traction')} $\tau$")), xlabel=scales.clock, xlim=time[[0, -1]])
     if dataset.sizes["front"]:
         lines: Any = (Line2D([], [], color=INK, linewidth=0.6), Line2D([], [], color="white", linewidth=0.6, linestyle=(0, (4, 4))))
         text = "characteristic: a wave front from the contact"
@@ -136,11 +136,12 @@ def draw_snapshots(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     figure = sheet((7.2, 3.9), **place)
     axes: Any = figure.subplots(1, 3, sharey=True)
     unit, size = unit_shown(dataset.displacement)
-    since = dataset.displacement.attrs["long_name"].replace("displacement ", f"displacement $u$ ({unit})\n", 1)
+    name = scales.name("displacement")
+    since = dataset.displacement.attrs["long_name"].replace(f"{name} ", f"{name} $u$ ({unit})\n", 1)
     drawn = (
         (since, dataset.displacement.values / size),
         (label(dataset.velocity), shown(dataset.velocity)),
-        (scales.name_stress(r"shear stress $\sigma$"), scales.stresses(dataset.stress.values)),
+        (scales.name_stress(rf"{scales.name('stress')} $\sigma$"), scales.stresses(dataset.stress.values)),
     )
     colours = colormaps["viridis_r"](np.linspace(0.15, 1.0, dataset.sizes["time"]))
     for panel, (text, values) in zip(axes, drawn, strict=True):
@@ -156,12 +157,12 @@ def draw_snapshots(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
 
 def about(readings: Readings) -> dict[str, Any]:
     """Return attributes of a dataset: a title, the origin of its times, and the thickness (m) of the slab."""
-    return {"title": title_of(readings), "clock": clock(readings), "thickness": slab_of(readings.problem).thickness}
+    return {"title": title_of(readings), "clock": clock(readings), "thickness": slab_of(readings.problem).distance}
 
 
 def places(readings: Readings, count: int) -> Floats:
     """Return `count` evenly spaced distances from the contact (m), up to the driver."""
-    return np.linspace(0.0, slab_of(readings.problem).thickness, count)
+    return np.linspace(0.0, slab_of(readings.problem).distance, count)
 
 
 def field_variables(readings: Readings, time: Floats, x: Floats) -> dict[str, xr.Variable]:
@@ -171,12 +172,18 @@ def field_variables(readings: Readings, time: Floats, x: Floats) -> dict[str, xr
     """
     found, start = readings.field(x, time[:, None]), readings.field(x, 0.0)
     since = "the event began" if "event_slip" in readings.curves else "$t=0$"
-    dims = ("time", "x")
+    unit = readings.problem.load_unit
     return axes_variables(time, x) | {
-        "displacement": quantity(dims, found.displacement - start.displacement, f"displacement since {since}", "u", "m"),
-        "velocity": quantity(dims, found.velocity, "velocity", r"\dot u", "m/s"),
-        "stress": quantity(dims, found.stress, "shear stress", r"\sigma", "Pa"),
+        "displacement": _inside("displacement", found.displacement - start.displacement, unit, f" since {since}"),
+        "velocity": _inside("velocity", found.velocity, unit),
+        "stress": _inside("stress", found.stress, unit),
     }
+
+
+def _inside(name: str, values: Floats, load_unit: str, added: str = "") -> xr.Variable:
+    """Return a quantity of the field over time and x, under its name with `added` behind it."""
+    named = f"{name_of(name, load_unit)}{added}"
+    return quantity(("time", "x"), values, named, QUANTITIES[name].symbol, si_unit(name, load_unit))
 
 
 def means(readings: Readings, time: Floats, x: Floats) -> dict[str, xr.Variable]:
@@ -190,11 +197,11 @@ def means(readings: Readings, time: Floats, x: Floats) -> dict[str, xr.Variable]
     # Displacements are computed as differences from the slab sheared under its strength, and inherit the rounding of that shear.
     sheared = readings.problem.strength / body.stiffness
     velocity = _slope(readings.field(where, time[:, None]).displacement, np.diff(time)[:, None], 0, middle.velocity, sheared)
-    strain = _slope(readings.field(x, when[:, None]).displacement, np.diff(x), 1, middle.stress / body.shear_modulus, sheared)
-    dims = ("time", "x")
+    strain = _slope(readings.field(x, when[:, None]).displacement, np.diff(x), 1, middle.stress / body.modulus, sheared)
+    unit = readings.problem.load_unit
     return axes_variables(when, where) | {
-        "velocity": quantity(dims, velocity, "velocity, mean over a step of time", r"\dot u", "m/s"),
-        "stress": quantity(dims, body.shear_modulus * strain, "shear stress, mean over a step of x", r"\sigma", "Pa"),
+        "velocity": _inside("velocity", velocity, unit, ", mean over a step of time"),
+        "stress": _inside("stress", body.modulus * strain, unit, ", mean over a step of x"),
     }
 
 
@@ -214,8 +221,9 @@ def contact_variables(readings: Readings, start: float, end: float, names: Seque
     """Return the named curves of the contact against `contact_time` (s), in SI, with both limits at every shock."""
     time, curves = readings.curves_together(names, start, end)
     contents = {"contact_time": curve_quantity("contact_point", time, "time")}
+    unit = readings.problem.load_unit
     for name, values in zip(names, curves, strict=True):
-        contents[f"contact_{name.removeprefix('event_')}"] = curve_quantity("contact_point", values, name)
+        contents[f"contact_{name.removeprefix('event_')}"] = curve_quantity("contact_point", values, name, unit)
     return contents
 
 
@@ -226,12 +234,16 @@ class Scales:
     """
 
     def __init__(self, dataset: xr.Dataset) -> None:
-        time, stress = dataset.time.values, dataset.stress.values
+        time, stress, self.load_unit = dataset.time.values, dataset.stress.values, dataset.stress.attrs["units"]
         self.time_unit, self.time = time_unit(float(np.ptp(time)))
         self.place_unit, self.place = readable_unit("m", dataset.attrs["thickness"])
         self.offset = float(stress[0, 0]) if nearly_flat(stress.ravel()) else 0.0
-        self.stress_unit, self.stress = readable_unit("Pa", stress - self.offset)
+        self.stress_unit, self.stress = readable_unit(self.load_unit, stress - self.offset)
         self.clock = f"{dataset.attrs['clock']} ({self.time_unit})"
+
+    def name(self, quantity: str) -> str:
+        """Return the name of a quantity for the body of the dataset."""
+        return name_of(quantity, self.load_unit)
 
     def name_stress(self, name: str) -> str:
         """Return the axis label of a stress."""

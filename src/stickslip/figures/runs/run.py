@@ -115,7 +115,7 @@ def _draw_loading(panel: Axes, readings: Readings, name: str, start: float, end:
     if not is_band:
         values = values + tone.amplitude * np.sin(tone.frequency * time + tone.phase)
     spread, what = swing if is_band else 0.0, name.replace("_", " ")
-    kinds = {"pull_rate": "slip_rate", "ground_velocity": "m/s", "ground_acceleration": "m/s^2"}
+    kinds = {"pull_rate": "slip_rate", "ground_velocity": "slip_rate", "ground_acceleration": "slip_acceleration"}
     si = si_unit(kinds.get(name, "load"), readings.problem.load_unit)
     unit, scale = readable_unit(si, np.abs(values) + spread)
     time = (time - begun) / size

@@ -140,7 +140,7 @@ class FromExpression(RemembersSlip):
             tree = parse(text, (*self.parameters(), *names))
             if any(units.values()):
                 try:
-                    check_dimensions(tree, units, self._units[number] if is_change else None)
+                    self._check_dimensions(tree, units, self._units[number] if is_change else None)
                 except InputError as error:
                     raise InputError(f"{error}{self._unit_hint()}") from None
             self._check_exponents(tree)
@@ -175,6 +175,17 @@ class FromExpression(RemembersSlip):
                 continue
             return f'; with state_unit = "{shown}" the units agree'
         return ""
+
+    def _check_dimensions(self, tree: Expression, units: Mapping[str, str], state: str | None) -> None:
+        """Check the units of a formula in which slip is a length, or an angle if the numbers agree with that alone."""
+        try:
+            check_dimensions(tree, units, state)
+        except InputError:
+            try:
+                check_dimensions(tree, units, state, by_angle=True)
+            except InputError:
+                check_dimensions(tree, units, state)
+            object.__setattr__(self, "_slips_in", "rad")
 
     def _check_healed(self, slip: float) -> None:
         """Check that friction at rest at a slip (m) in state 0 is a number: loads are kept as differences from it."""

@@ -199,12 +199,14 @@ def dimension(unit: str) -> Dimension:
     return powers
 
 
-def check_dimensions(tree: Expression, units: Mapping[str, str], state: str | None = None) -> None:
+def check_dimensions(tree: Expression, units: Mapping[str, str], state: str | None = None, *, by_angle: bool = False) -> None:
     """Raise InputError that names the part with a wrong unit, unless the formula is a pure number.
 
     A parameter without a unit is a pure number. If the formula is the rate of change of a state, `state` is the unit of the state.
+    With `by_angle` slip has no unit: the contact turns.
     """
-    found: dict[Expression, Dimension] = {SLIP: dimension("m"), RATE: dimension("m s^-1")}
+    slip, rate = ("", "s^-1") if by_angle else ("m", "m s^-1")
+    found: dict[Expression, Dimension] = {SLIP: dimension(slip), RATE: dimension(rate)}
     for node in nodes_of(tree):
         if node.operation == "parameter":
             found[node] = dimension(units.get(node.name, ""))

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stickslip.bodies import as_slab
+from stickslip.bodies import as_waves
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.names import in_files, si_unit
 from stickslip.observables.quadrature import FULL, NODES, WEIGHTS, Integrand, between, up_to
@@ -81,10 +81,10 @@ def event_energies(history: History, first: Positions, last: Positions) -> dict[
 
 
 def _slab_events(history: History, first: Positions, last: Positions) -> dict[str, Floats]:
-    body = as_slab(history.problem.body)
+    body = as_waves(history.problem.body)
     waves = Waves(history, body)
     spans = list(zip(epochs(history, first), epochs(history, last), strict=True))
-    moving = 0.5 * body.contact_mass * (_speed(history, first) ** 2 - _speed(history, last) ** 2)
+    moving = 0.5 * body.inertia * (_speed(history, first) ** 2 - _speed(history, last) ** 2)
     work = np.array([waves.work_between(begin, end) for begin, end in spans])
     if history.problem.ground is not None:
         work += between(history, first, last, _shaking(history))
@@ -116,10 +116,11 @@ def trapped_note(history: History) -> str:
     if not body.has_waves:
         return ""
     end = epochs(history, Positions.inside(len(history) - 1, 1.0))[0]
-    energy = Waves(history, as_slab(body)).trapped(end)
+    energy = Waves(history, as_waves(body)).trapped(end)
     holds = history.problem.strength**2 / (2.0 * body.stiffness)
-    share = f", {100.0 * energy / holds:.2g} % of what the slab holds at its static strength" if holds > 0.0 else ""
-    return f"{energy:.6g} J/m2 in waves at the end{share}"
+    energy_unit, body_word = si_unit("energy", body.load_unit).replace("^", ""), "slab" if body.load_unit == "Pa" else "string"
+    share = f", {100.0 * energy / holds:.2g} % of what the {body_word} holds at its static strength" if holds > 0.0 else ""
+    return f"{energy:.6g} {energy_unit} in waves at the end{share}"
 
 
 def epochs(history: History, at: Positions) -> list[Epoch]:
@@ -138,9 +139,9 @@ def energies(history: History, at: Positions, nodes: int = FULL) -> dict[str, Fl
 
 
 def _slab(history: History, at: Positions) -> dict[str, Floats]:
-    body = as_slab(history.problem.body)
+    body = as_waves(history.problem.body)
     waves, radiation, now = Waves(history, body), Radiation(history, body), epochs(history, at)
-    contact = 0.5 * body.contact_mass * _speed(history, at) ** 2
+    contact = 0.5 * body.inertia * _speed(history, at) ** 2
     each = np.array([(waves.stored(epoch), waves.trapped(epoch), kinetic(waves, epoch)) for epoch in now]).reshape(-1, 3)
     if body.has_machine:
         each[:, 2] += [history.machine.kinetic(waves.begun(epoch)) for epoch in now]

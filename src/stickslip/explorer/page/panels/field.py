@@ -13,7 +13,7 @@ from stickslip.explorer.model.answer import Answer
 from stickslip.explorer.page.components import paint
 from stickslip.explorer.page.stage import NARROW, Stage, signed_scale
 from stickslip.explorer.page.view import Columns, LegendKey, Units, View, axis_label, single
-from stickslip.foundation.names import readable_unit
+from stickslip.foundation.names import TURNS, readable_unit, si_unit
 
 TEXT = "Velocity, displacement or stress in the slab: distance from the contact against time, with wave fronts"
 EMPTY: Columns = {"velocity": [], "displacement": [], "stress": [], "x": [], "y": [], "dw": [], "dh": []}
@@ -26,14 +26,15 @@ def data_of(answer: Answer, units: Units) -> View:
         return View(
             columns={"field": dict(EMPTY), "fronts": {"time": [], "place": []}}, hidden={"field"}, facts={"fields": {}}
         )  # fmt: skip
+    load_unit = answer.motions[0].load_unit
     time, place = units.nearby(slab.time), slab.place / units.place[1]
     step, height = (float(np.mean(np.diff(one))) if one.size > 1 else 1.0 for one in (time, place))
-    name, size = readable_unit("m/s", slab.velocity)
+    name, size = readable_unit(si_unit("slip_rate", load_unit), slab.velocity)
     velocity = single(slab.velocity.T / size)
     largest = float(np.abs(velocity).max()) or 1.0
     shape = {"x": [float(time[0]) - 0.5 * step], "y": [-0.5 * height], "dw": [step * time.size], "dh": [height * place.size]}
     displacement, change = slab.displacement.T, (slab.stress - slab.stress[0]).T
-    of_stress, pascal = readable_unit("Pa", change)
+    of_stress, pascal = readable_unit(load_unit, change)
     image = {"velocity": [velocity], "displacement": [single(displacement / units.slip[1])], "stress": [single(change / pascal)]}
     fields = {
         "velocity": ends_of(velocity, name),
@@ -50,7 +51,7 @@ def data_of(answer: Answer, units: Units) -> View:
         },
         limits={"place": (0.0, float(place[-1]))},
         fastest=largest,
-        titles={"field": axis_label("Slab:", "x", units.place[0])},
+        titles={"field": axis_label("String:" if load_unit == TURNS else "Slab:", "x", units.place[0])},
         keys={"field": (LegendKey(f"velocity {fields['velocity']['text']}", "signed", "scale"), LegendKey("wave front", "front"))},
         facts={"fields": fields},
     )

@@ -52,7 +52,7 @@ def _visited(law: LawPicture, x: Any, unit: tuple[str, float]) -> Columns:
 
 def unit_along(law: LawPicture, units: Units) -> tuple[str, float]:
     """Return the unit of the horizontal axis: that of the run, SI for powers of ten."""
-    si, own = ("m", units.slip) if law.along == "slip" else ("m/s", units.rate)
+    si, own = (units.slip_unit, units.slip) if law.along == "slip" else (f"{units.slip_unit}/s", units.rate)
     fits = 0.05 <= np.abs(law.x).max() / own[1] < 1e4  # the curve can reach much further than the run
     return (si, 1.0) if law.log else own if fits else readable_unit(si, law.x)
 

@@ -43,6 +43,7 @@ def units_of(answer: Answer, kept: Answer | None = None) -> Units:
         load=readable_unit(main.load_unit, contact.load if contact else main.load),
         on_curve=readable_unit(rate, main.slip_rate, contact.path_rate if contact else 0.0),
         place=readable_unit("m", slab.place if slab else 1.0),
+        slip_unit=si_unit("slip", main.load_unit),
     )
 
 

@@ -1,0 +1,26 @@
+"""The bodies: a rigid block on a spring and an elastic slab that slide, and a disc on a spring and a string that turn."""
+
+from stickslip.bodies.contract import MACHINE, Body, BodyOnCharacteristics, BodyWithWaves, as_waves, has_dashpot
+from stickslip.bodies.sliding import ElasticSlab, SpringBlock, as_block, as_slab
+from stickslip.bodies.turning import RotatingBlock, TorsionalString
+
+BODIES: dict[str, type[BodyOnCharacteristics]] = {
+    body.kind: body for body in (SpringBlock, ElasticSlab, RotatingBlock, TorsionalString)
+}
+"""Every body by its name in scenario files."""
+
+__all__ = [
+    "BODIES",
+    "MACHINE",
+    "Body",
+    "BodyOnCharacteristics",
+    "BodyWithWaves",
+    "ElasticSlab",
+    "RotatingBlock",
+    "SpringBlock",
+    "TorsionalString",
+    "as_block",
+    "as_slab",
+    "as_waves",
+    "has_dashpot",
+]

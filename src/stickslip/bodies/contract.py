@@ -1,0 +1,286 @@
+"""Define what is asked of every body, and the common parts of bodies that carry waves and of rigid bodies on a spring."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import Field
+from functools import cached_property
+from typing import Any, ClassVar, Protocol, cast
+
+import numpy as np
+
+from stickslip.foundation.constants import RIGID
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.names import si_unit
+from stickslip.foundation.quantities import check_fields
+
+
+class Body(Protocol):
+    """What every body that slides on a contact has, whatever solves its motion.
+
+    Its loads are stresses (Pa), forces (N) or torques (N m). Units below are for a slab; for a block read N for Pa, and kg for
+    kg/m^2; for a body that turns N m for Pa, kg m^2 for kg/m^2, and rad for m where it is slip.
+    """
+
+    __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
+
+    kind: ClassVar[str]
+    """Name in scenario files."""
+    load_unit: ClassVar[str]
+    """SI unit of loads and tractions, which decides the other units: a row of `foundation.names.KINDS`."""
+
+    @property
+    def normal_field(self) -> str:
+        """The name of the field that holds the normal load, or that is in proportion to it."""
+        ...
+
+    @property
+    def normal_load(self) -> float:
+        """The normal load S on the contact (Pa), compression positive."""
+        ...
+
+    @property
+    def stiffness(self) -> float:
+        """The decrease of the load per metre of slow slip (Pa/m)."""
+        ...
+
+    @property
+    def impedance(self) -> float:
+        """The load per slip rate that is characteristic of the body (Pa s/m): Z of a slab, sqrt(K m) of a block."""
+        ...
+
+    @property
+    def damping(self) -> float:
+        """The load per slip rate by which the body resists slip (Pa s/m): by radiation of waves, or by viscosity."""
+        ...
+
+    @property
+    def inertia(self) -> float:
+        """The mass that slips with the contact (kg/m^2): the contact mass of a slab, the whole mass of a block."""
+        ...
+
+    @property
+    def has_inertia(self) -> bool:
+        """True if a mass slips with the contact, so that its slip rate cannot jump."""
+        ...
+
+
+class BodyOnCharacteristics(Body, Protocol):
+    """What the exact solver needs besides: how slip acts on the contact again, after a round trip, along characteristics.
+
+    Units are those of `Body`.
+    """
+
+    has_waves: ClassVar[bool]
+    """True if slip sends waves into the body, which come back as load one round trip later; False if the body is rigid."""
+
+    @property
+    def driver_impedance(self) -> float:
+        """The impedance of the driver (Pa s/m), inf for a driver that prescribes its displacement."""
+        ...
+
+    @property
+    def is_driven_rigidly(self) -> bool:
+        """True if the driver does not give way, or by less than rounding."""
+        ...
+
+    @property
+    def has_machine(self) -> bool:
+        """True if the driver has a motion of its own: a mass, or a gain that integrates."""
+        ...
+
+    @property
+    def driver_inertia(self) -> float:
+        """The mass of such a driver (kg/m^2)."""
+        ...
+
+    @property
+    def driver_integral_gain(self) -> float:
+        """The force of such a driver per way that it lags behind its pull rate (Pa/m)."""
+        ...
+
+    @property
+    def reflection(self) -> float:
+        """The share of an outgoing wave that comes back from the driver, between -1 and 1; 0 without waves."""
+        ...
+
+    @property
+    def round_trip_time(self) -> float:
+        """The time (s) after which slip acts on the contact again: 2 h/c of a slab, the period of a block."""
+        ...
+
+
+MACHINE = "a driver with a mass or an integral gain"
+"""Words for a driver that is a machine (`BodyOnCharacteristics.has_machine`)."""
+
+
+def has_dashpot(body: BodyOnCharacteristics) -> bool:
+    """Return True if the contact of a body with waves resists slip by another damping than its waves, whose damping is Z."""
+    return body.has_waves and body.damping != body.impedance
+
+
+def check_body(body: BodyOnCharacteristics, normal: str) -> None:
+    """Check the fields of a body whose normal load is called `normal`: a number, whereas a history belongs to the problem."""
+    value = getattr(body, normal)
+    if hasattr(value, "segments"):
+        one = f"{type(body).__name__}: {normal} is one number, that at the start"
+        raise InputError(f"{one}: a history is normal_load of the Problem, [loading.normal_load] in a scenario")
+    check_fields(body)
+
+
+class BodyWithWaves(BodyOnCharacteristics, Protocol):
+    """A uniform body in which waves run along one line between the contact and the driver."""
+
+    mass_field: ClassVar[str]
+    """Name of the field for the mass that slips with the contact."""
+
+    @property
+    def wave_speed(self) -> float:
+        """The wave speed c (m/s)."""
+        ...
+
+    @property
+    def modulus(self) -> float:
+        """The load per strain: G of a slab (Pa); per angle of twist on each metre, G J of a string (N m^2)."""
+        ...
+
+    @property
+    def distance(self) -> float:
+        """The distance h between contact and driver (m)."""
+        ...
+
+    @property
+    def two_way_time(self) -> float:
+        """The two-way travel time R = 2 h / c (s)."""
+        ...
+
+    @property
+    def front_reflection(self) -> float:
+        """The share of a sharp wave front that the driver sends back."""
+        ...
+
+    def equivalent_block(self) -> BodyOnCharacteristics:
+        """Return the rigid body on a spring to which this one is equivalent in slow motion."""
+        ...
+
+
+def as_waves(body: BodyOnCharacteristics, refusal: str = "needs a body with waves") -> BodyWithWaves:
+    """Return a body that must carry waves. Raises InputError with the text `refusal` for a rigid one."""
+    if not body.has_waves:
+        raise InputError(refusal)
+    return cast(BodyWithWaves, body)
+
+
+class WithWaves:
+    """What follows from the numbers of a `BodyWithWaves`: a base for such bodies."""
+
+    has_waves: ClassVar[bool] = True
+
+    @property
+    def damping(self: BodyWithWaves) -> float:
+        """The radiation damping, load per slip rate that leaves with the waves (Pa s/m): the impedance."""
+        return self.impedance
+
+    @property
+    def two_way_time(self: BodyWithWaves) -> float:
+        """The two-way travel time R = 2 h / c (s)."""
+        return 2.0 * self.distance / self.wave_speed
+
+    @property
+    def round_trip_time(self: BodyWithWaves) -> float:
+        """The two-way travel time R (s), after which a wave that slip has sent out comes back as load."""
+        return self.two_way_time
+
+    @property
+    def has_inertia(self: BodyWithWaves) -> bool:
+        """True if a mass slips with the contact, so that its slip rate cannot jump."""
+        return self.inertia > 0.0
+
+    @cached_property
+    def reflection(self: BodyWithWaves) -> float:
+        """The reflection coefficient of the driver, r = (Z - Zd) / (Z + Zd).
+
+        It is -1 for a rigid driver, 0 for a matched half-space and +1 for a dead load. A driver with a mass or an integral gain
+        sends back a wave that depends on how long the one that it meets lasts: r holds where neither is felt.
+        """
+        if np.all(np.isinf(self.driver_impedance) | np.isinf(self.driver_inertia)):
+            return RIGID
+        return (self.impedance - self.driver_impedance) / (self.impedance + self.driver_impedance)
+
+    @cached_property
+    def is_driven_rigidly(self: BodyWithWaves) -> bool:
+        """True if the driver reflects the whole wave with its sign reversed, r = -1."""
+        return bool(np.all(self.reflection == RIGID))
+
+    @property
+    def front_reflection(self: BodyWithWaves) -> float:
+        """The share of a sharp wave front that the driver sends back: a mass has no time to give way."""
+        return RIGID if np.any(np.greater(self.driver_inertia, 0.0)) else self.reflection
+
+    @cached_property
+    def has_machine(self: BodyWithWaves) -> bool:
+        """True if the driver has a motion of its own: a mass or an integral gain."""
+        own = np.greater(self.driver_inertia, 0.0) | np.greater(self.driver_integral_gain, 0.0)
+        return bool(np.any(own)) and not self.is_driven_rigidly
+
+    @property
+    def stiffness(self: BodyWithWaves) -> float:
+        """The modulus over the distance, G / h (Pa/m): the decrease of the load per metre of slow slip under a rigid driver."""
+        return self.modulus / self.distance
+
+
+def check_driver(body: BodyWithWaves) -> None:
+    """Raise InputError if the mass and the gains of a driver do not go together."""
+    owner = type(body).__name__
+    rigid, gain = np.isinf(body.driver_impedance), np.greater(body.driver_integral_gain, 0.0)
+    heavy = np.greater(body.driver_inertia, 0.0) & ~np.isinf(body.driver_inertia)
+    for name, given in (("driver_inertia", heavy), ("driver_integral_gain", gain)):
+        if np.any(given & rigid):
+            why = "a rigid driver holds its rate whatever its mass and gains"
+            raise InputError(f"{owner}: {name} needs a finite driver_impedance, the proportional gain: {why}")
+    if np.any(gain & np.equal(body.driver_impedance, 0.0)):
+        why = "nothing damps the driver, and its swings grow where friction falls with the slip rate"
+        raise InputError(
+            f"{owner}: driver_integral_gain needs a driver_impedance, the proportional gain, above 0: without it {why}"
+        )
+
+
+def check_equivalent(body: BodyWithWaves) -> None:
+    """Raise InputError unless the driver of a body is rigid: otherwise no spring is left in slow motion."""
+    if not body.is_driven_rigidly:
+        raise InputError(
+            f"{type(body).__name__}: equivalent_block needs a rigid driver: behind one of finite impedance nothing holds the "
+            f"{'slab' if body.load_unit == 'Pa' else 'string'} in the slow limit, so there is no spring; got "
+            f"driver_impedance = {body.driver_impedance:g} {si_unit('impedance', body.load_unit)}"
+        )
+
+
+class OnSpring:
+    """What follows from the numbers of a rigid body on a spring: a base for such bodies."""
+
+    has_waves: ClassVar[bool] = False
+    has_inertia: ClassVar[bool] = True
+    driver_impedance: ClassVar[float] = math.inf
+    """The end of the spring is displaced as prescribed, as the face of a slab is by a rigid driver."""
+    is_driven_rigidly: ClassVar[bool] = True
+    has_machine: ClassVar[bool] = False
+    driver_inertia: ClassVar[float] = 0.0
+    driver_integral_gain: ClassVar[float] = 0.0
+    reflection: ClassVar[float] = 0.0
+
+    @property
+    def round_trip_time(self: BodyOnCharacteristics) -> float:
+        """The period of free undamped oscillation, 2 pi sqrt(m / K) (s): the spring has then brought the body's motion back."""
+        found: float = 2.0 * math.pi * np.sqrt(self.inertia / self.stiffness)
+        return found
+
+    @property
+    def period(self: BodyOnCharacteristics) -> float:
+        """The period (s)."""
+        return self.round_trip_time
+
+    @property
+    def impedance(self: BodyOnCharacteristics) -> float:
+        """Sqrt(K m) (N s/m), which takes the place of a slab's impedance."""
+        found: float = np.sqrt(self.stiffness * self.inertia)
+        return found

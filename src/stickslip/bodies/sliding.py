@@ -1,0 +1,178 @@
+"""Define the bodies that slide on the contact: a rigid block on a spring, and an elastic slab."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+from stickslip.bodies.contract import BodyOnCharacteristics, OnSpring, WithWaves, check_body, check_driver, check_equivalent
+from stickslip.foundation.conversion import Number, OptionalNumber
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.quantities import quantity
+from stickslip.foundation.show import Declared
+
+
+@dataclass(frozen=True)
+class SpringBlock(Declared, OnSpring):
+    """A rigid block pulled through a spring: m dv/dt + damping v + tau = K (D0 + V t - u). Loads and tractions are forces, in N."""
+
+    kind: ClassVar[str] = "spring-block"
+    source: ClassVar[str] = "Campillo et al. 1996, eqs (4)-(6); the damping is an addition"
+    load_unit: ClassVar[str] = "N"
+    normal_field: ClassVar[str] = "normal_force"
+
+    mass: Number = quantity("kg", "mass m", above=0)
+    stiffness: Number = quantity("N/m", "stiffness K of the spring", above=0)
+    normal_force: Number = quantity("N", "normal force S on the contact, compression positive", above=0)
+    damping: Number = quantity("N s/m", "viscous resistance to slip", at_least=0, default=0.0)
+
+    def __post_init__(self) -> None:
+        check_body(self, "normal_force")
+
+    @property
+    def normal_load(self) -> float:
+        """The normal force S (N)."""
+        return self.normal_force
+
+    @property
+    def inertia(self) -> float:
+        """The mass (kg)."""
+        return self.mass
+
+
+@dataclass(frozen=True)
+class ElasticSlab(Declared, WithWaves):
+    """A slab of given thickness in antiplane or in-plane shear: rho u_tt = G u_xx, friction at x = 0, a driver at x = h.
+
+    A driver of finite impedance is a half-space. With a mass or an integral gain it is a machine, and the impedance is its
+    proportional gain: M dVd/dt = Zd (V - Vd) + ki phi + far stress - stress, with dphi/dt = V - Vd. With a contact mass the slip
+    rate has no jumps (shocks). Raises InputError if a number is out of range, or `p_wave_speed` does not exceed sqrt(4/3)
+    `wave_speed`.
+    """
+
+    kind: ClassVar[str] = "elastic-slab"
+    source: ClassVar[str] = "Campillo et al. 1996, eqs (7)-(13)"
+    load_unit: ClassVar[str] = "Pa"
+    normal_field: ClassVar[str] = "normal_stress"
+    mass_field: ClassVar[str] = "contact_mass"
+
+    density: Number = quantity("kg/m^3", "density rho", above=0)
+    wave_speed: Number = quantity("m/s", "shear wave speed c", above=0)
+    thickness: Number = quantity("m", "thickness h", above=0)
+    normal_stress: Number = quantity("Pa", "normal stress S on the contact, compression positive", above=0)
+    driver_impedance: Number = quantity(
+        "Pa s/m",
+        "impedance Zd of the driver: inf for a rigid driver, 0 for a dead load",
+        at_least=0,
+        infinite=True,
+        word="rigid",
+        default=math.inf,
+    )
+    driver_inertia: Number = quantity(
+        "kg/m^2", "mass of the driver, per unit area: inf for a rigid driver", at_least=0, infinite=True, word="rigid", default=0.0
+    )
+    driver_integral_gain: Number = quantity(
+        "Pa/m", "stress with which the driver makes up for each metre that it lags behind its pull rate", at_least=0, default=0.0
+    )
+    contact_mass: Number = quantity("kg/m^2", "mass of the sliding face, per unit area", at_least=0, default=0.0)
+    p_wave_speed: OptionalNumber = quantity(
+        "m/s", "compressional wave speed: only for the (constant) normal strain", above=0, default=None
+    )
+
+    def __post_init__(self) -> None:
+        check_body(self, "normal_stress")
+        check_driver(self)
+        if self.p_wave_speed is not None and self.p_wave_speed <= self.wave_speed * math.sqrt(4 / 3):
+            limit = self.wave_speed * math.sqrt(4 / 3)
+            raise InputError(
+                f"ElasticSlab: p_wave_speed must exceed sqrt(4/3) wave_speed = {limit:g} m/s, got {self.p_wave_speed:g}"
+            )
+
+    @property
+    def impedance(self) -> float:
+        """The wave impedance Z = rho c (Pa s/m)."""
+        return self.density * self.wave_speed
+
+    @property
+    def shear_modulus(self) -> float:
+        """The shear modulus G = rho c^2 (Pa)."""
+        return self.density * self.wave_speed**2
+
+    @property
+    def modulus(self) -> float:
+        """The shear modulus (Pa)."""
+        return self.shear_modulus
+
+    @property
+    def distance(self) -> float:
+        """The thickness (m)."""
+        return self.thickness
+
+    @property
+    def normal_load(self) -> float:
+        """The normal stress S (Pa)."""
+        return self.normal_stress
+
+    @property
+    def inertia(self) -> float:
+        """The contact mass (kg/m^2)."""
+        return self.contact_mass
+
+    @property
+    def normal_strain(self) -> float:
+        """The normal strain -S / (lambda + 2 G), no unit, which is constant through the slab.
+
+        Raises
+        ------
+        InputError
+            If the slab has no `p_wave_speed`.
+        """
+        if self.p_wave_speed is None:
+            raise InputError("ElasticSlab: normal_strain needs p_wave_speed")
+        return -self.normal_stress / (self.density * self.p_wave_speed**2)
+
+    def equivalent_block(self) -> SpringBlock:
+        """Return the block to which the slab is equivalent in slow motion, for each m^2 of contact.
+
+        Returns
+        -------
+        SpringBlock
+            A block without damping: K = G/h (N/m), m = rho h/3 + contact mass (kg) and the normal force S of 1 m^2 (N).
+
+        Raises
+        ------
+        InputError
+            If the driver is not rigid. A finite impedance acts in series with the spring, not in parallel as the damping of a
+            block does; in the slow limit the driver then gives way, no spring is left, and the slab is a mass rho h.
+
+        Notes
+        -----
+        Motion is slow if it takes many travel times h/c. The shear strain is then uniform, the velocity falls linearly from the
+        contact to the driver, and the kinetic energy is rho (h/3) v^2/2 per unit area.
+
+        At the angular frequency omega the load per unit displacement of the contact is G k cot(k h) = G/h - omega^2 rho h/3 + ...,
+        with k = omega/c. The block matches the terms up to the order (omega h/c)^2.
+
+        It is not the block that matches the first mode, which has m = rho h/2 and K = (pi^2/8) G/h and oscillates at the frequency
+        c/(4h) of the slab. This block oscillates at sqrt(3) c/(2 pi h), which is 10 % higher.
+
+        Source: Campillo et al. 1996 compare the two bodies; the equivalence follows from their eqs (7)-(13) as above.
+        """
+        check_equivalent(self)
+        mass = self.density * self.thickness / 3.0 + self.contact_mass
+        return SpringBlock(mass=mass, stiffness=self.stiffness, normal_force=self.normal_stress)
+
+
+def as_slab(body: BodyOnCharacteristics, refusal: str = "needs an elastic slab") -> ElasticSlab:
+    """Return a body that must be a slab. Raises InputError with the text `refusal` for any other body."""
+    if not isinstance(body, ElasticSlab):
+        raise InputError(refusal)
+    return body
+
+
+def as_block(body: BodyOnCharacteristics) -> SpringBlock:
+    """Return a body that must be a block; raise InputError for any other body."""
+    if not isinstance(body, SpringBlock):
+        raise InputError("needs a spring-block")
+    return body

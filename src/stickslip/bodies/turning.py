@@ -1,0 +1,163 @@
+"""Define the bodies that turn on the contact: a disc on a torsion spring, and a string in torsion. Slip is an angle, in rad."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from stickslip.bodies.contract import OnSpring, WithWaves, check_body, check_driver, check_equivalent
+from stickslip.foundation.conversion import Number, OptionalNumber
+from stickslip.foundation.errors import InputError
+from stickslip.foundation.quantities import quantity
+from stickslip.foundation.show import Declared
+
+LOADED_BY = "give either normal_torque, or weight_on_bit and bit_radius"
+"""How a string is pressed onto its contact."""
+
+
+@dataclass(frozen=True)
+class RotatingBlock(Declared, OnSpring):
+    """A rigid body turned through a torsion spring: I dv/dt + damping v + tau = K (D0 + V t - u), with an angle u (rad).
+
+    Loads and tractions are torques, in N m. The contact resists with the torque `normal_torque` mu: for a brake or a clutch that is
+    its clamping force times its effective radius.
+    """
+
+    kind: ClassVar[str] = "rotating-block"
+    source: ClassVar[str] = "Campillo et al. 1996, eqs (4)-(6), with angles for lengths and torques for forces"
+    load_unit: ClassVar[str] = "N m"
+    normal_field: ClassVar[str] = "normal_torque"
+
+    inertia: Number = quantity("kg m^2", "moment of inertia I", above=0)
+    stiffness: Number = quantity("N m/rad", "stiffness K of the torsion spring", above=0)
+    normal_torque: Number = quantity("N m", "torque of friction if mu is 1: clamping force times effective radius", above=0)
+    damping: Number = quantity("N m s", "viscous resistance to slip", at_least=0, default=0.0)
+
+    def __post_init__(self) -> None:
+        check_body(self, "normal_torque")
+
+    @property
+    def normal_load(self) -> float:
+        """The torque of friction if mu is 1 (N m)."""
+        return self.normal_torque
+
+
+@dataclass(frozen=True)
+class TorsionalString(Declared, WithWaves):
+    """A string in torsion, such as a drill string: I u_tt = G J u_xx, a bit with friction at x = 0, a drive at x = length.
+
+    The slip u is the angle (rad) of the bit, and loads are torques (N m). The bit resists with the torque S mu, where S is
+    `normal_torque`, or `weight_on_bit` times `bit_radius`. The polar moment J of the section follows from `outer_diameter` and
+    `inner_diameter` unless it is given as `polar_moment`; I = rho J is the inertia per length, and sqrt(I G J) = J sqrt(rho G) the
+    impedance. A drive of finite impedance Zd turns slower than asked by torque / Zd; with `driver_inertia` or
+    `driver_integral_gain` it is a machine, as a slab's, such as SoftTorque. With `inertia`, that of bit and collars, the
+    rate has no jumps.
+    """
+
+    kind: ClassVar[str] = "torsional-string"
+    source: ClassVar[str] = "Campillo et al. 1996, eqs (7)-(13), with angles for lengths and torques for stresses"
+    load_unit: ClassVar[str] = "N m"
+    mass_field: ClassVar[str] = "inertia"
+
+    length: Number = quantity("m", "length of the string", above=0)
+    density: Number = quantity("kg/m^3", "density rho", above=0)
+    shear_modulus: Number = quantity("Pa", "shear modulus G", above=0)
+    outer_diameter: OptionalNumber = quantity("m", "outer diameter of the section", above=0, default=None)
+    inner_diameter: Number = quantity("m", "inner diameter of the section", at_least=0, default=0.0)
+    polar_moment: OptionalNumber = quantity("m^4", "polar moment J of the section, in place of diameters", above=0, default=None)
+    weight_on_bit: OptionalNumber = quantity("N", "force on the bit, compression positive", above=0, default=None)
+    bit_radius: OptionalNumber = quantity(
+        "m", "effective radius of the bit: 2/3 of its own if the weight is spread evenly", above=0, default=None
+    )
+    normal_torque: OptionalNumber = quantity(
+        "N m", "torque of the bit if mu is 1, in place of weight and radius", above=0, default=None
+    )
+    driver_impedance: Number = quantity(
+        "N m s",
+        "impedance Zd of the drive: inf for a stiff drive, 0 for a constant torque",
+        at_least=0,
+        infinite=True,
+        word="rigid",
+        default=math.inf,
+    )
+    driver_inertia: Number = quantity(
+        "kg m^2", "moment of inertia of the drive: inf for a stiff drive", at_least=0, infinite=True, word="rigid", default=0.0
+    )
+    driver_integral_gain: Number = quantity(
+        "N m/rad", "torque with which the drive makes up for each radian that it lags behind its pull rate", at_least=0, default=0.0
+    )
+    inertia: Number = quantity("kg m^2", "moment of inertia of bit and collars", at_least=0, default=0.0)
+
+    def __post_init__(self) -> None:
+        check_body(self, "normal_torque")
+        check_driver(self)
+        if (self.polar_moment is None) == (self.outer_diameter is None) or (self.polar_moment is not None and self.inner_diameter):
+            raise InputError("TorsionalString: give either outer_diameter, with inner_diameter of a pipe, or polar_moment")
+        if self.outer_diameter is not None and not np.all(np.less(self.inner_diameter, self.outer_diameter)):
+            raise InputError(
+                f"TorsionalString: inner_diameter must be below outer_diameter = {self.outer_diameter:g} m, "
+                f"got {self.inner_diameter:g}"
+            )
+        weight = (self.weight_on_bit is None, self.bit_radius is None)
+        if weight[0] != weight[1] or weight[0] == (self.normal_torque is None):
+            raise InputError(f"TorsionalString: {LOADED_BY}")
+
+    @property
+    def section(self) -> float:
+        """The polar moment J of the section (m^4)."""
+        if self.polar_moment is not None:
+            return self.polar_moment
+        assert self.outer_diameter is not None
+        return math.pi / 32.0 * (self.outer_diameter**4 - self.inner_diameter**4)
+
+    @property
+    def wave_speed(self) -> float:
+        """The speed sqrt(G / rho) of torsional waves (m/s)."""
+        found: float = np.sqrt(self.shear_modulus / self.density)
+        return found
+
+    @property
+    def inertia_per_length(self) -> float:
+        """The moment of inertia per length, I = rho J (kg m)."""
+        return self.density * self.section
+
+    @property
+    def modulus(self) -> float:
+        """The torque per twist of a metre, G J (N m^2)."""
+        return self.shear_modulus * self.section
+
+    @property
+    def impedance(self) -> float:
+        """The wave impedance Z = sqrt(I G J) (N m s)."""
+        return self.inertia_per_length * self.wave_speed
+
+    @property
+    def distance(self) -> float:
+        """The length (m)."""
+        return self.length
+
+    @property
+    def normal_field(self) -> str:
+        """The field that a heavier load changes: the weight on the bit, or the torque where that is given."""
+        return "normal_torque" if self.normal_torque is not None else "weight_on_bit"
+
+    @property
+    def normal_load(self) -> float:
+        """The torque of the bit if mu is 1 (N m)."""
+        if self.normal_torque is not None:
+            return self.normal_torque
+        assert self.weight_on_bit is not None
+        assert self.bit_radius is not None
+        return self.weight_on_bit * self.bit_radius
+
+    def equivalent_block(self) -> RotatingBlock:
+        """Return the rotating block to which the string is equivalent in slow motion: K = G J / length, inertia I length / 3 + bit.
+
+        The twist is then uniform, as in `ElasticSlab.equivalent_block`. Raises InputError if the drive is not stiff.
+        """
+        check_equivalent(self)
+        inertia = self.inertia_per_length * self.length / 3.0 + self.inertia
+        return RotatingBlock(inertia=inertia, stiffness=self.stiffness, normal_torque=self.normal_load)
