@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
@@ -60,3 +61,15 @@ def measured(
     """Return points of a law, at slips (m), slip rates (m/s) or both, with normal noise of this standard deviation."""
     friction = law.coefficient(0.0 if slip is None else slip, 0.0 if rate is None else rate)
     return ss.friction.Points(friction + noise * np.random.default_rng(seed).standard_normal(friction.shape), slip, rate)
+
+
+def of_each_kind(names: Iterable[str]) -> list[str]:
+    """Return the first of some bundled scenarios of one dimension for each kind of body, law, loading and start."""
+    found = dict[tuple[object, ...], str]()
+    for name in names:
+        problem = ss.load_scenario(name).problem
+        start = problem.initial_load is None, problem.initial_state is None, problem.initial_rate is None
+        mass = getattr(problem.body, "contact_mass", 0.0) > 0.0
+        kinds = (type(one) for one in (problem.body, problem.friction, problem.pull_rate, problem.far_stress))
+        found.setdefault((*kinds, *start, mass), name)
+    return list(found.values())

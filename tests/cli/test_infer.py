@@ -18,21 +18,31 @@ TIMES, RATES = [0.0, 60.0, 100.0], [1e-6, 1e-5, 1e-6]
 FREE = "a,b,distance,stiffness,reference"
 
 
-@pytest.fixture(autouse=True)
-def _record(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+@pytest.fixture(scope="module")
+def table() -> str:
+    """A record of velocity steps as a CSV file."""
     clock = np.linspace(0.0, 200.0, 801)
     friction = RateAndStateBlock().friction(clock, TIMES, RATES) + 2e-4 * correlated(len(clock), 0.0, 1)
-    table = {"time (s)": clock, "load point (um)": 1e6 * load_point(clock, TIMES, RATES), "mu": friction}
-    pd.DataFrame(table).to_csv("data.csv", index=False)
+    columns = {"time (s)": clock, "load point (um)": 1e6 * load_point(clock, TIMES, RATES), "mu": friction}
+    return pd.DataFrame(columns).to_csv(index=False)
 
 
-def test_infer_shows_numbers_and_writes_what_was_asked_for(command, tmp_path: Path):
-    files = ["--out", "a.nc", "--scenario-out", "best.toml", "--figure", "a.png"]
-    shown = command("infer", "velocity-steps-block", "data.csv", "--free", FREE, "--starts", "1", *files)
+@pytest.fixture(autouse=True)
+def _record(table: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("data.csv").write_text(table)
+
+
+def test_infer_reads_what_is_known_and_writes_what_was_asked_for(command, tmp_path: Path):
+    known = ["--prior", "a=normal(0.008, 0.0001)", "--bound", "b=0.01..0.02", "--begin-at", "distance=12 um"]
+    part = ["--from", "20 s", "--to", "180", "--starts", "1"]
+    files = ["--out", "a.nc", "--scenario-out", "best.toml", "--figure", "a.png", "--report", "fitted"]
+    shown = command("infer", "velocity-steps-block", "data.csv", "--free", FREE, *known, *part, *files)
     assert shown.code == 0, shown.err
-    assert "5 numbers from 801 samples, noise: friction 0.000" in shown.out
+    assert "5 numbers from 641 samples, noise: friction 0.000" in shown.out
     assert "friction.distance" in shown.out
+    assert "written: fitted/report.html" in shown.out
+    assert "Fitted to data.csv" in (tmp_path / "fitted" / "report.html").read_text(encoding="utf-8")
     assert all((tmp_path / name).stat().st_size > 1000 for name in ("a.nc", "best.toml", "a.png"))
     assert ss.load_scenario("best.toml").problem.friction.a == pytest.approx(0.008, rel=0.05)
 
@@ -43,15 +53,6 @@ def test_infer_compares_scenarios_by_what_they_predict(command):
     shown = command("infer", "velocity-steps-block", "data.csv", *options)
     assert shown.code == 0, shown.err
     assert shown.out.index("rate-and-state, ageing") < shown.out.index("rate-and-state, slip")
-
-
-def test_priors_bounds_and_begins_are_read(command):
-    known = ["--prior", "a=normal(0.008, 0.0001)", "--bound", "b=0.01..0.02", "--begin-at", "distance=12 um"]
-    shown = command(
-        "infer", "velocity-steps-block", "data.csv", "--free", FREE, "--from", "20 s", "--to", "180", "--starts", "1", *known
-    )
-    assert shown.code == 0, shown.err
-    assert "5 numbers from 641 samples" in shown.out
 
 
 @pytest.mark.parametrize(
@@ -71,6 +72,7 @@ def test_priors_bounds_and_begins_are_read(command):
         (["--free", "a", "--by", "features"], "data.csv: "),
         (["--free", "a", "--from", "1 kg"], "infer: begin must be"),
         ([], "infer: --free is missing"),
+        (["--free", "reference", "--report", "data.csv"], "--report data.csv: data.csv is not a folder"),
     ],
 )
 def test_what_cannot_be_used_is_one_line(command, options, message):
@@ -80,21 +82,12 @@ def test_what_cannot_be_used_is_one_line(command, options, message):
     assert shown.err.count("\n") == 1
 
 
-def test_compare_needs_a_part_that_is_left_out(command):
+def test_windows_and_weights_are_asked_for_by_options(command):
     shown = command(
-        "infer", "velocity-steps-block", "data.csv", "--free", "a", "--starts", "1", "--compare", "velocity-steps-block"
+        "infer", "velocity-steps-block", "data.csv", "--free", "reference", "--starts", "1", "--windows", "--weight", "0.2"
     )
-    assert shown.code == 2
-    assert "--compare needs --held-out" in shown.err
-
-
-def test_a_report_is_written_to_a_folder_and_refused_for_a_file(command, tmp_path: Path):
-    shown = command("infer", "velocity-steps-block", "data.csv", "--free", "reference", "--starts", "1", "--report", "fitted")
     assert shown.code == 0, shown.err
-    assert "written: fitted/report.html" in shown.out
-    assert "Fitted to data.csv" in (tmp_path / "fitted" / "report.html").read_text(encoding="utf-8")
-    refused = command("infer", "velocity-steps-block", "data.csv", "--free", "reference", "--report", "data.csv")
-    assert (refused.code, refused.err) == (2, "stickslip: --report data.csv: data.csv is not a folder\n")
+    assert "Over 8 windows of" in shown.out
 
 
 def test_the_help_of_by_names_what_infer_can_fit_and_not_what_another_command_can(command):
@@ -125,13 +118,6 @@ def test_arguments_of_python_are_spelt_as_options():
         == "give --held-out 0.3, or --parts rests and --profiles"
     )
     assert as_options("alpha=3, record.trend = 5") == "alpha=3, record.trend = 5"
-
-
-def test_windows_and_weights_are_asked_for_by_options(command):
-    options = ["--free", "a,b,distance", "--starts", "1", "--windows", "--weight", "0.2"]
-    shown = command("infer", "velocity-steps-block", "data.csv", *options)
-    assert shown.code == 0, shown.err
-    assert "Over 8 windows of" in shown.out
 
 
 def test_each_option_of_python_is_one_of_the_command_line_with_the_same_default():

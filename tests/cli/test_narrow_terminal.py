@@ -14,7 +14,7 @@ NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?")
 COMMANDS = [
     ["run", "fig6-slab"],
     ["run", "cycles-block"],
-    ["run", "fig5-slab-printed", "--duration", "2 hours"],
+    ["run", "fig5-slab-printed", "--duration", "25 minutes"],
     ["check", "fig6-slab"],
     ["check", "fig6-block-printed"],
     ["sweep", "fig6-slab", "-v", "alpha=0.1..1:4", "-v", "thickness=5km,10km"],
@@ -34,16 +34,13 @@ def check_fits(narrow: str, wide: str, width: int) -> None:
             assert number in whole | shorter, (number, line)
 
 
-@pytest.mark.parametrize("width", [60, 40])
 @pytest.mark.parametrize("arguments", COMMANDS, ids=lambda arguments: " ".join(arguments[:2]))
-def test_numbers_do_not_break_and_lines_fit(
-    command: Callable[..., Outcome], monkeypatch: pytest.MonkeyPatch, arguments: list[str], width: int
-):
+def test_numbers_do_not_break_and_lines_fit(command: Callable[..., Outcome], monkeypatch: pytest.MonkeyPatch, arguments: list[str]):
     wide = command(*arguments)
-    monkeypatch.setenv("COLUMNS", str(width))
+    monkeypatch.setenv("COLUMNS", "40")
     narrow = command(*arguments)
     assert narrow.code == wide.code == 0
-    check_fits(narrow.out, wide.out, width)
+    check_fits(narrow.out, wide.out, 40)
 
 
 @pytest.mark.parametrize("width", [60, 40])

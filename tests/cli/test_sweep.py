@@ -11,10 +11,8 @@ from typer import Context
 
 from stickslip.cli.options import complete_axis, complete_design, complete_quantity, complete_series, complete_vary
 from stickslip.scenarios.stability import OTHER_START
-from stickslip.sweeps.design.quantities import QUANTITIES
 from stickslip.sweeps.sweep import SweepProgress
 
-ALL = f"allowed: {', '.join(QUANTITIES)}"
 MAP = ["sweep", "fig6-slab", "--vary", "friction.alpha=0.1..1:4", "--vary", "thickness=5km,10km"]
 
 
@@ -93,40 +91,6 @@ def test_failures_are_counted_with_their_reasons(command):
     assert shown.code == 0
     assert "1 finished\n2 bad parameters\n  2: member: [loading] far_stress and far_stress_rate need a slab" in shown.out
     assert command("sweep", "fig6-slab", "-v", "loading.far_stress_rate=1,2").code == 1
-
-
-@pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
-        ([], "sweep: needs either --vary or --list, got neither"),
-        (["-v", "alpha=1,2", "--list", "a.csv"], "sweep: needs either --vary or --list, got both"),
-        (["-v", "alpa=1,2"], "--vary: 'alpa' is not a parameter of this scenario; did you mean 'alpha'?"),
-        (["-v", "alpha"], '--vary must be "KEY=LOW..HIGH:POINTS"'),
-        (["-v", "thickness=1..2 kg:3"], "--vary: body.thickness must be a number in m"),
-        (
-            ["-v", "alpha=1,2", "-q", "slips"],
-            f"sweep: quantity 'slips' is unknown; did you mean 'slip'? allowed: {', '.join(QUANTITIES)}",
-        ),
-        (["-v", "alpha=1,2", "-q", "xyz"], f"sweep: quantity 'xyz' is unknown; {ALL}"),
-        (["-v", "alpha=1,2", "--series", "slop"], "sweep: series 'slop' is unknown; did you mean 'slip'?"),
-        (["-v", "alpha=1,2", "--design", "sobol"], "sweep: design 'sobol' is unknown; allowed: grid, lhs, random"),
-        (["-v", "alpha=1,2", "--out", "map.nc"], "--out map.nc: the name must end in .zarr"),
-        (["-v", "alpha=1,2", "--out", "no/map.zarr"], "--out no/map.zarr: there is no folder no"),
-        (["-v", "alpha=1,2", "--threads", "0"], "sweep: threads must be a whole number above 0, got 0"),
-        (["-v", "alpha=1,2", "--chunk", "0"], "sweep: chunk must be a whole number above 0, got 0"),
-        (["--list", "no.csv"], "--list no.csv: no such file"),
-        (
-            ["-v", "alpha=1..2", "--design", "lhs"],
-            "sweep: the design lhs: members must be a whole number from 1 to 10000000, got None",
-        ),
-    ],
-)
-def test_bad_input_gives_one_line(command, tmp_path: Path, arguments, said):
-    shown = command("sweep", "fig6-slab", *arguments)
-    assert (shown.code, shown.out) == (2, "")
-    assert shown.err.startswith(f"stickslip: {said}")
-    assert shown.err.count("\n") == 1
-    assert list(tmp_path.iterdir()) == []
 
 
 def test_progress_is_shown_in_one_line():

@@ -1,7 +1,6 @@
 """`stickslip sweep` on a cluster, drawn, and what its summary says of changes."""
 
 from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,39 +10,6 @@ from stickslip.cli.output.sweep_summary import ChangeAlongKey, cases, changes
 from stickslip.sweeps.execution import cluster
 
 MAP = ["sweep", "fig6-slab", "-v", "friction.alpha=0.1..0.4:3", "-v", "body.normal_stress=50MPa..200MPa:3"]
-
-
-def test_sweep_draws_a_grid(command, tmp_path: Path):
-    five = ["-v", "friction.alpha=0.1..0.4:5", "-v", "body.normal_stress=50MPa..200MPa:5"]
-    assert command("sweep", "fig6-slab", *five, "--figure", "map.svg").code == 0
-    drawn = (tmp_path / "map.svg").read_text()
-    assert "<svg" in drawn
-    assert "<image" in drawn  # the map itself, as pixels
-
-
-def test_sweep_draws_axes_of_words(command):
-    """Three selection rules along an axis of maps, which a parameter with two values tells apart."""
-    three = ["-v", "run.selection=perfect-delay,minimal,maximal", "-v", "friction.alpha=0.1..1:2", "-v", "thickness=5km..10km:5"]
-    shown = command("sweep", "fig6-slab", *three, "-q", "slip", "--figure", "map.png")
-    assert (shown.code, shown.err) == (0, "")
-    assert shown.out.endswith("written: map.png\n")
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        (["--figure", "map.bmp"], "--figure map.bmp: the name must end in .png or .pdf or .svg"),
-        (["-q", "pulse"], "sweep: quantity 'pulse' is unknown; did you mean 'pulses'?"),
-        (["--scheduler", "nowhere"], "sweep: no dask scheduler answers at nowhere"),
-        (["--workers", "0"], "sweep: workers must be 1 or more, got 0"),
-        (["--workers", "2", "--threads", "2"], "sweep: give one of threads, workers"),
-    ],
-)
-def test_impossible_sweeps_are_refused_in_one_line(command, options: list[str], message: str):
-    shown = command(*MAP[:4], "-v", "body.normal_stress=50MPa,100MPa", *options)
-    assert shown.code == 2
-    assert shown.err.startswith(f"stickslip: {message}")
-    assert len(shown.err.splitlines()) == 1
 
 
 def test_chunks_that_a_cluster_lost_are_reported(command, monkeypatch: pytest.MonkeyPatch):

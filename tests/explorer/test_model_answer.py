@@ -22,10 +22,13 @@ from stickslip.observables.field import Field
 from stickslip.run.session import SPARE
 from stickslip.scenarios import library
 from stickslip.trajectory.history import History
-from tests.problems import scaled_rate
+from tests.problems import of_each_kind, scaled_rate
 
-NAMES = [name for name in library.in_1d() if name != "rate-and-state-block"]
-"""All bundled scenarios but one, which takes a second to answer; it is the one that is stopped."""
+NAMES = [
+    *(name for name in of_each_kind(library.in_1d()) if name != "rate-and-state-block"),
+    *("fig5-slab-reconstructed", "fig6-block-reconstructed", "second-event-maximal"),
+]
+"""A bundled scenario of every kind but one, which takes a second to answer (it is the one that is stopped), and some with more."""
 SLABS = [name for name in NAMES if "slab" in name or name.startswith(("fig4", "second"))]
 POINTS = 8_000
 """Largest number of points of one curve."""

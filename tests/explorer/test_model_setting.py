@@ -25,13 +25,15 @@ from stickslip.foundation.errors import InputError
 from stickslip.friction import LAWS
 from stickslip.scenarios import library
 from stickslip.scenarios.scenario import read_scenario
+from tests.problems import of_each_kind
 
 NAMES = library.in_1d()
+KINDS = of_each_kind(NAMES)
 
 
 def everywhere(test):
-    """Run a test for every bundled scenario."""
-    return pytest.mark.parametrize("name", NAMES)(test)
+    """Run a test for a bundled scenario of every kind."""
+    return pytest.mark.parametrize("name", KINDS)(test)
 
 
 def controls(setting: Setting) -> dict[str, Control]:
@@ -331,17 +333,6 @@ def test_scenario_file_makes_the_same_problem(name: str) -> None:
         scenario = setting.scenario()
         again = read_scenario(toml_of(setting), "written.toml")
         assert replace(again, description="") == replace(scenario, description="")
-
-
-@pytest.mark.parametrize("name", ["fig6-slab", "fig5-block-reconstructed-k", "bowed-string-slab", "block-or-slab"])
-def test_file_runs_with_the_same_numbers(name: str, tmp_path) -> None:
-    setting = Setting.bundled(name).with_value("body.driver_impedance", None).with_value("run.duration", "0.05 s")
-    own = solve(setting.scenario()).solution
-    (tmp_path / "mine.toml").write_text(toml_of(setting), encoding="utf-8")
-    other = ss.simulate(tmp_path / "mine.toml")
-    assert other.history.store.pieces.tobytes() == own.history.store.pieces.tobytes()
-    assert other.slip(own.history.span[1]) == own.slip(own.history.span[1])
-    assert other.title == own.title
 
 
 def test_changed_scenario_says_so_wherever_it_goes() -> None:

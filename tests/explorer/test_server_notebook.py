@@ -12,7 +12,6 @@ from typing import Any
 import pytest
 
 import stickslip as ss
-from stickslip.cli.main import main
 from stickslip.explorer.page.components import Markup
 from stickslip.explorer.server import start
 from stickslip.foundation.errors import InputError
@@ -107,22 +106,3 @@ def test_without_its_libraries_the_explorer_says_how_to_install_them(monkeypatch
     with pytest.raises(InputError) as caught:
         ss.explore("fig6-slab")
     assert str(caught.value) == message
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (("fig6-slap",), "fig6-slap: no such file, and no bundled scenario of that name; did you mean 'fig6-slab'?"),
-        (("--port", "70000"), "explore: --port must be a whole number"),
-        (("--sessions", "0"), "explore: --sessions must be a whole number, at least 1, got '0'"),
-        (("--allow-origin", "https://a.example/x"), "explore: --allow-origin must be NAME or NAME:PORT, got 'https://a.example/x'"),
-        (("--allow-origin", "*"), "explore: --allow-origin must be NAME or NAME:PORT, got '*'"),
-        (("--address", "nowhere.invalid", "--no-browser"), "explore: cannot listen on nowhere.invalid port"),
-    ],
-)
-def test_a_wrong_option_is_one_line(arguments: tuple[str, ...], message: str, capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as ended:
-        main(["explore", *arguments])
-    said = capsys.readouterr().err
-    assert (ended.value.code, said.count("\n")) == (2, 1)
-    assert said.startswith(f"stickslip: {message}")

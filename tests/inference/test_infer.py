@@ -19,7 +19,7 @@ from stickslip.inference.certainty.sampling import sample
 from stickslip.inference.inference import Inference
 from stickslip.inference.record.loading import loading_of
 from tests.inference.laboratory import CoulombBlock, WeakeningSlab, correlated, load_point
-from tests.inference.velocity_steps import CLEAN, CLOCK, GUESS, RATES, STEPS, TIMES, TRUE, TRUTH, inferred, record
+from tests.inference.velocity_steps import CLEAN, CLOCK, GUESS, RATES, STEPS, TIMES, TRUE, TRUTH, inferred, plain, record
 
 
 @pytest.fixture(scope="module")
@@ -82,7 +82,7 @@ def test_the_figure_shows_record_residual_rate_and_pairs(found: Inference) -> No
 
 
 def test_correlated_noise_is_told_and_widens_the_intervals() -> None:
-    white, memory = inferred(), inferred(record(per_sample=10.0))
+    white, memory = plain(), inferred(record(per_sample=10.0))
     assert memory.model.memory["friction"].time == pytest.approx(10.0 * CLOCK[1], rel=0.3)
     assert white.model.memory["friction"].time == 0.0
     assert any(note.startswith("residuals of friction remember themselves for 1.") for note in memory.notes)
@@ -100,7 +100,7 @@ def test_words_say_what_the_record_does_not_determine() -> None:
 
 
 def test_a_number_on_a_bound_is_told_and_has_no_interval() -> None:
-    study = inferred(bounds={"b": (0.0128, 0.02)})
+    study = inferred(free=["friction.b"], bounds={"b": (0.0128, 0.02)})
     assert study.table.source["friction.b"] == "bound"
     assert any(note.startswith("friction.b lies on the lower end of its bounds, 0.0128") for note in study.notes)
 
@@ -151,8 +151,7 @@ def test_a_trend_and_the_clock_of_the_record_can_be_free() -> None:
 
 
 def test_two_records_share_the_numbers() -> None:
-    one, two = record(seed=1), record(seed=2)
-    alone, both = inferred(one), inferred([one, two])
+    alone, both = plain(), inferred([record(seed=1), record(seed=2)])
     check_holds(both, TRUTH)
     ratio = both.table.uncertainty / alone.table.uncertainty
     assert ratio.to_numpy() == pytest.approx(math.sqrt(0.5), rel=0.1)
@@ -163,7 +162,7 @@ def test_slip_can_be_fitted_beside_friction() -> None:
     spring = CLEAN * TRUE.normal / TRUE.stiffness  # slip is what the spring has not taken
     slip = load_point(CLOCK, TIMES, RATES) - spring + spring[0]
     data["slip (um)"] = 1e6 * slip + 0.05 * correlated(len(CLOCK), 0.0, 5) + 300.0
-    alone, both = inferred(data, observe="friction"), inferred(data, observe=["friction", "slip"])
+    alone, both = plain(), inferred(data, observe=["friction", "slip"])
     check_holds(both, TRUTH)
     assert (both.table.uncertainty <= 1.02 * alone.table.uncertainty).all()
     assert both.fit.noise["slip"] == pytest.approx(5e-8, rel=0.1)

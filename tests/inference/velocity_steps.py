@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -34,3 +35,9 @@ def record(noise: float = 2e-4, per_sample: float = 0.0, seed: int = 1) -> pd.Da
 
 def inferred(data: Any = None, free: Any = tuple(TRUTH), **options: Any) -> Inference:
     return ss.studies.infer(GUESS, record() if data is None else data, free, **({"starts": 1} | options))
+
+
+@cache
+def plain() -> Inference:
+    """Return the fit of the record with white noise, with which several tests compare theirs."""
+    return inferred()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 
@@ -25,6 +26,12 @@ RUNS = {
     "slab, lossy": (ss.Problem(LOSSY, F.Coulomb(0.8, 0.3), initial_excess=1e5, far_stress=7e7, far_stress_rate=1.0), 60.0),
     "block, damped": (ss.Problem(ss.SpringBlock(2.0, 50.0, 10.0, damping=1.0), F.Coulomb(0.4, 0.3), 1e-3, initial_excess=0.0), 1e3),
 }
+
+
+@cache
+def run_of(name: str) -> ss.Solution:
+    """Return one of these runs, computed once."""
+    return ss.simulate(*RUNS[name], rtol=1e-12)
 
 
 def worst_imbalance(run: ss.Solution) -> float:

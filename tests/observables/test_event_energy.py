@@ -2,39 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.trajectory.history import History
-from tests.observables.runs import LOSSY, RUNS, F
-from tests.problems import IMPEDANCE, ROUND, SLAB, rate_law_slab, scaled_rate
-
-
-@pytest.mark.parametrize("name", RUNS)
-def test_every_event_balances(name: str) -> None:
-    """To 1e-9 of what it released, however late it is."""
-    table = ss.simulate(*RUNS[name], rtol=1e-12).catalogue(energy=True)
-    assert len(table) > 0
-    assert table.end.notna().all()
-    assert (table.balance.abs() < 1e-9 * table.released).all()
-    assert (table.heat > 0.0).all()
-    assert (table.damped > 0.0).all() == name.startswith("block")
-
-
-@pytest.mark.parametrize("name", ["slab, rate law, maximal", "slab, slip law", "block, damped"])
-def test_balance_of_an_event_notices_a_wrong_slip_rate(name: str) -> None:
-    run = ss.simulate(*RUNS[name], rtol=1e-12)
-    wrong = scaled_rate(run.history.store, 1.001)
-    run = replace(run, history=History(wrong, run.problem, run.history.round_trip_time, run.history.ramp, run.history.duration))
-    table = run.catalogue(energy=True)
-    assert (table.balance.abs() > 1e-7 * table.released).all()
+from tests.observables.runs import LOSSY, F, run_of
+from tests.problems import IMPEDANCE, ROUND, SLAB, rate_law_slab
 
 
 def test_energies_of_events_are_those_of_the_run() -> None:
-    run = ss.simulate(*RUNS["slab, contact mass"], rtol=1e-12)
+    run = run_of("slab, contact mass")
     table = run.catalogue(0.0, energy=True)
     ends, starts = run.energy(table.end), run.energy(table.start)
     for name, sign in (("stored", -1.0), ("work", 1.0), ("heat", 1.0)):
@@ -58,7 +35,7 @@ def test_energy_balances_late_in_a_run_in_seconds_and_in_local_time() -> None:
 
 def test_trapped_energy_agrees_with_the_load_that_comes_back() -> None:
     """At rest the waves inside are the load that is still to come and what went before: read from the contact, added up by hand."""
-    run = ss.simulate(*RUNS["slab, slip law"], rtol=1e-12)
+    run = run_of("slab, slip law")
     now, half = 7.0, ROUND / 2
     away = (np.arange(200_000) + 0.5) * half / 200_000
     down, up = run.load(now + away), 2.0 * IMPEDANCE * run.slip_rate(now - away) - run.load(now - away)
@@ -82,13 +59,13 @@ def test_steady_pull_is_no_wave() -> None:
 
 
 def test_waves_leave_through_a_driver_that_lets_them_out() -> None:
-    run = ss.simulate(*RUNS["slab, lossy"], rtol=1e-12)
+    run = run_of("slab, lossy")
     energy = run.energy(run.events.end[0] + np.arange(1, 6) * ROUND).trapped.values
     assert energy[0] > 1e4
     assert energy[1:] / energy[:-1] == pytest.approx(np.full(4, LOSSY.reflection**2), rel=1e-3, abs=0.0)
 
 
 def test_the_report_says_how_much_is_trapped() -> None:
-    slab = ss.simulate(*RUNS["slab, slip law"])
+    slab = run_of("slab, slip law")
     assert f"{float(slab.energy(20.0).trapped[0]):.6g} J/m2 in waves at the end" in repr(slab)
-    assert "in waves" not in repr(ss.simulate(*RUNS["block, damped"]))
+    assert "in waves" not in repr(run_of("block, damped"))

@@ -209,31 +209,6 @@ def said(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
     return shown.err
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        (["run", "fig6-slab", "--duration", "1e300"], "run: --duration must lie within 1e+50 s, got 1e+300"),
-        (["run", "fig6-slab", "--duration", "1e30"], "run: duration must be at most 5.15e+16 s, 2^53 round trips"),
-        (
-            ["sweep", "fig6-slab", "-v", "alpha=1..2", "--design", "random", "--members", "1000000000000"],
-            "sweep: the design random: members must be a whole number from 1 to 10000000, got",
-        ),
-        (
-            ["sweep", "fig6-slab", "-v", "alpha=1..2", "--design", "lhs", "--members", "1e12"],
-            "sweep: --members must be a whole number",
-        ),
-        (
-            ["sweep", "fig6-slab", "-v", "alpha=1..2:100000", "-v", "static=0.6..0.8:100000", "--dry-run"],
-            "--vary: a grid has at most 1e+09 members, got 1e+10",
-        ),
-    ],
-)
-def test_a_command_line_beyond_all_measure_is_refused(
-    capsys: pytest.CaptureFixture[str], arguments: list[str], message: str
-) -> None:
-    assert said(capsys, *arguments).startswith(f"stickslip: {message}")
-
-
 @pytest.mark.parametrize("pieces", [10**15, 10**30, 1e15])
 def test_a_history_that_no_machine_can_hold_is_refused(pieces: int) -> None:
     with pytest.raises(ss.InputError, match="simulate: max_pieces must be a whole number from 1 to 1000000000, got 1"):

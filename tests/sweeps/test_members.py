@@ -49,17 +49,6 @@ def test_a_problem_is_varied_as_its_scenario_is() -> None:
         assert mine[name].values.tobytes() == bundled[name].values.tobytes(), name
 
 
-@pytest.mark.parametrize("rate", [0.5, 1.0])
-def test_a_bow_plays_the_note_up_to_the_force_of_schelleng(rate: float) -> None:
-    """Schelleng 1973: up to 4 Z v / (jump of friction), here 4 x 0.55 kg/s v / 0.85, the period is the string's, 4 h / c."""
-    scenario = ss.scenarios["bowed-string-slab"].with_values({"loading.pull_rate.values[1]": rate})
-    slab, largest = scenario.problem.body, 4 * 0.55 * rate / 0.85
-    found = ss.sweep(scenario, {"pressing": [0.99 * largest, 1.01 * largest]}, quantities=["recurrence"])
-    periods = found.recurrence.values * slab.wave_speed / (4 * slab.thickness)
-    assert periods[0] == pytest.approx(1.0, rel=1e-9, abs=0.0)
-    assert periods[1] > 1.4
-
-
 def rule(branches: object) -> object:
     return branches
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -28,11 +29,23 @@ from tests.sweeps.stores import FINE, MEMBERS, SAVED, VARY, files, sweep
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
-    """Files of a sweep that nothing disturbed."""
+def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The store of a sweep that nothing disturbed."""
     path = tmp_path_factory.mktemp("whole") / "map.zarr"
     sweep(path)
-    return files(path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def whole(kept: Path) -> dict[str, bytes]:
+    """Files of that store."""
+    return files(kept)
+
+
+@pytest.fixture
+def store(kept: Path, tmp_path: Path) -> Path:
+    """A copy of that store."""
+    return Path(shutil.copytree(kept, tmp_path / "map.zarr"))
 
 
 def test_a_store_holds_what_a_sweep_gives(tmp_path: Path, whole: dict[str, bytes]) -> None:
@@ -235,23 +248,19 @@ OTHERS: list[tuple[dict[str, Any], str]] = [
 
 
 @pytest.mark.parametrize(("asked", "said"), OTHERS)
-def test_another_sweep_is_refused(tmp_path: Path, whole: dict[str, bytes], asked: dict[str, Any], said: str) -> None:
-    path = tmp_path / "map.zarr"
-    sweep(path)
+def test_another_sweep_is_refused(store: Path, whole: dict[str, bytes], asked: dict[str, Any], said: str) -> None:
     with pytest.raises(ss.InputError) as told:
-        sweep(path, **asked)
-    assert str(told.value).startswith(f"{path}: {said}")
-    assert files(path) == whole
+        sweep(store, **asked)
+    assert str(told.value).startswith(f"{store}: {said}")
+    assert files(store) == whole
 
 
-def test_another_scenario_and_another_version_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    path = tmp_path / "map.zarr"
-    sweep(path)
+def test_another_scenario_and_another_version_are_refused(store: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(ss.InputError, match="was made from another scenario"):
-        ss.sweep("second-event-maxwell", VARY, out=path, **SAVED)
+        ss.sweep("second-event-maxwell", VARY, out=store, **SAVED)
     monkeypatch.setattr("stickslip.sweeps.results.layout.engine", lambda: "another")
     with pytest.raises(ss.InputError, match="was made by another version of stickslip"):
-        sweep(path)
+        sweep(store)
 
 
 @pytest.mark.parametrize("kind", ["file", "folder", "zarr"])
@@ -304,11 +313,9 @@ def test_the_command_continues_a_stopped_sweep(
     assert "4 finished" in capsys.readouterr().out
 
 
-def test_a_changed_file_is_refused_in_one_line(tmp_path: Path, whole: dict[str, bytes]) -> None:
+def test_a_changed_file_is_refused_in_one_line(store: Path, whole: dict[str, bytes]) -> None:
     """Each file of a store: with a bit flipped, cut off, or gone; members whose status is gone are those that have not been run."""
-    path = tmp_path / "map.zarr"
-    sweep(path)
-    open_store(path)
+    path = store
     for name, content in whole.items():
         flipped = bytes([content[0] ^ 1]) + content[1:]
         for damaged in (flipped, content[: len(content) // 2], None):
@@ -333,13 +340,11 @@ def test_a_changed_file_is_refused_in_one_line(tmp_path: Path, whole: dict[str, 
 
 
 @pytest.mark.parametrize("version", [1, 3])
-def test_a_store_of_another_format_is_refused_in_one_line(tmp_path: Path, version: int) -> None:
-    path = tmp_path / "map.zarr"
-    sweep(path)
-    zarr.open_group(path, mode="r+").attrs["stickslip_sweep"] = version
+def test_a_store_of_another_format_is_refused_in_one_line(store: Path, version: int) -> None:
+    zarr.open_group(store, mode="r+").attrs["stickslip_sweep"] = version
     reads = ", which the version that made it reads" if version == 1 else ""
     for act in (sweep, open_store):
         with pytest.raises(ss.InputError) as told:
-            act(path)
+            act(store)
         said = f"not the store of a sweep of this version of stickslip (format 2 expected, found {version}{reads})"
-        assert str(told.value) == f"{path}: {said}"
+        assert str(told.value) == f"{store}: {said}"

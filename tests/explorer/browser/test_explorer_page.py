@@ -340,11 +340,3 @@ def test_two_pages_are_independent_and_a_long_run_in_one_does_not_hold_up_the_ot
     other.page.locator(".stop").click()
     other.page.locator(".stop").wait_for(state="hidden")
     assert "0.4 s/m" not in other.said("slip event")
-
-
-def test_without_the_token_nothing_is_shown(chromium: Any, server: Served) -> None:
-    page = chromium.new_page()
-    answer = page.goto(f"{server.origin}/")
-    assert answer.status == 403
-    assert page.locator("[data-panel]").count() == 0
-    page.close()

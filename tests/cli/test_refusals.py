@@ -1,0 +1,236 @@
+"""Every command that cannot be carried out is refused in one line on standard error with exit code 2, and writes nothing."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from stickslip.scenarios.templates import template
+from stickslip.sweeps.design.quantities import QUANTITIES
+from tests.messages import places_twice
+
+ALL = f"allowed: {', '.join(QUANTITIES)}"
+BAD = template("slab").replace("thickness =", "thicknes =")
+FOUR_KEYS = [word for name in ("alpha", "static", "dynamic", "thickness") for word in ("-v", f"{name}=0.1,0.2")]
+CASES = [
+    (["rn"], "there is no command 'rn'; did you mean 'run'?"),
+    (["frobnicate"], "there is no command 'frobnicate'; allowed: analogy, benchmark, check, compare, doctor, ensemble, explore,"),
+    (["fig6-slab"], "'fig6-slab' is a scenario, not a command: did you mean `stickslip run fig6-slab` or `stickslip check fig6-"),
+    (["run"], "run: nothing to run: give a SCENARIO, or --resume FILE"),
+    (["run", "fig6-slab", "--figur", "a.png"], "run: there is no option --figur; did you mean '--figure'? `stickslip run --help`"),
+    (["run", "fig6-slab", "--catalog", "a.csv"], "run: there is no option --catalog; did you mean '--catalogue'?"),
+    (["run", "fig6-slab", "-q"], "run: there is no option -q; `stickslip run --help` explains it, with examples"),
+    (["--versio"], "there is no option --versio; did you mean '--version'? `stickslip --help` shows all"),
+    (["run", "fig6-slab", "--duration", "480", "years"], "run: 'years' is not expected; put a text with spaces in quotes, as "),
+    (["run", "fig6-slab", "alpha=2"], "run: 'alpha=2' is not expected; --set NAME=VALUE replaces a value of the scenario;"),
+    (["run", "fig6-slab", "--set", "alpha"], 'run: --set must be NAME=VALUE, as "friction.alpha=2" or "body.thickness=5 km", got'),
+    (["run", "fig6-slab", "--set", "alpha=1", "--set", "alpha=2"], "run: --set: 'alpha' is given twice"),
+    (["check", "fig6-slab", "--set", "alpa=1"], "check: --set: 'alpa' is not a parameter of this scenario; did you mean 'alpha'?"),
+    (["sweep", "fig6-slab", "--set", "alpha=-1", "-v", "static=0.7,0.8"], "sweep: --set: friction.alpha must be at least 0 s/m"),
+    (["ensemble", "fig6-slab", "--set", "thickness=5 s"], "ensemble: --set: body.thickness must be a number in m or a text with"),
+    (["explore", "--static", "tour", "--set", "alpha=1"], "explore: --static writes the guided tour, which has scenarios of its"),
+    (["run", "fig6-slab", "--duration"], "Option '--duration' needs a value"),
+    (["run", "fig6-slab", "--duration", "12,5"], "run: --duration must be a number in s or a text with a unit such as"),
+    (["run", "fig6-slab", "--events", "1.5"], "run: --events must be a whole number, got '1.5'"),
+    (["run", "fig6-slab", "--max-pieces", "0"], "run: --max-pieces must be a whole number, at least 1, got '0'"),
+    (["run", "fig6-slab", "--rtol", "1,5"], "run: --rtol must be a number, got '1,5': write 1.5"),
+    (["run", "fig6-slab", "--figure", "a.png", "--path", "./a.png"], "--path a.png: is already the file of --figure"),
+    (["run", "fig6-slab", "--out", f"{'a' * 300}.nc"], f"--out {'a' * 60}: cannot be a file: File name too long"),
+    (["run", "fig6-slab", "--figure", "folder.png"], "--figure folder.png: is a folder"),
+    (["run", "fig6-slab", "--figure", "pipe.png"], "--figure pipe.png: exists and is not an ordinary file"),
+    (["run", "fig6-slab", "--catalogue", "folder.csv"], "--catalogue folder.csv: is a folder"),
+    (["export", "fig6-slab", "folder.txt"], "FILE folder.txt: is a folder"),
+    (["sweep", "fig6-slab", "-v", "alpha=1,2", "--out", "bad.zarr"], "--out bad.zarr: is a file, where a sweep needs a folder"),
+    (
+        ["sweep", "fig6-slab", "-v", "alpha=1", "--figure", "a.png"],
+        "sweep: --figure draws one to three keys, but here no key",
+    ),
+    (["sweep", "fig6-slab", *FOUR_KEYS, "--figure", "a.png"], "sweep: --figure draws one to three keys, but here 4 keys vary"),
+    (["run", "fig6-slap"], "fig6-slap: no such file, and no bundled scenario of that name; did you mean 'fig6-slab'?"),
+    (["check", "."], ".: is a folder, not a scenario; its scenarios: bad.toml"),
+    (["new", "--friction", "coulomb"], "new: which scenario? `stickslip new --list` lists them"),
+    (["new", "blok"], "no scenario 'blok'; did you mean 'block'?"),
+    (["run", "fig6-slab", "--out", "a.csv"], "--out a.csv: the name must end in .nc"),
+    (["run", "fig6-slab", "--out", "no/a.nc"], "--out no/a.nc: there is no folder no"),
+    (["run", "fig6-slab", "--figure", "a.xyz"], "--figure a.xyz: the name must end in .png or .pdf or .svg"),
+    (["run", "fig6-slab", "--out", "a.nc", "--figure", "no/a.png"], "--figure no/a.png: there is no folder no"),
+    (["run", "fig6-slab", "--duration", "10 kg"], "run: --duration must be a number in s or a text with a unit"),
+    (["run", "fig6-slab", "--duration", "0"], "run: --duration must be greater than 0 s, got 0"),
+    (["run", "fig6-slab", "--duration", "nan"], "run: --duration must be finite, got nan"),
+    (["run", "fig6-slab", "--rtol", "1"], "run: --rtol must be at most 0.01, got 1"),
+    (
+        ["run", "block-or-slab", "--creep-rtol", "1e-6"],
+        "run: --creep-rtol must be 0 here: leaps over creep need a friction law of slip alone (FromExpression is not one)",
+    ),
+    (
+        ["run", "fig6-block-printed", "--shortest-event", "1 ms"],
+        "run: --shortest-event must be 0 here: only under a slab with a",
+    ),
+    (["run", "fig6-slab", "--energy"], "run: --energy belongs to --catalogue FILE"),
+    (
+        ["run", "fig5-slab-printed", "--energy", "--creep-rtol", "1e-6", "--catalogue", "events.csv"],
+        "run: --energy and --creep-rtol exclude each other",
+    ),
+    (["run", "fig6-slab", "--shortest-event", "1 s"], "run: --shortest-event must be 0 or at most 0.0571429 s (1 % of the two-way"),
+    (["run", "fig6-slab", "--shortest-event", "1 parsec"], "run: --shortest-event"),
+    (
+        ["run", "cycles-block", "--creep-rtol", "1e-6"],
+        "run: --creep-rtol must be 0 here: leaps over creep need a slab, which creeps",
+    ),
+    (["run", "fig5-slab-printed", "--creep-rtol=-1"], "run: --creep-rtol must be 0 (no leaps over creep, every round trip is run)"),
+    (["run", "fig6-slab", "--rtol", "much"], "run: --rtol must be a number, got 'much'"),
+    (["run", "fig6-slab", "--selection", "maxwel"], "run: --selection 'maxwel' is unknown; did you mean 'maxwell'?"),
+    (["run", "bad.toml", "--out", "a.nc"], "bad.toml: [body] thicknes is unknown; did you mean 'thickness'?"),
+    (["check", "\x1b[31mred.toml"], "'\\x1b[31mred.toml': no such file"),
+    (["run", "fig6-slab", "--dpi", "300"], "--dpi needs a figure: name its file, say --figure NAME.png"),
+    (["run", "fig6-slab", "--size", "16 x 10 cm", "--animation", "a.gif"], "--size needs a figure"),
+    (["run", "fig6-slab", "--figure", "a.png", "--dpi", "3"], "--dpi: must be a number of dots per inch from 10 to 2400, got 3"),
+    (["check", "fig6-slab", "--figure", "a.png", "--size", "16 x 10"], "--size: must be two lengths in inches, a text such as"),
+    (["compare", "fig6-slab", "fig4-loop", "-f", "a.png", "--size", "1 x 2 mm"], "--size: each side must be from 2 cm to 2 m"),
+    (["check", "fig6-slab", "--figure", "a.txt"], "--figure a.txt: the name must end in .png or .pdf or .svg"),
+    (
+        ["check", "fig6-block-printed", "--figure", "a.png"],
+        "figure of the set K: the slip rate does not follow from the load alone",
+    ),
+    (["run", "fig6-block-printed", "--path", "a.png"], "run: --path needs a slab without contact mass"),
+    (["check", "fig6-slab", "--map", "alpha=1..2"], "check: a map needs two --map and a --figure, got 1 and none"),
+    (["check", "fig6-slab", *2 * ["--map", "alpha=1..2"]], "check: a map needs two --map and a --figure, got 2 and none"),
+    (["check", "fig6-slab", *2 * ["--map", "alpha=1..2"], "--figure", "a.png"], "regime map: needs two different parameters"),
+    (
+        ["check", "fig6-slab", "--map", "alpa=1..2", "--map", "static=0.1..1", "--figure", "a.png"],
+        "check: --map: parameter 'alpa' is unknown; did you mean 'alpha'?",
+    ),
+    (
+        ["check", "fig6-slab", "--map", "alpha:1-2", "--map", "static=0.1..1", "--figure", "a.png"],
+        "check: --map must be NAME=LOW..HIGH[:POINTS][:log], as",
+    ),
+    (
+        ["check", "fig6-slab", "--map", "thickness=1 kg..2 km", "--map", "static=0.1..1", "--figure", "a.png"],
+        "check: --map: body.thickness must be a number in m or a text with a unit",
+    ),
+    (["run", "cycles-block", "--space-time", "a.png"], "run: --space-time needs a slab: a block is rigid"),
+    (["run", "cycles-block", "--animation", "a.gif"], "run: --animation needs a slab: a block is rigid"),
+    (["run", "fig6-slab", "--animation", "a.avi"], "--animation a.avi: the name must end in .gif or .mp4 or .webm"),
+    (["run", "fig6-slab", "--animation", "no/a.gif"], "--animation no/a.gif: there is no folder no"),
+    (["run", "fig6-slab", "--space-time", "a.gif"], "--space-time a.gif: the name must end in .png or .pdf or .svg"),
+    (
+        ["run", "fig6-slab", "--catalogue", "a.csv", "--animation", "a.gif", "--figure", "a.png"],
+        "run: a catalogue keeps slip events only, no history: leave out --figure, --animation",
+    ),
+    (["paper", "--out", "bad.toml/paper"], "--out bad.toml/paper:"),
+    (["compare"], "compare: RUNS is missing; `stickslip compare --help` explains it, with examples"),
+    (["compare", "fig6-slab"], "compare: needs two runs or more, got 1"),
+    (["compare", "fig6-slab", "fig6-slap"], "fig6-slap: no such file, and no bundled scenario of that name; did you mean"),
+    (["compare", "fig6-slab", "no.nc"], "no.nc: no such file"),
+    (["compare", "fig6-slab", "bad.toml"], "bad.toml: [body] thicknes is unknown; did you mean 'thickness'?"),
+    (["compare", "fig6-slab", "fig6-slab", "--event", "1"], "compare: fig6-slab has no slip event 1: it has 1, counted from 0"),
+    (["compare", "fig6-slab", "fig6-slab", "--out", "a.nc"], "--out a.nc: the name must end in .csv"),
+    (["analogy", "fig6-slab"], 'analogy: give two --map, as --map "friction.alpha=0.01..10:20:log", got 0'),
+    (["analogy", "fig6-slab", "--map", "alpha=1..2", "--map", "alpha=1..2"], "analogy: needs two different parameters"),
+    (["analogy", "fig6-block-printed", *2 * ["--map", "mass=1..2"]], "analogy: needs two different parameters"),
+    (["analogy", "fig4-loop", "--map", "alpha=1..2", "--map", "static=1..2"], "ElasticSlab: equivalent_block needs a rigid driver"),
+    (
+        ["analogy", "fig6-slab", "--map", "alpa=1..2", "--map", "static=1..2"],
+        "analogy: --map: parameter 'alpa' is unknown; did you mean 'alpha'?",
+    ),
+    (["export", "fig6-slab", "a.csv"], "FILE a.csv: the name must end in .txt or .dat"),
+    (["export", "fig6-slab", "a.txt", "-r", "0"], "sampling rate must be a positive number of samples a second, got 0.0"),
+    (["export", "second-event-maxwell", "a.txt"], "1.51e+12 samples are too many: use a lower rate, or a single event"),
+    (["export", "fig6-slab", "a.txt", "--event", "1"], "window: no event 1: the run has 1, 0 to 0"),
+    (["benchmark", "get", "loop", "--out", "a.csv"], "benchmark: --out does not belong to get: get writes files to --folder"),
+    (["benchmark", "list", "--folder", "x"], "benchmark: --folder does not belong to list: leave it out"),
+    (["check", "planar-patch", "--set", "duration=1e20 years"], "check: --set: [contact] 3.15576e+27 s are 1.41e+29 time steps"),
+    (["check", "planar-patch", "--set", "thickness=1e-40"], "check: --set: [contact] 8 s are 1.4e+44 time steps, allowed are"),
+    (["run", "planar-patch", "--set", "wave_speed=1e40"], "run: --set: [contact] "),
+    (["benchmark", "get", "lop"], "benchmark: there is no problem 'lop'; did you mean 'loop'?"),
+    (["benchmark", "gte"], "benchmark: there is nothing called 'gte'; did you mean 'get'?"),
+    (["benchmark", "judge"], "benchmark: judge needs a file"),
+    (["schemes", "fig4-loop", "--nx", "20;50"], "schemes: --nx must be whole numbers separated by commas"),
+    (["schemes", "fig4-loop", "--scheme", "hth"], "schemes: there is no scheme 'hth'; did you mean 'hht'?"),
+    (["schemes", "fig4-loop", "--scheme", "theta,theta"], "schemes: the scheme 'theta' is given twice"),
+    (["schemes", "fig4-loop", "--scheme", "all,theta"], "schemes: the scheme 'theta' is given twice"),
+    (["schemes", "fig5-slab-printed", "--scheme", "lag"], "schemes: lag does not suit sinusoidal-slip friction"),
+    (["schemes", "fig6-block-printed"], "schemes: a block has no grid"),
+    (["schemes", "cycles-slab"], "schemes: a contact_mass of"),
+    (["schemes", "fig4-loop", "--out", "a.txt"], "--out a.txt: the name must end in .csv"),
+    (["schemes", "fig4-loop", "--nx", ""], "schemes: --nx must be whole numbers separated by commas"),
+    (["schemes", "fig4-loop", "--series", "a.csv", "--nx", "20"], "schemes: --nx is for schemes of stickslip: leave it out with"),
+    (["ensemble", "fig6-slab", "--members", "0"], "ensemble: members must be a whole number from 1 to 1000, got 0"),
+    (["ensemble", "fig6-slab", "--members", "many"], "ensemble: --members must be a whole number, got 'many'"),
+    (["ensemble", "fig6-slab", "--size", "1"], "ensemble: size must lie between 1e-15 and 0.01, got 1.0"),
+    (["ensemble", "fig6-slab", "--seed", "-1"], "ensemble: seed must be a whole number, 0 or more, got -1"),
+    (["ensemble", "fig6-slab", "--events", "0"], "ensemble: --events must be"),
+    (["ensemble", "fig6-slab", "--out", "a.txt"], "--out a.txt: the name must end in .csv"),
+    (["sweep", "fig6-slab"], "sweep: needs either --vary or --list, got neither"),
+    (["sweep", "fig6-slab", "-v", "alpha=1,2", "--list", "a.csv"], "sweep: needs either --vary or --list, got both"),
+    (["sweep", "fig6-slab", "-v", "alpa=1,2"], "--vary: 'alpa' is not a parameter of this scenario; did you mean 'alpha'?"),
+    (["sweep", "fig6-slab", "-v", "alpha"], '--vary must be "KEY=LOW..HIGH:POINTS"'),
+    (["sweep", "fig6-slab", "-v", "thickness=1..2 kg:3"], "--vary: body.thickness must be a number in m"),
+    (
+        ["sweep", "fig6-slab", "-v", "alpha=1,2", "-q", "slips"],
+        f"sweep: quantity 'slips' is unknown; did you mean 'slip'? allowed: {', '.join(QUANTITIES)}",
+    ),
+    (["sweep", "fig6-slab", "-v", "alpha=1,2", "-q", "xyz"], f"sweep: quantity 'xyz' is unknown; {ALL}"),
+    (["sweep", "fig6-slab", "-v", "alpha=1,2", "--series", "slop"], "sweep: series 'slop' is unknown; did you mean 'slip'?"),
+    (
+        ["sweep", "fig6-slab", "-v", "alpha=1,2", "--design", "sobol"],
+        "sweep: design 'sobol' is unknown; allowed: grid, lhs, random",
+    ),
+    (["sweep", "fig6-slab", "-v", "alpha=1,2", "--out", "map.nc"], "--out map.nc: the name must end in .zarr"),
+    (["sweep", "fig6-slab", "-v", "alpha=1,2", "--out", "no/map.zarr"], "--out no/map.zarr: there is no folder no"),
+    (["sweep", "fig6-slab", "-v", "alpha=1,2", "--threads", "0"], "sweep: threads must be a whole number above 0, got 0"),
+    (["sweep", "fig6-slab", "-v", "alpha=1,2", "--chunk", "0"], "sweep: chunk must be a whole number above 0, got 0"),
+    (["sweep", "fig6-slab", "--list", "no.csv"], "--list no.csv: no such file"),
+    (
+        ["sweep", "fig6-slab", "-v", "alpha=1..2", "--design", "lhs"],
+        "sweep: the design lhs: members must be a whole number from 1 to 10000000, got None",
+    ),
+    (
+        ["sweep", "fig6-slab", "-v", "alpha=0.1,0.2", "--figure", "map.bmp"],
+        "--figure map.bmp: the name must end in .png or .pdf or .svg",
+    ),
+    (["sweep", "fig6-slab", "-v", "alpha=0.1,0.2", "-q", "pulse"], "sweep: quantity 'pulse' is unknown; did you mean 'pulses'?"),
+    (["sweep", "fig6-slab", "-v", "alpha=0.1,0.2", "--workers", "0"], "sweep: workers must be 1 or more, got 0"),
+    (["sweep", "fig6-slab", "-v", "alpha=0.1,0.2", "--workers", "2", "--threads", "2"], "sweep: give one of threads, workers"),
+    (["run", "fig6-slab", "--duration", "1e300"], "run: --duration must lie within 1e+50 s, got 1e+300"),
+    (["run", "fig6-slab", "--duration", "1e30"], "run: duration must be at most 5.15e+16 s, 2^53 round trips"),
+    (
+        ["sweep", "fig6-slab", "-v", "alpha=1..2", "--design", "random", "--members", "1000000000000"],
+        "sweep: the design random: members must be a whole number from 1 to 10000000, got",
+    ),
+    (
+        ["sweep", "fig6-slab", "-v", "alpha=1..2", "--design", "lhs", "--members", "1e12"],
+        "sweep: --members must be a whole number",
+    ),
+    (
+        ["sweep", "fig6-slab", "-v", "alpha=1..2:100000", "-v", "static=0.6..0.8:100000", "--dry-run"],
+        "--vary: a grid has at most 1e+09 members, got 1e+10",
+    ),
+    (["explore", "fig6-slap"], "fig6-slap: no such file, and no bundled scenario of that name; did you mean 'fig6-slab'?"),
+    (["explore", "--port", "70000"], "explore: --port must be a whole number"),
+    (["explore", "--sessions", "0"], "explore: --sessions must be a whole number, at least 1, got '0'"),
+    (
+        ["explore", "--allow-origin", "https://a.example/x"],
+        "explore: --allow-origin must be NAME or NAME:PORT, got 'https://a.example/x'",
+    ),
+    (["explore", "--allow-origin", "*"], "explore: --allow-origin must be NAME or NAME:PORT, got '*'"),
+    (["explore", "--address", "nowhere.invalid", "--no-browser"], "explore: cannot listen on nowhere.invalid port"),
+]
+
+
+@pytest.mark.parametrize(("arguments", "message"), CASES)
+def test_bad_input_gives_one_line_and_writes_nothing(command, tmp_path: Path, arguments: list[str], message: str):
+    (tmp_path / "bad.toml").write_text(BAD)
+    (tmp_path / "bad.zarr").touch()
+    for name in ("folder.png", "folder.csv", "folder.txt"):
+        (tmp_path / name).mkdir()
+    os.mkfifo(tmp_path / "pipe.png")
+    before = sorted(tmp_path.iterdir())
+    shown = command(*arguments)
+    assert shown.code == 2
+    assert shown.out == ""
+    assert shown.err.startswith(f"stickslip: {message}")
+    assert shown.err.count("\n") == 1
+    assert shown.err.strip().isprintable()
+    assert not places_twice(shown.err)
+    assert sorted(tmp_path.iterdir()) == before
