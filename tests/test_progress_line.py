@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import signal
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from types import ModuleType, SimpleNamespace
 from typing import Any
 
@@ -120,15 +120,6 @@ def test_a_run_can_be_resumed_with_progress(notebook: Notebook, tmp_path: Any) -
     assert [texts[-2].split(",")[0] for texts in notebook.shown] == ["simulate: 30 of 30 years", "resume: 40 of 40 years"]
 
 
-@pytest.fixture
-def heeds_ctrl_c() -> Iterator[None]:
-    """Give Ctrl-C Python's own handler, which a test runner may have replaced."""
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    yield
-    signal.signal(signal.SIGINT, before)
-
-
-@pytest.mark.usefixtures("heeds_ctrl_c")
 def test_ctrl_c_ends_a_run_that_shows_its_progress(notebook: Notebook, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("stickslip.run.run_loop.LARGEST_BUDGET", 100)
     monkeypatch.setattr("stickslip.run.run_loop.FIRST_BUDGET", 100)

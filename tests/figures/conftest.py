@@ -1,11 +1,14 @@
-"""Every test of a figure begins and ends with all figures of pyplot closed."""
+"""Figures of tests open no windows, and every test begins and ends with all figures of pyplot closed."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
+import matplotlib as mpl
 import pytest
 from matplotlib import pyplot
+
+mpl.use("Agg")
 
 
 @pytest.fixture(autouse=True)

@@ -5,11 +5,9 @@ from __future__ import annotations
 from functools import cache
 from pathlib import Path
 
-import matplotlib as mpl
 import numpy as np
 import pytest
 import xarray as xr
-from matplotlib import pyplot
 from matplotlib.figure import Figure
 
 import stickslip as ss
@@ -20,8 +18,6 @@ from stickslip.figures.studies import schemes as figure
 from tests.figures.legible import BLOCK_PROBLEM, SLAB_PROBLEM, has_unit, labels
 from tests.observables.runs import RUNS, worst_imbalance
 from tests.problems import RATE_LAW, Floats, measured
-
-mpl.use("Agg")
 
 LINEAR = measured(RATE_LAW, None, np.linspace(0.0, 10.0, 300), 0.01)
 SMALL = measured(ss.friction.ExponentialSlipWeakening(0.6, 0.4, 4e-4), np.linspace(0.0, 2e-3, 90), None, 0.01)
@@ -122,8 +118,6 @@ def test_what_is_no_fit_is_refused_in_one_line() -> None:
         plot_fit(RATE_LAW)  # type: ignore[arg-type]
 
 
-mpl.use("Agg")
-
 DRAWN = {
     "slab": (SLAB_PROBLEM, 12.0, ["elastic", "kinetic", "heat"]),
     "slab, pulses": (*RUNS["slab, slip law"], ["elastic", "kinetic", "heat"]),
@@ -205,9 +199,6 @@ def test_the_figure_has_errors_of_all_schemes_and_curves_of_four() -> None:
     assert (factor * errors.lines[0].get_ydata()).tolist() == pytest.approx(study.table.slip_error[:2].tolist(), rel=1e-12, abs=0.0)
 
 
-mpl.use("Agg")
-
-
 @cache
 def run() -> ss.Solution:
     return ss.simulate(SLAB_PROBLEM, 7.0)
@@ -221,7 +212,6 @@ def test_one_quantity_is_drawn_in_one_panel(name: str) -> None:
         assert all(has_unit(text) for text in labels(figure))
         assert first in axes.get_xlabel()
         assert np.isfinite(axes.lines[0].get_ydata()).all()
-        pyplot.close(figure)
 
 
 def test_only_the_interval_that_is_asked_for_is_drawn() -> None:
@@ -229,7 +219,6 @@ def test_only_the_interval_that_is_asked_for_is_drawn() -> None:
     time, slip = figure.axes[0].lines[0].get_data()
     assert (time[0], time[-1]) == (1.0, 3.0)
     np.testing.assert_array_equal(slip, run().slip(time))
-    pyplot.close(figure)
 
 
 def test_the_state_of_a_law_is_drawn_in_its_unit() -> None:
@@ -238,7 +227,6 @@ def test_the_state_of_a_law_is_drawn_in_its_unit() -> None:
     figure = ss.simulate(scenario.problem, 1e-3 * scenario.duration).plot.state()
     (state,) = law.states
     assert figure.axes[0].get_ylabel() == f"state ({state.unit})"
-    pyplot.close(figure)
 
 
 def test_a_law_without_a_state_has_none_to_draw() -> None:
@@ -250,7 +238,6 @@ def test_the_default_figure_is_that_of_the_run() -> None:
     for shown in (run(), run().window(0), ss.simulate(BLOCK_PROBLEM, 2.0)):
         figure = shown.plot()
         assert len(figure.axes) == 3
-        pyplot.close(figure)
 
 
 def test_catalogue_and_path_belong_to_whole_runs() -> None:

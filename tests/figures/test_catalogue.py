@@ -18,8 +18,6 @@ from stickslip.figures.style import time_unit
 from tests.figures.legible import illegible
 from tests.problems import SLAB, rate_law_slab
 
-mpl.use("Agg")
-
 UNIT = re.compile(r"\((year|day|s|ms|µs|m|mm|µm|nm)\)$")
 
 

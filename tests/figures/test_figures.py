@@ -9,7 +9,6 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 import xarray as xr
-from matplotlib import pyplot
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
@@ -22,8 +21,6 @@ from stickslip.figures.runs.run import draw
 from stickslip.figures.style import BLUE, INK, STYLE, image
 from stickslip.foundation.axis import Axis
 from tests.figures.legible import BLOCK, BLOCK_PROBLEM, LAW, SLAB, SLAB_PROBLEM, has_unit, labels, size_of
-
-mpl.use("Agg")
 
 LOOP = ss.Problem(replace(SLAB, driver_impedance=0.0), LAW, pull_rate=2.6, initial_load=60e6)
 
@@ -181,7 +178,6 @@ def test_the_result_of_uniqueness_draws_its_set() -> None:
         figure = contact.plot(dpi=100.0)
         highest = lines_of(figure)["stick"][:, 1].max()
         assert 1e6 * highest == pytest.approx(float(contact.g(0.0)), rel=1e-12)
-        pyplot.close(figure)
     with pytest.raises(ss.InputError, match="inertia"):
         ss.uniqueness(BLOCK_PROBLEM).plot()
 
@@ -283,14 +279,12 @@ def test_a_run_plots_itself_and_keeps_the_users_style() -> None:
     assert len(figure.axes) == 3
     assert all(has_unit(text) for text in labels(figure))
     assert figure.axes[2].get_xlabel().endswith("(s)")
-    pyplot.close(figure)
 
 
 def test_years_are_shown_as_years() -> None:
     figure = draw(ss.simulate(SLAB_PROBLEM, 10 * ss.YEAR))
     assert figure.axes[2].get_xlabel().endswith("(year)")
     assert figure.axes[2].lines[0].get_xdata()[-1] == pytest.approx(10.0, rel=1e-12)
-    pyplot.close(figure)
 
 
 def test_the_same_figure_gives_the_same_bytes() -> None:

@@ -8,7 +8,6 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
-import matplotlib as mpl
 import numpy as np
 import pytest
 from matplotlib.animation import FFMpegWriter
@@ -19,8 +18,6 @@ import stickslip as ss
 from stickslip.figures.runs import animation, inside
 from stickslip.figures.style import image
 from tests.figures.legible import BLOCK_PROBLEM, SIZES, SLAB, SLAB_PROBLEM, labels
-
-mpl.use("Agg")
 
 ROUND = SLAB.two_way_time
 PULSES = ss.load_scenario("fig5-slab-reconstructed")

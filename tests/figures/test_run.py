@@ -5,10 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 
-import matplotlib as mpl
 import numpy as np
 import pytest
-from matplotlib import pyplot
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -17,8 +15,6 @@ from stickslip.figures.runs.curves import RANGE
 from stickslip.figures.runs.run import draw
 from stickslip.loading import HoldAndSlide, LoadingHistory, PiecewiseLinear, Sinusoidal, Steps
 from tests.figures.legible import size_of
-
-mpl.use("Agg")
 
 BLOCK = ss.SpringBlock(mass=2.8e12, stiffness=3.43e13, normal_force=1e14)
 LAW = ss.friction.LinearSlipWeakening(0.6, 0.57, 0.02, memory="since-arrest")
@@ -46,7 +42,6 @@ def test_the_panel_shows_the_history(history: LoadingHistory, edges: tuple[float
     assert panel.get_ylabel() == "pull rate\n(mm/s)"
     assert panel.get_xlabel() == "time $t$ (s)"
     assert figure.axes[2].get_xlabel() == ""
-    pyplot.close(figure)
 
 
 def test_a_far_stress_is_drawn_in_its_unit() -> None:
@@ -55,7 +50,6 @@ def test_a_far_stress_is_drawn_in_its_unit() -> None:
     time, stress = figure.axes[3].lines[0].get_xydata().T
     assert figure.axes[3].get_ylabel() == "far stress\n(MPa)"
     assert dict(zip(time, stress, strict=True))[2.0] == pytest.approx(6.06, rel=1e-12)
-    pyplot.close(figure)
 
 
 def test_thousands_of_periods_are_a_band_and_a_window_shows_its_own() -> None:
@@ -65,7 +59,6 @@ def test_thousands_of_periods_are_a_band_and_a_window_shows_its_own() -> None:
     figure = draw(run)
     corners = figure.axes[3].collections[0].get_paths()[0].vertices[:, 1]
     assert (corners.min(), corners.max()) == (pytest.approx(-18.9, rel=1e-12), pytest.approx(21.1, rel=1e-12))  # nm/s
-    pyplot.close(figure)
     window = run.window(0, before=5 * HOUR, after=5 * HOUR)
     figure = draw(window)
     time, rate = figure.axes[3].lines[0].get_xydata().T
@@ -73,7 +66,6 @@ def test_thousands_of_periods_are_a_band_and_a_window_shows_its_own() -> None:
     np.testing.assert_allclose(1e-9 * rate, tide.at(time + begun), rtol=0.0, atol=1e-12 * 2e-8)
     assert time[0] == pytest.approx(-5 * HOUR, rel=1e-12)
     assert len(figure.axes[3].collections) == 0
-    pyplot.close(figure)
 
 
 def test_a_steady_loading_has_no_panel() -> None:
@@ -81,7 +73,6 @@ def test_a_steady_loading_has_no_panel() -> None:
     figure = draw(steady)
     assert len(figure.axes) == 3
     assert figure.get_size_inches().tolist() == [6.4, 5.6]
-    pyplot.close(figure)
 
 
 RUN = ss.simulate(ss.load_scenario("cycles-block").problem, 40.0 * 1.5e8)
@@ -140,10 +131,8 @@ def test_swings_too_close_to_draw_are_a_range_between_their_extremes() -> None:
     assert corners[:, 1].max() == pytest.approx(1e3 * LONG.events.peak_rate.max(), rel=1e-9)
     assert np.ptp(corners[:, 0]) > 99.0
     assert [text.get_text() for text in figure.legends[0].get_texts()].count(RANGE) == 1
-    pyplot.close(figure)
     figure = draw(LONG, 0.0, 19.0)
     assert [len(panel.collections) for panel in figure.axes] == [0, 0, 0], "46 events can be seen"
-    pyplot.close(figure)
 
 
 def test_the_traction_of_a_block_that_sticks_has_no_notches() -> None:
@@ -158,8 +147,6 @@ def test_the_traction_of_a_block_that_sticks_has_no_notches() -> None:
     assert all(near)
     assert rate.max() == pytest.approx(float(slips.peak_rate.max()), rel=1e-2)
 
-
-mpl.use("Agg")
 
 NEVER_STICK = ["velocity-steps-block", "slide-hold-slide-block", "rate-and-state-slab", "rate-and-state-block"]
 

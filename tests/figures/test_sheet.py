@@ -20,8 +20,6 @@ from stickslip.figures import sheet
 from stickslip.figures.sheet import StickslipFigure, read_size
 from tests.figures.legible import SLAB_PROBLEM
 
-mpl.use("Agg")
-
 ONE_PANEL = ["slip", "slip_rate", "traction", "load", "friction", "energy", "path"]
 PANELS = ["__call__", "field", "snapshots", "catalogue"]
 

@@ -7,7 +7,6 @@ from itertools import permutations
 from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
 import numpy as np
 import pytest
 import xarray as xr
@@ -24,8 +23,6 @@ from stickslip.figures.style import PALE
 from stickslip.figures.sweeps.curves import ALL, BESIDE
 from stickslip.figures.sweeps.varied import is_logarithmic
 from stickslip.scenarios.parameter_paths import parameter_paths
-
-mpl.use("Agg")
 
 Floats = NDArray[np.float64]
 ALPHA, THICKNESS, STRESS = "friction.alpha", "body.thickness", "body.normal_stress"
@@ -216,12 +213,11 @@ def test_of_many_members_those_beside_a_jump_are_marked() -> None:
 
 def test_a_curve_and_a_map_are_drawn_in_axes_of_the_user() -> None:
     for values, names in ((np.arange(9.0), (ALPHA,)), (np.add.outer(np.arange(9.0), np.arange(13.0)), (ALPHA, THICKNESS))):
-        figure, (left, right) = pyplot.subplots(1, 2)
+        _, (left, right) = pyplot.subplots(1, 2)
         assert ss.figures.plot_sweep(grid(values, *names), "answer", ax=right) is right
         assert right.get_xlabel() == NAMES[ALPHA]
         assert right.get_title(loc="left") == ""
         assert not left.has_data()
-        pyplot.close(figure)
     with pytest.raises(ss.InputError, match="several panels"):
         ss.figures.plot_sweep(grid(np.ones((9, 13, 2)), ALPHA, THICKNESS, STRESS), "answer", ax=right)
 

@@ -79,9 +79,6 @@ def test_every_declared_parameter_has_a_name_that_can_be_typeset() -> None:
         assert not re.search(r"[_.`]|\b(alpha|rho|omega|mu[0SD]?)\b", words), text
 
 
-mpl.use("Agg")
-
-
 @pytest.mark.parametrize(
     ("units", "values", "name"),
     [

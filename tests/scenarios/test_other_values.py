@@ -10,6 +10,7 @@ from stickslip.cli.overrides import typed_values
 from stickslip.scenarios.library import text
 from stickslip.scenarios.parameter_paths import parameter_paths
 from stickslip.scenarios.scenario import Scenario, read_scenario
+from tests.messages import refused
 
 EDITS = [
     ("fig6-slab", {"friction.alpha": 0.1}, [("alpha = 1.0", "alpha = 0.1")]),
@@ -99,7 +100,5 @@ def test_the_title_tells_what_was_changed_and_what_was_described_is_left_out() -
     ],
 )
 def test_what_cannot_be_is_refused_in_one_line(values: dict[str, Any], message: str) -> None:
-    with pytest.raises(ss.InputError) as refused:
+    with refused(begins=message):
         ss.scenarios["fig6-slab"].with_values(values)
-    assert str(refused.value).startswith(message)
-    assert "\n" not in str(refused.value)

@@ -16,6 +16,7 @@ from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
 from stickslip.sweeps.design.axis import DesignAxis, typed_axes
 from stickslip.sweeps.design.design import read_design
 from stickslip.sweeps.execution.plan import make_plan, tile_of
+from tests.messages import refused
 
 SLAB = load_scenario("fig6-slab")
 NESTED = load_scenario("block-or-slab")
@@ -278,19 +279,16 @@ BAD_DESIGNS: list[tuple[dict[str, Any], str]] = [
 
 @pytest.mark.parametrize(("asked", "said"), BAD_DESIGNS, ids=lambda one: str(one)[:40])
 def test_bad_designs_are_refused_in_one_line(asked: dict[str, Any], said: str) -> None:
-    with pytest.raises(ss.InputError) as told:
+    with refused(said):
         read_design(SLAB, **asked)
-    assert said in str(told.value)
-    assert "\n" not in str(told.value)
 
 
 def test_a_file_that_is_no_table_is_refused_in_one_line(tmp_path: Path) -> None:
     path = tmp_path / "members.csv"
     for content in (b"", b"\xff\xfe\x00", b"alpha\n1,2,3\n1\n", b"alpha,alpha\n1,2\n"):
         path.write_bytes(content)
-        with pytest.raises(ss.InputError) as told:
+        with refused():
             read_design(SLAB, path)
-        assert "\n" not in str(told.value)
 
 
 @pytest.mark.parametrize(

@@ -20,6 +20,7 @@ from stickslip.sweeps.execution.plan import make_plan
 from stickslip.sweeps.results.store import ResultStore
 from stickslip.sweeps.sweep import SweepProgress, Tally
 from tests.batch.cases import sticking
+from tests.messages import refused
 
 PULSES = load_scenario("fig5-slab-reconstructed")
 RATE = load_scenario("fig6-slab")
@@ -63,10 +64,8 @@ def rule(branches: object) -> object:
     ],
 )
 def test_a_sweep_without_duration_or_scenario_is_refused_in_one_line(scenario: Any, duration: float | None, said: str) -> None:
-    with pytest.raises(ss.InputError) as told:
+    with refused(begins=said):
         ss.sweep(scenario, {"friction.alpha": [0.1, 1.0]}, duration=duration)
-    assert str(told.value).startswith(said)
-    assert "\n" not in str(told.value)
 
 
 def test_keys_of_every_table_are_put_in_their_place() -> None:
@@ -270,7 +269,5 @@ def test_bad_quantities_are_refused_in_one_line(wanted: Any, said: str) -> None:
     ],
 )
 def test_bad_arguments_are_refused_in_one_line(asked: dict[str, Any], said: str) -> None:
-    with pytest.raises(ss.InputError) as told:
+    with refused(said):
         ss.sweep(RATE, {"alpha": [0.1, 1]}, **asked)
-    assert said in str(told.value)
-    assert "\n" not in str(told.value)

@@ -25,6 +25,7 @@ from stickslip.sweeps.execution.chunk import BAD_PARAMETERS, NOT_RUN
 from stickslip.sweeps.execution.plan import make_plan
 from stickslip.sweeps.results.store import ResultStore, open_store
 from stickslip.sweeps.sweep import SweepProgress, carry_out, on_threads
+from tests.messages import refused
 from tests.sweeps.stores import FINE, MEMBERS, SAVED, VARY, files, sweep
 
 
@@ -325,10 +326,8 @@ def test_a_changed_file_is_refused_in_one_line(store: Path, whole: dict[str, byt
                 assert int((open_store(path).status == NOT_RUN).sum()) == SAVED["chunk"]
                 file.write_bytes(content)
                 continue
-            with pytest.raises(ss.InputError) as told:
+            with refused(begins=str(path)):
                 open_store(path)
-            assert str(told.value).startswith(str(path))
-            assert "\n" not in str(told.value)
             file.write_bytes(content)
     for name in ("slip/c.0.0", "status/c.0.0"):
         (path / name).write_bytes(whole[name][:-1])
