@@ -168,18 +168,9 @@ def test_slip_can_be_fitted_beside_friction() -> None:
     assert both.fit.noise["slip"] == pytest.approx(5e-8, rel=0.1)
 
 
-def test_laws_are_ranked_by_what_they_predict() -> None:
-    slip_law = replace(GUESS, friction=replace(GUESS.friction, evolution="slip"))
-    options: dict[str, Any] = {"starts": 1, "held_out": "110 s"}
-    ranked = [ss.studies.infer(one, record(), tuple(TRUTH), **options) for one in (slip_law, GUESS)]
-    table = ss.studies.ranking(*ranked)
-    assert table.prediction.is_monotonic_increasing
-    assert ranked[1].prediction < ranked[0].prediction
-
-
 def test_stick_slip_of_a_block_is_fitted_event_by_event() -> None:
     true = CoulombBlock()
-    time = np.arange(0.0, 0.3, 1e-4)
+    time = np.arange(0.0, 0.3, 2e-4)
     force, _ = true.sampled(time, 300.0)
     start = ss.Problem(ss.SpringBlock(1.5, 5e6, 1e3), ss.friction.Coulomb(0.7, 0.4), pull_rate=1e-3, initial_load=300.0)
     data = {"time (s)": time, "shear force (N)": force + correlated(len(time), 0.0, 0), "load point (m)": 1e-3 * time}
@@ -188,8 +179,6 @@ def test_stick_slip_of_a_block_is_fitted_event_by_event() -> None:
     assert len(study.parts) == 4
     truth = {"friction.static": 0.65, "friction.dynamic": 0.5, "body.stiffness": 4e6, "body.mass": 2.0}
     check_holds(study, truth, 2.0)
-    whole = ss.studies.infer(start, data, free, sensor="spring", starts=1)
-    check_holds(whole, truth, 2.0)  # events are few, and starting values from the record bring the search near
 
 
 def test_a_load_point_of_a_million_samples_with_noise_a_gap_and_a_jump_is_followed() -> None:
@@ -257,20 +246,20 @@ def test_thickness_and_impedance_of_a_laboratory_slab_come_out_of_one_slip_event
 
 def test_posterior_samples_have_the_intervals_of_the_curvature_and_more_of_them_go_on_where_the_walk_ended() -> None:
     pytest.importorskip("emcee")
-    few = inferred(free=("friction.a", "friction.reference"), samples=160)
-    study = few.more(800)
+    few = inferred(record().iloc[::3], free=("friction.a", "friction.reference"), samples=96)
+    study = few.more(400)
     assert few.samples is not None
     assert study.samples is not None
-    assert len(study.samples) == 800
-    assert study.samples[:160].equals(few.samples)
+    assert len(study.samples) == 400
+    assert study.samples[:96].equals(few.samples)
     spread = study.samples.std().to_numpy()
     assert spread == pytest.approx(study.table.uncertainty.to_numpy(), rel=0.3)
     assert set(study.table.source) == set(few.table.source) == {"samples"}
-    assert few.about_samples[0].startswith("160 samples")
-    assert "800 samples" in study.about_samples[0]
+    assert few.about_samples[0].startswith("96 samples")
+    assert "400 samples" in study.about_samples[0]
     assert len(study.plot().axes) == 4
-    with pytest.raises(ss.InputError, match="more: there are 160 samples already, got 160"):
-        few.more(160)
+    with pytest.raises(ss.InputError, match="more: there are 96 samples already, got 96"):
+        few.more(96)
 
 
 def test_more_samples_than_none_are_refused(found: Inference) -> None:
@@ -312,5 +301,6 @@ def test_samples_that_were_drawn_before_ctrl_c_are_kept(capfd: pytest.CaptureFix
 
 def test_samples_without_emcee_are_refused_with_the_way_to_install_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "emcee", None)
+    monkeypatch.setattr("stickslip.inference.infer.parts_of", lambda *_: pytest.fail("the record was looked at"))
     with pytest.raises(ss.InputError, match=r"samples need emcee: pip install 'stickslip\[infer\]'"):
         inferred(samples=100)

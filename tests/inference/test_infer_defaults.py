@@ -60,7 +60,7 @@ KINDS: dict[str, tuple[ss.Problem, dict[str, Any], dict[str, float], dict[str, A
     "slip alone": (ROCK, of_rock(ROCK, "slip"), {"friction.a": 0.008}, {}),
     "a law that sticks": (STICKING, of_block(), {"friction.static": 0.65, "friction.dynamic": 0.5}, SPRING),
     "event by event": (STICKING, of_block(), {"friction.static": 0.65, "friction.dynamic": 0.5}, SPRING | {"parts": "rests"}),
-    "features": (STICKING, of_block(1.2, 0.01), {"friction.static": 0.65, "friction.dynamic": 0.5}, SPRING | {"by": "features"}),
+    "features": (STICKING, of_block(0.8, 0.01), {"friction.static": 0.65, "friction.dynamic": 0.5}, SPRING | {"by": "features"}),
     "an event of a slab": (PLATE, of_slab(), {"friction.static": 0.6, "friction.dynamic": 0.5}, {}),
 }
 

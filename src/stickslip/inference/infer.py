@@ -16,7 +16,7 @@ from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.quantities import Quantity
 from stickslip.inference.certainty.certainty import Certainty, Profile, certainty_of, profile_of, unknown
 from stickslip.inference.certainty.directions import IDLE
-from stickslip.inference.certainty.sampling import MOST_SAMPLES, sample
+from stickslip.inference.certainty.sampling import MOST_SAMPLES, emcee, sample
 from stickslip.inference.fit.by_features import FeatureModel, by_features, scatter_of
 from stickslip.inference.fit.estimate import Estimate, estimate, windows_of
 from stickslip.inference.fit.free import LOAD, Free, read_free, with_scale
@@ -87,6 +87,8 @@ class Wishes:
         WEIGHT.check("infer", "weight", self.weight)
         for name, least, most in (("starts", 1, 1000), ("samples", 0, MOST_SAMPLES), ("seed", 0, 2**32 - 1)):
             check_whole(f"infer: {name}", getattr(self, name), least, most)
+        if self.samples:
+            emcee()  # a fit is not thrown away because a library is missing
         check_rtol(self.rtol, "infer")
 
 

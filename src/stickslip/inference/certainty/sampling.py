@@ -59,6 +59,15 @@ class PosteriorWalk:
         return (stop, note) if self.stopped else (note,)
 
 
+def emcee() -> Any:
+    """Return the library that samples. Raises InputError if it is not installed."""
+    try:
+        import emcee as library
+    except ImportError:
+        raise InputError("infer: samples need emcee: pip install 'stickslip[infer]'") from None
+    return library
+
+
 def sample(
     found: Estimate, sure: Certainty, count: int, tell: Tell, *, seed: int = 0, before: PosteriorWalk | None = None
 ) -> PosteriorWalk:
@@ -68,17 +77,13 @@ def sample(
     early with the samples so far. Raises InputError if emcee is not installed, and KeyboardInterrupt if Ctrl-C comes before the
     walkers have forgotten where they began.
     """
-    try:
-        import emcee
-    except ImportError:
-        raise InputError("infer: samples need emcee: pip install 'stickslip[infer]'") from None
     dimensions = len(found.searched)
     walkers = max(16, WALKERS * dimensions)
     walkers += walkers % 2
     steps = -(-count // walkers)
     forget = max(20, math.ceil(FORGET * steps)) if before is None else 0
     posterior = _Posterior(found, float(np.max(sure.excess**2)))
-    sampler: Any = emcee.EnsembleSampler(walkers, dimensions, posterior)
+    sampler: Any = emcee().EnsembleSampler(walkers, dimensions, posterior)
     if before is None:
         begin, kept = _begun(found, sure, walkers, np.random.default_rng(seed)), []
         sampler.random_state = np.random.RandomState(seed).get_state()
@@ -90,7 +95,7 @@ def sample(
         for moved in sampler.sample(begin, iterations=left) if left > 0 else ():
             if posterior.stopped:  # in the middle of this step
                 break
-            state, new[done] = emcee.State(moved, copy=True), moved.coords
+            state, new[done] = emcee().State(moved, copy=True), moved.coords
             if done % 10 == 0:
                 tell(f"sampling: step {done + 1} of {left}, {walkers} runs each")
             done += 1
