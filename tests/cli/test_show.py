@@ -180,4 +180,5 @@ def test_results_are_completed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.chdir(tmp_path)
     assert complete_result("a") == ["a.csv", "a.nc", "a.zarr"]
     assert complete_result("") == ["a.csv", "a.nc", "a.zarr", "deeper/"]
-    assert (complete_source("a."), complete_scenario("a.")) == (["a.nc", "a.toml"], ["a.toml"])
+    assert complete_source("a.") == ["a.nc", "a.toml", "a.zarr/"]
+    assert complete_scenario("a.") == ["a.toml", "a.zarr/"]
