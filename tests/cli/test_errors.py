@@ -97,7 +97,9 @@ def test_a_full_disk_gives_one_line_and_leaves_no_half_file(command, tmp_path: P
         raise OSError(28, "No space left on device", str(path))
 
     monkeypatch.setattr("matplotlib.figure.Figure.savefig", fails)
-    assert "No space left on device" in command("run", "fig6-slab", "--figure", "a.png").refusal
+    shown = command("run", "fig6-slab", "--figure", "a.png")
+    assert (shown.code, shown.err.count("\n")) == (2, 1)
+    assert "No space left on device" in shown.err
     assert list(tmp_path.iterdir()) == []
 
 
