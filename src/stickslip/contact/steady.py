@@ -130,7 +130,7 @@ class _Steady:
             can_rest=rests and not why,
             proven=proven,
             sticks=problem.friction.sticks,
-            varies=self.varies,
+            varies=problem.loading_varies,
             is_damped=damped,
             traction_at_pull_rate=self._at_pull_rate() if slidings else math.nan,
             why_none=why,
@@ -156,7 +156,7 @@ class _Steady:
     def why_none(self) -> str:
         """Return why nothing slides steadily, "" if something may."""
         problem, law = self.problem, self.problem.friction
-        first = " at first" if self.varies else ""
+        first = " at first" if problem.loading_varies else ""
         if problem.far_stress_rate:
             return "the far stress keeps changing"
         if self.drive == 0.0:

@@ -29,6 +29,7 @@ from stickslip.inference.inference import Inference
 from stickslip.inference.record.noise import LOSSES
 from stickslip.inference.record.record import Record
 from stickslip.inference.record.resample import MOST_FITTED, resampled
+from stickslip.problem.parameters import PRESSING
 from stickslip.problem.problem import Problem
 from stickslip.problem.run_quantities import check_rtol
 from stickslip.scenarios.source import read_source
@@ -39,6 +40,8 @@ if TYPE_CHECKING:
 
 WAYS = ("samples", "features")
 """Data to fit: each sample of a record, or features of its slip events."""
+NORMALS = ("problem", "record")
+"""Where the normal load of the runs comes from."""
 MOST_PARTS, MOST_SEARCHED = 24, 8
 """Largest number of parts between rests to fit, and of those in the first search."""
 LEAST_FITTED = 2000
@@ -71,6 +74,7 @@ class Wishes:
     starts: int
     seed: int
     rtol: float
+    normal: str
 
     def check(self) -> None:
         """Raise InputError for options that are out of range."""
@@ -84,6 +88,8 @@ class Wishes:
             raise InputError(f"infer: parts must be 'rests' or left out, got {shown(self.parts)}")
         if self.windows and (self.parts is not None or self.by == "features"):
             raise InputError("infer: windows are of records that are fitted as a whole: leave out parts='rests' and by='features'")
+        if self.normal not in NORMALS:
+            raise InputError(f"infer: normal {ascii(self.normal)[:40]} is unknown; {nearest(str(self.normal), NORMALS)}")
         WEIGHT.check("infer", "weight", self.weight)
         for name, least, most in (("starts", 1, 1000), ("samples", 0, MOST_SAMPLES), ("seed", 0, 2**32 - 1)):
             check_whole(f"infer: {name}", getattr(self, name), least, most)
@@ -105,6 +111,7 @@ def infer(
     observe: Sequence[str] | str | None = None,
     start: str | None = None,
     sensor: str = "contact",
+    normal: str = "problem",
     parts: str | None = None,
     each: Sequence[str] | None = None,
     bounds: Mapping[str, Any] | None = None,
@@ -149,6 +156,9 @@ def infer(
     sensor : {"contact", "spring"}
         Where shear is measured: at the contact, or by a load cell behind the spring of a block. The two differ by the inertia of
         the block.
+    normal : {"problem", "record"}
+        Where the normal load of the runs comes from. "record" takes the record's normal stress (slab) or force (block) in time, as
+        few straight lines as leave only noise; the default is that of the problem, constant or not.
     parts : "rests", optional
         Split the record after each slip event and begin a run at each rest, with the load that is measured there.
     each : list of str, optional
@@ -227,14 +237,15 @@ def infer(
         by=by, observe=observe, start=start,
         sensor=sensor, parts=parts, each=each, held_out=held_out, profiles=profiles, samples=samples,
         bounds=bounds, priors=priors, begin_at=begin_at, loss=loss, weight=weight, windows=windows,
-        starts=starts, seed=seed, rtol=rtol,
+        starts=starts, seed=seed, rtol=rtol, normal=normal,
     )  # fmt: skip
     wishes.check()
     source = read_source("infer", problem)
     given = source if isinstance(source, Problem) else source.problem
     records = _records(record, begin=begin, end=end)
     observed = wishes.observe if by == "samples" else None
-    recorded, notes = parts_of(given, records, observed, wishes.start, wishes.sensor)
+    _check_normal(given, wishes, free)
+    recorded, notes = parts_of(given, records, observed, wishes.start, wishes.sensor, pressed=normal == "record")
     whole = recorded
     if wishes.parts == "rests":
         between = [piece for part in whole for piece in at_rests(part)]
@@ -261,6 +272,21 @@ def infer(
             raise InputError("; ".join([str(error), *doubts])) from None
     options = {"begin": begin, "end": end} | vars(wishes)
     return replace(found, asked={name: value for name, value in options.items() if value not in (None, False)})
+
+
+def _check_normal(problem: Problem, wishes: Wishes, free: Sequence[str] | str) -> None:
+    """Raise InputError for options that a normal load that varies excludes."""
+    from_record = wishes.normal == "record"
+    if wishes.by == "features" and (from_record or problem.normal_varies):
+        raise InputError("infer: by='features' compares events under one normal load: fit samples, under one that varies")
+    cut = "parts='rests'" if wishes.parts is not None else "windows=True" if wishes.windows else ""
+    if cut and problem.normal_varies and not from_record:
+        raise InputError(
+            f"infer: {cut} begins runs later than the problem's normal_load does: give it in the record (normal='record')"
+        )
+    for name in (one.strip() for one in (free.split(",") if isinstance(free, str) else free)):
+        if from_record and name.rpartition(".")[2] in (PRESSING, "normal_stress", "normal_force"):
+            raise InputError(f"infer: {name} cannot be free where the record gives the normal load (normal='record')")
 
 
 def _resampled(parts: list[Part], notes: list[str]) -> tuple[list[Part], list[str]]:

@@ -44,6 +44,9 @@ def infer(
     observe: Annotated[str | None, option(OBSERVE)] = None,
     start: Annotated[str | None, option(START)] = None,
     sensor: Annotated[str, typer.Option(help="Where shear is measured: contact, or spring (load cell of a block).")] = "contact",
+    normal: Annotated[
+        str, typer.Option(help="Normal load of the runs: problem, or record (its column, as it varies).")
+    ] = "problem",
     parts: Annotated[str | None, option("rests: a run of its own after each slip event of the record.")] = None,
     each: Annotated[str | None, option("What is free for each part of --parts: initial.load, initial.state.")] = None,
     bound: Annotated[list[str] | None, option(BOUND, panel=SEARCH)] = None,
@@ -103,7 +106,14 @@ def infer(
     if report is not None:
         check_folder(report, "--report")
     look.check(figure)
-    options: dict[str, Any] = {"by": by_what, "observe": observe, "start": start, "sensor": sensor, "parts": parts}
+    options: dict[str, Any] = {
+        "by": by_what,
+        "observe": observe,
+        "start": start,
+        "sensor": sensor,
+        "normal": normal,
+        "parts": parts,
+    }
     options |= {"loss": loss, "starts": starts, "weight": weight, "windows": windows}
     options |= {"each": each and each.split(","), "seed": seed, "profiles": profiles, "samples": samples, "rtol": rtol}
     options |= {"held_out": _typed(held_out), "begin": _typed(begin), "end": _typed(end)}

@@ -125,7 +125,7 @@ def by_features(parts: Sequence[Part], observe: Sequence[str] | str | None) -> t
                 f"{record.name}: {len(record)} whole slip events are too few for the scatter of {len(names)} features: "
                 "fit event by event, with parts='rests'"
             )
-        found.append(FeaturePart(record, part.loading, tuple(names), part.sensor, part.start, part))
+        found.append(FeaturePart(record, part.loading, tuple(names), part.sensor, part.start, whole=part))
         notes += [*said, f"{len(record)} slip events of {record.name}, each with its {', '.join(names)}"]
     return found, notes
 

@@ -26,7 +26,6 @@ from stickslip.inference.fit.search import (
     sharp_cost,
     solved,
 )
-from stickslip.inference.record.loading import loading_of
 from stickslip.inference.record.noise import GAUSSIAN, cost_of
 
 FEW = 1500
@@ -225,5 +224,4 @@ def _cut(part: Part, found: Estimate, before: float, after: float) -> Part | Non
     record = part.record.part(float(part.record.time[0]) + begin, float(part.record.time[0]) + end)
     if begin == 0.0:
         return replace(part, record=record)
-    loading = loading_of(record)
-    return replace(part, record=record, loading=None if loading is None else loading.rate)
+    return part.from_time(record, float(record.time[0] - part.record.time[0]))

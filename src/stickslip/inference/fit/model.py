@@ -110,7 +110,9 @@ class Model:
             values = measured(run, name, this.sensor, time)
             if name in JUMPING:
                 values = spread(values, time, self._jumps(run, part, name), self.blur)
-            found[name] = values + shift * (run.problem.normal if name in ("shear_stress", "shear_force") else name == "friction")
+            found[name] = values + shift * (
+                run.problem.normal_at(time) if name in ("shear_stress", "shear_force") else name == "friction"
+            )
         return found
 
     def _jumps(self, run: Solution, part: int, name: str) -> Jumps:
@@ -337,7 +339,7 @@ def measured(run: Solution, name: str, sensor: str, time: Floats, side: Side = "
     if name == "slip_rate":
         return run.slip_rate(time, side)
     force = run.load(time, side) if sensor == "spring" else run.traction(time, side)
-    return force / run.problem.normal if name == "friction" else force
+    return force / run.problem.normal_at(time) if name == "friction" else force
 
 
 def averaged(rest: Floats, width: int) -> Floats:

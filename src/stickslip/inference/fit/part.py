@@ -13,10 +13,11 @@ import numpy as np
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.quantities import Quantity
+from stickslip.inference.record.loading import later, loading_of
 from stickslip.inference.record.noise import first_value, noise_of
 from stickslip.inference.record.record import Record
 from stickslip.loading import LoadingHistory, PiecewiseLinear, Steps
-from stickslip.problem.parameters import put_many
+from stickslip.problem.parameters import normal_field, put_many
 from stickslip.problem.problem import Problem
 
 SMALLEST_NOISE = 1e-9
@@ -33,7 +34,8 @@ class Part:
 
     `loading` is the pull rate since the first sample, or None for the problem's own; `observed` are the fitted quantities.
     `sensor` is "contact" if shear is measured there, "spring" for a load cell behind the spring of a block. `start` says how the
-    run begins: in "steady" sliding, as the "record" does, or as the "problem" says.
+    run begins: in "steady" sliding, as the "record" does, or as the "problem" says. `pressing` is the normal load since the first
+    sample (Pa or N), or None for the problem's own.
     """
 
     record: Record
@@ -41,6 +43,7 @@ class Part:
     observed: tuple[str, ...]
     sensor: str = "contact"
     start: str = "problem"
+    pressing: PiecewiseLinear | None = None
 
     @property
     def duration(self) -> float:
@@ -88,6 +91,7 @@ class Part:
 
     def begun(self, problem: Problem) -> Problem:
         """Return a problem under the loading of this part, with the initial conditions from its data. Raises InputError."""
+        problem = self.pressed(problem)
         rates: dict[str, Any] = {} if self.loading is None else {"pull_rate": self.loading}
         if self.start == "steady":
             return steady(problem, rates)
@@ -98,6 +102,19 @@ class Part:
         if problem.friction.states and not problem.friction.sticks and problem.initial_state is None:
             begun["initial_state"] = "steady"
         return replace(problem, **rates, **begun)
+
+    def pressed(self, problem: Problem) -> Problem:
+        """Return a problem under the normal load of this part."""
+        if self.pressing is None:
+            return problem
+        body = replace(problem.body, **{normal_field(problem): self.pressing.first})
+        return replace(problem, body=body, normal_load=self.pressing)
+
+    def from_time(self, record: Record, begin: float) -> Part:
+        """Return the part that begins `begin` (s) later, with that piece of the record and its own motion of the load point."""
+        loading = loading_of(record) if self.loading is not None else None
+        pressing = None if self.pressing is None else later(self.pressing, begin)
+        return replace(self, record=record, loading=None if loading is None else loading.rate, pressing=pressing)
 
     def first_load(self, normal: float) -> tuple[float, float]:
         """Return the load at the first sample and its standard error (Pa or N), for a normal load (Pa or N)."""

@@ -11,15 +11,17 @@ import numpy as np
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.headings import COLUMNS
 from stickslip.foundation.show import brief
 from stickslip.friction.law import FrictionLaw
 from stickslip.inference.fit.free import DELAY, LOAD, SERVO, STATE, TREND, Free, Prior, known_numbers
 from stickslip.inference.fit.model import Model
 from stickslip.inference.fit.part import Part
 from stickslip.inference.record.features import arrests_in
-from stickslip.inference.record.loading import loading_of
+from stickslip.inference.record.loading import loading_of, normal_of
 from stickslip.inference.record.record import HIGHEST, LOWEST, MEASURED, SHEAR, Record
-from stickslip.loading import LoadingHistory
+from stickslip.loading import LoadingHistory, PiecewiseLinear
+from stickslip.problem.parameters import normal_field
 from stickslip.problem.problem import Problem
 
 STARTS = ("steady", "record", "problem")
@@ -30,6 +32,8 @@ MANY_RATES = 40
 """A load point with more rates than this raises a doubt."""
 FAR = 100.0
 """A larger factor than this between the pull rates of record and problem raises a doubt about the record's units."""
+UNEVEN = 0.03
+"""A measured normal load that changes by more than this share (1) is told if the run takes it as constant."""
 LEAST = 8
 """Smallest number of samples of a part."""
 LATER = 0.05
@@ -37,9 +41,12 @@ LATER = 0.05
 
 
 def parts_of(
-    problem: Problem, records: Sequence[Record], observe: Any, start: str | None, sensor: str
+    problem: Problem, records: Sequence[Record], observe: Any, start: str | None, sensor: str, *, pressed: bool = False
 ) -> tuple[list[Part], list[str]]:
-    """Return a part for each record, and sentences on what was done. Raises InputError if options and records do not match."""
+    """Return a part for each record, and sentences on what was done. Raises InputError if options and records do not match.
+
+    `pressed` says that the normal load is that of the record.
+    """
     if sensor not in SENSORS:
         raise InputError(f"infer: sensor {ascii(sensor)[:40]} is unknown; {nearest(str(sensor), SENSORS)}")
     if sensor == "spring" and problem.body.has_waves:
@@ -47,8 +54,6 @@ def parts_of(
     if problem.ground is not None or problem.one_way:
         what = "one_way" if problem.one_way else "ground that moves"
         raise InputError(f"infer: {what} is not fitted: leave it out")
-    if problem.normal_varies:
-        raise InputError("infer: a normal_load that varies is not fitted yet: records of friction are divided by one normal load")
     if start is not None and start not in STARTS:
         raise InputError(f"infer: start {ascii(start)[:40]} is unknown; {nearest(str(start), STARTS)}")
     found, notes = [], []
@@ -59,13 +64,35 @@ def parts_of(
         begins = "problem" if start is None and begins == "record" and record.shear is None else begins
         if record.clock[-1] <= 0.0:
             raise InputError(f"{record.name}: the record has no duration")
-        found.append(Part(record, None if loading is None else loading.rate, observed, sensor, begins))
+        pressing, told = _pressing(problem, record) if pressed else (None, tuple(_uneven(problem, record)))
+        found.append(Part(record, None if loading is None else loading.rate, observed, sensor, begins, pressing))
         before = f"{record.name}: " if len(records) > 1 else ""
-        said = [*record.notes, *(() if loading is None else (*loading.notes, *_doubts(problem, loading.rate)))]
+        said = [*record.notes, *told, *(() if loading is None else (*loading.notes, *_doubts(problem, loading.rate)))]
         if loading is None:
             said.append("the record has no load point: the loading is that of the problem")
         notes += [before + one for one in said]
     return found, list(dict.fromkeys(notes))
+
+
+def _pressing(problem: Problem, record: Record) -> tuple[PiecewiseLinear, tuple[str, ...]]:
+    """Return the normal load of a record, and a note. Raises InputError if it is not in the unit of the problem's loads."""
+    found, told = normal_of(record)
+    if COLUMNS[record.normal_name].unit != problem.load_unit:
+        wanted = f"{normal_field(problem)} in {problem.load_unit}"
+        raise InputError(
+            f"{record.name}: normal='record' needs a column {wanted}, got {record.normal_name}: use the contact's area"
+        )
+    return found, told
+
+
+def _uneven(problem: Problem, record: Record) -> Iterator[str]:
+    """Yield a sentence on a measured normal load that changes while the problem's does not."""
+    if record.normal is None or problem.normal_varies or not np.isfinite(record.normal).any():
+        return
+    low, usual, high = np.nanpercentile(record.normal, [5.0, 50.0, 95.0]).tolist()
+    if high - low > UNEVEN * abs(usual):
+        change = f"{record.normal_name} changes by {(high - low) / abs(usual):.0%} but is taken as constant in the run"
+        yield f"{change}: normal='record' takes it as it was measured"
 
 
 def _doubts(problem: Problem, rate: LoadingHistory | float) -> Iterator[str]:
@@ -162,8 +189,7 @@ def at_rests(part: Part) -> list[Part]:
     found = []
     for first, last in cuts:
         piece = record.part(float(record.time[first]), float(record.time[last - 1]))
-        loading = loading_of(piece) if part.loading is not None else None
-        found.append(replace(part, record=piece, loading=None if loading is None else loading.rate, start="record"))
+        found.append(replace(part.from_time(piece, float(piece.time[0] - record.time[0])), start="record"))
     return found
 
 
@@ -198,7 +224,7 @@ def own_of(problem: Problem, parts: Sequence[Part], wanted: Iterable[str] | None
                 raise InputError(f"infer: each: {ascii(name)[:40]} cannot differ from part to part; allowed: {LOAD}, {STATE}")
             quantity, value = declared[name]
             if name == LOAD:
-                load, error = part.first_load(problem.normal)
+                load, error = part.first_load(part.pressed(problem).normal)
                 error = max(error, 1e-6 * abs(load), 1e-300)
                 wide = 50.0 * error
                 found.append(Free(LOAD, quantity, load, load - wide, load + wide, False, Prior("normal", load, error), i, error))

@@ -10,10 +10,11 @@ import numpy as np
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.headings import COLUMNS
 from stickslip.foundation.show import brief
 from stickslip.inference.record.noise import GAUSSIAN, noise_of, rounding_of
 from stickslip.inference.record.record import Record
-from stickslip.loading import LoadingHistory, Steps
+from stickslip.loading import LoadingHistory, PiecewiseLinear, Steps
 
 MOST_PARTS = 2000
 """Largest number of straight parts; a record that needs more is approximated more coarsely."""
@@ -69,6 +70,42 @@ def loading_of(record: Record) -> Loading | None:
         rates, starts = np.diff(heights) / np.diff(at), np.append(0.0, at[1:-1])
         rates[np.abs(np.diff(heights)) < coarser * noise] = 0.0  # at rest, as far as can be told
     return Loading(_steps(starts, rates), _notes(record, time, rates, coarser, noise))
+
+
+def normal_of(record: Record) -> tuple[PiecewiseLinear, tuple[str, ...]]:
+    """Return the normal load of a record as straight lines between knots, found as those of a load point are, and a note.
+
+    Raises InputError if there is no such column, too few numbers, or one that is not above 0.
+    """
+    if record.normal is None:
+        raise InputError(f"{record.name}: normal='record' needs a column normal_stress or normal_force")
+    known = np.isfinite(record.normal)
+    time, values = record.clock[known], record.normal[known]
+    unit = COLUMNS[record.normal_name].unit
+    if len(time) < 2:
+        raise InputError(f"{record.name}: {record.normal_name} has fewer than two numbers: leave normal='record' out")
+    if not (values > 0.0).all():
+        at = int(np.argmin(values))
+        least = f"{brief(float(values[at]), unit)} at {record.time[known][at]:.6g} s"
+        raise InputError(f"{record.name}: {record.normal_name} must stay above 0 {unit}, got {least}: the contact would be open")
+    floor = max(rounding_of(values), ROUNDING * float(np.ptp(values)), ROUNDING * float(values.max()))
+    allowed = _allowed(time, values, max(noise_of(values), floor), floor)
+    noise = float(allowed[0]) / SURE
+    cuts, coarser = straight_parts(time, values, allowed)
+    at, heights = _joined(time, values, _knots(time, values, cuts, coarser * noise))
+    if not (heights > 0.0).all():
+        raise InputError(f"{record.name}: {record.normal_name} comes so close to 0 {unit} that its noise would open the contact")
+    parts = f"{len(at) - 1} straight part{'s' if len(at) > 2 else ''}"
+    note = f"{record.normal_name} is followed in {parts}, within {brief(coarser * noise, unit, 3)}"
+    return PiecewiseLinear(at.tolist(), heights.tolist()), (note,)
+
+
+def later(history: PiecewiseLinear, by: float) -> PiecewiseLinear:
+    """Return a history as it goes on from a time (s) on."""
+    left = np.array(history.times)
+    left = left[left > by]
+    times = [0.0, *(left - by).tolist()] if len(left) else [0.0, 1.0]
+    return PiecewiseLinear(times, history.at(by + np.array(times)).tolist())
 
 
 def _steps(starts: Floats, rates: Floats) -> Steps | float:

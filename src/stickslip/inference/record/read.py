@@ -25,8 +25,10 @@ LARGEST_FILE = 500_000_000
 """Largest file to read (bytes)."""
 MOST_SAMPLES = 5_000_000
 """Largest number of samples of a record."""
-BESIDE = ("normal_stress", "normal_force", "rotation_rate", "rotation", "radius")
-"""Columns that only serve to compute others."""
+NORMAL = ("normal_stress", "normal_force")
+"""Columns of the normal load: they make friction of shear, and may say how the contact is pressed."""
+BESIDE = (*NORMAL, "rotation_rate", "rotation", "radius")
+"""Columns that serve to compute others."""
 WANTED = ("time", *LOADING, *MEASURED, *BESIDE, *(f"{name}_deviation" for name in MEASURED))
 """All known columns."""
 LATER = Quantity("s", "time by which the second clock begins later")
@@ -64,7 +66,9 @@ def read_record(source: Any, beside: Any = None, later: float = 0.0) -> Record:
         if not (np.isfinite(values) & (values > 0.0)).all():
             raise InputError(f"{read.place}: {name}_deviation must be above 0 in each row")
     driven = {name: found.get(name) for name in LOADING}
-    return checked(Record(found["time"], measured, deviations, **driven, name=read.place, notes=tuple(notes)))
+    normal = next((name for name in NORMAL if name in found), "")
+    pressed = {"normal": found.get(normal), "normal_name": normal}
+    return checked(Record(found["time"], measured, deviations, **driven, **pressed, name=read.place, notes=tuple(notes)))
 
 
 def _two_in(source: Any) -> tuple[Any, Any, float]:

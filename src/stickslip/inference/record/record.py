@@ -32,7 +32,8 @@ class Record(CheckedArguments):
     `measured` holds friction (1), shear_stress (Pa), shear_force (N), slip (m) and slip_rate (m/s), NaN where nothing was measured,
     and `deviations` the standard deviations given for them. `load_point` (m) and `load_rate` (m/s) are displacement and rate of the
     load point, or None. `notes` say what was done with the record, one sentence each. `relative` is the noise of each sample
-    relative to the usual noise if some samples are means over more samples than others, or None.
+    relative to the usual noise if some samples are means over more samples than others, or None. `normal` is the normal stress (Pa)
+    or normal force (N) by which shear was divided, as `normal_name` says, or None.
     """
 
     time: Floats
@@ -43,6 +44,8 @@ class Record(CheckedArguments):
     name: str = "record"
     notes: tuple[str, ...] = ()
     relative: Floats | None = None
+    normal: Floats | None = None
+    normal_name: str = ""
 
     def __post_init__(self) -> None:
         if not isinstance(self.measured, Mapping) or not set(self.measured) <= {*MEASURED, *OF_EVENTS}:
@@ -104,6 +107,7 @@ class Record(CheckedArguments):
             load_point=loads[0],
             load_rate=loads[1],
             relative=cut(self.relative),
+            normal=cut(self.normal),
         )
 
     @property

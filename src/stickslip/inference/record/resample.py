@@ -183,6 +183,7 @@ def _means(record: Record, bins: Bins) -> Record:
         load_point=loads[0],
         load_rate=loads[1],
         relative=relative,
+        normal=None if record.normal is None else mean(record.normal),
     )
 
 
