@@ -255,7 +255,6 @@ def test_check_tells_under_which_load_and_at_which_rate_steady_sliding_is_examin
         (lambda: written(body=IN_BODY), r"toml: \[body\] normal_force is one number, .* a history is \[loading\.normal_load\]$"),
         (lambda: written(IN_PASCAL), r"toml: \[loading\.normal_load\] must be in N, as the loads of this body are$"),
         (lambda: written([10.0, math.nan]), r"\[loading\.normal_load\] values\[1\] must be finite"),
-        (lambda: ss.studies.infer(block(HELD_FORCE), {"time": [0, 1], "mu": [0.5, 0.5]}, ["friction.static"]), r"^infer: a normal"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_followed_is_refused_in_one_line(make: object, message: str) -> None:

@@ -17,7 +17,7 @@ from stickslip.inference.record.loading import later, loading_of
 from stickslip.inference.record.noise import first_value, noise_of
 from stickslip.inference.record.record import Record
 from stickslip.loading import LoadingHistory, PiecewiseLinear, Steps
-from stickslip.problem.parameters import normal_field, put_many
+from stickslip.problem.parameters import put_many
 from stickslip.problem.problem import Problem
 
 SMALLEST_NOISE = 1e-9
@@ -107,7 +107,7 @@ class Part:
         """Return a problem under the normal load of this part."""
         if self.pressing is None:
             return problem
-        body = replace(problem.body, **{normal_field(problem): self.pressing.first})
+        body = replace(problem.body, **{problem.body.normal_field: self.pressing.first})
         return replace(problem, body=body, normal_load=self.pressing)
 
     def from_time(self, record: Record, begin: float) -> Part:

@@ -21,7 +21,6 @@ from stickslip.inference.record.features import arrests_in
 from stickslip.inference.record.loading import loading_of, normal_of
 from stickslip.inference.record.record import HIGHEST, LOWEST, MEASURED, SHEAR, Record
 from stickslip.loading import LoadingHistory, PiecewiseLinear
-from stickslip.problem.parameters import normal_field
 from stickslip.problem.problem import Problem
 
 STARTS = ("steady", "record", "problem")
@@ -78,7 +77,7 @@ def _pressing(problem: Problem, record: Record) -> tuple[PiecewiseLinear, tuple[
     """Return the normal load of a record, and a note. Raises InputError if it is not in the unit of the problem's loads."""
     found, told = normal_of(record)
     if COLUMNS[record.normal_name].unit != problem.load_unit:
-        wanted = f"{normal_field(problem)} in {problem.load_unit}"
+        wanted = f"{problem.body.normal_field} in {problem.load_unit}"
         raise InputError(
             f"{record.name}: normal='record' needs a column {wanted}, got {record.normal_name}: use the contact's area"
         )

@@ -85,8 +85,8 @@ def normal_of(record: Record) -> tuple[PiecewiseLinear, tuple[str, ...]]:
     if len(time) < 2:
         raise InputError(f"{record.name}: {record.normal_name} has fewer than two numbers: leave normal='record' out")
     if not (values > 0.0).all():
-        at = int(np.argmin(values))
-        least = f"{brief(float(values[at]), unit)} at {record.time[known][at]:.6g} s"
+        lowest = int(np.argmin(values))
+        least = f"{brief(float(values[lowest]), unit)} at {record.time[known][lowest]:.6g} s"
         raise InputError(f"{record.name}: {record.normal_name} must stay above 0 {unit}, got {least}: the contact would be open")
     floor = max(rounding_of(values), ROUNDING * float(np.ptp(values)), ROUNDING * float(values.max()))
     allowed = _allowed(time, values, max(noise_of(values), floor), floor)

@@ -67,8 +67,18 @@ def read_record(source: Any, beside: Any = None, later: float = 0.0) -> Record:
             raise InputError(f"{read.place}: {name}_deviation must be above 0 in each row")
     driven = {name: found.get(name) for name in LOADING}
     normal = next((name for name in NORMAL if name in found), "")
-    pressed = {"normal": found.get(normal), "normal_name": normal}
-    return checked(Record(found["time"], measured, deviations, **driven, **pressed, name=read.place, notes=tuple(notes)))
+    return checked(
+        Record(
+            found["time"],
+            measured,
+            deviations,
+            **driven,
+            name=read.place,
+            notes=tuple(notes),
+            normal=found.get(normal),
+            normal_name=normal,
+        )
+    )
 
 
 def _two_in(source: Any) -> tuple[Any, Any, float]:
