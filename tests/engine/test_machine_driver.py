@@ -11,8 +11,10 @@ import pytest
 
 import stickslip as ss
 from stickslip.bodies import ElasticSlab
+from stickslip.engine.state.layout import Store, keep_only, trimmed
 from stickslip.foundation.errors import InputError
 from stickslip.reference.slab import StuckSlab
+from stickslip.trajectory.phase_index import standing_behind
 from tests.engine.machine_steps import Slab
 
 STRESS, THICKNESS = 1e6, 100.0
@@ -140,6 +142,25 @@ def test_run_goes_on_bit_for_bit(tmp_path) -> None:
     path = ss.simulate(problem, 13.7 * T).to_netcdf(tmp_path / "part.nc")
     longer = ss.resume(path, 30.0 * T)
     assert np.array_equal(longer.history.store.pieces, whole.history.store.pieces)
+
+
+@pytest.mark.parametrize("body", [slab(0.5, 0.3, 0.2), slab(0.0, 0.3, 0.2), slab(0.5, 0.6, contact_mass=0.2 * Z * T)])
+@pytest.mark.parametrize("share", [0.3, 0.6])
+def test_motion_of_the_driver_is_known_after_its_start_was_forgotten(body: ElasticSlab, share: float) -> None:
+    """A catalogue keeps the waves in the slab and what follows; rate and push come back from one load and its wave."""
+    history = ss.simulate(ss.Problem(body, COULOMB, pull_rate=0.03, initial_excess=-1e3), 35.0 * T).history
+    past, many = int(share * len(history)), len(history)
+    store = Store(history.store.pieces.copy(), history.store.state.copy())
+    standing, _, _ = standing_behind(trimmed(store, past), history.round_trip_time)
+    kept = np.concatenate([np.unique(standing), np.arange(past, many)])
+    keep_only(store, many, kept)
+    known = replace(history, store=trimmed(store, len(kept))).machine
+    time = np.linspace(known.start[0], 36.0 * T, 999)
+    assert time[0] > 5.0 * T
+    assert np.abs(known.at(time) - history.machine.at(time)).max() < 1e-12 * np.abs(known.at(time)).max()
+    assert known.work(time[0], time[-1]) == pytest.approx(history.machine.work(time[0], time[-1]), rel=1e-10)
+    with pytest.raises(InputError, match="has forgotten what came before"):
+        known.at(np.array([0.0]))
 
 
 @pytest.mark.parametrize(

@@ -284,7 +284,7 @@ class _Steady:
         for k, rate in enumerate(rates):
             beyond = 0.5 * (rate + rates[k + 1]) if k + 1 < len(rates) else 2.0 * rate
             found.append(self._change(rate, bool(g.slope(beyond) > 0.0), proof.enclosure(rate)))
-        return tuple(found), proof.verdict == "proven"
+        return tuple(found), proof.verdict == "proven" and not self.problem.body.has_machine
 
     def _changes_under_states(self) -> tuple[tuple[StabilityChange, ...], bool]:
         problem = self.problem

@@ -25,6 +25,8 @@ from stickslip.problem.problem import Problem
 
 FINEST = 0.5
 """Parts of a piece are so short that a machine changes by at most about this share of its size (1) in each."""
+EARLY = 1e-9
+"""Times up to this share of themselves before the start of a motion are at the start, by rounding."""
 NODES, WEIGHTS = (values / 2.0 for values in np.polynomial.legendre.leggauss(TERMS + 1))
 """Places and weights of the Gauss-Legendre rule, exact for products of two polynomials of a part; places count from its middle."""
 
@@ -109,6 +111,9 @@ class MachineMotion:
 
     def _placed(self, time: Floats) -> tuple[NDArray[np.intp], Floats]:
         """Return the part that holds each time (s), and the place xi in it."""
+        first, trip = self.start[0], self.problem.round_trip_time
+        if first > trip and np.size(time) and np.min(time) < first - EARLY * first:  # else nothing was forgotten
+            raise InputError("the motion of the driver is not known so early: the run has forgotten what came before")
         n = np.clip(np.searchsorted(self.start, time, side="right") - 1, 0, len(self.start) - 1)
         since, speed, bend = np.maximum(time - self.start[n], 0.0), self.speed[n], self.bend[n]
         pace = speed + np.sqrt(np.maximum(speed * speed + 4.0 * bend * since, 0.0))
@@ -126,15 +131,20 @@ class MachineMotion:
 
 
 def machine_motion(problem: Problem, store: Store, duration: float) -> MachineMotion:
-    """Return the motion of the machine of a problem, to h/c after the end of a run. Raises InputError without its whole history."""
-    if store.trip[0] != 0 or store.phase_from[0] != 0.0:
-        raise InputError("the motion of a driver with a mass or an integral gain is known from the start of a whole run only")
+    """Return the motion of the machine of a problem, to h/c after the end of a run.
+
+    Of a history whose start has been forgotten it is known from the first piece on whose wave has come back.
+    """
     body, trip_time = problem.body, problem.round_trip_time
     machine = Machine(body.driver_inertia, body.driver_impedance + body.impedance, body.driver_integral_gain)
     parts = _parts_of(problem, store, machine)
     gap = np.diff(parts.left, append=duration) - (parts.speed + parts.bend)
     rests = np.flatnonzero(gap > 1e-9 * trip_time)
     parts = parts.with_rests(rests, gap[rests])
+    start, since = np.array(machine_at_first(problem)), -math.inf
+    if store.trip[0] != 0 or store.phase_from[0] != 0.0:
+        start, since = _start_in(problem, store, machine)
+        parts = parts.from_time(since)
     arrives, driven = parts.left + trip_time, inflow_of(problem)
     force, pull = (_series(flow, arrives, parts) for flow in (driven, pull_of(problem)))
     force += parts.wave
@@ -144,13 +154,39 @@ def machine_motion(problem: Problem, store: Store, duration: float) -> MachineMo
     pace = np.column_stack([np.where(rest, 0.0, parts.speed), np.where(rest, 0.0, parts.bend), np.append(0.0, gained[:-1])])
     force[rest] = 0.0
     series = np.stack([force, pull, np.zeros_like(force), np.zeros_like(force)])
-    walk(series, pace, machine, np.array(machine_at_first(problem)))
+    walk(series, pace, machine, start)
     _, _, rate, push = series
     rate[rest], push[rest, 1] = 0.0, gained[rest]
     rate[rest, 0] = settled[rest]
     drive = _series(driven, arrives, parts) + push - body.driver_impedance * rate
     drive[:, 0] += problem.strength
     return MachineMotion(parts.left + 0.5 * trip_time, parts.speed, parts.bend, rate, drive, pull, problem)
+
+
+def _start_in(problem: Problem, store: Store, machine: Machine) -> tuple[Floats, float]:
+    """Return rate and push of the machine (m/s, Pa) where the motion begins, and when the wave that it meets left the contact (s).
+
+    The load of a piece and the wave whose echo it is give the rate and how fast it changes, and the equation of motion the push.
+    """
+    body, trip_time = problem.body, problem.round_trip_time
+    known = np.flatnonzero((store.echo_of >= 0) & (store.speed > 0.0))
+    known = known[store.speed[store.echo_of[known]] > 0.0] if len(known) else known
+    if not len(known):
+        raise InputError("the motion of a driver with a mass or an integral gain is not known in so short a part of a run")
+    n = int(known[0])
+    source, time = int(store.echo_of[n]), float(store.trip[n] * trip_time + store.phase_from[n])
+    speed, bend = float(store.speed[source]), float(store.bend[source])
+    since = max(float(store.phase_from[n] - store.phase_from[source]), 0.0)
+    xi = np.array([2.0 * since / (speed + math.sqrt(speed**2 + 4.0 * bend * since))])
+    arrives, leaped = np.array([time]), float(store.trip[n] - store.trip[source] - 1)
+    wave = 2.0 * body.impedance * store.rate[source] - store.load[source]
+    powers = np.arange(1, TERMS)
+    left = float(_horner(wave[None], xi)[0]) - leaped * 2.0 * body.impedance * float(settled_rate(problem, arrives - trip_time)[0])
+    turns = float(_horner((wave[1:] * powers)[None], xi)[0]) / (speed + 2.0 * bend * xi[0])
+    rate = (store.load[n, 0] + left) / (2.0 * body.impedance)
+    faster = (store.load[n, 1] / store.speed[n] + turns) / (2.0 * body.impedance)
+    push = machine.weight * faster + machine.resists * rate - float(inflow_of(problem).at(arrives)[0]) - left
+    return np.array([rate, push]), time - trip_time
 
 
 class _Parts(NamedTuple):
@@ -167,6 +203,18 @@ class _Parts(NamedTuple):
         ends = self.left[after] + self.speed[after] + self.bend[after]
         added = _Parts(ends, lasting, np.zeros(len(after)), np.zeros((len(after), TERMS)), np.ones(len(after), bool))
         return _Parts(*(np.insert(one, after + 1, other, axis=0) for one, other in zip(self, added, strict=True)))
+
+    def from_time(self, since: float) -> _Parts:
+        """Return the parts of waves that left from a time (s) on; the first one may be cut."""
+        n = max(int(np.searchsorted(self.left, since + EDGE * max(abs(since), self.speed.max()), side="right")) - 1, 0)
+        kept = _Parts(self.left[n:].copy(), self.speed[n:].copy(), self.bend[n:].copy(), self.wave[n:].copy(), self.rest[n:])
+        late = max(since - kept.left[0], 0.0)
+        speed, bend = kept.speed[0], kept.bend[0]
+        pace = speed + math.sqrt(speed * speed + 4.0 * bend * late)
+        xi = min(2.0 * late / pace, 1.0)
+        kept.left[0], kept.speed[0], kept.bend[0] = since, (speed + 2.0 * bend * xi) * (1.0 - xi), bend * (1.0 - xi) ** 2
+        kept.wave[:1] = _restricted(kept.wave[:1], np.array([xi]), np.array([1.0 - xi]))
+        return kept
 
 
 def _parts_of(problem: Problem, store: Store, machine: Machine) -> _Parts:
