@@ -196,6 +196,7 @@ class Catalogue:
 
 def follow(run: ExactRun, rows: Rows | RowsInMemory) -> Catalogue:
     """Run to the end and write the table in its final format. Raises InputError if the run ends where it starts."""
+    run.keeps_events_only = True
     run.reserve(CAPACITY)
     return run_to_end(run, EventRows(run, rows))
 

@@ -23,6 +23,8 @@ class ExactRun(Session):
 
     stream: EventStream = field(init=False)
     """The slip events, each reported once."""
+    keeps_events_only: bool = False
+    """True if the history is discarded on the way, for a catalogue."""
     looked: Checkpoint | None = None
     """State before the first step since events were counted or forgotten; None if the run never has to return there."""
 
@@ -114,13 +116,16 @@ class ExactRun(Session):
         options, history = self.options, self.history()
         trips, cures, stream = history.store.trip, [], EventStream(default_event_rate(self.problem))
         stream.look(history).tell()
-        if self.forgotten == 0 and 2 * stream.needed(history) > self.length:
+        if not self.keeps_events_only and 2 * stream.needed(history) > self.length:
             cures.append("a catalogue, which keeps events only")
         if options.creep_rtol == 0.0 and leaps_over(self.problem) and np.unique(trips[history.store.mode != 0]).size > PATIENCE:
             cures.append("leaps (leave out creep_rtol = 0)")
-        crowded = np.unique(trips, return_counts=True)[1].max() > MOST_PIECES
-        if options.shortest_event == 0.0 and crowded and lumps_by_itself(self.problem):
+        counts = np.unique(trips, return_counts=True)[1]
+        if options.shortest_event == 0.0 and counts.max() > MOST_PIECES and lumps_by_itself(self.problem):
             cures.append("lumping of the shortest events (leave out shortest_event = 0)")
+        body, heals = self.problem.body, self.problem.friction.memory == "since-arrest"
+        if heals and body.has_waves and body.is_driven_rigidly and counts[-2:].max() > counts[len(counts) // 2]:
+            cures.append("a driver that lets waves out and yet holds the slab (driver_impedance and driver_integral_gain)")
         half, last = history.start[[self.length // 2, max(self.length // 2, self.length - 4 * SPARE)]].tolist()
         return Crowd(self.length, history.duration, half, last, options.duration).status(cures)
 
