@@ -313,6 +313,16 @@ def test_energy_of_a_long_run_is_that_of_a_short_one(name: str, monkeypatch: pyt
         assert rough.parts[part] == pytest.approx(values, abs=1e-3 * float(np.ptp(values)))
 
 
+def test_energy_picture_of_a_slab_on_shaken_ground_is_that_of_the_run() -> None:
+    """The work of the ground is part of the total, which the parts add up to."""
+    found = answer("sliding-slab-shaken")
+    parts, time = found.energy.parts, found.energy.time
+    exact = found.solution.energy(time)
+    assert parts["heat"] == pytest.approx(exact.heat.to_numpy() - float(exact.heat[0]), abs=1e-6 * float(exact.heat[-1]))
+    missing = parts["total"] - sum(values for name, values in parts.items() if name != "total")
+    assert np.abs(missing).max() < 2e-3 * parts["total"].max()
+
+
 def test_pictures_of_a_long_run_are_told_of_and_end_for_newer_work_but_not_for_a_stop(monkeypatch: pytest.MonkeyPatch) -> None:
     """A stop ends the run; what there is of it is shown, with all pictures."""
     monkeypatch.setattr("stickslip.explorer.model.solve.LONG", 0)

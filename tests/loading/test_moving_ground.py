@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -168,6 +169,51 @@ def test_the_field_in_a_slab_is_that_of_the_absolute_motion(mass: float) -> None
     assert DENSITY * SPEED**2 * (above.displacement - below.displacement) / 2e-3 == pytest.approx(here.stress, abs=2e3)
     energy = run.energy(times)
     assert np.abs(energy.balance).max() < 1e-10 * np.abs(energy.stored).max()
+
+
+@pytest.mark.parametrize(
+    "body",
+    [slab(), slab(mass=3000.0), slab(0.4 * IMPEDANCE), ss.SpringBlock(5e4, 2e6, 1e6)],
+    ids=["free top", "contact mass", "driver", "block"],
+)
+def test_the_energies_of_every_event_balance_and_its_window_is_the_run(body: ss.ElasticSlab | ss.SpringBlock) -> None:
+    problem = ss.Problem(
+        body, ss.friction.LinearSlipWeakening(0.6, 0.5, 0.1), initial_load=1e5, ground_acceleration=record(5, size=9.0)
+    )
+    run = ss.simulate(problem, 1.5)
+    table = run.energetics()
+    assert len(table) > 1
+    assert np.abs(table.balance).max() < 1e-10 * table.heat.max()
+    if body.has_waves:
+        event = run.events.iloc[1]
+        window = run.window(1)
+        places, local = np.array([0.0, 5.0, 24.0]), 0.01
+        inside, whole = window.field(places, local), run.field(places, event.start + local)
+        assert problem.ground is not None
+        stood = float(run.slip(event.start) + problem.ground.displacement_at(event.start))
+        assert inside.displacement == pytest.approx(whole.displacement - stood, abs=1e-11)
+        assert inside.velocity == pytest.approx(whole.velocity, abs=1e-9)
+
+
+@pytest.mark.parametrize("ground", [Sinusoidal(0.0, 0.5, 0.4), Steps([0.0, 0.3, 0.7], [-0.4, 0.4, 0.0])], ids=["sinusoid", "steps"])
+def test_rate_and_state_on_shaken_ground_follows_an_own_integrator(ground: LoadingHistory) -> None:
+    """To 1e-7 of the slip; steps of acceleration are met by implicit steps, too."""
+    reference, a, b, distance, slow, pull = 0.6, 0.01, 0.008, 1e-3, 1e-3, 1e-2
+    law = ss.friction.RateAndState(reference, a, b, distance, slow)
+    run = ss.simulate(ss.Problem(ss.SpringBlock(1e3, 2e5, 1e4), law, pull_rate=pull, ground_acceleration=ground), 1.0)
+
+    def change(t: float, y: list[float]) -> list[float]:
+        u, v, w = y
+        friction = 1e4 * a * math.asinh(v / (2.0 * slow) * math.exp((reference + b * w) / a))
+        load = start + 2e5 * (pull * t - u) - 1e3 * float(ground.at(t))
+        return [v, (load - friction) / 1e3, slow / distance * math.exp(-w) - v / distance]
+
+    w = math.log(slow / pull)
+    start = 1e4 * a * math.asinh(pull / (2.0 * slow) * math.exp((reference + b * w) / a))
+    y, edges = [0.0, pull, w], [0.0, 0.3, 0.7, 1.0]
+    for begin, end in pairwise(edges):
+        y = solve_ivp(change, (begin, np.nextafter(end, 0.0)), y, "Radau", rtol=1e-10, atol=1e-12).y[:, -1].tolist()
+    assert [float(run.slip(1.0)), float(run.slip_rate(1.0))] == pytest.approx(y[:2], rel=1e-7)
 
 
 def test_before_slip_the_free_top_moves_by_the_ground_over_the_cosine() -> None:

@@ -17,6 +17,7 @@ import numpy as np
 from stickslip.bodies import as_waves
 from stickslip.foundation.arrays import Floats
 from stickslip.observables.energy.balance import epochs, event_energies, kinetic
+from stickslip.observables.energy.ground import speed
 from stickslip.observables.energy.pulses import Pulses
 from stickslip.observables.event_table import ENERGY_COLUMNS, EVENT_COLUMNS, friction_before
 from stickslip.observables.waves import Radiation, Waves
@@ -87,7 +88,7 @@ def _of_slab(history: History, begin: Positions, end: Positions) -> dict[str, Fl
     waves, radiation = Waves(history, body), Radiation(history, body)
     first, last = epochs(history, begin), epochs(history, end)
     before, after = (np.array([kinetic(waves, epoch) for epoch in moments]) for moments in (first, last))
-    contact = 0.5 * body.inertia * (history.rate(end) ** 2 - history.rate(begin) ** 2)
+    contact = 0.5 * body.inertia * (speed(history, end) ** 2 - speed(history, begin) ** 2)
     return {
         "kinetic": after - before + contact,
         "radiated": np.array([radiation.work_between(*span) for span in zip(first, last, strict=True)]),

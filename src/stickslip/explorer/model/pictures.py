@@ -15,6 +15,7 @@ from stickslip.foundation.names import si_unit
 from stickslip.friction import FrictionLaw, LaggedFriction
 from stickslip.friction.contract import one_argument
 from stickslip.observables.energy.balance import energies, heat
+from stickslip.observables.energy.ground import shaken, speed
 from stickslip.observables.quadrature import FULL
 from stickslip.problem.problem import Problem
 from stickslip.solution.interval import fronts_of
@@ -248,9 +249,9 @@ def _nodes(history: History) -> int:
 def _of_slab(waves: SampledWaves, time: Floats) -> dict[str, Floats]:
     """Return the energies of a slab: what is stored from its waves, the heat from the law, so that they need not balance."""
     at = waves.history.find(time, "right")
-    contact = 0.5 * waves.body.inertia * waves.history.rate(at) ** 2
+    contact = 0.5 * waves.body.inertia * speed(waves.history, at) ** 2
     return {
-        "work": waves.work(time),
+        "work": waves.work(time) + shaken(waves.history, at),
         "heat": heat(waves.history, at, _nodes(waves.history)),
         "stored": waves.stored(time) + contact,
         "kinetic": waves.kinetic(time, SLAB_PLACES) + contact,

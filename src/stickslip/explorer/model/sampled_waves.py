@@ -133,10 +133,13 @@ class SampledWaves:
         return (coming + leaving) / (2.0 * self.body.impedance), self.waves.reference + 0.5 * (coming - leaving)
 
     def displacement(self, time: Floats, place: Floats, at_contact: Floats) -> Floats:
-        """Return the displacement (m) at times and places that broadcast, from that of the contact at these times."""
+        """Return the displacement (m) at times and places that broadcast, from the slip of the contact at these times."""
         away = place / self.body.wave_speed
         come = self.coming.total(time + away) - self.coming.total(time)
         left = self.leaving.total(time) - self.leaving.total(time - away)
+        ground = self.history.problem.ground
+        if ground is not None:
+            at_contact = at_contact + ground.displacement_at(time - self.first)
         return at_contact + (2.0 * self.waves.reference * away + come - left) / (2.0 * self.body.impedance)
 
     def kinetic(self, time: Floats, places: int) -> Floats:

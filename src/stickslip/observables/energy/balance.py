@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike
 from stickslip.bodies import as_waves
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.names import in_files, si_unit
+from stickslip.observables.energy.ground import pushing, shaken, shaking, speed, spring_force
 from stickslip.observables.quadrature import FULL, NODES, WEIGHTS, Integrand, between, up_to
 from stickslip.observables.waves import Radiation, Waves
 from stickslip.trajectory.history import Epoch, History, Positions
@@ -84,10 +85,10 @@ def _slab_events(history: History, first: Positions, last: Positions) -> dict[st
     body = as_waves(history.problem.body)
     waves = Waves(history, body)
     spans = list(zip(epochs(history, first), epochs(history, last), strict=True))
-    moving = 0.5 * body.inertia * (_speed(history, first) ** 2 - _speed(history, last) ** 2)
+    moving = 0.5 * body.inertia * (speed(history, first) ** 2 - speed(history, last) ** 2)
     work = np.array([waves.work_between(begin, end) for begin, end in spans])
     if history.problem.ground is not None:
-        work += between(history, first, last, _shaking(history))
+        work += between(history, first, last, shaking(history))
     return {
         "released": np.array([waves.stored(begin) - waves.stored(end) for begin, end in spans]) + moving,
         "work": work,
@@ -99,7 +100,7 @@ def _slab_events(history: History, first: Positions, last: Positions) -> dict[st
 def _block_events(history: History, first: Positions, last: Positions) -> dict[str, Floats]:
     problem = history.problem
     body = problem.body
-    force, left = _spring(history, first), _spring(history, last)
+    force, left = spring_force(history, first), spring_force(history, last)
     spring = _stretching(history, left, force)
     pulling = between(history, first, last, _pulling(history))
     return {
@@ -141,14 +142,13 @@ def energies(history: History, at: Positions, nodes: int = FULL) -> dict[str, Fl
 def _slab(history: History, at: Positions) -> dict[str, Floats]:
     body = as_waves(history.problem.body)
     waves, radiation, now = Waves(history, body), Radiation(history, body), epochs(history, at)
-    contact = 0.5 * body.inertia * _speed(history, at) ** 2
+    contact = 0.5 * body.inertia * speed(history, at) ** 2
     each = np.array([(waves.stored(epoch), waves.trapped(epoch), kinetic(waves, epoch)) for epoch in now]).reshape(-1, 3)
     if body.has_machine:
         each[:, 2] += [history.machine.kinetic(waves.begun(epoch)) for epoch in now]
     stored, trapped, moving = each[:, 0] + contact, each[:, 1], each[:, 2] + contact
-    shaken = 0.0 if history.problem.ground is None else up_to(history, at, _shaking(history))
     return {
-        "work": np.array([waves.work(epoch) for epoch in now]) + shaken,
+        "work": np.array([waves.work(epoch) for epoch in now]) + shaken(history, at),
         "stored": stored,
         "elastic": stored - moving,
         "kinetic": moving,
@@ -162,7 +162,7 @@ def _slab(history: History, at: Positions) -> dict[str, Floats]:
 def _block(history: History, at: Positions, nodes: int) -> dict[str, Floats]:
     problem = history.problem
     body = problem.body
-    force, rate = _spring(history, at), history.rate(at)
+    force, rate = spring_force(history, at), history.rate(at)
     spring = _stretching(history, np.full(len(force), problem.excess), force)
     slipping = np.flatnonzero(history.store.mode)
     return {
@@ -183,47 +183,20 @@ def _pulling(history: History) -> Integrand:
 
     def power(at: Positions) -> Floats:
         trip, offset = history.placed(at)
-        pulling = problem.pull_rate_at(trip * history.round_trip_time + offset) * (problem.strength + _spring(history, at))
-        return np.asarray(pulling if problem.ground is None else pulling - _pushing(history, at) * history.rate(at))
+        pulling = problem.pull_rate_at(trip * history.round_trip_time + offset) * (problem.strength + spring_force(history, at))
+        return np.asarray(pulling if problem.ground is None else pulling - pushing(history, at) * history.rate(at))
 
     return power
-
-
-def _shaking(history: History) -> Integrand:
-    """Return the power that moving ground puts into a slab as a function of positions, W/m^2: friction moves with the ground."""
-    return lambda at: -(history.problem.strength + history.friction(at)) * (_speed(history, at) - history.rate(at))
-
-
-def _speed(history: History, at: Positions) -> Floats:
-    """Return the absolute velocity of the contact (m/s): its slip rate, and the velocity of the ground."""
-    ground = history.problem.ground
-    return history.rate(at) if ground is None else history.rate(at) + ground.velocity_at(*history.times_inside(at))
-
-
-def _pushing(history: History, at: Positions) -> Floats:
-    """Return the mass of a block times the acceleration of the ground, N."""
-    ground = history.problem.ground
-    return (
-        np.zeros(len(at.piece))
-        if ground is None
-        else history.problem.body.inertia * ground.acceleration_at(*history.times_inside(at))
-    )
-
-
-def _spring(history: History, at: Positions) -> Floats:
-    """Return the force of a block's spring minus the reference strength (N): the load without the inertia of moving ground."""
-    force = history.excess(at)
-    return force if history.problem.ground is None else np.where(at.before, force, force + _pushing(history, at))
 
 
 def _at_rest(history: History, at: Positions) -> Floats:
     """Return the work of the block's driver up to each position in rests that were not recorded, J: the spring has stored it."""
     trip = history.store.trip
     before = np.flatnonzero(np.diff(trip) > 1)  # the last pieces before leaps
-    force, left = (_spring(history, Positions.inside(*place)) for place in ((before, 1.0), (before + 1, 0.0)))
+    force, left = (spring_force(history, Positions.inside(*place)) for place in ((before, 1.0), (before + 1, 0.0)))
     whole = np.append(0.0, np.cumsum(_stretching(history, force, left)))
-    last = _spring(history, Positions.inside(at.last, 1.0))
-    part = np.where(at.at_rest, _stretching(history, last, _spring(history, at)), 0.0)
+    last = spring_force(history, Positions.inside(at.last, 1.0))
+    part = np.where(at.at_rest, _stretching(history, last, spring_force(history, at)), 0.0)
     return np.asarray(whole[np.searchsorted(before, at.last)] + part)
 
 

@@ -1,0 +1,41 @@
+"""What moving ground adds to the energies of a run: its work, the absolute velocity of a contact, the force of a block's spring.
+
+A slab is seen from outside: the ground works against friction. A block is seen from the ground: the force of inertia -m a works on
+its slip, and is no force of the spring.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from stickslip.foundation.arrays import Floats
+from stickslip.observables.quadrature import Integrand, up_to
+from stickslip.trajectory.history import History, Positions
+
+
+def shaken(history: History, at: Positions) -> Floats:
+    """Return the work of moving ground on a slab up to each position, J/m^2; it is 0 where the ground is at rest."""
+    return np.zeros(len(at.piece)) if history.problem.ground is None else up_to(history, at, shaking(history))
+
+
+def shaking(history: History) -> Integrand:
+    """Return the power that moving ground puts into a slab as a function of positions, W/m^2: friction moves with the ground."""
+    return lambda at: -(history.problem.strength + history.friction(at)) * (speed(history, at) - history.rate(at))
+
+
+def speed(history: History, at: Positions) -> Floats:
+    """Return the absolute velocity of the contact (m/s): its slip rate, and the velocity of the ground."""
+    ground = history.problem.ground
+    return history.rate(at) if ground is None else history.rate(at) + ground.velocity_at(*history.times_inside(at))
+
+
+def pushing(history: History, at: Positions) -> Floats:
+    """Return the mass of a block times the acceleration of the ground, N."""
+    ground, mass = history.problem.ground, history.problem.body.inertia
+    return np.zeros(len(at.piece)) if ground is None else mass * ground.acceleration_at(*history.times_inside(at))
+
+
+def spring_force(history: History, at: Positions) -> Floats:
+    """Return the force of a block's spring minus the reference strength (N): the load without the inertia of moving ground."""
+    force = history.excess(at)
+    return force if history.problem.ground is None else np.where(at.before, force, force + pushing(history, at))
