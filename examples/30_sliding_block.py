@@ -47,10 +47,10 @@ ground.plot(record.times, [one / G for one in record.values], color="0.3")
 for sign in (-1, 1):
     ground.axhline(sign * table.loc["yield acceleration (g)", "rigid"], color="0.3", lw=0.8, ls=":")
 for name, run in runs.items():
-    times, rates = run.curve("slip_rate", 0.0, 6.0)
+    times, rates = run.curve("slip_rate", 0.0, run.breaks[-1])
     rate.plot(times, rates, label=name)
-    slip.plot(*run.curve("slip", 0.0, 6.0), label=name)
-ground.set(ylabel="ground acceleration (g)", title="A mass that slides on shaken ground", xlim=(0.0, 5.0))
+    slip.plot(*run.curve("slip", 0.0, run.breaks[-1]), label=name)
+ground.set(ylabel="ground acceleration (g)", title="A mass that slides on shaken ground", xlim=(0.0, run.breaks[-1]))
 rate.set(ylabel="relative velocity (m/s)")
 slip.set(ylabel="displacement (m)", xlabel="time (s)")
 slip.legend()

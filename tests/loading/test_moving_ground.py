@@ -317,6 +317,10 @@ SHAKEN = ss.Problem(slab(), LAW, initial_load=1e5, ground_acceleration=PULSE)
             " such as Steps([0.0, 10.0], [1e-6, 1e-5])",
         ),
         (
+            lambda: replace(SHAKEN, body=ss.RotatingBlock(1.0, 100.0, 1e6)),
+            "Problem: ground that moves is for bodies that slide: this one turns",
+        ),
+        (
             lambda: PiecewiseLinear(np.arange(1e6), np.zeros(10**6)),  # type: ignore[arg-type]
             "PiecewiseLinear: times must have 2 to 10000 numbers, got 1000000",
         ),
