@@ -318,7 +318,7 @@ SHAKEN = ss.Problem(slab(), LAW, initial_load=1e5, ground_acceleration=PULSE)
         ),
         (
             lambda: replace(SHAKEN, body=ss.RotatingBlock(1.0, 100.0, 1e6)),
-            "Problem: ground that moves is for bodies that slide: this one turns",
+            "Problem: ground_acceleration must be in rad/s^2, got a history of values in m/s^2",
         ),
         (
             lambda: PiecewiseLinear(np.arange(1e6), np.zeros(10**6)),  # type: ignore[arg-type]

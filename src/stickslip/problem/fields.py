@@ -131,8 +131,6 @@ class ProblemFields(CheckedArguments):
             self._check_ground(self.ground)
 
     def _check_ground(self, ground: Ground) -> None:
-        if si_unit("slip", self.body.load_unit) != "m":
-            raise InputError("Problem: ground that moves is for bodies that slide: this one turns")
         if self.body.has_machine:
             raise InputError(f"Problem: ground that moves is not followed under {MACHINE}: set those to 0, or leave it out")
         if self.body.has_inertia and ground.velocity_jumps:
