@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from tests.observables.runs import LOSSY, RUNS, F, run_of
+from tests.observables.runs import LOSSY, F, run_of
 from tests.problems import IMPEDANCE, ROUND, SLAB, rate_law_slab
 
 
@@ -66,6 +66,6 @@ def test_waves_leave_through_a_driver_that_lets_them_out() -> None:
 
 
 def test_the_report_says_how_much_is_trapped() -> None:
-    slab = ss.simulate(*RUNS["slab, slip law"])
+    slab = run_of("slab, slip law")
     assert f"{float(slab.energy(20.0).trapped[0]):.6g} J/m2 in waves at the end" in repr(slab)
-    assert "in waves" not in repr(ss.simulate(*RUNS["block, damped"]))
+    assert "in waves" not in repr(run_of("block, damped"))

@@ -225,9 +225,9 @@ def _bounds(history: History, n: Places) -> Floats:
         own = np.flatnonzero(piece == i)
         motion, unsure = MotionOnDiscs.of(history, n[own]), _unsure_duration(history, n[own])
         there, around = motion.on(_at_points), motion.on(_around_middle)
-        values = _with_duration(_lacking(history.problem, i, there), there.thrust, unsure)
-        everywhere = largest(_lacking(history.problem, i, around)) + unsure * largest(around.thrust)
-        with np.errstate(over="ignore", invalid="ignore"):
+        with np.errstate(over="ignore", invalid="ignore"):  # where nothing is known, radii are infinite or no numbers
+            values = _with_duration(_lacking(history.problem, i, there), there.thrust, unsure)
+            everywhere = largest(_lacking(history.problem, i, around)) + unsure * largest(around.thrust)
             found[:, own] = _from_points(values, everywhere)
     return found
 
