@@ -8,7 +8,7 @@ from typing import NamedTuple
 from stickslip.engine.compile.kernels import inlined, kernel
 from stickslip.engine.memory.pointers import record_at
 from stickslip.engine.memory.records import MemoryRecord, floats_inside
-from stickslip.engine.series.polynomial import MOST_CROSSINGS, bound_below, crossings, evaluate, total
+from stickslip.engine.series.polynomial import MOST_CROSSINGS, bound_below, crossings, differentiate, evaluate, total
 from stickslip.engine.state.layout import TERMS, Floats, HistoryPiece, Integers
 from stickslip.engine.state.workspace import pieces_in
 
@@ -183,9 +183,7 @@ def is_monotone(p: Floats, slope: Floats) -> bool:
     `slope` receives the derivative of p, with the sign that makes it start at or above zero.
     """
     way = 1.0 if p[1] >= 0.0 else -1.0
-    for k in range(TERMS - 1):
-        slope[k] = way * (k + 1) * p[k + 1]
-    slope[TERMS - 1] = 0.0
+    differentiate(p, way, slope)
     return keeps_its_sign(slope)
 
 

@@ -46,7 +46,6 @@ from stickslip.engine.contact_step.certificate import (
     shortened,
     size_at_end,
     size_of_rate,
-    slope_on_disc,
 )
 from stickslip.engine.contact_step.keep_step import unload_bent, unload_straight
 from stickslip.engine.contact_step.negative_friction import goes_below_zero
@@ -56,7 +55,17 @@ from stickslip.engine.loop import ROOM
 from stickslip.engine.memory.addresses import ahead, call_jet, call_radii, call_values, integers
 from stickslip.engine.memory.pointers import numbers_of, rows_of
 from stickslip.engine.memory.simd import WIDTH, chosen, first_of, store_across
-from stickslip.engine.series.polynomial import NONE, bound_below, moment, multiply, powers_of, scale_low, shift_low, total
+from stickslip.engine.series.polynomial import (
+    NONE,
+    bound_below,
+    moment,
+    multiply,
+    powers_of,
+    scale_low,
+    shift_low,
+    slope_on_disc,
+    total,
+)
 from stickslip.engine.series.step_size import FAR_FROM_GUESS, length_at, usable_length
 from stickslip.engine.state.layout import TERMS, HistoryPiece, Integers, State
 from stickslip.engine.state.workspace import RUN_SIZE, Run, borrow

@@ -26,7 +26,7 @@ from stickslip.engine.compile.kernels import inlined, kernel
 from stickslip.engine.contact.contact_equation import constants_of
 from stickslip.engine.memory.addresses import call_radii, call_value
 from stickslip.engine.memory.pointers import numbers_of
-from stickslip.engine.series.polynomial import RECIPROCAL, powers_of
+from stickslip.engine.series.polynomial import RECIPROCAL, powers_of, size_on_disc, slope_on_disc
 from stickslip.engine.series.step_size import quick_exp2, quick_log2
 from stickslip.engine.state.layout import TERMS, Ball, Floats, LawValue, SeriesInput, Stop
 from stickslip.engine.state.workspace import Run
@@ -70,19 +70,6 @@ rounding."""
 
 
 @inlined
-def moved_on_disc(c: Floats, powers: Floats, first: int) -> float:
-    """Return the sum of |c_n| r^n for n >= `first`, from the powers of r: how far a series can be from its start on a disc."""
-    a, b = abs(c[first]) * powers[first], abs(c[first + 1]) * powers[first + 1]
-    d, e = abs(c[first + 2]) * powers[first + 2], abs(c[first + 3]) * powers[first + 3]
-    for n in range(first + 4, TERMS - 3, 4):
-        a, b = a + abs(c[n]) * powers[n], b + abs(c[n + 1]) * powers[n + 1]
-        d, e = d + abs(c[n + 2]) * powers[n + 2], e + abs(c[n + 3]) * powers[n + 3]
-    for n in range(TERMS - (TERMS - first) % 4, TERMS):
-        a = a + abs(c[n]) * powers[n]
-    return (a + b) + (d + e)
-
-
-@inlined
 def put_discs(k: SeriesInput, jet: Floats, powers: Floats, ball: Ball) -> None:
     """Put radii and centres of slip (m) and slip rate (m/s) on a disc into `ball`, from the powers of its radius (in units).
 
@@ -105,22 +92,13 @@ def load_on_disc(load: Floats, powers: Floats, degree: int) -> float:
     """Return how far a load of the given degree can be from its value at the centre of a disc (Pa or N)."""
     if degree <= 1:
         return abs(load[1]) * powers[1]
-    return moved_on_disc(load, powers, 1)
+    return size_on_disc(load, powers)
 
 
 @inlined
 def force_on_disc(k: SeriesInput, ball: Ball, load: float) -> float:
     """Return a bound (Pa or N) on how far the sum of load, spring, radiation and friction is from its value at a disc's centre."""
     return MARGIN * (k.damping * ball.rate + k.normal * ball.friction + k.stiffness * ball.slip + load)
-
-
-@inlined
-def slope_on_disc(jet: Floats, powers: Floats) -> float:
-    """Return how far the slope of the slip rate (m/s per unit) can be from its value at the centre of a disc."""
-    a, b = 2.0 * abs(jet[2]) * powers[1], 3.0 * abs(jet[3]) * powers[2]
-    for n in range(4, TERMS - 1, 2):
-        a, b = a + n * abs(jet[n]) * powers[n - 1], b + (n + 1) * abs(jet[n + 1]) * powers[n]
-    return a + b + (TERMS - 1) * abs(jet[TERMS - 1]) * powers[TERMS - 2]
 
 
 @inlined

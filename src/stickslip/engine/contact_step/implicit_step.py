@@ -19,7 +19,7 @@ from stickslip.engine.contact_step.negative_friction import last_place_above_zer
 from stickslip.engine.contact_step.step_events import Cut, cut_at_first_event, resolve, stretch
 from stickslip.engine.contact_step.taylor_step import note_shock
 from stickslip.engine.memory.addresses import ahead, call_part
-from stickslip.engine.series.polynomial import NONE, copy, fill, scale, total, turn_over
+from stickslip.engine.series.polynomial import NONE, copy, fill, scale_low, total, turn_over
 from stickslip.engine.series.radau_nodes import POINTS
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Floats, StepEvent, Stop, Task
@@ -95,7 +95,7 @@ def keep_state(run: Run, length: float) -> None:
         kept = ahead(run.history_state, at.TERMS * (run.counts.states * run.counts.length + n))
         copy(ahead(run.state_jet, at.TERMS * n), kept, at.TERMS)
         if length != 1.0:
-            scale(kept, length)
+            scale_low(kept, at.TERMS - 1, length)
         run.state.state_now[n] = total(kept)
         if run.counts.mode < 0 and (run.counts.reverses >> n) % 2 == 1:
             turn_over(kept)
@@ -138,7 +138,7 @@ def stick_with_state(run: Run, xi_to: float) -> None:
     onset, direction = onset_of_slip(run, load, run.jet)
     end = min(onset, 1.0)
     if end < 1.0:
-        scale(load, end)
+        scale_low(load, at.TERMS - 1, end)
     keep_state(run, end)
     record(run, xi_to if reached and end == 1.0 else run.state.xi + end * width)
     note_negative_friction(run)

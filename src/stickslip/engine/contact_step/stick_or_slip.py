@@ -18,9 +18,9 @@ from stickslip.engine.contact.contact_equation import (
 from stickslip.engine.contact.pieces import note_jump, record
 from stickslip.engine.contact.stiffness import turn_states
 from stickslip.engine.memory.addresses import ahead
-from stickslip.engine.series.polynomial import evaluate, fill, restrict, scale
+from stickslip.engine.series.polynomial import evaluate, fill, restrict, scale_low
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Cause, Floats
+from stickslip.engine.state.layout import TERMS, Cause, Floats
 from stickslip.engine.state.workspace import Run
 
 TOUCH = 10.0
@@ -114,7 +114,7 @@ def stick(run: Run, xi_to: float) -> None:
         onset, direction = end_of_rest(run, load)
     slips = onset <= 1.0 - TIE
     if slips:
-        scale(load, onset)
+        scale_low(load, TERMS - 1, onset)
     fill(run.history[run.counts.length].rate, 0.0)
     for n in range(run.counts.states):
         kept = ahead(run.history_state, at.TERMS * (run.counts.states * run.counts.length + n))

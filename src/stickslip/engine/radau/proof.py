@@ -23,7 +23,7 @@ from stickslip.engine.contact.stiffness import contact_at
 from stickslip.engine.memory.addresses import ahead, call_radii
 from stickslip.engine.memory.pointers import numbers_of
 from stickslip.engine.radau.stages import WIDTH, own_states, yielding, yielding_of_state
-from stickslip.engine.series.polynomial import RECIPROCAL, integral, restrict
+from stickslip.engine.series.polynomial import ONES, RECIPROCAL, integral, restrict
 from stickslip.engine.series.radau_nodes import POINT, STAGES
 from stickslip.engine.state.layout import TERMS, Floats
 from stickslip.engine.state.workspace import Run
@@ -49,30 +49,19 @@ AT_STAGES, AT_POINTS = _products(POINT[1:]), _products(POINT)
 """Largest products for functions that are zero at Radau's points, and for functions that are also zero at the start of the step."""
 
 
-@kernel
-def size_on_disc(c: Floats, radius: float) -> float:
-    """Return how far a polynomial of degree STAGES in y can be from its value at y = 0 on a disc."""
-    size = 0.0
-    for k in range(STAGES, 0, -1):
-        size = (size + abs(c[k])) * radius
-    return size
+WALK, SIZE, SLOPE = RECIPROCAL[1:], ONES, np.arange(float(TERMS))
+"""Weights of coefficients in the integral, the value and the slope of a polynomial; see `moved_on_disc`."""
 
 
 @kernel
-def slope_on_disc(c: Floats, radius: float) -> float:
-    """Return how far the slope of a polynomial of degree STAGES in y can be from its value at y = 0 on a disc."""
-    size = 0.0
-    for k in range(STAGES, 1, -1):
-        size = (size + k * abs(c[k])) * radius
-    return size
+def moved_on_disc(c: Floats, weights: Floats, first: int, radius: float) -> float:
+    """Return how far something of a polynomial of degree STAGES in y can be from its value at y = 0 on a disc.
 
-
-@kernel
-def walk_on_disc(c: Floats, radius: float) -> float:
-    """Return how far the integral of a polynomial of degree STAGES in y can be from its value at y = 0 on a disc."""
+    With the weights WALK, SIZE and SLOPE, and a `first` term of 0, 1 and 2, that is its integral, its value and its slope.
+    """
     size = 0.0
-    for k in range(STAGES, -1, -1):
-        size = (size + RECIPROCAL[k + 1] * abs(c[k])) * radius
+    for k in range(STAGES, first - 1, -1):
+        size = (size + weights[k] * abs(c[k])) * radius
     return size
 
 
@@ -111,22 +100,22 @@ def prove_step(run: Run, h: float, force: float) -> float:
     ball.at_slip, ball.at_rate = law_slip + run.law[piece].slip_shift, at_rate
     for disc in range(len(DISCS)):
         radius = DISCS[disc]
-        ball.rate = size_on_disc(rate, radius) if slips else 0.0
-        ball.slip = h * walk_on_disc(rate, radius) if slips else 0.0
+        ball.rate = moved_on_disc(rate, SIZE, 1, radius) if slips else 0.0
+        ball.slip = h * moved_on_disc(rate, WALK, 0, radius) if slips else 0.0
         for n in range(run.counts.states):
-            ball.state[n] = size_on_disc(state_from_middle(run, n), radius)
+            ball.state[n] = moved_on_disc(state_from_middle(run, n), SIZE, 1, radius)
         call_radii(run.law[piece].balls_at, constants_of(run, piece), run.jet, numbers_of(ball))
         if slips:
-            moved = size_on_disc(load, radius) + params.damping * ball.rate + params.stiffness * ball.slip
-            moved += params.inertia / h * slope_on_disc(rate, radius)
+            moved = moved_on_disc(load, SIZE, 1, radius) + params.damping * ball.rate + params.stiffness * ball.slip
+            moved += params.inertia / h * moved_on_disc(rate, SLOPE, 2, radius)
             least = min(least, AT_STAGES[disc] * (abs(missing) + params.normal * ball.friction + moved))
         else:
             step = params.static_excess * ball.state[own] if run.counts.given > 0 else 0.0
             changed = params.normal * (ball.friction + step)
-            least = min(least, AT_POINTS[disc] * (abs(missing) + changed + size_on_disc(rate, radius)))
+            least = min(least, AT_POINTS[disc] * (abs(missing) + changed + moved_on_disc(rate, SIZE, 1, radius)))
         for n in range(own):
             state = state_from_middle(run, n)
-            moved = slope_on_disc(state, radius) / h
+            moved = moved_on_disc(state, SLOPE, 2, radius) / h
             lacking = AT_STAGES[disc] * (abs(value.change[n] - state[1] / h) + ball.change[n] + moved)
             run.state_error[n] = min(run.state_error[n], lacking)
     for n in range(run.counts.states):

@@ -21,6 +21,8 @@ NONE = math.inf
 """Place that functions return if there is no root."""
 RECIPROCAL = np.array([0.0, *(1.0 / k for k in range(1, 2 * TERMS))])
 """1 / k at index k, and 0 at index 0: a product is faster than a division."""
+ONES = np.ones(TERMS)
+"""Weights of plain sums over coefficients, and powers of a radius of 1."""
 LOW = 9
 """Number of terms (1) in the first, cheap test for a root."""
 
@@ -137,15 +139,6 @@ def scale_low(c: Floats, n: int, width: float) -> None:
 
 
 @kernel
-def scale(c: Floats, width: float) -> None:
-    """Turn the coefficients of p(y) into those of p(width y), in place."""
-    power = width
-    for k in range(1, TERMS):
-        c[k] *= power
-        power *= width
-
-
-@kernel
 def turn_over(c: Floats) -> None:
     """Change the sign of a polynomial in place."""
     for k in range(TERMS):
@@ -153,47 +146,56 @@ def turn_over(c: Floats) -> None:
 
 
 @inlined
-def magnitude(c: Floats, first: int = 1) -> float:
-    """Return the sum of |c_k| for k >= `first`: with 1, a bound on |p - c_0| on [-1, 1]."""
-    a, b, d, e = abs(c[first]), abs(c[first + 1]), abs(c[first + 2]), abs(c[first + 3])
+def size_on_disc(c: Floats, powers: Floats, first: int = 1) -> float:
+    """Return the sum of |c_k| r^k for k >= `first`, from the powers of r: with 1, a bound on |p - c_0| on a disc of radius r."""
+    a, b = abs(c[first]) * powers[first], abs(c[first + 1]) * powers[first + 1]
+    d, e = abs(c[first + 2]) * powers[first + 2], abs(c[first + 3]) * powers[first + 3]
     for k in range(first + 4, TERMS - 3, 4):
-        a, b, d, e = a + abs(c[k]), b + abs(c[k + 1]), d + abs(c[k + 2]), e + abs(c[k + 3])
+        a, b = a + abs(c[k]) * powers[k], b + abs(c[k + 1]) * powers[k + 1]
+        d, e = d + abs(c[k + 2]) * powers[k + 2], e + abs(c[k + 3]) * powers[k + 3]
     for k in range(TERMS - (TERMS - first) % 4, TERMS):
-        a += abs(c[k])
+        a = a + abs(c[k]) * powers[k]
     return (a + b) + (d + e)
 
 
 @inlined
-def slope_magnitude(c: Floats) -> float:
-    """Return the sum of k |c_k| for k >= 2, a bound on |p' - c_1| on [-1, 1]."""
-    even, odd = 0.0, 0.0
-    for k in range(2, TERMS - 1, 2):
-        even, odd = even + k * abs(c[k]), odd + (k + 1) * abs(c[k + 1])
-    return even + odd + (TERMS - 1) * abs(c[TERMS - 1])
+def magnitude(c: Floats, first: int = 1) -> float:
+    """Return the sum of |c_k| for k >= `first`: with 1, a bound on |p - c_0| on [-1, 1]."""
+    return size_on_disc(c, ONES, first)
+
+
+@inlined
+def slope_on_disc(c: Floats, powers: Floats) -> float:
+    """Return the sum of k |c_k| r^(k - 1) for k >= 2, from the powers of r: a bound on |p' - c_1| on a disc of radius r."""
+    a, b = 2.0 * abs(c[2]) * powers[1], 3.0 * abs(c[3]) * powers[2]
+    for k in range(4, TERMS - 1, 2):
+        a, b = a + k * abs(c[k]) * powers[k - 1], b + (k + 1) * abs(c[k + 1]) * powers[k]
+    return a + b + (TERMS - 1) * abs(c[TERMS - 1]) * powers[TERMS - 2]
+
+
+@inlined
+def weighed_sum(c: Floats, weights: Floats, shift: int = 0) -> float:
+    """Return the sum of c_k times weight number k + `shift`."""
+    a, b = weights[shift] * c[0], weights[shift + 1] * c[1]
+    d, e = weights[shift + 2] * c[2], weights[shift + 3] * c[3]
+    for k in range(4, TERMS - 3, 4):
+        a, b = a + weights[k + shift] * c[k], b + weights[k + shift + 1] * c[k + 1]
+        d, e = d + weights[k + shift + 2] * c[k + 2], e + weights[k + shift + 3] * c[k + 3]
+    for k in range(TERMS - TERMS % 4, TERMS):
+        a += weights[k + shift] * c[k]
+    return (a + b) + (d + e)
 
 
 @inlined
 def total(c: Floats) -> float:
     """Return p(1)."""
-    a, b, d, e = c[0], c[1], c[2], c[3]
-    for k in range(4, TERMS - 3, 4):
-        a, b, d, e = a + c[k], b + c[k + 1], d + c[k + 2], e + c[k + 3]
-    for k in range(TERMS - TERMS % 4, TERMS):
-        a += c[k]
-    return (a + b) + (d + e)
+    return weighed_sum(c, ONES)
 
 
 @inlined
 def moment(c: Floats, shift: int) -> float:
     """Return the integral of x^(shift - 1) p(x) over [0, 1], for a shift of 1 or 2."""
-    a, b = RECIPROCAL[shift] * c[0], RECIPROCAL[shift + 1] * c[1]
-    d, e = RECIPROCAL[shift + 2] * c[2], RECIPROCAL[shift + 3] * c[3]
-    for k in range(4, TERMS - 3, 4):
-        a, b = a + RECIPROCAL[k + shift] * c[k], b + RECIPROCAL[k + shift + 1] * c[k + 1]
-        d, e = d + RECIPROCAL[k + shift + 2] * c[k + 2], e + RECIPROCAL[k + shift + 3] * c[k + 3]
-    for k in range(TERMS - TERMS % 4, TERMS):
-        a += RECIPROCAL[k + shift] * c[k]
-    return (a + b) + (d + e)
+    return weighed_sum(c, RECIPROCAL, shift)
 
 
 @inlined
@@ -242,6 +244,24 @@ def _falling_root(c: Floats, low: float = -1.0) -> float:
 
 
 @inlined
+def differentiate(c: Floats, factor: float, out: Floats) -> None:
+    """Write into `out` the coefficients of `factor` times the derivative of p."""
+    for k in range(TERMS - 1):
+        out[k] = factor * (k + 1) * c[k + 1]
+    out[TERMS - 1] = 0.0
+
+
+@inlined
+def write_bernstein(c: Floats, lead: int, out: Floats) -> None:
+    """Write into `out` the Bernstein coefficients on [0, 1] of p(x) / x^lead, for a p without terms below that of order `lead`."""
+    for j in range(TERMS):
+        out[j] = c[lead]
+    for k in range(lead + 1, TERMS):
+        for j in range(TERMS):
+            out[j] += BERNSTEIN[k - lead, j] * c[k]
+
+
+@inlined
 def bound_below(c: Floats) -> float:
     """Return a bound that proves p > 0 on [0, 1] if it and p(0) are above zero.
 
@@ -254,12 +274,6 @@ def bound_below(c: Floats) -> float:
             coefficient += LOW_BERNSTEIN[k, j] * c[k]
         least = min(least, coefficient)
     return least - magnitude(c, LOW)
-
-
-@kernel
-def clearly_positive(c: Floats) -> bool:
-    """Return True if the cheap bound proves p > 0 on [0, 1], for a p that is positive at 0."""
-    return bound_below(c) > 0.0
 
 
 @kernel
@@ -281,22 +295,20 @@ def first_descent(c: Floats, spare: Floats) -> float:
         bound += abs(c[k])
     if c[lead] > bound:
         return NONE
-    if lead == 0 and clearly_positive(c):
+    if lead == 0 and bound_below(c) > 0.0:
         return NONE
-    for j in range(TERMS):
-        spare[j] = c[lead]
-    for k in range(lead + 1, TERMS):
-        for j in range(TERMS):
-            spare[j] += BERNSTEIN[k - lead, j] * c[k]
+    write_bernstein(c, lead, spare)
     lowest = spare[0]
     for j in range(1, TERMS):
         lowest = min(lowest, spare[j])
     if lowest > 0.0:
         return NONE
-    q = np.zeros(TERMS)
+    q, first = np.zeros(TERMS), np.empty(1)
     for k in range(lead, TERMS):
         q[k - lead] = c[k]
-    return _isolate(q)
+    if _bisect(q, 1.0, spare, first, 1) == 1:
+        return first[0]
+    return 1.0 if total(q) == 0.0 else NONE
 
 
 @kernel
@@ -311,58 +323,20 @@ def _next_interval(start: float, width: float) -> tuple[float, float]:
 
 
 @kernel
-def _isolate(q: Floats) -> float:
-    """Return the first x in [0, 1] where a polynomial, positive at 0, falls below zero, or NONE; by bisection from the left.
-
-    It is also NONE for a polynomial that is not finite. If MOST_INTERVALS do not decide, it is the end of the part that is proven
-    to be positive.
-    """
-    part, start, width = np.empty(TERMS), 0.0, 1.0
-    for _ in range(MOST_INTERVALS):
-        if start >= 1.0:
-            return NONE
-        restrict(q, start + 0.5 * width, 0.5 * width, part)
-        tail, slope_tail = magnitude(part), slope_magnitude(part)
-        if not abs(part[0]) + tail < math.inf:
-            return NONE
-        if part[0] < -tail or (width < SMALLEST_INTERVAL and part[0] < 0.0):
-            return start
-        if -part[1] > slope_tail and total(part) <= 0.0:
-            return start + 0.5 * width * (1.0 + _falling_root(part))
-        clear = part[0] > tail or -part[1] > slope_tail or (part[1] > slope_tail and evaluate(part, -1.0) >= 0.0)
-        if clear or width < SMALLEST_INTERVAL or abs(part[0]) + tail < NEGLIGIBLE:
-            start, width = _next_interval(start, width)
-        else:
-            width *= 0.5
-    return start
-
-
-@kernel
 def maximum(c: Floats, sign: float = 1.0) -> float:
-    """Return the largest value of sign * p on [0, 1], to rounding, by branch and bound.
+    """Return the largest value of sign * p on [0, 1], to rounding, from those at both ends and where the slope changes its sign.
 
-    If MOST_INTERVALS do not decide, or p is not finite, it is the sum of the coefficients' magnitudes, which bounds p.
+    If p is not finite, or its slope changes its sign too often, it is the sum of the coefficients' magnitudes, which bounds p.
     """
-    best = max(sign * c[0], sign * total(c))
+    best, bound = max(sign * c[0], sign * total(c)), abs(c[0]) + magnitude(c)
     if degree(c) <= 1:
         return best
-    q, part, start, width = np.empty(TERMS), np.empty(TERMS), 0.0, 1.0
-    for k in range(TERMS):
-        q[k] = sign * c[k]
-    for _ in range(MOST_INTERVALS):
-        if start >= 1.0:
-            return best
-        restrict(q, start + 0.5 * width, 0.5 * width, part)
-        best, tail = max(best, part[0]), magnitude(part)
-        if not abs(part[0]) + tail < math.inf:
-            break
-        below = part[0] + tail <= best + 4e-16 * abs(best) or abs(part[0]) + tail < NEGLIGIBLE
-        if below or abs(part[1]) > slope_magnitude(part) or width < SMALLEST_INTERVAL:
-            best = max(best, total(part), evaluate(part, -1.0))
-            start, width = _next_interval(start, width)
-        else:
-            width *= 0.5
-    return q[0] + magnitude(q)
+    slope, places, spare = np.empty(TERMS), np.empty(MOST_CROSSINGS), np.empty(TERMS)
+    differentiate(c, 1.0, slope)
+    found = crossings(slope, places, spare)
+    for n in range(found):
+        best = max(best, sign * evaluate(c, places[n]))
+    return best if bound < math.inf and found < MOST_CROSSINGS else bound
 
 
 @kernel
@@ -371,11 +345,7 @@ def sign_changes(c: Floats, spare: Floats) -> int:
 
     p has at most as many roots in (0, 1), and exactly one if the number is 1 (Descartes' rule of signs). `spare` is room.
     """
-    for j in range(TERMS):
-        spare[j] = c[0]
-    for k in range(1, TERMS):
-        for j in range(TERMS):
-            spare[j] += BERNSTEIN[k, j] * c[k]
+    write_bernstein(c, 0, spare)
     rounding, changes, last = max(SIGN_ROUNDING * (abs(c[0]) + magnitude(c)), NEGLIGIBLE), 0, c[0]
     for j in range(1, TERMS):
         if not abs(spare[j]) > rounding:
@@ -394,9 +364,7 @@ def falls_through_zero(c: Floats, way: float, slope: Floats) -> bool:
     """
     if not (way * c[0] > 0.0 and way * total(c) < -SIGN_ROUNDING * way * c[0]):
         return False
-    for k in range(TERMS - 1):
-        slope[k] = -way * (k + 1) * c[k + 1]
-    slope[TERMS - 1] = 0.0
+    differentiate(c, -way, slope)
     return slope[0] > 0.0 and bound_below(slope) > SIGN_ROUNDING * slope[0]
 
 
@@ -417,28 +385,29 @@ def crossings(c: Floats, out: Floats, part: Floats) -> int:
         for k in range(TERMS):
             part[k] = way * c[k]
         out[0] = _falling_root(part, 0.0)
-    return _all_crossings(c, sign, part, out) if changes == UNCLEAR or changes > 1 else changes
+    return _bisect(c, sign, part, out, MOST_CROSSINGS) if changes == UNCLEAR or changes > 1 else changes
 
 
 @kernel
-def _all_crossings(c: Floats, sign: float, part: Floats, out: Floats) -> int:
-    """Do what `crossings` does by bisection, for a polynomial that has the given sign just right of 0; `part` is room.
+def _bisect(c: Floats, sign: float, part: Floats, out: Floats, most: int) -> int:
+    """Do what `crossings` does by bisection from the left, up to `most` crossings; `part` is room.
 
-    The sign is carried from interval to interval, so that a root on the border between two is found once.
+    p has the given sign just right of 0. The sign is carried from interval to interval, so that a root on the border between two is
+    found once. If MOST_INTERVALS do not decide, the place that they reach counts as a crossing: beyond it nothing is known.
     """
     found, start, width = 0, 0.0, 1.0
     for _ in range(MOST_INTERVALS):
-        if start >= 1.0 or found >= MOST_CROSSINGS:
-            break
+        if start >= 1.0 or found >= most:
+            return found
         restrict(c, start + 0.5 * width, 0.5 * width, part)
         tail = magnitude(part)
         if not abs(part[0]) + tail < math.inf:
-            break
+            return found
         if abs(part[0]) + tail < NEGLIGIBLE:
             start, width = _next_interval(start, width)
             continue
         definite = abs(part[0]) > tail
-        if not definite and abs(part[1]) <= slope_magnitude(part) and width >= SMALLEST_INTERVAL:
+        if not definite and abs(part[1]) <= slope_on_disc(part, ONES) and width >= SMALLEST_INTERVAL:
             width *= 0.5
             continue
         before, after = evaluate(part, -1.0), total(part)
@@ -446,12 +415,13 @@ def _all_crossings(c: Floats, sign: float, part: Floats, out: Floats) -> int:
             place = start
             if not definite and before != 0.0 and math.copysign(1.0, before) != math.copysign(1.0, after):
                 if after > 0.0:
-                    for k in range(TERMS):
-                        part[k] = -part[k]
+                    turn_over(part)
                 place = start + 0.5 * width * (1.0 + _falling_root(part))
             if place > 0.0:
                 out[found] = place
                 found += 1
         sign = after if after != 0.0 else sign
         start, width = _next_interval(start, width)
+    if found < most:
+        out[found], found = start, found + 1
     return found
