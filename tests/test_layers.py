@@ -115,7 +115,7 @@ ROOMS = {
     "contact": (
         ("roots", "sliding", "wave_modes", "wave_proof"),
         ("disturbance", "slopes", "steady_proof"),
-        ("lowest_slope", "panels", "turns"),
+        ("areas", "lowest_slope", "turns"),
         ("folds",),
         ("branches", "steady"),
         ("critical", "rules"),

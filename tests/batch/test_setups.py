@@ -11,7 +11,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.batch import why_not
-from stickslip.batch.kernels.tables import Setups
+from stickslip.batch.kernels.workspace import Setups
 from stickslip.batch.setups import set_up
 from stickslip.batch.vectorised_problem import groups
 from stickslip.contact.rules.selection import OF_LEVELS

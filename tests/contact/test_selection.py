@@ -10,8 +10,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import stickslip as ss
+from stickslip.contact.areas import area
 from stickslip.contact.branches import branches_of, rate_on, resistance
-from stickslip.contact.rules.selection import OF_LEVELS, RULES, area, levels, selection_table
+from stickslip.contact.rules.selection import OF_LEVELS, RULES, levels, selection_table
 from stickslip.problem.selection_rule import SELECTION_RULES
 from stickslip.resistance import Branch
 

@@ -12,8 +12,7 @@ import numpy as np
 
 from stickslip.batch.kernels.reduction import COLUMNS, OF_EVENTS, Reduced
 from stickslip.batch.kernels.runs import Group, engine_address, run_group
-from stickslip.batch.kernels.tables import LaneStage
-from stickslip.batch.kernels.workspace import LARGEST_CAPACITY, new_workspace, table_of
+from stickslip.batch.kernels.workspace import LARGEST_CAPACITY, LaneStage, new_workspace, table_of
 from stickslip.batch.long_member import run_alone
 from stickslip.batch.setups import Alike, alike, set_up
 from stickslip.batch.vectorised_problem import Values, are_fine, groups, member, why_not

@@ -9,7 +9,7 @@ import numpy as np
 
 from stickslip.batch.kernels.branch_search import MOST_BRANCHES, NEVER_RISES, TOO_MANY, FoundBranches, Resistances, search_branches
 from stickslip.batch.kernels.runs import fill_constants
-from stickslip.batch.kernels.tables import Setups
+from stickslip.batch.kernels.workspace import Setups
 from stickslip.batch.vectorised_problem import Values, member, vectorised_problem
 from stickslip.contact.rules.selection import levels
 from stickslip.contact.slopes import FASTEST as FASTEST_SEARCHED

@@ -45,11 +45,10 @@ def branches_of(g: Resistance, proof: Certificate | None = None) -> tuple[Branch
         return (Branch(0.0, math.inf, g.start, math.inf),)
     proof = proof or certificate(g)
     ends = [*([0.0] if len(proof.rates) % 2 == 0 else []), *proof.rates, math.inf]  # g rises at high rates
-    return tuple(_branch(g, low, high) for low, high in zip(ends[::2], ends[1::2], strict=True))
-
-
-def _branch(g: Resistance, low: float, high: float) -> Branch:
-    return Branch(low, high, g.end_excess(low), math.inf if math.isinf(high) else g.end_excess(high))
+    return tuple(
+        Branch(low, high, g.end_excess(low), math.inf if math.isinf(high) else g.end_excess(high))
+        for low, high in zip(ends[::2], ends[1::2], strict=True)
+    )
 
 
 def rate_on(g: Resistance, branch: Branch, excess: float) -> float:

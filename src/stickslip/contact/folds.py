@@ -14,10 +14,8 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from stickslip.contact.lowest_slope import find_lowest, polished
-from stickslip.contact.panels import panels_between
 from stickslip.contact.slopes import FASTEST, MOST_EVALUATIONS, pieces_of
 from stickslip.contact.turns import PROVEN, find_turns, folds_of
-from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief_repr
 from stickslip.resistance import Resistance
@@ -121,14 +119,6 @@ def certificate(g: Resistance, budget: int = MOST_EVALUATIONS) -> Certificate:
     if reach < FASTEST and rates and g.slope(reach) <= 0.0:
         rates, sure = rates[:-1], sure[:-1]  # the last branch counts as endless, and its end is at a load that is never reached
     return Certificate("not decided" if open_ else "proven", rates, tuple(sure), tuple(open_), at_rest, found.evaluations, reach)
-
-
-def panels(g: Resistance, low: float, high: float) -> Floats:
-    """Return the edges (m/s) of panels from one slip rate to another; in each panel Gauss's rule integrates g to rounding.
-
-    For one contact the same slip rates always give the same edges, so that areas which should cancel do.
-    """
-    return panels_between(pieces_of([g]), low, high)
 
 
 @lru_cache(maxsize=64)

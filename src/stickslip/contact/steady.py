@@ -342,10 +342,7 @@ class _Steady:
 
     def _edge(self, low: float, high: float, stable_above: bool) -> float:
         """Return the slip rate (m/s) between two others where stability changes."""
-        return sign_change(lambda rate: 1.0 if self._is_stable(rate) == stable_above else -1.0, low, high)
-
-    def _is_stable(self, rate: float) -> bool:
-        return self.disturbed(rate).is_stable() is True
+        return sign_change(lambda rate: 1.0 if (self.disturbed(rate).is_stable() is True) == stable_above else -1.0, low, high)
 
     def _change(self, rate: float, stable_above: bool, enclosure: Any) -> StabilityChange:
         return StabilityChange(rate, self._pull_rate(rate), stable_above, enclosure)

@@ -335,7 +335,9 @@ def _summary(
     )
     sizes = [f"a continuum of slip rates, {flat}, where no rule picks one"] if flat else []
     if window[0] < window[1]:
-        sizes.append(f"a window of {brief(window[1] - window[0], 'Pa')} that ends {_side(window[1])} the static strength")
+        end = window[1]
+        side = "at" if end == 0.0 else f"{brief(abs(end), 'Pa')} {'above' if end > 0.0 else 'below'}"
+        sizes.append(f"a window of {brief(end - window[0], 'Pa')} that ends {side} the static strength")
     steps = "; ".join(
         f"{j.direction} from {j.rate_before:.6g} to {j.rate_after:.6g} m/s at a load of {brief(j.load, 'Pa', 9)}"
         for j in jumps[:MOST_SHOWN]
@@ -350,7 +352,3 @@ def _named(problem: Problem, g: Resistance) -> str:
     law = problem.friction
     moving = law.depends_on_slip and law.depends_on_rate
     return f"{type(law).__name__} at a slip of {g.law_slip:.6g} m" if moving else type(law).__name__
-
-
-def _side(excess: float) -> str:
-    return "at" if excess == 0.0 else f"{brief(abs(excess), 'Pa')} {'above' if excess > 0.0 else 'below'}"

@@ -42,17 +42,12 @@ BOTH, PLAIN, HEAVY = range(3)
 """The three motions that are followed side by side: with ripple, without it, and with ripple and inertia."""
 RIPPLES, INERTIA = np.array([1.0, 0.0, 1.0]), np.array([[0.0], [0.0], [1.0]])
 """Which of them have ripple, and which inertia."""
-
-
-def _in_powers(series: np.polynomial.Chebyshev) -> Floats:
-    return np.asarray(series.convert(kind=np.polynomial.Polynomial, domain=[0.0, 1.0], window=[0.0, 1.0]).coef)
-
-
 PLACES = 0.5 - 0.5 * np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
 """Places of the offsets in a stretch, on [0, 1]: the roots of a Chebyshev polynomial."""
 _BASIS = [np.polynomial.Chebyshev.basis(k, domain=[0.0, 1.0]) for k in range(NODES)]
 _SHARES = np.linalg.inv(np.array([one(PLACES) for one in _BASIS]).T)
-_POWERS = np.array([np.pad(_in_powers(one), (0, NODES - 1 - k)) for k, one in enumerate(_BASIS)]).T
+_IN_X = [one.convert(kind=np.polynomial.Polynomial, domain=[0.0, 1.0], window=[0.0, 1.0]).coef for one in _BASIS]
+_POWERS = np.array([np.pad(one, (0, NODES - 1 - k)) for k, one in enumerate(_IN_X)]).T
 INTEGRALS = np.array([one.integ(lbnd=0.0)([*PLACES, 1.0]) for one in _BASIS]).T @ _SHARES
 """Integrals from 0 to each of these places and to 1, of the polynomial through values there."""
 

@@ -167,7 +167,7 @@ def walk_along_load(run: Run, last_trip: int, last_phase: float) -> int:
 @kernel
 def take_step(run: Run, xi_to: float) -> int:
     """Stick or slip for one step, up to the place xi_to at most. A step that must not be kept is taken back and ends the run."""
-    length, xi = run.counts.length, run.state.xi
+    length, xi, state = run.counts.length, run.state.xi, run.state
     if run.implicit_steps == 0 and is_implicit(run):
         run.missing = EnginePart.IMPLICIT_STEPS
         return Stop.NEED_PART
@@ -183,16 +183,10 @@ def take_step(run: Run, xi_to: float) -> int:
         return Stop.SLIPS
     else:
         slip(run, xi_to)
-    if run.counts.breach == 0 and is_finite(run):
+    if run.counts.breach == 0 and math.isfinite(state.rate_now + state.slip_now + state.state_now[0] + state.state_now[1]):
         return Stop.NONE
     take_back(run, length, xi)
     return run.counts.breach if run.counts.breach != 0 else Stop.FAILED
-
-
-@kernel
-def is_finite(run: Run) -> bool:
-    """Return True if the contact's slip, slip rate and state are finite."""
-    return math.isfinite(run.state.rate_now + run.state.slip_now + run.state.state_now[0] + run.state.state_now[1])
 
 
 @kernel

@@ -111,13 +111,6 @@ def reached(run_end: float, code: int, round_trip_time: float, history: HistoryP
 
 
 @kernel
-def rests_at(history: HistoryPiece, length: int, round_trip_time: float, end: float) -> bool:
-    """Return True if the contact is at rest at the end of the run (s), in the last piece or after it, where nothing is recorded."""
-    recorded = time_at(history, round_trip_time, length - 1, 1.0)
-    return history[length - 1].mode == 0 or end - recorded > OFFSET_ROUNDING * recorded
-
-
-@kernel
 def slipped(history: HistoryPiece, length: int, round_trip_time: float, end: float) -> float:
     """Return the slip (m) from the start of the run to its end (s)."""
     last = length - 1
@@ -196,22 +189,17 @@ def load_just_before(run: Run, piece: int, excess: float) -> float:
 def place_just_before(run: Run, piece: int) -> tuple[int, float, int]:
     """Return the piece and xi whose load, or its echo, holds just before a piece starts, and the round trips at rest since then."""
     history, last = run.history, piece - 1
-    if not rests_before(history, run.params.round_trip_time, piece):
-        return last, 1.0, 0
+    trip_time = run.params.round_trip_time
+    if time_between(history, trip_time, (last, 1.0), (piece, 0.0)) <= OFFSET_ROUNDING * trip_time:
+        return last, 1.0, 0  # the contact does not rest, unrecorded, before this piece
     trip, phase = history[piece].trip, history[piece].phase_from
     if phase == 0.0:
-        trip, phase = trip - 1, run.params.round_trip_time
+        trip, phase = trip - 1, trip_time
     while last >= 0 and not (history[last].phase_from < phase <= history[last].phase_to):
         last -= 1
     if last < 0:
         return piece - 1, 1.0, 0
     return last, place_of(history, last, phase - history[last].phase_from), trip - history[last].trip
-
-
-@kernel
-def rests_before(history: HistoryPiece, round_trip_time: float, piece: int) -> bool:
-    """Return True if the contact rests, unrecorded, between the previous piece and this one, which is not the first."""
-    return time_between(history, round_trip_time, (piece - 1, 1.0), (piece, 0.0)) > OFFSET_ROUNDING * round_trip_time
 
 
 @kernel
@@ -298,7 +286,9 @@ def fold_whole(history: HistoryPiece, length: int, round_trip_time: float, end: 
     for n in range(length):
         shocks += 1 if history[n].cause > 0 else 0
     out.shocks, out.end_time = shocks, end
-    out.arrested = 1.0 if rests_at(history, length, round_trip_time, end) else 0.0
+    recorded = time_at(history, round_trip_time, length - 1, 1.0)
+    rests_on = end - recorded > OFFSET_ROUNDING * recorded  # after the last piece, where nothing is recorded
+    out.arrested = 1.0 if history[length - 1].mode == 0 or rests_on else 0.0
     out.slip = slipped(history, length, round_trip_time, end)
     begin = LAST_THIRD * end
     out.sticking = rest_of(time_slipping(history, length, round_trip_time, begin, end), end - begin)

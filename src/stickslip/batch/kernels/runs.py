@@ -26,8 +26,7 @@ from stickslip.batch.kernels.reduction import (
     reached,
     reduced_at,
 )
-from stickslip.batch.kernels.tables import LaneStage, Setups
-from stickslip.batch.kernels.workspace import Workspace
+from stickslip.batch.kernels.workspace import LaneStage, Setups, Workspace
 from stickslip.engine.compile.kernels import address_of, inlined, kernel
 from stickslip.engine.loop import run_until
 from stickslip.engine.memory.addresses import ahead, call_prepare, floats, integers

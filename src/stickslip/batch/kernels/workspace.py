@@ -1,15 +1,15 @@
-"""The memory of a thread of a batch: lanes, each with a state and a history, which serve one member after another."""
+"""What kernels are given: the numbers of members, and the memory of a thread, whose lanes serve one member after another."""
 
 from __future__ import annotations
 
 import math
+from enum import IntEnum
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from stickslip.batch.kernels.lane_block import LaneBlock
 from stickslip.batch.kernels.lanes import Waits
-from stickslip.batch.kernels.tables import LaneStage, Setups
 from stickslip.engine.memory.simd import WIDTH
 from stickslip.engine.on_demand import lend_parts_of_batch
 from stickslip.engine.state import layout as at
@@ -25,6 +25,41 @@ TURNS_PER_PIECE = 8
 """Initial room for points of the slip rate (`trajectory.turning_points`), for each piece of history."""
 LINE = 16
 """Numbers (of 8 bytes) in two cache lines, which processors fetch together. Addresses of lanes must be multiples of one line."""
+
+
+class Setups(NamedTuple):
+    """The input of the engine for members that differ in numbers only.
+
+    The engine's tables (see `engine.state.layout.Setup`) have one row for each member, or a single row if all members share it.
+    """
+
+    params: Floats  # (members, numbers of Params)
+    jets: Integers  # (3 pieces,): addresses of the formulas' series, radii and values in lanes; (0,) if members step alone
+    constants: Floats  # (members, pieces, size)
+    law: Integers  # (members, pieces of the law, LawPiece.total)
+    branch_table: Floats  # (members, largest number of branches, Branch.total); for member n the first branches[n] are filled
+    first_load: Floats  # (members, pieces of the first load + 1, FirstLoad.total)
+    branches: Integers  # (members,): number of branches; 0 if Z v + S mu does not rise at high rates, -1 if more than MOST_BRANCHES
+    irregular: Floats  # (members,): 1 if several slip rates solve the contact equation at some load, otherwise 0
+    state: Floats  # at t = 0, the same for all members
+    counts: Integers  # at t = 0, the same for all members
+    last_trip: Integers  # (members,): the last round trip of each run
+    last_phase: Floats  # (members,): the offset (s) of its end in this round trip
+    duration: Floats  # (members,), s
+    threshold: Floats  # (members,): slip above this rate (m/s) is an event
+    stiffness: Floats  # (members,): Pa/m for a slab, N/m for a block
+    excess: Floats  # (members,): initial load minus static strength, Pa or N
+
+
+class LaneStage(IntEnum):
+    """Say what a lane is doing."""
+
+    FREE = 0
+    """It has no member."""
+    UNDER_WAY = 1
+    """Its member is running."""
+    AT_END = 2
+    """The run of its member has ended and is not reduced yet."""
 
 
 class Workspace(NamedTuple):

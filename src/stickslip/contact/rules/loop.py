@@ -11,8 +11,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import ClassVar, Literal
 
+from stickslip.contact.areas import area
 from stickslip.contact.branches import rate_on, resistance
-from stickslip.contact.rules.selection import area, selection_table
+from stickslip.contact.rules.selection import selection_table
 from stickslip.foundation.show import brief_repr
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SelectionTable

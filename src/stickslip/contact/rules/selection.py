@@ -14,13 +14,13 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from itertools import combinations, pairwise
+from itertools import combinations, pairwise, product
 
 import numpy as np
 
+from stickslip.contact.areas import area
 from stickslip.contact.branches import branches_of, rate_on, resistance
-from stickslip.contact.folds import MOST_FOLDS, certificate, panels
-from stickslip.contact.panels import NODES, WEIGHTS
+from stickslip.contact.folds import MOST_FOLDS, certificate
 from stickslip.contact.roots import bracketed_newton
 from stickslip.contact.slopes import FASTEST
 from stickslip.foundation.arrays import Floats
@@ -46,7 +46,10 @@ def best_branches(g: Resistance, stable: tuple[Branch, ...]) -> dict[int, tuple[
     cuts = [-math.inf, *sorted(levels), math.inf]
     best: dict[int, tuple[float, float]] = {}
     for low, high in pairwise(cuts):
-        winner = _winner(g, candidates, _between(low, high))
+        excess = _between(low, high)
+        alive = {i: b for i, b in candidates.items() if b.excess_from <= excess <= b.excess_to}
+        phi = {i: area(g, 0.0, _rate(g, b, excess), excess) for i, b in alive.items()}
+        winner = min(phi, key=phi.__getitem__)
         best[winner] = (best.get(winner, (low, high))[0], high)
     return best
 
@@ -56,13 +59,6 @@ def _between(low: float, high: float) -> float:
     if math.isinf(low):
         return high - 1.0 - abs(high)
     return low + 1.0 + abs(low) if math.isinf(high) else low + 0.5 * (high - low)
-
-
-def _winner(g: Resistance, candidates: dict[int, Branch], excess: float) -> int:
-    """Return the index of the candidate with the smallest phi among those that exist at this excess."""
-    alive = {i: b for i, b in candidates.items() if b.excess_from <= excess <= b.excess_to}
-    potential = {i: area(g, 0.0, _rate(g, b, excess), excess) for i, b in alive.items()}
-    return min(potential, key=potential.__getitem__)
 
 
 def equal_area_level(g: Resistance, slower: Branch, faster: Branch) -> float | None:
@@ -81,16 +77,6 @@ def _gap(g: Resistance, slower: Branch, faster: Branch, excess: float) -> tuple[
 
 def _rate(g: Resistance, branch: Branch, excess: float) -> float:
     return 0.0 if branch is _STICK else rate_on(g, branch, excess)
-
-
-def area(g: Resistance, start: float, end: float, excess: float) -> float:
-    """Return the integral of g - load from start to end (m/s), in Pa m/s: Gauss's rule on panels that resolve the law."""
-    if end <= start:
-        return 0.0
-    edges = panels(g, start, end)
-    half = 0.5 * np.diff(edges)
-    rates = edges[:-1, None] + half[:, None] * (1.0 + NODES)
-    return float(np.sum(half * ((g.excess(rates) - excess) @ WEIGHTS)))
 
 
 Branches = tuple[Branch, ...]
@@ -225,12 +211,11 @@ def flaw(table: SelectionTable, stable: Branches) -> str:
         if table.keep_from[i] < stable[i].excess_from or table.keep_to[i] > stable[i].excess_to:
             exists = f"exists from {stable[i].excess_from:g} to {stable[i].excess_to:g} Pa"
             return f"branch {i} {exists}, but is kept from {table.keep_from[i]:g} to {table.keep_to[i]:g} Pa"
-    return next((_dead_end(i, up) for i in (-1, *kept) for up in (True, False) if not _leads_on(table, i, up)), "")
-
-
-def _dead_end(branch: int, up: bool) -> str:
-    place = "stick" if branch < 0 else f"branch {branch}"
-    return f"when the load {'rises' if up else 'falls'} beyond what {place} is kept for, no branch is kept there"
+    for i, up in product((-1, *kept), (True, False)):
+        if not _leads_on(table, i, up):
+            place = "stick" if i < 0 else f"branch {i}"
+            return f"when the load {'rises' if up else 'falls'} beyond what {place} is kept for, no branch is kept there"
+    return ""
 
 
 def _leads_on(table: SelectionTable, branch: int, up: bool) -> bool:

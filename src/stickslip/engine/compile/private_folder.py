@@ -41,14 +41,9 @@ def private_folder(path: Path) -> Path:
         path.mkdir(mode=0o700)
     except FileExistsError:
         _check_existing(path)
-    if HAS_OWNERS and _mode(path) & OTHERS_ENTER:  # some file systems ignore modes
+    if HAS_OWNERS and path.lstat().st_mode & OTHERS_ENTER:  # some file systems ignore modes
         raise NotPrivateError(f"{path} is open to other users")
     return path
-
-
-def _mode(path: Path) -> int:
-    """Return the permission bits of a path, without following links."""
-    return stat.S_IMODE(path.lstat().st_mode)
 
 
 def _check_above(folder: Path) -> None:

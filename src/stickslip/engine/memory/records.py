@@ -106,7 +106,7 @@ class MemoryRecord:
 
         The arrays share the table's memory. A row of floats in the record becomes the last axis of its array.
         """
-        return cls(last_axis_first(table))
+        return cls(table.T if table.ndim == 2 else np.moveaxis(table, -1, 0))
 
     def __getitem__(self, n: int) -> Self:
         """Return the record that lies n records after this one, in plain Python as in compiled code."""
@@ -115,11 +115,6 @@ class MemoryRecord:
     def copy(self) -> Self:
         """Return a copy with its own memory."""
         return type(self)(self.numbers.copy())
-
-
-def last_axis_first(table: NDArray[Any]) -> NDArray[Any]:
-    """Return a table with its last axis moved to the front, as a view."""
-    return table.T if table.ndim == 2 else np.moveaxis(table, -1, 0)
 
 
 class _Number:

@@ -90,9 +90,11 @@ def _example(law: type[FrictionLaw]) -> FrictionLaw:
 def leaves(law: FrictionLaw, inner: str = "", outer: str = "") -> dict[str, Leaf]:
     """Return the parameters of a law by their names in scenario files, such as "alpha" or "rate.alpha" in a part."""
     found: dict[str, Leaf] = {}
-    for name, (declared, default) in fields_of(type(law)).items():
+    fields = fields_of(type(law))
+    is_expression = any(isinstance(declared, NamedNumbers) for declared, _ in fields.values())
+    for name, (declared, default) in fields.items():
         value = getattr(law, name)
-        if isinstance(declared, Quantity) and value is not None and not _is_expression(law):
+        if isinstance(declared, Quantity) and value is not None and not is_expression:
             found[outer + name] = Leaf(inner + name, outer + name, declared, value, default == 0.0)
         elif isinstance(declared, NamedNumbers):
             for one in value:
@@ -101,10 +103,6 @@ def leaves(law: FrictionLaw, inner: str = "", outer: str = "") -> dict[str, Leaf
         elif isinstance(declared, LawField):
             found |= leaves(value, f"{inner}{name}_", f"{outer}{name}.")
     return found
-
-
-def _is_expression(law: FrictionLaw) -> bool:
-    return any(isinstance(declared, NamedNumbers) for declared, _ in fields_of(type(law)).values())
 
 
 def rebuilt(law: FrictionLaw, values: Mapping[str, float], *, checked: bool = True) -> FrictionLaw:

@@ -1,4 +1,4 @@
-"""Panels of slip rates for Gauss's rule: bounds of friction's derivatives ensure that it integrates g = Z v + S mu to rounding.
+"""Areas between g = Z v + S mu and a load, to rounding: by Gauss's rule on panels that bounds of friction's derivatives ensure.
 
 On a panel that is short in comparison with |mu'| / |mu''|, friction is as smooth as an exponential over a few of its lengths. A
 panel is also short enough if mu'' is so small that the area hardly depends on it. Any other panel is cut in two, so that no narrow
@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from stickslip.contact.slopes import NARROW, Pieces, cut_between
+from stickslip.contact.slopes import NARROW, Pieces, cut_between, pieces_of
 from stickslip.foundation.arrays import Floats
+from stickslip.resistance import Resistance
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
 """Gauss's rule on [-1, 1]."""
@@ -20,6 +21,19 @@ NEGLIGIBLE = 1e-16
 """Error allowed on a panel, as a share (1) of S times the length of the whole integral."""
 MOST_PANELS = 4096
 """Largest number of panels of one integral, besides one for each piece of the law. When it is reached, no more panels are cut."""
+
+
+def area(g: Resistance, start: float, end: float, excess: float) -> float:
+    """Return the integral of g - load from start to end (m/s), in Pa m/s; the load exceeds the static strength by `excess` (Pa).
+
+    For one contact the same slip rates always give the same panels, so that areas which should cancel do.
+    """
+    if end <= start:
+        return 0.0
+    edges = panels_between(pieces_of([g]), start, end)
+    half = 0.5 * np.diff(edges)
+    rates = edges[:-1, None] + half[:, None] * (1.0 + NODES)
+    return float(np.sum(half * ((g.excess(rates) - excess) @ WEIGHTS)))
 
 
 def panels_between(of: Pieces, low: float, high: float) -> Floats:
