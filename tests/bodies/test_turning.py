@@ -158,3 +158,26 @@ def test_a_scenario_says_rpm_and_is_written_and_read_back(tmp_path: Path) -> Non
     run = ss.open_solution(ss.simulate(scenario.problem, 5.0).to_netcdf(tmp_path / "run.nc"))
     assert isinstance(run, ss.Solution)
     assert run.problem == scenario.problem
+
+
+BUNDLED = "drill-string"
+
+
+@pytest.mark.parametrize(
+    ("door", "message"),
+    [
+        (lambda: ss.PlanarSlab(ss.load_scenario(BUNDLED).problem, 16, 100.0), "PlanarSlab: body must be .*: a string is a line"),
+        (lambda: ss.studies.schemes(BUNDLED, 1.0), "schemes: a TorsionalString has no grid: they are of an ElasticSlab"),
+    ],
+)
+def test_doors_that_take_slabs_alone_refuse_a_string_by_name(door: Callable[[], object], message: str) -> None:
+    with pytest.raises(ss.InputError, match=rf"^{message}$"):
+        door()
+
+
+def test_sentences_on_steady_sliding_speak_of_rates_of_rotation() -> None:
+    found = ss.studies.steady(BUNDLED, from_rest=False)
+    assert str(found).startswith("At 60 rpm, traction 7.9023 kN m: stable")
+    assert "m/s" not in str(found)
+    massless = ss.Problem(replace(STRING, inertia=0.0), BIT, pull_rate="60 rpm", initial_load=0.0)
+    assert " Pa" not in str(ss.uniqueness(massless))

@@ -10,6 +10,7 @@ import numpy as np
 
 from stickslip.foundation.constants import YEAR
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.names import si_unit
 from stickslip.foundation.show import brief, brief_repr
 
 if TYPE_CHECKING:
@@ -99,6 +100,8 @@ class FromRest:
     runs: int
     duration: float
     """Duration of each run (s)."""
+    rate_unit: str = field(default="m/s", repr=False)
+    """Unit of the rates: rad/s where the contact turns."""
 
     units: ClassVar = {"sticks_at": "m/s", "slides_at": "m/s", "duration": "s"}
     __repr__ = brief_repr
@@ -108,10 +111,14 @@ class FromRest:
         if self.sticks_at is None:
             if self.slides_at is None:
                 return "from rest: not known, because a run did not reach its end"
-            return f"from rest it slides at {brief(self.slides_at, 'm/s', 3)}, too (by {runs})"
+            return f"from rest it slides at {brief(self.slides_at, self.rate_unit, 3)}, too (by {runs})"
         if self.slides_at is None:
-            return f"from rest it still sticks at {brief(self.sticks_at, 'm/s', 3)} (by {runs}; stickslip find looks further)"
-        return f"from rest it sticks up to {brief(self.sticks_at, 'm/s', 3)} (to {100.0 * FROM_REST_WITHIN:g} %, by {runs})"
+            return (
+                f"from rest it still sticks at {brief(self.sticks_at, self.rate_unit, 3)} (by {runs}; stickslip find looks further)"
+            )
+        return (
+            f"from rest it sticks up to {brief(self.sticks_at, self.rate_unit, 3)} (to {100.0 * FROM_REST_WITHIN:g} %, by {runs})"
+        )
 
 
 FROM_REST_WITHIN = 0.02
@@ -202,9 +209,9 @@ class SteadySlidings:
             return [f"none: {self.why_none}"]
         at = "at the first pull rate, " if self.varies else "at "
         at = f"under the first normal load, {at}" if self.is_pressed else at
-        found = [f"{at}{brief(one.rate, 'm/s')}, traction {brief(one.traction, self.unit)}: {one}" for one in self.slidings]
+        found = [f"{at}{brief(one.rate, self._rate)}, traction {brief(one.traction, self.unit)}: {one}" for one in self.slidings]
         if self.is_calm and self.settled and all(one.rate > abs(self.settled.rate) for one in self.changes):
-            found.append(slides_on(self.settled, is_driven_rigidly=self.far_stress is None))
+            found.append(slides_on(self.settled, is_driven_rigidly=self.far_stress is None, unit=self._rate))
         found += [self._given_way(), "at rest: the driver does not pull hard enough to free a contact that sticks" * self.can_rest]
         if not self.is_damped and any(one.stable is False for one in self.slidings):
             found.append("neither body nor driver damps: it is unstable wherever friction falls with the slip rate, however gently")
@@ -215,10 +222,10 @@ class SteadySlidings:
         others = [one for one in self.slidings if not math.isclose(one.rate, self.pull_rate, rel_tol=1e-9, abs_tol=0.0)]
         if self.far_stress is None or not others:
             return ""
-        far, pull = brief(self.far_stress, "Pa"), brief(self.pull_rate, "m/s")
+        far, pull = brief(self.far_stress, self.unit), brief(self.pull_rate, self._rate)
         return (
             f"not at the pull rate of {pull}, because the driver gives way: the far stress, which is the initial load unless given,"
-            f' is {far}; far_stress = "{brief(self.traction_at_pull_rate, "Pa", 9)}" makes it slide at the pull rate'
+            f' is {far}; far_stress = "{brief(self.traction_at_pull_rate, self.unit, 9)}" makes it slide at the pull rate'
         )
 
     def _changes(self) -> str:
@@ -235,27 +242,32 @@ class SteadySlidings:
         return f"{' '.join(texts)} ({how}){hint}"
 
     @property
+    def _rate(self) -> str:
+        """The unit of slip rates."""
+        return si_unit("slip_rate", self.unit)
+
+    @property
     def _searched(self) -> str:
         """The words for the slip rates that were examined, if not all were."""
         has_states = self.problem is not None and self.problem.friction.states
-        return f" between {RATES[0]:g} and {RATES[-1]:g} m/s" if has_states or not self.proven else ""
+        return f" between {RATES[0]:g} and {RATES[-1]:g} {self._rate}" if has_states or not self.proven else ""
 
     def _place(self, change: StabilityChange) -> str:
         """Return the words for where stability changes."""
         if change.pull_rate is None:
-            return f"a slip rate of {change.rate:.9g} m/s"
+            return f"a slip rate of {change.rate:.9g} {self._rate}"
         if change.pull_rate == change.rate:
-            return f"a pull rate of {change.rate:.9g} m/s"
+            return f"a pull rate of {change.rate:.9g} {self._rate}"
         back = " (the driver would have to move back)" * (self.far_stress is not None and change.pull_rate * self.pull_rate < 0.0)
-        return f"a slip rate of {change.rate:.9g} m/s, at a pull rate of {change.pull_rate:.9g} m/s{back}"
+        return f"a slip rate of {change.rate:.9g} {self._rate}, at a pull rate of {change.pull_rate:.9g} {self._rate}{back}"
 
 
-def driven_at(rate: float, *, is_driven_rigidly: bool) -> str:
-    """Return the words for the slip rate (m/s) of steady sliding: that of the driver, if it does not give way."""
-    return "the driver's rate" if is_driven_rigidly else brief(abs(rate), "m/s")
+def driven_at(rate: float, *, is_driven_rigidly: bool, unit: str = "m/s") -> str:
+    """Return the words for the slip rate (in `unit`) of steady sliding: that of the driver, if it does not give way."""
+    return "the driver's rate" if is_driven_rigidly else brief(abs(rate), unit)
 
 
-def slides_on(sliding: Sliding, *, is_driven_rigidly: bool) -> str:
+def slides_on(sliding: Sliding, *, is_driven_rigidly: bool, unit: str = "m/s") -> str:
     """Return a sentence without its subject, a contact that slides steadily and stays at this rate."""
     how = "steadily and stably" if sliding.stable else "steadily"
-    return f"slides {how} at {driven_at(sliding.rate, is_driven_rigidly=is_driven_rigidly)}: no event will come"
+    return f"slides {how} at {driven_at(sliding.rate, is_driven_rigidly=is_driven_rigidly, unit=unit)}: no event will come"

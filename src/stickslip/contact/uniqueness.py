@@ -22,6 +22,7 @@ from stickslip.contact.slopes import FASTEST
 from stickslip.foundation.arguments import NamesAttributes
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.names import si_unit
 from stickslip.foundation.quantities import quantities_of
 from stickslip.foundation.show import brief, html_table
 from stickslip.friction.law import rises_with_rate
@@ -98,22 +99,30 @@ class Uniqueness(NamesAttributes):
     def _repr_html_(self) -> str:
         return html_table("stickslip Uniqueness", [*self._lines(), ("summary", self.summary)])
 
+    @property
+    def _load_unit(self) -> str:
+        return "Pa" if self.problem is None else self.problem.load_unit
+
+    @property
+    def _rate_unit(self) -> str:
+        return si_unit("slip_rate", self._load_unit)
+
     def _lines(self) -> Iterator[tuple[str, str]]:
         """Yield name and text of each part of the result."""
         yield "regime", f"{self.regime}, {self.certificate}"
         if self.critical_parameter is not None and self.critical_value is not None:
             yield "critical", f"{self.critical_parameter} = {brief(self.critical_value, self.critical_unit)}"
         if self.window is not None:
-            low, high = (brief(excess, "Pa") for excess in self.window)
+            low, high = (brief(excess, self._load_unit) for excess in self.window)
             yield "window", f"load minus static strength from {low} to {high}"
         for fold in self.folds[:MOST_SHOWN]:
-            yield "fold", f"at {brief(fold.rate, 'm/s')}, load {brief(fold.load, 'Pa')}"
+            yield "fold", f"at {brief(fold.rate, self._rate_unit)}, load {brief(fold.load, self._load_unit)}"
         if len(self.folds) > MOST_SHOWN:
             yield "", f"and {len(self.folds) - MOST_SHOWN} more folds"
         yield "rule", self.rule
         for jump in self.jumps[:MOST_SHOWN]:
-            rates = f"from {brief(jump.rate_before, 'm/s')} to {brief(jump.rate_after, 'm/s')}"
-            yield "jump", f"{jump.direction} {rates} at a load of {brief(jump.load, 'Pa')}"
+            rates = f"from {brief(jump.rate_before, self._rate_unit)} to {brief(jump.rate_after, self._rate_unit)}"
+            yield "jump", f"{jump.direction} {rates} at a load of {brief(jump.load, self._load_unit)}"
         if len(self.jumps) > MOST_SHOWN:
             yield "", f"and {len(self.jumps) - MOST_SHOWN} more jumps"
 
@@ -185,7 +194,9 @@ class Uniqueness(NamesAttributes):
     def _solutions(self, load: float) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
         g, flat, plateau = self._equation(), self.continuum(load), self._plateau(load)
         if self.known_to is not None and abs(load) > self.known_to:
-            raise InputError(f"admissible slip rates: they are known for loads up to {self.known_to:.6g} Pa, got {load:.6g} Pa")
+            unit = self._load_unit
+            known = f"they are known for loads up to {self.known_to:.6g} {unit}"
+            raise InputError(f"admissible slip rates: {known}, got {load:.6g} {unit}")
         # the plateau's own excess is exact, while load - strength carries the rounding of the load
         level = {} if plateau is None else {load >= 0.0: plateau.excess}
         forward, stable = rates_at(g, self.branches, level.get(True, load - g.strength))
@@ -330,16 +341,17 @@ def _summary(
     if window is None:
         reason = "the resistance Z v + S mu(v) rises with the slip rate everywhere"
         return f"{law}: regular. The slip rate is unique: {reason}. {idle}{bound}"
+    unit, rate = problem.load_unit, si_unit("slip_rate", problem.load_unit)
     flat = "; ".join(
-        f"{p.rate_from:.6g} to {p.rate_to:.6g} m/s at a load of {brief(g.strength + p.excess, 'Pa', 9)}" for p in g.plateaus
+        f"{p.rate_from:.6g} to {p.rate_to:.6g} {rate} at a load of {brief(g.strength + p.excess, unit, 9)}" for p in g.plateaus
     )
     sizes = [f"a continuum of slip rates, {flat}, where no rule picks one"] if flat else []
     if window[0] < window[1]:
         end = window[1]
-        side = "at" if end == 0.0 else f"{brief(abs(end), 'Pa')} {'above' if end > 0.0 else 'below'}"
-        sizes.append(f"a window of {brief(end - window[0], 'Pa')} that ends {side} the static strength")
+        side = "at" if end == 0.0 else f"{brief(abs(end), unit)} {'above' if end > 0.0 else 'below'}"
+        sizes.append(f"a window of {brief(end - window[0], unit)} that ends {side} the static strength")
     steps = "; ".join(
-        f"{j.direction} from {j.rate_before:.6g} to {j.rate_after:.6g} m/s at a load of {brief(j.load, 'Pa', 9)}"
+        f"{j.direction} from {j.rate_before:.6g} to {j.rate_after:.6g} {rate} at a load of {brief(j.load, unit, 9)}"
         for j in jumps[:MOST_SHOWN]
     )
     steps += f"; and {len(jumps) - MOST_SHOWN} more" if len(jumps) > MOST_SHOWN else ""
@@ -351,4 +363,5 @@ def _summary(
 def _named(problem: Problem, g: Resistance) -> str:
     law = problem.friction
     moving = law.depends_on_slip and law.depends_on_rate
-    return f"{type(law).__name__} at a slip of {g.law_slip:.6g} m" if moving else type(law).__name__
+    slip = f"{g.law_slip:.6g} {si_unit('slip', problem.load_unit)}"
+    return f"{type(law).__name__} at a slip of {slip}" if moving else type(law).__name__

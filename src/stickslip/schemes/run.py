@@ -166,7 +166,7 @@ FEWEST_CELLS = 12
 
 def check_suitable(problem: Problem) -> None:
     """Raise InputError for a problem that the schemes do not treat."""
-    slab = as_slab(problem.body, "schemes: a block has no grid")
+    slab = as_slab(problem.body, f"schemes: a {type(problem.body).__name__} has no grid: they are of an ElasticSlab")
     if slab.has_inertia:
         raise InputError(f"schemes: a contact_mass of {slab.contact_mass:g} kg/m^2 is not in the schemes: set it to 0")
     if has_dashpot(slab):
@@ -186,7 +186,7 @@ def check_suitable(problem: Problem) -> None:
 def grid_of(problem: Problem, duration: float, cells: int, courant: float) -> Grid:
     """Return the grid of a run of some duration (s). Raises InputError if it has too few or too many cells."""
     check_whole("schemes: cells", cells, FEWEST_CELLS, LARGEST_CELLS)
-    slab = as_slab(problem.body, "schemes: a block has no grid")
+    slab = as_slab(problem.body, f"schemes: a {type(problem.body).__name__} has no grid: they are of an ElasticSlab")
     far = problem.load if problem.far_stress is None else float(problem.far_stress)  # type: ignore[arg-type]
     return Grid(
         cells=cells,

@@ -12,6 +12,7 @@ import numpy as np
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.headings import COLUMNS
+from stickslip.foundation.names import TURNS
 from stickslip.foundation.show import brief
 from stickslip.friction.law import FrictionLaw
 from stickslip.inference.fit.free import DELAY, LOAD, SERVO, STATE, TREND, Free, Prior, known_numbers
@@ -53,6 +54,9 @@ def parts_of(
     if problem.ground is not None or problem.one_way:
         what = "one_way" if problem.one_way else "ground that moves"
         raise InputError(f"infer: {what} is not fitted: leave it out")
+    if problem.load_unit == TURNS:
+        kind = type(problem.body).__name__
+        raise InputError(f"infer: a contact that turns ({kind}) is not fitted: give a slab or a block, and the radius beside rpm")
     if start is not None and start not in STARTS:
         raise InputError(f"infer: start {ascii(start)[:40]} is unknown; {nearest(str(start), STARTS)}")
     found, notes = [], []
