@@ -292,6 +292,18 @@ def sliding_block(names: Names) -> None:
     assert table.loc["permanent displacement (m)", "deformable"] > 2.0 * slip
 
 
+@check
+def drill_string(names: Names) -> None:
+    """Turning goes on where torque no longer falls with the rate; runs below the edge stick, and runs above it do not."""
+    law = names["problem"].friction
+    fall = (law.static - law.dynamic) / law.rate
+    close(names["turning"], law.rate * math.log(fall / law.viscosity), 1e-8)
+    apart = names["speeds"] / np.array(names["edges"])[:, None]
+    assert names["severities"][apart < 0.97].min() > 1.0
+    assert names["severities"][apart > 1.03].max() < 0.4
+    assert (np.diff(names["edges"]) < 0.0).all()
+
+
 def name_of(path: Path) -> str:
     return path.stem.partition("_")[2]
 

@@ -1,0 +1,55 @@
+"""
+Stick-slip of a drill string
+============================
+
+The bit of a drill string stops and spins while the drive turns steadily. Here the speed of the drive and the weight on the bit are
+varied, as a driller can, and each run tells how severe its stick-slip is.
+
+You learn to turn a string in torsion, to draw a map of two numbers, and to find the edge where stick-slip ends.
+"""
+
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+from matplotlib import pyplot
+
+import stickslip as ss
+
+RPM = pi / 30  # rad/s
+problem = ss.load_scenario("drill-string").problem
+
+# %%
+# The bit is followed for 150 s from rest. Drillers call half the range of its speed over its mean the severity: from 1 on, the bit
+# stops again and again.
+
+
+def severity(weight: float, speed: float) -> float:
+    """Return the severity (1) under a weight on the bit (N) at a speed of the drive (rad/s), over the last 50 s."""
+    pressed = replace(problem, body=replace(problem.body, weight_on_bit=weight), pull_rate=speed)
+    rate = ss.simulate(pressed, "150 s").slip_rate(np.linspace(100.0, 150.0, 2501))
+    return float((rate.max() - rate.min()) / (2.0 * rate.mean()))
+
+
+weights = np.linspace(40e3, 110e3, 8)
+speeds = np.linspace(40.0, 160.0, 13) * RPM
+severities = np.array([[severity(weight, speed) for speed in speeds] for weight in weights])
+
+# %%
+# The edge is found by bisection on exact runs: up to this speed a bit that starts from rest goes on sticking. Above the other line,
+# a bit that turns already goes on turning. Between the two, what the bit did before decides.
+
+edges, turning = [], []
+for weight in weights:
+    found = ss.studies.steady(replace(problem, body=replace(problem.body, weight_on_bit=weight), pull_rate="100 rpm"))
+    edges.append(found.from_rest.sticks_at)
+    turning.append(found.changes[0].rate)
+    print(f"{weight / 1e3:.0f} kN: sticks up to {edges[-1] / RPM:.0f} rpm, turning goes on above {turning[-1] / RPM:.0f} rpm")
+
+figure, axes = pyplot.subplots(figsize=(6.4, 4.0), layout="constrained")
+shades = axes.pcolormesh(speeds / RPM, weights / 1e3, severities, cmap="viridis", vmin=0.0)
+axes.plot(np.array(edges) / RPM, weights / 1e3, color="w", label="from rest it sticks up to here")
+axes.plot(np.array(turning) / RPM, weights / 1e3, color="w", ls="--", label="turning goes on from here")
+figure.colorbar(shades, label="severity of stick-slip (1)")
+axes.set(xlabel="speed of the drive (rpm)", ylabel="weight on the bit (kN)", title="Where a drill string sticks", xlim=(35, 165))
+axes.legend(facecolor="0.4", labelcolor="w", loc="center")
