@@ -281,7 +281,7 @@ UNITS = [
     ("0.3 + sqrt(v**2 + w**2)/w", {"w": "1 mm/s"}, None),
     ("0.3 + 0.1*sin(k*u + phase)", {"k": "5 / m", "phase": "30 deg"}, None),
     ("0.3 + (E/r)**0.5/c", {"E": "1 GPa", "r": "1000 kg/m^3", "c": "1 km/s"}, None),
-    ("0.3 + 0.5/(1 + alpha*v)", {"alpha": "1 s"}, "'1 + alpha * v': a pure number and m cannot be added"),
+    ("0.3 + 0.5/(1 + alpha*v)", {"alpha": "1 kg"}, "'1 + alpha * v': a pure number and"),
     ("0.3 + 0.2*exp(-u/d) + v/w", {"d": 1.0, "w": "1 m/s"}, "exp(-u / d)': its argument must be a pure number, but is in m"),
     ("v/w + u", {"w": "1 m/s"}, "a pure number and m cannot be added"),
     ("u*w", {"w": "1 m"}, "the friction coefficient must be a pure number, but 'u * w' is in m^2"),

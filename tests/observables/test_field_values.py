@@ -239,7 +239,7 @@ def test_a_block_has_no_inside() -> None:
     ("x", "t", "side", "text"),
     [
         (-1.0, 0.0, "right", "field: x must lie between 0"),
-        (10_001.0, 0.0, "right", "thickness, 10000 m"),
+        (10_001.0, 0.0, "right", r"10000 m \(the driver\)"),
         (np.nan, 0.0, "right", "field: x must lie"),
         (0.0, 9.0, "right", "times must lie between 0 and the end of the run, 8 s"),
         (0.0, -1e-9, "left", "times must lie between"),

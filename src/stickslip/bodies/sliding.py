@@ -69,15 +69,15 @@ class ElasticSlab(Declared, WithWaves):
         word="rigid",
         default=math.inf,
     )
+    contact_mass: Number = quantity("kg/m^2", "mass of the sliding face, per unit area", at_least=0, default=0.0)
+    p_wave_speed: OptionalNumber = quantity(
+        "m/s", "compressional wave speed: only for the (constant) normal strain", above=0, default=None
+    )
     driver_inertia: Number = quantity(
         "kg/m^2", "mass of the driver, per unit area: inf for a rigid driver", at_least=0, infinite=True, word="rigid", default=0.0
     )
     driver_integral_gain: Number = quantity(
         "Pa/m", "stress with which the driver makes up for each metre that it lags behind its pull rate", at_least=0, default=0.0
-    )
-    contact_mass: Number = quantity("kg/m^2", "mass of the sliding face, per unit area", at_least=0, default=0.0)
-    p_wave_speed: OptionalNumber = quantity(
-        "m/s", "compressional wave speed: only for the (constant) normal strain", above=0, default=None
     )
 
     def __post_init__(self) -> None:
