@@ -96,7 +96,9 @@ def check_machine(problem: Problem) -> None:
         changes = resists / body.driver_inertia + math.sqrt(body.driver_integral_gain / body.driver_inertia)
     if changes * body.round_trip_time > MOST_PARTS:
         cure = "leave driver_inertia out" if heavy else "lower driver_integral_gain, or make the driver rigid"
-        raise InputError(f"ElasticSlab: the driver answers within {1.0 / changes:.3g} s, too short to be followed: {cure}")
+        raise InputError(
+            f"{type(body).__name__}: the driver answers within {1.0 / changes:.3g} s, too short to be followed: {cure}"
+        )
 
 
 def parameters_of(problem: Problem) -> Params:

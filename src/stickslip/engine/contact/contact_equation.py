@@ -97,9 +97,7 @@ def rest_limit(run: Run) -> float:
     if not math.isfinite(run.friction.stress):
         run.counts.breach = Stop.FAILED
     # The step to static friction is added to the coefficient before any product, so that the two cancel exactly if they cancel.
-    coefficient = run.friction.coefficient + run.params.static_excess
-    if run.counts.given > 0:
-        coefficient += static_step(run, run.state.state_now) - run.params.static_excess
+    coefficient = run.friction.coefficient + static_step(run, run.state.state_now)
     return run.params.normal * coefficient + run.params.stick_to
 
 

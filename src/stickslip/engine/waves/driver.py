@@ -15,11 +15,12 @@ import math
 
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.pieces import phase_at
-from stickslip.engine.series.polynomial import RECIPROCAL, copy, restrict, total
+from stickslip.engine.series.polynomial import RECIPROCAL, total
 from stickslip.engine.state.layout import TERMS
 from stickslip.engine.state.workspace import Run
 from stickslip.engine.waves.driver_at_rest import settled_rate
 from stickslip.engine.waves.tone import tone_series
+from stickslip.engine.waves.varying_forcing import cut
 
 HALVINGS = 60
 """Largest number of times (1) that a piece of load is halved."""
@@ -75,14 +76,8 @@ def pace_of(run: Run) -> float:
 @kernel
 def shorten(run: Run, share: float) -> None:
     """Keep only the given share of the piece of load, from its start."""
-    if share == 1.0:
-        return
-    phase_to = phase_at(run, share)
-    restrict(run.load, 0.0, share, run.spare)
-    copy(run.spare, run.load, TERMS)
-    run.state.speed *= share
-    run.state.bend *= share * share
-    run.state.phase_to = phase_to
+    if share < 1.0:
+        cut(run, 0.0, share, run.state.phase_from, phase_at(run, share))
 
 
 @kernel

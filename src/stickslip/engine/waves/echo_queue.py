@@ -174,10 +174,8 @@ def next_trip(run: Run, n: int, limit: float) -> int:
     if any_breaks(run, n, limit, coming):
         return coming
     way = 1 if run.params.ramp > 0.0 else -1
-    growth, first = (
-        abs(run.params.ramp) if way > 0 or run.counts.one_way == 0 else 0.0,
-        run.echoes[n].first_up if way > 0 else run.echoes[n].first_down,
-    )
+    growth = abs(run.params.ramp) if way > 0 or run.counts.one_way == 0 else 0.0
+    first = run.echoes[n].first_up if way > 0 else run.echoes[n].first_down
     trips = math.floor(room(run, first, way, limit) / growth) if growth > 0.0 else math.inf
     if not trips < 4e18:
         return NEVER

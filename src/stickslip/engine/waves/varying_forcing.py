@@ -1,10 +1,9 @@
 """Loading that varies in time: how it adds to a piece of load and cuts it, and how long a contact at rest withstands it.
 
 The inflow F (slab: Pa, block: N/s) is linear in time between breaks, or a parabola where the ground under a slab moves, plus a
-tone. A piece of load is cut where a new segment of F
-arrives; from then on the break is an edge between pieces, and so are its echoes. The load at rest grows by F from one round trip
-to the next on a slab, and by the integral of F on a block. As long as only the tone changes over some round trips, both sums are
-closed forms in F at their mean time.
+tone. A piece of load is cut where a new segment of F arrives; from then on the break is an edge between pieces, and so are its
+echoes. The load at rest grows by F from one round trip to the next on a slab, and by the integral of F on a block. As long as only
+the tone changes over some round trips, both sums are closed forms in F at their mean time.
 """
 
 from __future__ import annotations
