@@ -38,8 +38,8 @@ table = pd.DataFrame({name: in_words(run) for name, run in runs.items()})
 print(table.round(4).to_string())
 
 # %%
-# The column is shaken near its own period of 0.5 s (4 h/c): it swings, and slides more than twice as far as the rigid block. A
-# stiff one follows the ground, and slides as far as the block.
+# The record has a period of 0.67 s, near that of the column, 4 h/c = 0.5 s: the column swings, and slides more than twice as far as
+# the rigid block. The stiffer a column is, the closer it comes to the block.
 
 record = runs["rigid"].problem.ground_acceleration
 figure, (ground, rate, slip) = pyplot.subplots(3, figsize=(6.4, 6.4), sharex=True, layout="constrained")

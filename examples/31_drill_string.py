@@ -20,8 +20,8 @@ RPM = pi / 30  # rad/s
 problem = ss.load_scenario("drill-string").problem
 
 # %%
-# The bit is followed for 150 s from rest. Drillers call half the range of its speed over its mean the severity: from 1 on, the bit
-# stops again and again.
+# The bit is followed for 150 s from rest. Drillers call half the range of its speed over its mean the severity: 0 in steady
+# turning, and about 1 or more in full stick-slip, where the bit stops again and again.
 
 
 def severity(weight: float, speed: float) -> float:

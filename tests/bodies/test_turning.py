@@ -181,3 +181,19 @@ def test_sentences_on_steady_sliding_speak_of_rates_of_rotation() -> None:
     assert "m/s" not in str(found)
     massless = ss.Problem(replace(STRING, inertia=0.0), BIT, pull_rate="60 rpm", initial_load=0.0)
     assert " Pa" not in str(ss.uniqueness(massless))
+
+
+@pytest.mark.parametrize(("heaviest", "message"), [(1.05, None), (1.3, r"several slip rates .* a mass \(inertia\)")])
+def test_a_heavier_weight_is_a_torque_in_proportion(heaviest: float, message: str | None) -> None:
+    """A string without mass under a law that falls by Z at 1.2 times its normal torque: several slip rates beyond that."""
+    weight, radius = 97e3, 0.15
+    string = replace(STRING, normal_torque=None, weight_on_bit=weight, bit_radius=radius, inertia=0.0)
+    alpha = string.impedance / (1.2 * weight * radius) / 0.3
+    law = ss.friction.HyperbolicRate(static=0.8, dynamic=0.5, alpha=f"{alpha} s/rad")
+    heavier = ss.loading.PiecewiseLinear([0.0, 1.0], [weight * radius, heaviest * weight * radius])
+    problem = ss.Problem(string, law, pull_rate="60 rpm", initial_load=0.0, normal_load=heavier)
+    if message is None:
+        assert ss.simulate(problem, 1.0).status.ok
+    else:
+        with pytest.raises(ss.InputError, match=message):
+            ss.simulate(problem, 1.0)

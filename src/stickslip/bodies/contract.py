@@ -96,7 +96,7 @@ class BodyOnCharacteristics(Body, Protocol):
 
     @property
     def driver_integral_gain(self) -> float:
-        """The force of such a driver per way that it lags behind its pull rate (Pa/m)."""
+        """The integral gain ki of such a driver: stress for each metre that it lags behind what its pull rate asks for (Pa/m)."""
         ...
 
     @property
@@ -276,7 +276,7 @@ class OnSpring:
 
     @property
     def period(self: BodyOnCharacteristics) -> float:
-        """The period (s)."""
+        """The period of free undamped oscillation (s)."""
         return self.round_trip_time
 
     @property

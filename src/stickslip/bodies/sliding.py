@@ -46,7 +46,8 @@ class ElasticSlab(Declared, WithWaves):
     """A slab of given thickness in antiplane or in-plane shear: rho u_tt = G u_xx, friction at x = 0, a driver at x = h.
 
     A driver of finite impedance is a half-space. With a mass or an integral gain it is a machine, and the impedance is its
-    proportional gain: M dVd/dt = Zd (V - Vd) + ki phi + far stress - stress, with dphi/dt = V - Vd. With a contact mass the slip
+    proportional gain: M dVd/dt = Zd (V - Vd) + ki phi + far stress - stress, with dphi/dt = V - Vd, for its mass M, its rate Vd,
+    the pull rate V and the integral gain ki. With a contact mass the slip
     rate has no jumps (shocks). Raises InputError if a number is out of range, or `p_wave_speed` does not exceed sqrt(4/3)
     `wave_speed`.
     """

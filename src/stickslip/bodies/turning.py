@@ -52,9 +52,9 @@ class TorsionalString(Declared, WithWaves):
     The slip u is the angle (rad) of the bit, and loads are torques (N m). The bit resists with the torque S mu, where S is
     `normal_torque`, or `weight_on_bit` times `bit_radius`. The polar moment J of the section follows from `outer_diameter` and
     `inner_diameter` unless it is given as `polar_moment`; I = rho J is the inertia per length, and sqrt(I G J) = J sqrt(rho G) the
-    impedance. A drive of finite impedance Zd turns slower than asked by torque / Zd; with `driver_inertia` or
-    `driver_integral_gain` it is a machine, as a slab's, such as SoftTorque. With `inertia`, that of bit and collars, the
-    rate has no jumps.
+    impedance. A drive of finite impedance Zd turns slower than the pull rate by torque / Zd. With `driver_inertia` or
+    `driver_integral_gain` it is a machine, as the driver of an `ElasticSlab` can be: a top drive under SoftTorque. With `inertia`,
+    that of bit and collars, the rate has no jumps.
     """
 
     kind: ClassVar[str] = "torsional-string"

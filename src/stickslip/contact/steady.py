@@ -297,7 +297,7 @@ class _Steady:
 
     @cached_property
     def taken_away(self) -> float:
-        """Return how steeply friction may fall with the slip rate before steady sliding is unstable (Pa s/m or N s/m)."""
+        """The steepest fall of friction with the slip rate (Pa s/m, N s/m or N m s) under which steady sliding is stable."""
         body = self.problem.body
         if not body.has_waves:
             return body.damping

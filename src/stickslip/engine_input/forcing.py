@@ -170,8 +170,8 @@ def gain_of(body: BodyOnCharacteristics) -> Any:
 def machine_at_first(problem: Problem) -> tuple[float, float]:
     """Return the rate (m/s) of a machine when the first wave of the run leaves it, and the force of its integral gain (Pa).
 
-    It starts at the pull rate, in balance with the stress in the slab: that is the default of its far stress, and an integral gain
-    makes up for any other one. Without either it moves off, and without mass it does so at once.
+    A machine with a mass starts at the pull rate. Its integral force makes up for a far stress that does not balance the stress in
+    the slab; without an integral gain such a far stress accelerates it. Without mass the balance of forces sets its rate at once.
     """
     body = problem.body
     far, push = problem.far_stress, 0.0

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from stickslip.bodies import as_waves
 from stickslip.contact.rules.selection import rule_of
 from stickslip.contact.uniqueness import regime_of
 from stickslip.engine.compiled_formula import CompiledFormula, compile_formula, keep_with
@@ -25,6 +26,7 @@ from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.show import brief
 from stickslip.loading import LoadingHistory
+from stickslip.problem.parameters import pressed
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SelectionRule
 
@@ -77,12 +79,13 @@ def check_unique(problem: Problem) -> None:
     """Raise InputError if the normal load varies, and a contact without mass may have several slip rates under the largest one."""
     if problem.normal_load is None or problem.body.has_inertia or problem.friction.states:
         return
-    body, name = problem.body, problem.body.normal_field
-    most = replace(problem, body=replace(body, **{name: problem.normal_load.highest}), normal_load=None)
+    most = pressed(replace(problem, normal_load=None), problem.normal_load.highest)
     if problem.friction.depends_on_rate and regime_of(most) != "regular":
         at = f"under {brief(most.normal, problem.load_unit)}"
         why = f"{at} several slip rates solve the contact equation, and the folds between them would move"
-        raise InputError(f"normal_load: {why}: give the contact a mass (contact_mass), or a constant normal load")
+        raise InputError(
+            f"normal_load: {why}: give the contact a mass ({as_waves(problem.body).mass_field}), or a constant normal load"
+        )
 
 
 def check_machine(problem: Problem) -> None:

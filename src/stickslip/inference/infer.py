@@ -157,8 +157,8 @@ def infer(
         Where shear is measured: at the contact, or by a load cell behind the spring of a block. The two differ by the inertia of
         the block.
     normal : {"problem", "record"}
-        Where the normal load of the runs comes from. "record" takes the record's normal stress (slab) or force (block) in time, as
-        few straight lines as leave only noise; the default is that of the problem, constant or not.
+        Where the normal load of the runs comes from. "record" follows the record's normal stress (slab) or force (block) in time,
+        by the fewest straight lines that fit it within its noise; the default is that of the problem, constant or not.
     parts : "rests", optional
         Split the record after each slip event and begin a run at each rest, with the load that is measured there.
     each : list of str, optional

@@ -79,7 +79,7 @@ def field(history: History, slip: Callable[[ArrayLike], Floats], x: ArrayLike, t
 
 
 def slab_of(problem: Problem) -> BodyWithWaves:
-    """Return the slab of a problem. Raises InputError for a block."""
+    """Return the slab or the string of a problem. Raises InputError for a rigid body."""
     return as_waves(problem.body, "field: a block is rigid and has no interior field: only a slab or a string has one")
 
 

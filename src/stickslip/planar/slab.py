@@ -116,7 +116,7 @@ class PlanarSlab(CheckedArguments):
             raise InputError(f"PlanarSlab: {MACHINE} is followed in 1D only: set driver_inertia and driver_integral_gain to 0")
         if problem.normal_varies:
             raise InputError(
-                "PlanarSlab: a normal_load that varies is not followed along a contact: leave it out, or run the slab without width"
+                "PlanarSlab: a normal_load that varies is not followed along a contact: leave it out, or simulate the Problem"
             )
         if problem.ground is not None or problem.one_way:
             what = "one_way" if problem.one_way else "ground that moves"

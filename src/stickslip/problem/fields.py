@@ -26,8 +26,6 @@ from stickslip.problem.selection_rule import SelectionRule, checked
 
 HISTORIES_ONLY = ("normal_load", "ground_velocity", "ground_acceleration")
 """Fields of a problem that are a loading history or nothing."""
-GROUND = HISTORIES_ONLY[1:]
-"""Those of them that move the ground: at most one is given."""
 MAY_VARY = ("pull_rate", "far_stress", *HISTORIES_ONLY)
 """Fields of a problem that may be a loading history."""
 A_HISTORY = "; what varies in time is one of stickslip.loading, such as Steps([0.0, 10.0], [1e-6, 1e-5])"
@@ -132,7 +130,8 @@ class ProblemFields(CheckedArguments):
 
     def _check_ground(self, ground: Ground) -> None:
         if self.body.has_machine:
-            raise InputError(f"Problem: ground that moves is not followed under {MACHINE}: set those to 0, or leave it out")
+            cure = "set driver_inertia and driver_integral_gain to 0, or leave the ground at rest"
+            raise InputError(f"Problem: ground that moves is not followed under {MACHINE}: {cure}")
         if self.body.has_inertia and ground.velocity_jumps:
             why = "an infinite force on a mass: join the points (piecewise-linear), beginning with 0 m/s"
             raise InputError(f"Problem: ground_velocity jumps, which is {why}, or give ground_acceleration")
@@ -223,7 +222,7 @@ class ProblemFields(CheckedArguments):
 
     @property
     def varies(self) -> bool:
-        """True if the load at rest is no ramp: if anything is a loading history, the ground too, or the driver moves by itself."""
+        """True if the load at rest is no ramp: there is a loading history, that of the ground too, or the driver is a machine."""
         return len(self._varying) > 0 or self.body.has_machine
 
     def normal_at(self, t: ArrayLike) -> NDArray[np.float64]:

@@ -73,7 +73,7 @@ class Problem(ProblemFields):
         Velocity (m/s) or acceleration (m/s^2, or texts in "g" or "gal") of the ground under the contact: a loading history. The
         ground is at rest before the start (see Notes).
     one_way
-        True forbids backward slip, as of a block on a slope that is never shaken uphill.
+        True forbids backward slip, as of a block on a slope that never slips uphill.
     selection
         The rule that selects one slip rate if several solve the contact equation, or its name (`stickslip.selection`).
 
@@ -102,7 +102,7 @@ class Problem(ProblemFields):
 
     Where the ground moves, slip and slip rate are relative to it. A block's spring hangs on the ground, and its load gains -m a(t);
     `initial_load` is the load before the ground moves. The driver and the far stress of a slab do not move with the ground: the
-    load of its contact is beta - Z v_ground, in which beta is the wave that arrives.
+    load of its contact is beta - Z v_ground - m a_ground, in which beta is the wave that arrives and m the contact mass.
 
     See Also
     --------

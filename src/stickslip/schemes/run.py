@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
-from stickslip.bodies import MACHINE, as_slab, has_dashpot
+from stickslip.bodies import MACHINE, ElasticSlab, as_slab, has_dashpot
 from stickslip.foundation.arguments import check_whole
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
@@ -164,9 +164,16 @@ FEWEST_CELLS = 12
 """Smallest number of cells: the widest difference at two boundaries."""
 
 
+def _slab_of(problem: Problem) -> ElasticSlab:
+    """Return the slab of a problem. Raises InputError for any other body."""
+    body = problem.body
+    name = type(body).__name__ if body.has_waves else "block"
+    return as_slab(body, f"schemes: a {name} has no grid: they are of an ElasticSlab")
+
+
 def check_suitable(problem: Problem) -> None:
     """Raise InputError for a problem that the schemes do not treat."""
-    slab = as_slab(problem.body, f"schemes: a {type(problem.body).__name__} has no grid: they are of an ElasticSlab")
+    slab = _slab_of(problem)
     if slab.has_inertia:
         raise InputError(f"schemes: a contact_mass of {slab.contact_mass:g} kg/m^2 is not in the schemes: set it to 0")
     if has_dashpot(slab):
@@ -186,7 +193,7 @@ def check_suitable(problem: Problem) -> None:
 def grid_of(problem: Problem, duration: float, cells: int, courant: float) -> Grid:
     """Return the grid of a run of some duration (s). Raises InputError if it has too few or too many cells."""
     check_whole("schemes: cells", cells, FEWEST_CELLS, LARGEST_CELLS)
-    slab = as_slab(problem.body, f"schemes: a {type(problem.body).__name__} has no grid: they are of an ElasticSlab")
+    slab = _slab_of(problem)
     far = problem.load if problem.far_stress is None else float(problem.far_stress)  # type: ignore[arg-type]
     return Grid(
         cells=cells,

@@ -133,7 +133,7 @@ class MachineMotion:
 def machine_motion(problem: Problem, store: Store, duration: float) -> MachineMotion:
     """Return the motion of the machine of a problem, to h/c after the end of a run.
 
-    Of a history whose start has been forgotten it is known from the first piece on whose wave has come back.
+    If the run has forgotten its first pieces, it is known from the first kept piece on whose source is kept, too.
     """
     body, trip_time = problem.body, problem.round_trip_time
     machine = Machine(body.driver_inertia, body.driver_impedance + body.impedance, body.driver_integral_gain)
@@ -190,7 +190,7 @@ def _start_in(problem: Problem, store: Store, machine: Machine) -> tuple[Floats,
 
 
 class _Parts(NamedTuple):
-    """Parts of waves that left the contact: when (s), dt/dxi at first, half its change, the wave (Pa) as polynomials, rests."""
+    """Parts of waves that left the contact: when (s), dt/dxi at first, half its change, the wave (Pa) in powers of xi; rests."""
 
     left: Floats
     speed: Floats

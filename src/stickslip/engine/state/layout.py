@@ -64,9 +64,7 @@ class Params(MemoryRecord):
     driver_gain: float  # Pa/m: its integral gain
     pull_share: float  # m/(Pa s): tone of its pull rate over the tone of its drive
     coupling: float  # 1: how far a state falls as the normal load grows by a factor e (Linker & Dieterich 1992: alpha / b)
-    state_scale: Floats = floats_inside(
-        STATES
-    )  # units of the states: errors are relative to the state, or to these sizes where they are larger
+    state_scale: Floats = floats_inside(STATES)  # units of the states: sizes below which errors are no longer relative
 
 
 class State(MemoryRecord):

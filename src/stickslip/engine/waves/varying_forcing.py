@@ -206,7 +206,7 @@ def trips_withstood(run: Run, limit: float) -> int:
     if is_pressing(run) or (run.counts.given > 0 and segment != run.counts.trip_segment):
         return 0  # the round trip just past does not predict the next one
     if run.loading[segment].shakes == 1.0:
-        return 0  # the ground does work, which nothing but the history of each round trip knows
+        return 0  # the work of moving ground is added up over recorded pieces, so that no round trip may be left out
     if run.counts.driven == 1:
         return trips_of_machine(run, limit, room, tops(run, 1.0), tops(run, -1.0))
     is_dead = run.loading[segment].slope == 0.0 and run.loading[segment].tone == 0.0

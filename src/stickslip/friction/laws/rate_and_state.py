@@ -18,9 +18,9 @@ from stickslip.friction.law import FrictionLaw
 LARGEST_EXPONENT = 600.0
 """Largest exponent (reference + b w) / a in an exponential, which overflows at 709; a law that may reach more has another form."""
 QUARTER = math.exp(-50.0)
-"""Fourth root (1) of the smallest v / (2 rate) that this other form resolves: 1e-93 m/s, which is rest on any scale of time."""
+"""Fourth root (1) of the smallest v / (2 rate) that this other form resolves: 1e-93 m/s for a `rate` of 1e-6 m/s, which is rest."""
 LOWEST = 2800.0
-"""The exponent must exceed minus this (1) in this form."""
+"""That other form holds for exponents above minus this (1)."""
 FASTEST = 1e3
 """A slip rate (m/s) that no contact exceeds."""
 FARTHEST_STATE = 60.0
@@ -83,7 +83,7 @@ class RateAndState(DirectEffect):
 
     With y = v theta / distance, d theta/dt is 1 - y for the ageing law, -y ln y for the slip law and 1 - (y/2)^2 for the PRZ law.
     The contact never sticks: friction passes smoothly through v = 0. For an `a` so small that the exponential could overflow,
-    friction is computed by the logarithm, and slip rates below e^-200 times `rate` are not resolved.
+    friction is computed from ln v, and slip rates below e^-200 times `rate` are not resolved.
 
     Under a normal load S(t) that varies, d theta/dt gains -alpha theta S'/(b S), with alpha = `normal_stress_coupling`. A jump from
     S- to S+ multiplies theta by (S-/S+)^(alpha/b).

@@ -110,9 +110,11 @@ class Model:
             values = measured(run, name, this.sensor, time)
             if name in JUMPING:
                 values = spread(values, time, self._jumps(run, part, name), self.blur)
-            found[name] = values + shift * (
-                run.problem.normal_at(time) if name in ("shear_stress", "shear_force") else name == "friction"
-            )
+            if name == "friction":
+                values = values + shift
+            elif name in ("shear_stress", "shear_force"):
+                values = values + shift * run.problem.normal_at(time)
+            found[name] = values
         return found
 
     def _jumps(self, run: Solution, part: int, name: str) -> Jumps:

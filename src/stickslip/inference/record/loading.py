@@ -101,7 +101,7 @@ def normal_of(record: Record) -> tuple[PiecewiseLinear, tuple[str, ...]]:
 
 
 def later(history: PiecewiseLinear, by: float) -> PiecewiseLinear:
-    """Return a history as it goes on from a time (s) on."""
+    """Return the rest of a history from a time (s) on, which becomes its 0 s."""
     left = np.array(history.times)
     left = left[left > by]
     times = [0.0, *(left - by).tolist()] if len(left) else [0.0, 1.0]

@@ -32,7 +32,7 @@ LONG_NAMES = {
     "work": "work of the driver, and of moving ground",
     "stored": "elastic and kinetic energy",
     "elastic": "elastic energy",
-    "kinetic": "kinetic energy, including that of a contact mass and of a driver's",
+    "kinetic": "kinetic energy, with those of a contact mass and of the driver's mass",
     "heat": "friction heat, from the law",
     "damped": "dissipated by the block's damping",
     "radiated": "energy radiated through a driver of finite impedance; work is net of it",
@@ -178,7 +178,7 @@ def _block(history: History, at: Positions, nodes: int) -> dict[str, Floats]:
 
 
 def _pulling(history: History) -> Integrand:
-    """Return the power of the block's driver as a function of positions, W, with that of the force of inertia on moving ground."""
+    """Return the power (W) of a block's driver, and of the inertial force where the ground moves, as a function of positions."""
     problem = history.problem
 
     def power(at: Positions) -> Floats:
