@@ -11,7 +11,7 @@ You learn to compare runs side by side.
 import stickslip as ss
 
 both = ss.studies.compare("fig5-block-reconstructed-omega", "fig5-slab-reconstructed")
-print(both.table.set_index("name")[["pulses", "slip", "peak_rate", "shocks", "slip_rate"]].round(4).to_string())
+print(both.table.set_index("name")[["pulses", "slip", "peak_rate", "shocks"]].round(4).to_string())
 
 # %%
 # A block has forces and a slab stresses; the figure therefore shows friction divided by the normal load.

@@ -52,4 +52,4 @@ axes.plot(np.array(edges) / RPM, weights / 1e3, color="w", label="from rest it s
 axes.plot(np.array(turning) / RPM, weights / 1e3, color="w", ls="--", label="turning goes on from here")
 figure.colorbar(shades, label="severity of stick-slip (1)")
 axes.set(xlabel="speed of the drive (rpm)", ylabel="weight on the bit (kN)", title="Where a drill string sticks", xlim=(35, 165))
-axes.legend(facecolor="0.4", labelcolor="w", loc="center")
+axes.legend(facecolor="0.4", labelcolor="w", fontsize="small", loc="center left", bbox_to_anchor=(0.12, 0.5))
