@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from types import SimpleNamespace
 from typing import Any
 
@@ -142,7 +143,15 @@ class Drawn:
     points: Complexes
 
 
-def farthest(one: Drawn, radius: float) -> float:
+@cache
+def drawn(seed: int) -> Drawn:
+    """A random formula of depth 4, a disc, and points on it."""
+    rng = np.random.default_rng(seed)
+    formula, disc = drawn_formula(rng, 4), drawn_disc(rng)
+    return Drawn(formula, disc, disc.points(rng, 40))
+
+
+def farthest(one: Drawn, radius: float, rounding: float = ROUNDING) -> float:
     """How far a formula strays at these points, as a share of its radius; in DIGITS digits if that is too far; 0 if not known."""
     away = distances(one.formula, one.disc, one.points)
     if not np.isfinite(away).any():
@@ -151,4 +160,4 @@ def farthest(one: Drawn, radius: float) -> float:
     found = float(away[worst])
     if found > radius:
         found = exact_distance(one.formula, one.disc, one.points[:, worst])
-    return found / (radius + ROUNDING)
+    return found / (radius + rounding)

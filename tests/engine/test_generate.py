@@ -17,23 +17,8 @@ from stickslip.engine.state.layout import TERMS
 from stickslip.engine_input import prepare
 from stickslip.friction.formula import expression as e
 from stickslip.friction.formula import functions
+from tests.engine.balls import EXACT
 from tests.engine.formulas import FORMULAS, JET, VALUE, compiled, pointer
-
-
-class MpmathFunctions:
-    """The same names in 50 digits."""
-
-    sin, cos, exp, log, sqrt, tanh, arcsinh, expm1, log1p = (
-        mpmath.sin,
-        mpmath.cos,
-        mpmath.exp,
-        mpmath.log,
-        mpmath.sqrt,
-        mpmath.tanh,
-        mpmath.asinh,
-        mpmath.expm1,
-        mpmath.log1p,
-    )
 
 
 @pytest.mark.parametrize("name", FORMULAS)
@@ -44,8 +29,8 @@ def test_difference_keeps_its_digits(name: str) -> None:
     for step, rate in ((1e-13, 2e-13), (1e-7, 1e-8), (0.3, 0.2)):
         VALUE(functions.address("value"))(pointer(constants), step, rate, pointer(out))
         with mpmath.workdps(50):
-            exact = formula(MpmathFunctions, mpmath.mpf(reference) + mpmath.mpf(step), mpmath.mpf(rate))
-            exact -= formula(MpmathFunctions, mpmath.mpf(reference), mpmath.mpf(0))
+            exact = formula(EXACT, mpmath.mpf(reference) + mpmath.mpf(step), mpmath.mpf(rate))
+            exact -= formula(EXACT, mpmath.mpf(reference), mpmath.mpf(0))
         assert out[0] == pytest.approx(float(exact), rel=5e-12, abs=0.0)
 
 
@@ -59,16 +44,6 @@ def test_the_difference_of_an_exponential_is_exact_where_it_underflows() -> None
             exact = 0.5 * (mpmath.exp(-1000 * (1 + mpmath.mpf(step))) - mpmath.exp(-1000))
             slope = -500 * mpmath.exp(-1000 * (1 + mpmath.mpf(step)))
         assert [out[0], out[2]] == pytest.approx([float(exact), float(slope)], rel=1e-12, abs=0.0)
-
-
-@pytest.mark.parametrize("name", FORMULAS)
-def test_slopes_agree_with_mpmath(name: str) -> None:
-    formula, out = FORMULAS[name], np.zeros(3)
-    functions, constants = compiled(formula, 0.21)
-    VALUE(functions.address("value"))(pointer(constants), 0.1, 0.4, pointer(out))
-    by_rate = mpmath.diff(lambda v: formula(MpmathFunctions, mpmath.mpf("0.31"), v), 0.4)
-    by_slip = mpmath.diff(lambda u: formula(MpmathFunctions, u, mpmath.mpf("0.4")), 0.31)
-    assert out[1:] == pytest.approx([float(by_rate), float(by_slip)], rel=1e-9, abs=1e-12)
 
 
 def layout_of_k(rate: float, mass: float = 0.7, bend: float = 0.0, speed: float = 0.05) -> np.ndarray:

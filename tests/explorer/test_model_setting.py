@@ -153,6 +153,12 @@ def test_every_exchange_of_a_kind_makes_a_scenario(name: str) -> None:
         assert controls_of(setting)
 
 
+def test_groups_say_their_kinds_where_these_can_be_exchanged_or_are_those_of_a_part() -> None:
+    kinds = {group.table: group.kind for group in controls_of(with_kind(Setting.bundled("fig6-slab"), "friction", "sum"))}
+    tables = {"body": "elastic-slab", "friction": "sum", "loading": "constant", "initial": "excess", "run": ""}
+    assert kinds == tables | {"friction.slip": "linear-slip-weakening", "friction.rate": "exponential-stribeck"}
+
+
 def test_exchange_keeps_what_fits() -> None:
     setting = Setting.bundled("fig6-slab").with_value("friction.static", 0.75)
     changed = with_kind(setting, "friction", "exponential-stribeck")

@@ -109,6 +109,8 @@ def test_the_misfit_is_the_distance_from_what_another_integrator_made() -> None:
     (friction, moved) = answer.measured.misfits
     assert friction.value == pytest.approx(3e-4, rel=1e-4)
     assert moved.value < 1e-10  # a sensor of slip has a zero of its own
+    drawn_slip = answer.measured.curves["slip"]  # without that zero
+    assert drawn_slip == pytest.approx(answer.solution.slip(CLOCK), rel=0.0, abs=1e-9)
     assert answer.numbers[-2:] == (friction, moved)
     assert "It differs from record by friction 0.0003, slip" in answer.sentence
     view = view_of(answer)

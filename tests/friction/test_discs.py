@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
 
 import mpmath
 import numpy as np
@@ -13,34 +12,16 @@ from stickslip.friction.formula.bounds import on_discs
 from stickslip.friction.formula.operations import OPERATIONS
 from stickslip.friction.formula.operations.sets import Disc
 from stickslip.friction.formula.text import to_text
-from tests.engine.balls import DIGITS, EXACT, LEAVES, Drawn, distances, drawn_disc, drawn_formula, exact_distance, values_of
+from tests.engine.balls import DIGITS, EXACT, LEAVES, Drawn, drawn, farthest, values_of
 
 MANY, NOTHING = 500, 1e100
 NEGLIGIBLE = 1e-300
 """Size (1) of what underflows."""
 
 
-@cache
-def drawn(seed: int) -> Drawn:
-    """A random formula of depth 4, a disc, and points on it."""
-    rng = np.random.default_rng(seed)
-    formula, disc = drawn_formula(rng, 4), drawn_disc(rng)
-    return Drawn(formula, disc, disc.points(rng, 40))
-
-
 def evaluated(one: Drawn, radius: tuple[float, ...]) -> Disc:
     given = (Disc.of(centre, r) for centre, r in zip(one.disc.centre, radius, strict=True))
     return on_discs(one.formula, {}, dict(zip(LEAVES, given, strict=True)))
-
-
-def share(one: Drawn, radius: float) -> float:
-    """How far a formula strays at the points, as a share of a radius; in many digits if that is too far."""
-    away = distances(one.formula, one.disc, one.points)
-    if not np.isfinite(away).any():
-        return 0.0
-    worst = int(np.nanargmax(away))
-    found = float(away[worst])
-    return (exact_distance(one.formula, one.disc, one.points[:, worst]) if found > radius else found) / (radius + NEGLIGIBLE)
 
 
 def test_no_value_on_a_disc_of_complex_numbers_is_outside() -> None:
@@ -50,7 +31,7 @@ def test_no_value_on_a_disc_of_complex_numbers_is_outside() -> None:
         one = drawn(seed)
         radius = float(evaluated(one, one.disc.radius).radius)
         if radius < NOTHING:
-            found = share(one, radius)
+            found = farthest(one, radius, NEGLIGIBLE)
             assert found <= 1.0 + 1e-12, f"seed {seed}: {to_text(one.formula)}, {one.disc}: {found}"
             known, tight = known + 1, tight + (found > 0.5)
     assert known > 0.4 * MANY
@@ -96,4 +77,4 @@ def test_a_rule_whose_radius_is_too_small_by_a_tenth_is_noticed(rule: str, monke
 
     monkeypatch.setitem(OPERATIONS, rule, replace(true, disc=wrong))
     radii = ((one, float(evaluated(one, one.disc.radius).radius)) for one in map(drawn, range(MANY)))
-    assert any(share(one, radius) > 1.0 + 1e-12 for one, radius in radii if radius < NOTHING)
+    assert any(farthest(one, radius, NEGLIGIBLE) > 1.0 + 1e-12 for one, radius in radii if radius < NOTHING)

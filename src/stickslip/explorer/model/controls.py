@@ -246,7 +246,7 @@ class _Tables:
                 controls += [self.named(f"{table}.{name}.{one}", one) for one in given]
             elif not isinstance(entry, LawField):
                 controls.append(self.control(f"{table}.{name}", entry, default))
-        own = getattr(kind, "kind", "") if kinds or "." in table else ""
+        own = getattr(kind, "kind", "") if kinds else ""
         return ControlGroup(table, title or TITLES[table.partition(".")[0]], own, kinds, tuple(controls))
 
     def of_run(self) -> ControlGroup:
