@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -49,6 +50,26 @@ def test_the_exact_solver_slips_at_the_stress_drop_over_the_damping() -> None:
     """(Z + D) v = S (muS - muD) + excess for the first round trip."""
     run = ss.simulate(PROBLEM, 5.0)
     assert float(run.slip_rate(1.0)) == pytest.approx((DROP + 1e6) / SLAB.damping, rel=1e-13, abs=0.0)
+
+
+@pytest.mark.parametrize("law", [ss.friction.HyperbolicRate(0.8, 0.6, 0.2), ss.friction.LinearSlipWeakening(0.8, 0.6, 2.0)])
+@pytest.mark.parametrize("share", [0.0, 0.4, np.inf], ids=["dead load", "leaky", "rigid"])
+def test_waves_keep_the_impedance_and_the_contact_equation_has_both(law: ss.friction.FrictionLaw, share: float) -> None:
+    """(Z + D) v + S mu = load within 1e-9 of the load in slip, and the balance lacks D times the integral of v^2.
+
+    The trapezoidal rule with 40 001 points makes an error of 1e-6 of that integral.
+    """
+    slab = replace(SLAB, driver_impedance=share * SLAB.impedance)
+    run = ss.simulate(ss.Problem(slab, law, pull_rate=0.0, initial_excess=2e6), 30.0)
+    times = np.linspace(0.0, run.duration, 40_001)
+    rate, at = run.slip_rate(times), run.history.find(times, "right")
+    moving = rate > 0.0
+    assert moving.sum() > 1000
+    load = run.history.excess(at) + run.problem.strength
+    friction = slab.normal_stress * law.coefficient(run.slip(times), rate)
+    assert (slab.damping * rate + friction)[moving] == pytest.approx(load[moving], rel=1e-9)
+    lacks = (slab.damping - slab.impedance) * np.trapezoid(rate**2, times)
+    assert float(run.energy(times[-1:]).balance[0]) == pytest.approx(lacks, rel=1e-4)
 
 
 def test_members_of_a_batch_are_single_runs() -> None:

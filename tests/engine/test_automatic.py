@@ -82,17 +82,18 @@ def test_a_resumed_run_continues_as_if_it_had_not_stopped(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize(
-    ("problem", "shortest", "message"),
+    ("problem", "options", "message"),
     [
-        (SLOW, -1.0, "shortest_event must be at least 0 s, got -1"),
-        (SLOW, 1.0, r"shortest_event must be 0 or at most 0\.0571429 s \(1 % of the two-way travel time\), got 1 s"),
-        (SLOW, float("nan"), "shortest_event must be finite, got nan"),
-        (ss.load_scenario("fig6-block-printed").problem, 1e-3, "only under a slab with a rigid driver"),
+        (SLOW, {"shortest_event": -1.0}, "shortest_event must be at least 0 s, got -1"),
+        (ss.load_scenario("fig6-block-printed").problem, {"shortest_event": 1e-3}, "only under a slab with a rigid driver"),
+        (printed(1), {"creep_rtol": -1e-6}, "creep_rtol must be"),
+        (replace(printed(1), body=replace(BODY, driver_impedance=1e7)), {"creep_rtol": 1e-6}, "a rigid driver"),
+        (replace(printed(1), pull_rate=0.0), {"creep_rtol": 1e-6}, "a pull rate that is not 0"),
     ],
 )
-def test_runs_that_cannot_be_lumped_are_refused(problem: ss.Problem, shortest: float, message: str) -> None:
+def test_runs_that_cannot_be_lumped_or_leap_are_refused(problem: ss.Problem, options: dict[str, float], message: str) -> None:
     with pytest.raises(ss.InputError, match=message):
-        ss.simulate(problem, 1.0, shortest_event=shortest)
+        ss.simulate(problem, 1.0, **options)
 
 
 DAYS = 3 * 86_400.0

@@ -230,27 +230,6 @@ def test_leaps_are_stored_and_listed_and_shown(tmp_path) -> None:  # type: ignor
     assert len(ss.simulate(printed(100), 20 * ROUND).creep) == 0
 
 
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"body": replace(SLAB, driver_impedance=1e7)}, "a rigid driver"),
-        ({"pull_rate": 0.0}, "a pull rate that is not 0"),
-    ],
-)
-def test_creep_rtol_is_refused_where_there_are_no_leaps(changes: dict[str, object], message: str) -> None:
-    """Where there are no such leaps, asking for them is a mistake."""
-    problem = replace(printed(1), **changes)  # type: ignore[arg-type]
-    with pytest.raises(ss.InputError, match=message):
-        ss.simulate(problem, 10.0, creep_rtol=1e-6)
-
-
-@pytest.mark.parametrize("rtol", [-1e-6, 0.1, float("nan")])
-def test_creep_rtol_out_of_range_is_refused(rtol: float) -> None:
-    """One clear line."""
-    with pytest.raises(ss.InputError, match="creep_rtol must be"):
-        ss.simulate(printed(1), 10.0, creep_rtol=rtol)
-
-
 class Columns:
     """`Pattern.above` for several lifts."""
 

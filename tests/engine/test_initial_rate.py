@@ -259,17 +259,6 @@ def test_a_driver_that_gives_way_determines_the_rate_of_steady_sliding(driver: f
     assert run.slip_rate(np.linspace(0.0, run.duration, 100)) == pytest.approx(problem.rate, rel=1e-9)
 
 
-def test_a_contact_with_mass_that_can_stick_may_start_out_of_balance() -> None:
-    """Thrown at 1 m/s against Coulomb friction without a pull, a block on a soft spring stops after m v / (S mu), to 1e-6."""
-    block = ss.SpringBlock(2.0, 1e-9, 10.0)
-    problem = ss.Problem(block, ss.friction.Coulomb(0.6, 0.5), initial_load=0.0, initial_rate=1.0)
-    (event,) = ss.simulate(problem, 1.0).events.itertuples()
-    assert event.start == 0.0
-    assert event.end == pytest.approx(2.0 / 5.0, rel=1e-6)
-    assert event.slip == pytest.approx(0.5 * 2.0 / 5.0, rel=1e-6)
-    assert ss.Problem(block, ss.friction.Coulomb(0.6, 0.5), initial_load=0.0, initial_rate=0.0).rate == 0.0
-
-
 def test_scenario_command_line_and_file_know_steady_sliding(tmp_path: Path) -> None:
     scenario = ss.scenarios["fig6-slab"].with_values({"initial.rate": "steady", "pull_rate": 10.0, "duration": 10.0})
     assert 'rate = "steady"' in scenario.to_toml()
@@ -329,8 +318,8 @@ def test_the_initial_rate_can_be_swept_and_set(tmp_path: Path) -> None:
     path.write_text(SCENARIO.replace("INITIAL", 'load = "60 MN"\nstate = "0.2 s"'))
     scenario = ss.load_scenario(path)
     assert scenario.with_values({"initial.rate": "2 mm/s"}).problem.rate == 2e-3
-    swept = ss.sweep(scenario, {"initial.rate": [1e-4, 1e-2]}, quantities=["slip"])
-    alone = [float(ss.simulate(scenario.with_values({"initial.rate": rate})).slip(0.2)) for rate in (1e-4, 1e-2)]
+    swept = ss.sweep(scenario, {"initial.rate": [-1e-3, 1e-2]}, quantities=["slip"])
+    alone = [float(ss.simulate(scenario.with_values({"initial.rate": rate})).slip(0.2)) for rate in (-1e-3, 1e-2)]
     assert swept["slip"].to_numpy().tolist() == alone
     assert scenario.with_values({"initial.rate": 2e-3}).problem.parameters["initial.rate"].put(1e-5).rate == 1e-5
 

@@ -72,17 +72,6 @@ def test_cycles_of_a_block_are_all_alike_and_known(direction: int) -> None:
     assert len(ss.simulate(replace(problem, friction=replace(WEAKENING, memory="all")), run.duration).catalogue(1e-2)) == 1
 
 
-def test_a_vanishing_weakening_distance_gives_coulomb_cycles() -> None:
-    """Distance and pull rate to 0: slip 2 (muS - muD) S / K, duration pi sqrt(m / K), recurrence slip / V."""
-    law, pull = replace(WEAKENING, distance=1e-11), 1e-9
-    slip = 2 * 0.2 * BLOCK.normal_force / BLOCK.stiffness
-    events = ss.simulate(pulled(law, pull), 2.5 * slip / pull).catalogue(1e-6)
-    assert events.slip.to_numpy() == pytest.approx(np.full(3, slip), rel=1e-6, abs=0.0)
-    duration = (events.end - events.start).to_numpy()
-    assert duration == pytest.approx(np.full(3, math.pi * math.sqrt(BLOCK.mass / BLOCK.stiffness)), rel=1e-3, abs=0.0)
-    assert np.diff(events.start) == pytest.approx(np.full(2, slip / pull), rel=1e-6, abs=0.0)
-
-
 HEALING = {
     "block": lambda rng: problems.block(rng),
     "slab": lambda rng: problems.slab(rng),

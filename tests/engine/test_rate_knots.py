@@ -105,13 +105,3 @@ def test_maxwell_jumps_at_equal_areas_of_a_polyline() -> None:
         corners = np.array([low, *(v for v in LAW.rates if low < v < high), high])
         over = Z * corners + S * LAW.coefficient(0.0, corners) - float(run.load(shock.time))
         assert abs(np.trapezoid(over, corners)) < 1e-10 * np.trapezoid(np.abs(over), corners)
-
-
-@pytest.mark.parametrize("contact_mass", [0.0, 3e5])
-def test_energy_balances_under_a_table_over_rate_with_echoes(contact_mass: float) -> None:
-    law = ss.friction.FromTable(friction=[0.7, 0.5, 0.45, 0.5], rate=[0.0, 0.2, 1.0, 3.0])
-    slab = replace(SLAB, thickness=1e3, contact_mass=contact_mass)
-    run = ss.simulate(ss.Problem(slab, law, pull_rate=0.3, initial_excess=-1e5), 6.0)
-    energy = run.energy(np.linspace(0.0, 6.0, 13))
-    assert len(run.catalogue(0.0)) > 1
-    assert float(np.abs(energy.balance).max() / energy.heat[-1]) < 1e-10

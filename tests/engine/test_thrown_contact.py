@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -53,13 +52,6 @@ def test_a_block_thrown_on_its_spring_swings_for_a_quarter_about_the_place_where
     assert run.slip(times) == pytest.approx(way * (centre + size * np.sin(w * times + phase)), abs=1e-10)
     spent = run.energy(np.append(times, 5.0))
     assert np.abs(spent.balance).max() < 1e-10 * float(spent.heat[-1])
-
-
-def test_without_friction_in_slip_a_quarter_of_the_oscillation_lasts_a_quarter_of_the_period() -> None:
-    smooth = ss.friction.Coulomb(1e6, 0.0)
-    run = ss.simulate(ss.Problem(BLOCK, smooth, initial_load=0.0, initial_rate=1.0), 5.0)
-    assert run.events.end[0] == pytest.approx(0.25 * BLOCK.round_trip_time, rel=1e-9)
-    assert float(run.slip(5.0)) == pytest.approx(math.sqrt(BLOCK.mass / BLOCK.stiffness), rel=1e-10)
 
 
 LAWS: dict[str, ss.friction.FrictionLaw] = {
@@ -121,33 +113,3 @@ def test_a_thrown_slab_with_a_contact_mass_decays_to_its_stop(way: int) -> None:
     assert way * run.slip_rate(times) == pytest.approx([exact(t) for t in times], abs=1e-9 * rate)
     spent = run.energy(np.linspace(0.0, 1.0, 11))
     assert np.abs(spent.balance).max() < 1e-9 * float(spent.heat[-1])
-
-
-def test_a_contact_without_mass_is_told_to_take_one() -> None:
-    with pytest.raises(ss.InputError) as error:
-        ss.Problem(replace(SLAB, contact_mass=0.0), COULOMB, initial_load=0.0, initial_rate=1.0)
-    assert str(error.value) == (
-        "Problem: initial_rate: a contact without mass has no slip rate of its own, load and friction determine it: give it a mass,"
-        " leave the rate out, or leave out load and state, so that it starts in steady sliding"
-    )
-
-
-def test_the_rate_is_swept_and_set_where_the_scenario_gives_none(tmp_path: Path) -> None:
-    """A batch starts from rest, so that the sweep runs its members one by one; each is the run alone."""
-    path = tmp_path / "rest.toml"
-    path.write_text(
-        '[body]\nkind = "spring-block"\nmass = 2\nstiffness = 30\nnormal_force = 20\n'
-        '[friction]\nkind = "coulomb"\nstatic = 0.6\ndynamic = 0.4\n[initial]\nload = 0\n[run]\nduration = "2 s"\n'
-    )
-    scenario = ss.load_scenario(path)
-    swept = ss.sweep(scenario, {"initial.rate": [0.5, -1.0]}, quantities=["slip"])
-    alone = [float(ss.simulate(scenario.with_values({"initial.rate": rate})).slip(2.0)) for rate in (0.5, -1.0)]
-    assert swept["slip"].to_numpy() == pytest.approx(alone, rel=1e-14)
-    thrown = scenario.with_values({"initial.rate": "0.5 m/s"})
-    assert ss.load_scenario(_saved(thrown.to_toml(), tmp_path)).problem == thrown.problem
-
-
-def _saved(text: str, folder: Path) -> Path:
-    path = folder / "thrown.toml"
-    path.write_text(text)
-    return path

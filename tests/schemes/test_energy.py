@@ -18,7 +18,8 @@ LOOP = ss.load_scenario("fig4-loop").problem
 FAST = replace(ss.load_scenario("fig6-slab").problem, pull_rate=0.5)
 UNDAMPED = ("characteristics", "central-differences", "central-differences-cfl1", "mass-redistribution", "newmark", "regularised")
 """Schemes that conserve the energy that they count, by their formulas."""
-CASES = {"smooth": (SMOOTH, 4.0), "shocks and rest": (FAST, 12.0), "a driver that gives way": (LOOP, 5.7)}
+SOFT = replace(LOOP, body=replace(SLAB, driver_impedance=4e6), far_stress=6.5e7)
+CASES = {"smooth": (SMOOTH, 4.0), "shocks and rest": (FAST, 12.0), "a driver that gives way": (SOFT, 5.7)}
 
 
 def balance(series: Series) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
