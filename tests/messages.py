@@ -19,10 +19,10 @@ def places_twice(text: str) -> set[str]:
 
 @contextmanager
 def refused(*parts: str, begins: str = "") -> Iterator[None]:
-    """Fail unless what is done inside is refused, in one line that begins as is said and has these parts."""
+    """Fail unless what is done inside is refused, in one printable line that begins as is said and has these parts."""
     with pytest.raises(InputError) as told:
         yield
     text = str(told.value)
-    assert "\n" not in text
+    assert text.isprintable(), text
     assert text.startswith(begins), text
     assert all(part in text for part in parts), text

@@ -91,7 +91,11 @@ CASES = {
         pull_rate=1e-3,
     ),
     "power of slip": case(
-        SLAB, _f.PowerSlipWeakening(0.6, 0.4, 0.2, 0.4), 60.0, {"friction.distance": (0.05, 1.0)}, pull_rate=0.01
+        SLAB,
+        _f.PowerSlipWeakening(0.6, 0.4, 0.2, 0.4),
+        60.0,
+        {"friction.distance": (0.05, 1.0), "friction.exponent": (0.3, 2.5)},
+        pull_rate=0.01,
     ),
     "parabolic": case(
         SLAB,

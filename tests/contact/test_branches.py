@@ -36,8 +36,8 @@ def scanned(found, load):
     return SCAN[crossed], SCAN[crossed + 1], level[crossed + 1] > 0.0
 
 
-@settings(max_examples=60)
-@given(law=KINDS, slip=st.floats(0.0, 3.0), share=st.floats(-1.5, 1.5))
+@settings(max_examples=80)
+@given(law=st.one_of(KINDS, KINDS, wavy_laws), slip=st.floats(0.0, 3.0), share=st.floats(-1.5, 1.5))
 def test_the_admissible_set_contains_every_root_of_a_dense_scan(law, slip, share):
     found = ss.uniqueness(problem_of(law, slip))
     strength = found.resistance.strength
@@ -209,24 +209,6 @@ def test_folds_move_with_slip(slip):
                     -law.beat * np.sin(law.beat * rate + law.turn * slip) - np.cos(law.beat * rate + law.turn * slip) / law.fade
                 )
                 assert abs(Z + slope) < 1e-12 * Z * 10
-
-
-@settings(max_examples=25)
-@given(law=wavy_laws, slip=st.floats(0.0, 10.0), share=st.floats(0.001, 0.999))
-def test_every_root_of_a_dense_scan_is_found(law, slip, share):
-    g = resistance(slab_problem(law), slip)
-    stable = branches_of(g)
-    excess = g.start + share * (g.fastest(0.0) * Z * 0.3 - g.start)
-    rates, kinds = rates_at(g, stable, excess)
-    scan = np.concatenate(([0.0], np.geomspace(1e-9, 1e3, 200_001)))
-    level = Z * scan + S * (law.coefficient(slip, scan) - law.coefficient(slip)) + g.start - excess
-    crossings = np.flatnonzero((level[1:] > 0) != (level[:-1] > 0))
-    moving = rates > 0.0
-    assert np.count_nonzero(moving) == crossings.size
-    for rate, i in zip(rates[moving], crossings, strict=True):
-        assert scan[i] * (1 - 1e-9) <= rate <= scan[i + 1] * (1 + 1e-9)
-    assert kinds[moving].tolist() == (level[crossings + 1] > 0).tolist()
-    assert np.all(np.abs(g.excess(rates[moving]) - excess) <= 1e-15 * (S + Z * rates[moving]) * 4)
 
 
 def test_friction_without_a_scale_is_searched_at_one_metre_per_second():

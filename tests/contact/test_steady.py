@@ -183,29 +183,6 @@ def test_the_critical_stiffness_is_that_of_rice_and_ruina(mass: float):
         assert steady_slidings(ss.Problem(body, law, pull_rate=rate)).slidings[0].stable is stable
 
 
-def test_the_critical_pull_rate_under_rate_and_state_solves_rice_and_ruina():
-    """K_c(V) = K at V = sqrt((K Dc/(S (b - a)) - 1) S a Dc / m), to 1e-9."""
-    law, normal, mass = ss.friction.RateAndState(**AGEING, distance=1e-5), 1e6, 10.0
-    stiffness = 2.0 * normal * 0.005 / 1e-5
-    found = steady_slidings(ss.Problem(ss.SpringBlock(mass, stiffness, normal), law, pull_rate=1e-6))
-    (change,) = found.changes
-    assert change.pull_rate == pytest.approx(math.sqrt(normal * 0.01 * 1e-5 / mass), rel=1e-6, abs=0.0)
-    assert not change.stable_above
-    assert not found.proven
-
-
-def test_two_states_that_are_alike_are_one():
-    """b1 + b2 = b with equal distances: growth as under one state, to 1e-9."""
-    body = ss.SpringBlock(1.0, 5e7, 1e6)
-    one = ss.friction.RateAndState(**AGEING, distance=1e-5)
-    two = ss.friction.TwoStateRateAndState(
-        a=0.01, b=0.009, second_b=0.006, distance=1e-5, second_distance=1e-5, rate=1e-6, reference=0.6
-    )
-    alone, together = (steady_slidings(ss.Problem(body, law, pull_rate=1e-4)).slidings[0] for law in (one, two))
-    assert together.growth == pytest.approx(alone.growth, rel=1e-9, abs=0.0)
-    assert together.period == pytest.approx(alone.period, rel=1e-9, abs=0.0)
-
-
 # ---- drivers that give way --------------------------------------------------------------------------------------------------
 
 

@@ -1,11 +1,10 @@
 """Truth for the tests of leaps over creep: the printed slab of Fig. 5, pulled `faster` times faster, every round trip run.
 
-    python -m tests.engine.creep_truth engine 10
-    python -m tests.engine.creep_truth grid 1 64000
+    python -m tests.engine.creep_truth 1 64000
 
-prints the time at which slip has grown by 1 cm, in the middle of the first dynamic pulse. `engine` runs the exact engine and
-forgets all but the last two round trips: 134 million pieces and 104 s for 10, a hundred times that for 1. `grid` shares nothing
-with the package: the load at so many offsets of the round trip, friction and slip by the implicit midpoint rule.
+prints the time at which slip has grown by 1 cm, in the middle of the first dynamic pulse. The method shares nothing with the
+package: the load at so many offsets of the round trip, friction and slip by the implicit midpoint rule. With 64000 of them its
+error is below 1e-6 s for 10 and 100, where the engine itself runs every round trip (134 million pieces for 10).
 """
 
 from __future__ import annotations
@@ -15,15 +14,8 @@ from dataclasses import replace
 
 import numba
 import numpy as np
-from scipy.optimize import brentq
 
 import stickslip as ss
-from stickslip.engine.loop import run_until
-from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Stop
-from stickslip.engine.state.workspace import counts_in, lend_history, state_in
-from stickslip.engine_input.prepare import prepare
-from stickslip.trajectory.history import History
 
 GROWN = 0.01
 ROUND, IMPEDANCE = 2 * 1e4 / 3500.0, 2800.0 * 3500.0
@@ -35,43 +27,9 @@ def printed(faster: float) -> ss.Problem:
     return replace(problem, pull_rate=faster * problem.pull_rate)
 
 
-def by_engine(problem: ss.Problem) -> float:
-    """Time (s) at which slip has grown by GROWN, by the exact engine, one round trip at a time."""
-    _setup, memory = prepare(problem, 1e-10)  # its tables live as long as the memory that holds their addresses
-    store, trees = at.new_store(4096), at.EchoNode.table(4096)
-    state, count = state_in(memory), counts_in(memory)
-    lend_history(memory, store, trees)
-    count.pause_at = 1
-    while True:
-        code = run_until(memory, 10**9, 1.0, 10**9)
-        if code == Stop.FULL:
-            store = at.resized_store(store, int(count.length), 2 * len(store.pieces))
-            trees = at.EchoNode.table(len(store.pieces))
-            lend_history(memory, store, trees)
-            continue
-        assert code == Stop.PAUSED
-        row = slice(int(count.previous_from), int(count.previous_to))
-        pieces = row.stop - row.start
-        if state.slip_now > GROWN:
-            return _crossing(at.Store(*(part[row].copy() for part in store)), problem, int(count.trip) - 1)
-        for part in store:
-            part[:pieces] = part[row]
-        count.previous_from, count.previous_to = 0, pieces
-        count.trip_from, count.length, count.pause_at = pieces, pieces, count.trip + 1
-
-
-def _crossing(store: at.Store, problem: ss.Problem, row: int) -> float:
-    history = History(store, problem, ROUND, 0.0, (row + 1) * ROUND)
-
-    def beyond(t: float) -> float:
-        return float(history.slipped(history.find(np.array([t]), "right"))[0]) - GROWN
-
-    return float(brentq(beyond, row * ROUND, np.nextafter((row + 1) * ROUND, 0.0), xtol=1e-12))
-
-
 @numba.njit  # type: ignore[untyped-decorator]
 def by_grid(points: int, pull_rate: float, first_slip: float, excess: float) -> float:
-    """The same, with the load at `points` offsets of the round trip."""
+    """Time (s) at which slip has grown by GROWN, with the load at `points` offsets of the round trip."""
     normal, amplitude, wavenumber = 1e8, 0.5, 5.0
     step, load, slip = ROUND / points, np.empty(points), 0.0
     for i in range(points):
@@ -94,8 +52,5 @@ def by_grid(points: int, pull_rate: float, first_slip: float, excess: float) -> 
 
 
 if __name__ == "__main__":
-    method, problem = sys.argv[1], printed(float(sys.argv[2]))
-    if method == "engine":
-        sys.stdout.write(f"{by_engine(problem)!r}\n")
-    else:
-        sys.stdout.write(f"{by_grid(int(sys.argv[3]), problem.pull_rate, problem.initial_slip, problem.excess)!r}\n")
+    problem = printed(float(sys.argv[1]))
+    sys.stdout.write(f"{by_grid(int(sys.argv[2]), problem.pull_rate, problem.initial_slip, problem.excess)!r}\n")

@@ -98,7 +98,7 @@ def test_runs_that_cannot_be_lumped_or_leap_are_refused(problem: ss.Problem, opt
 
 DAYS = 3 * 86_400.0
 PULSE = 234901.286195246
-"""Time (s) at which slip of the printed slab has grown by 1 cm: `tests.engine.creep_truth grid 1 64000`."""
+"""Time (s) at which slip of the printed slab has grown by 1 cm: `tests.engine.creep_truth 1 64000`."""
 WEAKENING = ss.load_scenario("fig6-slab").problem
 
 

@@ -18,6 +18,7 @@ from stickslip.friction import FrictionLaw
 from stickslip.scenarios import Scenario
 from stickslip.scenarios.stability import start_of
 from stickslip.studies.separation import disturbed
+from tests.messages import refused
 
 NORMAL, SPEED = 1e8, 1e-4
 LAW = ss.friction.RateAndState(0.6, 0.01, 0.015, 1e-5, 1e-6)
@@ -220,10 +221,8 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
 @pytest.mark.parametrize("name", REFUSED)
 def test_what_cannot_start_is_refused_in_one_line(name: str) -> None:
     given, message = REFUSED[name]
-    with pytest.raises(ss.InputError) as error:
+    with refused(message):
         ss.Problem(**({"body": BLOCK, "friction": LAW} | given))
-    assert message in str(error.value)
-    assert "\n" not in str(error.value)
 
 
 @pytest.mark.parametrize("name", BODIES)

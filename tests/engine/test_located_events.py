@@ -26,19 +26,6 @@ def test_the_onset_of_a_slowly_loaded_slab_has_its_closed_form() -> None:
     assert slips_from(run) == pytest.approx(-excess * THICKNESS / (MODULUS * pull), rel=1e-12, abs=0.0)
 
 
-def test_the_onset_of_a_slowly_loaded_block_has_its_closed_form() -> None:
-    block = ss.SpringBlock(2.0, 50.0, 10.0)
-    run = ss.simulate(ss.Problem(block, F.Coulomb(0.5, 0.3), pull_rate=1e-3, initial_excess=-4.0), 100.0)
-    assert slips_from(run) == pytest.approx(4.0 / (50.0 * 1e-3), rel=1e-12, abs=0.0)
-
-
-def test_a_coulomb_block_stops_after_half_a_period() -> None:
-    """V = 0: half a period of free oscillation, whatever the load."""
-    block = ss.SpringBlock(2.0, 50.0, 10.0)
-    run = ss.simulate(ss.Problem(block, F.Coulomb(0.5, 0.4), initial_excess=0.3), 10.0)
-    assert run.catalogue(0.0).end.iloc[0] == pytest.approx(math.pi * math.sqrt(2.0 / 50.0), rel=1e-12, abs=0.0)
-
-
 def test_the_dead_load_loop_jumps_at_its_folds() -> None:
     """The load rises and falls linearly in time: it passes S muS on its way up and the lower fold on its way down."""
     pull, slope = 2.6, IMPEDANCE * 2.6 / (ROUND / 2)

@@ -11,13 +11,9 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
-from stickslip.batch import run_members
 from stickslip.run import catalogue as module
-from stickslip.scenarios.scenario import Scenario
-from stickslip.trajectory.slip_events import default_event_rate
 from stickslip.trajectory.turning_points import TURNS, Spare, descend
 from tests.batch.cases import CASES as MEMBERS
-from tests.long_runs.problems import RUNS
 from tests.problems import IMPEDANCE, NORMAL, ROUND, SLAB
 
 F = ss.friction
@@ -136,32 +132,6 @@ def test_a_thousand_events_keep_their_onsets_while_their_history_is_forgotten(mo
     assert table.traction_drop[:1000].to_numpy() == pytest.approx(known.before - known.after, **CLOSE)
 
 
-def test_members_of_a_batch_begin_and_end_so_too() -> None:
-    blocks = [known_block(static=one) for one in (0.6, 0.65, 0.7)]
-    slabs = [known_echo(excess=one) for one in (4e5, 3e5, 5e5)]
-    wanted = ("first_start", "first_end", "first_duration", "first_slip", "first_traction_drop")
-    for all_known, varied in ((blocks, {"friction.static": np.array([0.6, 0.65, 0.7])}), (slabs, {})):
-        loads = np.array([known.problem.initial_load for known in all_known])
-        scenario = Scenario(all_known[0].problem, duration_of(all_known[0]), rtol=1e-13)
-        found = run_members(scenario, {"initial.load": loads, **varied}, wanted)
-        assert found.reason == {}
-        for n, known in enumerate(all_known):
-            drop = known.before - known.after
-            expected = [known.start[0], known.end[0], known.end[0] - known.start[0], known.slip, drop]
-            assert [found.results[quantity][n] for quantity in wanted] == pytest.approx(expected, rel=1e-13, abs=0.0)
-
-
-@pytest.mark.parametrize("name", ["block that heals", "slab that heals", "contact mass", "steps, slab", "tone, block"])
-def test_the_threshold_only_decides_what_counts(name: str) -> None:
-    """Events that pass the default rate are the same rows among all slips: also slips that begin as the one before ends."""
-    run = ss.simulate(*RUNS[name])
-    every = run.catalogue(0.0).set_index("start")
-    assert len(run.events) > 0
-    pd.testing.assert_frame_equal(
-        every.loc[run.events.start].drop(columns="recurrence"), run.events.set_index("start").drop(columns="recurrence")
-    )
-
-
 def test_slips_that_touch_are_events_of_their_own_at_every_rate() -> None:
     """The rounding of the slip rate where it touches zero no longer decides whether two slips are one."""
     run = ss.simulate(MEMBERS["parabolic"].scenario.problem, 60.0)
@@ -184,16 +154,6 @@ def test_where_the_rate_turns_on_the_way_the_threshold_cuts() -> None:
         assert run.slip_rate(time.to_numpy()) == pytest.approx(0.2, rel=1e-12, abs=0.0)
     assert cut.traction_before.to_numpy() == pytest.approx(run.traction(cut.start.to_numpy()), rel=1e-12, abs=0.0)
     assert run.events.start[0] == 0.0
-
-
-@pytest.mark.parametrize("name", ["rate and state, block", "rate and state, slab"])
-def test_where_nothing_rests_the_threshold_cuts(name: str) -> None:
-    run = ss.simulate(*RUNS[name])
-    events, rate = run.events, default_event_rate(run.problem)
-    assert len(events) > 0
-    times = np.append(events.start[events.start > 0.0], events.end.dropna())
-    assert len(times) > 0
-    assert np.abs(run.slip_rate(times)) == pytest.approx(rate, rel=1e-6, abs=0.0)
 
 
 def test_a_rate_that_turns_is_noticed_and_rounding_is_not() -> None:

@@ -11,13 +11,10 @@ import stickslip as ss
 from stickslip.run.progress import Report
 from tests.problems import (
     IMPEDANCE,
-    MODULUS,
     NORMAL,
-    PULL,
     RATE_LAW,
     ROUND,
     SLAB,
-    THICKNESS,
     rate_law_slab,
     slip_law_slab,
 )
@@ -113,43 +110,6 @@ def test_block_swings_back_and_forth_under_weak_friction() -> None:
     assert float(run.slip(10.0)) == pytest.approx(slips[-1], rel=0, abs=1e-11)
     assert float(run.load(10.0)) == pytest.approx(20 - 50 * slips[-1], rel=0, abs=1e-10)
     assert len(run.catalogue(0.0)) == 3
-
-
-def test_slip_weakening_counts_the_path() -> None:
-    """Back and forth, the law goes on weakening: the fourth swing meets only dynamic friction."""
-    block = ss.SpringBlock(2.0, 50.0, 10.0)
-    run = ss.simulate(ss.Problem(block, F.LinearSlipWeakening(0.3, 0.1, 0.5), initial_load=20.0), 1.0)
-    times = np.linspace(0.05, 0.95, 50)
-    rate, force = run.slip_rate(times), run.traction(times)
-    walked = np.cumsum(np.abs(np.diff(run.slip(np.linspace(0, 1, 20001)))))
-    path = np.interp(times, np.linspace(0, 1, 20001)[1:], walked)
-    law = np.where(path < 0.5, 0.3 - 0.4 * path, 0.1)
-    assert force == pytest.approx(10.0 * law * np.sign(rate), rel=0, abs=2e-4)
-
-
-def test_events_of_the_reconstructed_slab_have_physical_drops() -> None:
-    run = ss.simulate(slip_law_slab(50.0, 1e-3, extra_load=3430.0), 20.0)
-    event = run.events.iloc[0]
-    assert event.static_drop == pytest.approx(MODULUS / THICKNESS * event.slip, rel=1e-12, abs=0.0)
-    before, after = run.traction(0.0, side="left"), run.traction(event.end)
-    assert event.traction_drop == pytest.approx(float(before - after), rel=1e-9, abs=0.0)
-
-
-def test_event_rate_decides_what_is_an_event() -> None:
-    run = ss.simulate(slip_law_slab(50.0, 1e-3, extra_load=3430.0), 20.0)
-    assert len(run.events) == 1
-    pulses = run.catalogue(1.0)
-    assert len(pulses) == 3
-    assert pulses.start[0] == run.events.start[0] == 0.0
-    assert np.all(run.slip_rate(pulses.start[1:]) == pytest.approx(1.0, rel=1e-9, abs=0.0))
-    assert np.all(run.slip_rate(pulses.end) == pytest.approx(1.0, rel=1e-9, abs=0.0))
-
-
-def test_lossy_slab_locks_for_ever() -> None:
-    lossy = replace(SLAB, driver_impedance=3e6)
-    run = ss.simulate(ss.Problem(lossy, RATE_LAW, pull_rate=PULL, initial_excess=-1e6), 1e9)
-    assert run.status.name == "locked for ever"
-    assert float(run.load(1e9)) == pytest.approx(run.problem.load + 3e6 * PULL, rel=1e-12, abs=0.0)
 
 
 def test_far_stress_rate_reloads_a_lossy_slab() -> None:

@@ -106,9 +106,7 @@ UNSTABLE = ss.friction.RateAndState(0.6, 0.01, 0.015, 1e-7, 1e-4)
     "problem",
     [
         pulled(LAB, law("0.3 + 0.3/(1 + 0.001*v)")),  # swings grow by 6e-5 in each round trip and touch rest
-        ss.Problem(
-            LAB, ss.friction.RateAndState(0.6, 0.01, 0.015, 1e-7, 1e-4), pull_rate=1e-4, initial_load=0.6e6, initial_state=1e-3
-        ),
+        ss.Problem(LAB, UNSTABLE, pull_rate=1e-4, initial_load=0.6e6, initial_state=1e-3),
         pulled(LAB, ss.friction.HyperbolicRate(0.8, 0.3, 1.0)),
     ],
 )

@@ -16,7 +16,7 @@ from stickslip.explorer.model.solve import Stopped, solve
 from stickslip.explorer.server import desk as desks
 from stickslip.explorer.server.desk import ThreadDesk
 from stickslip.foundation.errors import InputError
-from stickslip.scenarios.scenario import read_scenario
+from stickslip.scenarios import load_scenario
 
 LONG = 20.0
 """Time (s) after which a test gives up waiting."""
@@ -201,70 +201,30 @@ def test_one_desk_does_not_wait_for_another(page: Page) -> None:
     other.desk.close()
 
 
-ENDLESS = """
-[body]
-kind = "elastic-slab"
-density = 2800
-wave_speed = 3500
-thickness = "10 km"
-normal_stress = "100 MPa"
-contact_mass = 1e6
-
-[friction]
-kind = "hyperbolic-rate"
-static = 0.8
-dynamic = 0.3
-alpha = 1.0
-
-[loading]
-pull_rate = 0.1
-
-[initial]
-excess = "1 MPa"
-
-[run]
-duration = "1e9 s"
-rtol = 1e-12
-"""
-"""A scenario whose run takes days."""
-
-
-@pytest.fixture
-def endless(monkeypatch: pytest.MonkeyPatch) -> Callable[[Callable[[str], None]], Any]:
-    """Return the work of the explorer on a run that nothing but an end from outside ends soon."""
+def test_a_run_of_days_ends_for_a_newer_value_at_a_stop_and_with_its_page(page: Page, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The work of the explorer itself: a newer value drops it, a stop shows it as far as it came, and no run outlives its page."""
     monkeypatch.setattr(solving, "MOST_PIECES", 10**9)
     monkeypatch.setattr(desks, "PATIENCE", 0.0)
-    return partial(solve, read_scenario(ENDLESS, "endless"))
+    days = {"body.contact_mass": 1e6, "loading.pull_rate": 0.1, "run.duration": 1e9, "run.rtol": 1e-12}
+    endless = partial(solve, load_scenario("fig6-slab").with_values(days))
 
+    def begin() -> None:
+        page.news.clear()
+        page.ask(endless)
+        page.until(lambda: bool(page.news))
 
-def wait_for_news(page: Page) -> None:
-    """Wait until the page is told that its run is under way."""
-    page.until(lambda: bool(page.news))
-
-
-def test_a_closed_page_leaves_no_run_at_work(page: Page, endless: Callable[[Callable[[str], None]], Any]) -> None:
-    page.ask(endless)
-    wait_for_news(page)
-    (thread,) = [one for one in threading.enumerate() if one is page.desk._thread]
-    page.desk.close()
-    thread.join(LONG)
-    assert not thread.is_alive()
-    assert page.results == []
-
-
-def test_a_new_value_of_a_slider_ends_the_run_of_the_old_one(page: Page, endless: Callable[[Callable[[str], None]], Any]) -> None:
-    page.ask(endless)
-    wait_for_news(page)
+    begin()
     page.ask(lambda told: "the new one")
     page.until(lambda: bool(page.results))
     assert page.results == ["the new one"]
-
-
-def test_stop_shows_an_endless_run_as_far_as_it_came(page: Page, endless: Callable[[Callable[[str], None]], Any]) -> None:
-    page.ask(endless)
-    wait_for_news(page)
+    begin()
     page.desk.stop()
-    page.until(lambda: bool(page.results or page.faults))
-    (answer,) = page.results
-    assert answer.solution.status.name == "interrupted"
-    assert len(answer.solution.history) > 0
+    page.until(lambda: len(page.results) == 2)
+    assert page.results[1].solution.status.name == "interrupted"
+    assert len(page.results[1].solution.history) > 0
+    begin()
+    thread = page.desk._thread
+    page.desk.close()
+    thread.join(LONG)
+    assert not thread.is_alive()
+    assert (len(page.results), page.faults) == (2, [])

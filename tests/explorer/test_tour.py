@@ -223,15 +223,3 @@ def test_the_rate_after_the_jump_is_a_straight_line_in_normal_stress() -> None:
     rate, jumps = strip.results["peak_rate"], strip.values > 19.6e6
     np.testing.assert_allclose(rate[jumps], strip.values[jumps] * 0.5 / 9.8e6 - 1.0, rtol=1e-7)
     assert np.isnan(rate[~jumps]).all()
-
-
-def test_twice_the_normal_stress_halves_the_critical_alpha() -> None:
-    doubled = TOUR[6].setting.with_value("body.normal_stress", 2e8).scenario().problem
-    assert ss.uniqueness(doubled).critical_value == pytest.approx(0.098, rel=1e-12)
-
-
-def test_under_maxwells_rule_both_jumps_are_at_one_load() -> None:
-    run = ss.simulate(TOUR[7].setting.with_value("run.selection", "maxwell").scenario())
-    first, second = run.load(run.shocks.time.to_numpy())
-    assert first == pytest.approx(second, rel=1e-9)
-    assert 64.47e6 < first < 80e6

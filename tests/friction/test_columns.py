@@ -12,6 +12,7 @@ import pytest
 
 from stickslip import InputError
 from stickslip.friction import FromTable, PiecewiseLinearRate, Points
+from tests.messages import refused
 
 HEADINGS = [
     ("slip_rate", 1.0),
@@ -110,6 +111,7 @@ TEXTS = [
     ("v,mu\n1,\n", "line 2: friction must be a number, got nothing"),
     ("v,mu\n1,.5\n2,NaN\n", "line 3: friction must be finite, got 'nan'; leave out such rows"),
     ("v,mu\n-1,.5\n", "line 2: slip_rate must not be negative, got -1"),
+    ("v,mu\n1,-.1\n", "line 2: friction must not be negative, got -0.1"),
     ("v,mu\n1,.5\n\n# c\n0.5,.4\n", "line 5: slip_rate must ascend, but 0.5 follows 1; sort the rows"),
     ("v,mu\n1,.5\n1,.4\n", "line 3: slip_rate must ascend, but 1 follows 1; keep one row of each, or their mean"),
     ("v,u,mu\n1,1,.5\n2,2,.4\n", "slip and slip_rate are both there: choose one with along"),
@@ -122,11 +124,8 @@ TEXTS = [
 def test_mistakes_in_a_file_are_one_line_with_place_and_cure(tmp_path: Path, text: str, message: str) -> None:
     path = tmp_path / "points.csv"
     path.write_text(text)
-    with pytest.raises(InputError) as caught:
+    with refused(message, begins=f"FromTable: {path}"):
         FromTable(path)
-    assert str(caught.value).startswith(f"FromTable: {path}")
-    assert message in str(caught.value)
-    assert str(caught.value).isprintable()
 
 
 SOURCES: list[tuple[Any, str]] = [
@@ -144,9 +143,8 @@ SOURCES: list[tuple[Any, str]] = [
 
 @pytest.mark.parametrize(("source", "message"), SOURCES)
 def test_mistakes_in_a_source_are_one_line(source: Any, message: str) -> None:
-    with pytest.raises(InputError) as caught:
+    with refused(message):
         FromTable(source)
-    assert message in str(caught.value)
 
 
 def test_a_source_and_lists_exclude_each_other() -> None:

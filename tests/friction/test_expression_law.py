@@ -16,6 +16,7 @@ from stickslip.friction import FromExpression, HyperbolicRate
 from stickslip.friction.formula.expression import RATE, SLIP, Expression, Parameter, as_expression
 from stickslip.friction.formula.operations import FUNCTIONS, OPERATIONS
 from stickslip.friction.formula.text import parse, to_text
+from tests.messages import refused
 
 HYPERBOLIC = "mu_d + (mu_s - mu_d)/(1 + alpha*v)"
 
@@ -216,10 +217,8 @@ REFUSED = [
 
 @pytest.mark.parametrize(("text", "values", "message"), REFUSED)
 def test_expressions_that_are_no_friction_are_refused(text: str, values: dict[str, float | str], message: str) -> None:
-    with pytest.raises(InputError) as caught:
+    with refused(message):
         FromExpression(text, values)
-    assert message in str(caught.value)
-    assert str(caught.value).isprintable()
 
 
 def starting(text: str, slip: float = 0.0, evolution: str = "", **rest: Any) -> ss.Problem:
@@ -297,9 +296,8 @@ def test_units_of_an_expression_must_fit(text: str, values: dict[str, float | st
     if message is None:
         assert FromExpression(text, values, counts=counts).coefficient(0.0) >= 0
         return
-    with pytest.raises(InputError) as caught:
+    with refused(message):
         FromExpression(text, values, counts=counts)
-    assert message in str(caught.value)
 
 
 def test_units_become_si() -> None:

@@ -17,6 +17,7 @@ from stickslip.foundation.show import with_uncertainty
 from stickslip.friction import LAWS, FromExpression, Points, fit, fit_each
 from stickslip.friction.custom.fit import Fit
 from stickslip.friction.custom.fit_search import leaves, rebuilt, slopes, template
+from tests.messages import refused
 from tests.problems import RATE_LAW, measured
 
 F = ss.friction
@@ -288,7 +289,5 @@ BAD: list[tuple[Any, dict[str, Any], str]] = [
 @pytest.mark.parametrize(("law", "arguments", "message"), BAD)
 def test_what_cannot_be_fitted_is_refused_in_one_line(law: Any, arguments: dict[str, Any], message: str) -> None:
     few = Points(np.array([0.7, 0.6, 0.5, 0.45, 0.42]), None, np.arange(5.0))
-    with pytest.raises(ss.InputError) as caught:
+    with refused(message):
         fit(few, law, **arguments)
-    assert message in str(caught.value)
-    assert str(caught.value).isprintable()

@@ -17,6 +17,7 @@ from stickslip import InputError
 from stickslip.friction import FromFunction, HyperbolicRate
 from stickslip.friction.formula.expression import RATE, SLIP
 from tests.limits import mypy_on
+from tests.messages import refused
 
 
 def hyperbolic(u: Any, v: Any, static: float, dynamic: float, alpha: float = 1.0) -> Any:
@@ -151,11 +152,8 @@ REFUSED: list[tuple[Any, dict[str, Any], str]] = [
 
 @pytest.mark.parametrize(("function", "values", "message"), REFUSED)
 def test_one_line_says_what_cannot_be_traced(function: Any, values: dict[str, Any], message: str) -> None:
-    with pytest.raises(InputError) as caught:
+    with refused(message, begins="FromFunction: "):
         FromFunction(function, **values)
-    assert message in str(caught.value)
-    assert str(caught.value).startswith("FromFunction: ")
-    assert str(caught.value).isprintable()
 
 
 def test_arguments_named_u_and_v_are_slip_and_slip_rate_in_any_order() -> None:
@@ -214,9 +212,8 @@ def test_a_function_a_text_and_the_built_in_law_give_one_run() -> None:
     ],
 )
 def test_a_magnitude_is_refused_as_what_it_is_used_for(formula: Any, said: str) -> None:
-    with pytest.raises(ss.InputError) as error:
+    with refused(said):
         FromFunction(formula)
-    assert said in str(error.value)
 
 
 TEXTS = [
@@ -235,11 +232,8 @@ TEXTS = [
 
 @pytest.mark.parametrize(("text", "message"), TEXTS)
 def test_a_text_that_is_no_formula_is_refused_in_one_line(text: str, message: str) -> None:
-    with pytest.raises(InputError) as caught:
+    with refused(message, begins="Problem: friction: "):
         ss.Problem(ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8), text, initial_excess=0.0)
-    assert str(caught.value).startswith("Problem: friction: ")
-    assert message in str(caught.value)
-    assert str(caught.value).isprintable()
 
 
 def test_a_part_that_is_a_function_is_refused_with_what_makes_it_a_law() -> None:

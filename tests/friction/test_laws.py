@@ -191,16 +191,6 @@ def test_a_law_written_to_a_scenario_is_read_back_to_the_last_digit(kind: str, d
     assert (again.coefficient(SLIPS[:, None], RATES) == law.coefficient(SLIPS[:, None], RATES)).all()
 
 
-@KINDS
-@pytest.mark.parametrize("body", ["slab", "block"])
-def test_the_template_of_every_law_can_be_read(kind: str, body: str) -> None:
-    text = template(body, kind)
-    assert read_scenario(text, "new").problem.friction.kind == kind
-    assert f'kind = "{kind}"' in text
-    assert LAWS[kind].source
-    assert (LAWS[kind].__doc__ or "").splitlines()[0].endswith((".", ","))
-
-
 CLOSED: dict[str, tuple[dict[str, Any], float, float, float]] = {
     "exponential-slip-weakening": ({"static": 0.7, "dynamic": 0.2, "distance": 0.5}, 0.5, 3.0, 0.2 + 0.5 / math.e),
     "power-slip-weakening": ({"static": 0.6, "dynamic": 0.2, "distance": 0.1, "exponent": 1 / 3}, 0.7, 3.0, 0.4),

@@ -13,6 +13,7 @@ import stickslip as ss
 from stickslip.friction import Points, smooth
 from stickslip.friction.custom.penalised_spline import PenalisedSpline
 from stickslip.scenarios.scenario import Scenario, read_scenario
+from tests.messages import refused
 from tests.problems import RATE_LAW, SLAB, measured
 
 RATES = np.linspace(0.0, 10.0, 500)
@@ -122,12 +123,6 @@ def test_degrees_of_freedom_end_at_a_line_and_at_interpolation() -> None:
     assert spline.freedom(1e-16) == pytest.approx(30.0, abs=1e-2)
     line = np.polyval(np.polyfit(x, y, 1), x)
     np.testing.assert_allclose(spline.curve(1e5)(x), line, rtol=0, atol=1e-5)
-
-
-def test_the_strongest_smoothing_of_many_points_makes_the_straight_line_of_least_squares() -> None:
-    x, y = drawn(5000, 2)
-    line = np.polyval(np.polyfit(x, y, 1), x)
-    np.testing.assert_allclose(PenalisedSpline.of(x, y).curve(1e6)(x), line, rtol=0, atol=1e-5)
 
 
 @pytest.mark.parametrize("strength", [1e-10, 1e-7])
@@ -244,6 +239,5 @@ BAD: list[tuple[Any, dict[str, Any], str]] = [
 
 @pytest.mark.parametrize(("points", "arguments", "message"), BAD)
 def test_wrong_arguments_are_refused_in_one_line(points: Any, arguments: dict[str, Any], message: str) -> None:
-    with pytest.raises(ss.InputError) as caught:
+    with refused(message):
         smooth(points, **arguments)
-    assert message in str(caught.value)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.io.series import read_series
 from stickslip.schemes.contract import Meeting, Series
 from stickslip.schemes.implicit import Elements
-from stickslip.schemes.run import SCHEMES, SEARCHES, GridContact, grid_of, run_scheme
+from stickslip.schemes.run import SCHEMES, SEARCHES, GridContact, _scan, grid_of, run_scheme
 from stickslip.schemes.sbp import NORMS, difference
 from stickslip.studies.regularisations import LAB
 from stickslip.studies.scheme_measures import arrest_in, period_of, pulses_in
@@ -31,7 +32,7 @@ def exact() -> ss.Solution:
 
 
 def error(name: str, cells: int, exact: ss.Solution) -> float:
-    series = run_scheme(SMOOTH, 4.0, SCHEMES[name], cells)
+    series = run_scheme(exact.problem, 4.0, SCHEMES[name], cells)
     inside = series.time <= 4.0
     return float(np.abs(series.slip - exact.slip(np.minimum(series.time, 4.0)) + SMOOTH.initial_slip)[inside].max())
 
@@ -42,6 +43,24 @@ def test_each_scheme_converges_at_its_declared_order(name: str, exact: ss.Soluti
     order = np.log2(coarse / fine)
     assert order > SCHEMES[name].order - 0.35
     assert fine < 0.06 * float(exact.slip(4.0))
+
+
+@pytest.mark.parametrize("name", STICK)
+def test_each_scheme_hears_a_far_stress_that_grows(name: str) -> None:
+    """Over a third of the slip is its work; every scheme is within a tenth of that of the exact slab."""
+    soft = replace(SMOOTH, body=replace(SLAB, driver_impedance=4e6), pull_rate=0.0, far_stress_rate=4e7)
+    grown, without = (ss.simulate(replace(soft, far_stress_rate=rate), 4.0) for rate in (4e7, 0.0))
+    whole = float(grown.slip(4.0)) - soft.initial_slip
+    assert float(grown.slip(4.0) - without.slip(4.0)) > whole / 3.0
+    assert error(name, 160, grown) < 0.1 * whole
+
+
+def test_regularised_friction_is_that_of_the_law_times_the_tanh_of_the_slip_rate_over_its_scale() -> None:
+    problem, scheme = LOOP.problem, SCHEMES["regularised"]
+    series = run_scheme(problem, 4.0, scheme, 40)
+    scale = scheme.smoothing * problem.normal * problem.friction.variation / SLAB.impedance  # type: ignore[attr-defined]
+    wanted = problem.normal * problem.friction.coefficient(series.slip, series.rate) * np.tanh(series.rate / scale)
+    assert series.traction == pytest.approx(wanted, rel=1e-9)
 
 
 def test_finer_meshes_come_closer_together_for_regularised_friction_but_not_to_friction_with_stick(exact: ss.Solution) -> None:
@@ -92,6 +111,12 @@ def test_each_search_finds_the_root_that_it_names(search: str) -> None:
         "fastest": {0.0: top, 0.9 * max(rates): top},
     }[search]
     assert found == wanted
+
+
+def test_from_slip_that_is_too_fast_the_search_goes_down_to_the_next_root() -> None:
+    """What is missing changes its sign at every multiple of pi, and rises at the even ones."""
+    assert _scan(np.sin, 4.5 * np.pi, 6.9 * np.pi, "continue") == pytest.approx(4.0 * np.pi, rel=1e-12, abs=0.0)
+    assert _scan(np.sin, 3.5 * np.pi, 6.9 * np.pi, "continue") == pytest.approx(4.0 * np.pi, rel=1e-12, abs=0.0)
 
 
 def test_a_contact_that_is_pushed_backwards_slips_backwards() -> None:
