@@ -9,7 +9,7 @@ PIP = $(BIN)/python -m pip --disable-pip-version-check --quiet
 # process of the tests, and five for each command that they start.
 export PYTHONDONTWRITEBYTECODE :=
 
-.PHONY: paper test browser lint compiled bench site oldest newest lock clean
+.PHONY: paper test test-all browser lint compiled bench site oldest newest lock clean
 
 paper: $(VENV)/.installed
 	$(BIN)/stickslip paper --out paper
@@ -20,6 +20,13 @@ test: $(VENV)/.installed-test
 	$(MAKE) --jobs=2 lint compiled
 	$(MAKE) browser
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -q --numprocesses auto --dist worksteal
+
+# All tests: those of `make test`, and the slow ones: studies of many runs, all cases of tests that are sampled, four times as many
+# drawn examples, and all blocks of the pages. It takes hours, and the workflow of each week runs it.
+test-all: $(VENV)/.installed-test
+	$(MAKE) --jobs=2 lint compiled
+	$(MAKE) browser
+	STICKSLIP_TESTS=all OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -q -m "" --numprocesses auto --dist worksteal
 
 # The explorer is tested in a real browser; where none can be had, this says so and those tests are skipped.
 browser: $(VENV)/.installed-test

@@ -1,7 +1,8 @@
-"""Limits of the processor time that something may take, on a busy machine too, and what mypy says of code."""
+"""Limits of the processor time that something may take, numbers of examples, and what mypy says of code."""
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
@@ -12,6 +13,11 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
+
+
+def examples(many: int) -> int:
+    """Return how many examples hypothesis draws: so many in `make test-all`, and a quarter of them in `make test`."""
+    return many if os.environ.get("STICKSLIP_TESTS") == "all" else max(many // 4, 2)
 
 
 def mypy_on(file: Path, code: str) -> str:

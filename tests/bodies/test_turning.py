@@ -51,8 +51,9 @@ def test_a_body_that_turns_moves_as_one_that_slides_with_the_same_numbers(body: 
     assert np.ptp(run.slip([0.0, 30.0])) > 90.0
     assert len(run.history) == len(other.history)
     time = np.linspace(0.0, 30.0, 301)
+    some = time[::30]
     assert np.abs(run.slip_rate(time) - other.slip_rate(time)).max() <= 1e-9 * run.slip_rate(time).max()
-    assert run.energy(time).heat.values == pytest.approx(other.energy(time).heat.values, rel=1e-9)
+    assert run.energy(some).heat.values == pytest.approx(other.energy(some).heat.values, rel=1e-9)
 
 
 def test_a_disc_makes_the_history_of_a_block_bit_for_bit() -> None:
@@ -63,9 +64,9 @@ def test_a_disc_makes_the_history_of_a_block_bit_for_bit() -> None:
 
 def test_the_drill_string_agrees_with_an_integrator_by_the_method_of_steps() -> None:
     problem = ss.load_scenario("drill-string").problem
-    time = np.linspace(0.0, 12.0, 601)
-    ours, theirs = ss.simulate(problem, 12.0).slip(time), method_of_steps(problem, 12.0, rtol=1e-11).slip(time)
-    assert np.ptp(theirs) > 30.0
+    time = np.linspace(0.0, 6.0, 301)
+    ours, theirs = ss.simulate(problem, 6.0).slip(time), method_of_steps(problem, 6.0, rtol=1e-11).slip(time)
+    assert np.ptp(theirs) > 10.0
     assert np.abs(ours - theirs).max() <= 1e-7 * np.ptp(theirs)
 
 

@@ -30,6 +30,13 @@ def compiled_engine() -> None:
     compile_first.main()
 
 
+@pytest.fixture(autouse=True)
+def _pictures(request: pytest.FixtureRequest) -> None:
+    """Leave pictures blank, but for tests that look at them or at what is said of them."""
+    if request.node.get_closest_marker("drawn") is None:
+        request.getfixturevalue("blank_pictures")
+
+
 @pytest.fixture
 def command(capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Outcome]:
     """Run `stickslip` with arguments, in an empty folder."""

@@ -82,6 +82,7 @@ def compiled_for(folder: Path, *arguments: str) -> set[str]:
     return set(done.stderr.splitlines()[-1].split())
 
 
+@pytest.mark.slow
 def test_what_a_first_run_needs_the_self_test_has_compiled(tmp_path: Path) -> None:
     first = compiled_for(tmp_path, "run", "fig6-slab", "--figure", "first.png")
     assert len(first) > 5

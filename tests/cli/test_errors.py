@@ -52,7 +52,7 @@ def test_python_replaces_no_file_of_somebody_else_either(tmp_path: Path):
 
 
 def test_results_of_an_earlier_run_are_replaced(command):
-    for options in (["--out", "a.nc"], ["--catalogue", "a.csv"], ["--catalogue", "b.nc"]):
+    for options in (["--out", "a.nc"], ["--catalogue", "b.nc"]):
         assert [command("run", "fig6-slab", *options).code for _ in range(2)] == [0, 0]
     assert [command("compare", "fig6-slab", "fig6-slab", "--out", "c.csv").code for _ in range(2)] == [0, 0]
     assert [command("export", "fig6-slab", "d.txt").code for _ in range(2)] == [0, 0]

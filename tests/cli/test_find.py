@@ -67,6 +67,7 @@ def test_check_answers_at_which_speed_stick_slip_vanishes(command: Command, axis
     assert "from rest it may stick at a higher rate all the same: stickslip find" in said
 
 
+@pytest.mark.drawn
 def test_check_and_find_draw_what_they_found(command: Command, axis: str, tmp_path: Path):
     assert command("check", axis, "--no-runs", "--steady-figure", "steady.png").code == 0
     assert command("find", axis, "--along", "pull_rate=0.1..0.4", "--within", "0.5", "-f", "edge.svg").code == 0

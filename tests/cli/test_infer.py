@@ -49,7 +49,7 @@ def test_infer_reads_what_is_known_and_writes_what_was_asked_for(command, tmp_pa
 
 def test_infer_compares_scenarios_by_what_they_predict(command):
     Path("other.toml").write_text(ss.load_scenario("velocity-steps-block").to_toml().replace('"ageing"', '"slip"'))
-    options = ["--free", FREE, "--held-out", "105 s", "--starts", "1", "--compare", "other.toml"]
+    options = ["--free", "a,b", "--held-out", "105 s", "--starts", "1", "--compare", "other.toml"]
     shown = command("infer", "velocity-steps-block", "data.csv", *options)
     assert shown.code == 0, shown.err
     assert shown.out.index("rate-and-state, ageing") < shown.out.index("rate-and-state, slip")

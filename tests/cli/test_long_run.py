@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -76,19 +77,34 @@ REFUSED = [
 ]
 
 
+@pytest.fixture(scope="module")
+def begun(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A file of a run."""
+    path = tmp_path_factory.mktemp("begun") / "run.nc"
+    ss.simulate(ss.load_scenario("cycles-block").problem, 20 * ss.YEAR, checkpoint=path)
+    return path
+
+
 @pytest.mark.parametrize(("arguments", "message"), REFUSED)
-def test_bad_input_gives_one_line_and_changes_nothing(command, tmp_path: Path, arguments: list[str], message: str):
+def test_bad_input_gives_one_line_and_changes_nothing(command, tmp_path: Path, begun: Path, arguments: list[str], message: str):
     (tmp_path / "bad.nc").write_text("no")
-    ss.simulate(ss.load_scenario("cycles-block").problem, 20 * ss.YEAR, checkpoint=tmp_path / "run.nc")
-    before = (tmp_path / "run.nc").read_bytes()
+    shutil.copy(begun, tmp_path)
+    before = begun.read_bytes()
     assert command(*arguments).refusal.startswith(message)
     assert (tmp_path / "run.nc").read_bytes() == before
     assert sorted(path.name for path in tmp_path.iterdir()) == ["bad.nc", "run.nc"]
 
 
+def test_leaps_over_creep_are_told(command):
+    shown = command("run", "fig5-slab-printed", "--duration", "25 minutes").out
+    assert re.search(r"creep_rtol 1e-06 \(automatic; 0 runs every round trip\): 1 leap over", shown)
+    assert "automatic: leaps over creep after 200" in re.sub(r"\s+", " ", command("check", "fig5-slab-printed").out)
+
+
+@pytest.mark.slow
 def test_creep_is_leapt_over(command, tmp_path: Path):
     """By default, by the option and by the scenario's key; the summary says so, and check does; a run and a catalogue go on."""
-    shown = command("run", "fig5-slab-printed", "--duration", "50 minutes", "--creep-rtol", "1e-5", "--out", "run.nc")
+    shown = command("run", "fig5-slab-printed", "--duration", "30 minutes", "--creep-rtol", "1e-5", "--out", "run.nc")
     assert shown.code == 0
     assert re.search(r"creep_rtol 1e-05: 1 leap over \d\d\d round trips, error at most \S+ m of slip, 0\.\d+ s of time", shown.out)
     text = command("new", "fig5-slab-printed").out.replace("[run]\n", "[run]\ncreep_rtol = 1e-5\n")
@@ -96,10 +112,10 @@ def test_creep_is_leapt_over(command, tmp_path: Path):
     assert "creep_rtol" in command("check", "mine.toml").out
     scenario = ss.load_scenario(tmp_path / "mine.toml")
     assert "creep_rtol 1e-05: no leaps over creep" in command("run", "mine.toml").out
-    assert command("run", "mine.toml", "--duration", "50 minutes", "--catalogue", "events.csv").code == 0
-    whole = ss.simulate(scenario.problem, 3600.0, creep_rtol=1e-5)
+    assert command("run", "mine.toml", "--duration", "30 minutes", "--catalogue", "events.csv").code == 0
+    whole = ss.simulate(scenario.problem, 2100.0, creep_rtol=1e-5)
     for file in ("run.nc", "events.checkpoint.nc"):
-        assert re.search(r"creep_rtol 1e-05: \d leaps? over", command("run", "--resume", file, "--duration", "1 hour").out)
+        assert re.search(r"creep_rtol 1e-05: \d leaps? over", command("run", "--resume", file, "--duration", "35 minutes").out)
     assert differences(ss.open_solution(tmp_path / "run.nc"), whole) == []
     pd.testing.assert_frame_equal(read_table(Path("events.csv")), whole.events, check_exact=True)
     by_default = command("run", "fig5-slab-printed", "--duration", "25 minutes", "--out", "default.nc").out

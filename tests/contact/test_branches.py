@@ -17,6 +17,7 @@ from stickslip.contact.rules.selection import selection_table
 from stickslip.friction import LAWS
 from stickslip.problem.selection_rule import SELECTION_RULES
 from tests.friction.drawn import laws
+from tests.limits import examples
 
 from .laws import ALPHA_C, SLAB, S, Wavy, Z, hyperbolic, q_of, slab_problem, wavy_laws
 
@@ -36,7 +37,7 @@ def scanned(found, load):
     return SCAN[crossed], SCAN[crossed + 1], level[crossed + 1] > 0.0
 
 
-@settings(max_examples=80)
+@settings(max_examples=examples(80))
 @given(law=st.one_of(KINDS, KINDS, wavy_laws), slip=st.floats(0.0, 3.0), share=st.floats(-1.5, 1.5))
 def test_the_admissible_set_contains_every_root_of_a_dense_scan(law, slip, share):
     found = ss.uniqueness(problem_of(law, slip))
@@ -59,7 +60,7 @@ def test_the_admissible_set_contains_every_root_of_a_dense_scan(law, slip, share
     assert kinds[within].tolist() == rises[inside].tolist()
 
 
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 @given(law=KINDS, slip=st.floats(0.0, 3.0), rule=st.sampled_from(SELECTION_RULES))
 def test_jumps_land_on_stable_admissible_rates(law, slip, rule):
     problem = problem_of(law, slip, rule)
@@ -78,7 +79,7 @@ def test_jumps_land_on_stable_admissible_rates(law, slip, rule):
     assert bool(found.jumps) <= (found.regime != "regular")
 
 
-@settings(max_examples=20)
+@settings(max_examples=examples(20))
 @given(law=KINDS, slip=st.floats(0.0, 3.0))
 def test_every_rule_can_be_followed_and_only_delay_has_a_loop(law, slip):
     areas = {}
@@ -93,7 +94,7 @@ def test_every_rule_can_be_followed_and_only_delay_has_a_loop(law, slip):
     assert (areas["perfect-delay"] > 1e-9 * size) <= (found.regime != "regular")
 
 
-@settings(max_examples=20)
+@settings(max_examples=examples(20))
 @given(law=st.sampled_from(["hyperbolic-rate", "exponential-stribeck", "power-stribeck"]).flatmap(laws))
 def test_closed_forms_agree_with_the_critical_normal_stress(law):
     """At a critical value of its own number, the law's critical normal stress is the present one."""

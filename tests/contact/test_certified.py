@@ -21,6 +21,7 @@ from stickslip.friction import LAWS, FromExpression
 from stickslip.scenarios.scenario import read_scenario
 from stickslip.scenarios.templates import template
 from tests.friction.drawn import laws
+from tests.limits import examples
 
 from .laws import ALPHA_C, SLAB, S, Z, closed_critical_value, hyperbolic, slab_problem
 
@@ -120,7 +121,7 @@ def example_of(kind: str) -> ss.friction.FrictionLaw:
     return read_scenario(template("slab", kind), "drawn").problem.friction
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(law=st.sampled_from(RATE_LAWS).flatmap(laws), slip=st.floats(0.0, 3.0))
 def test_proof_and_dense_scan_agree_on_drawn_laws(law, slip):
     """Laws without narrow features: every change of sign on 20 000 slip rates is in a proven interval, and no other exists."""
@@ -163,7 +164,7 @@ def with_features(seed: int) -> tuple[ss.Problem, np.ndarray]:
     return slab_problem(FromExpression(text)), together[together >= 0.0]
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=9)
 @pytest.mark.parametrize("seed", range(40))
 def test_laws_with_narrow_features_have_the_folds_of_a_dense_scan(seed):
     problem, rates = with_features(seed)

@@ -16,6 +16,7 @@ from stickslip.contact.critical import critical_normal_stress, margin, steepest_
 from stickslip.contact.roots import sign_change
 from stickslip.foundation.quantities import quantity
 from stickslip.friction.formula.functions import exp
+from tests.limits import examples
 
 from .laws import S, Z, closed_critical_value, hyperbolic, slab_problem
 
@@ -35,6 +36,7 @@ CLOSED = {
 }
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("name", CLOSED)
 def test_closed_forms_agree_with_the_root_finder(name):
     problem = slab_problem(CLOSED[name])
@@ -114,6 +116,7 @@ def test_a_critical_parameter_that_does_not_exist_is_one_line():
         ss.uniqueness(slab_problem(Misnamed(0.8, 0.3, 1.0)))
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("name", [name for name in CLOSED if name != "coulomb"])
 @pytest.mark.parametrize("step", [-1e-6, 1e-6])
 def test_the_regime_changes_where_it_is_said_to(name, step):
@@ -191,7 +194,7 @@ def test_parameters_that_are_unknown_or_whole_are_refused(name, message):
         ss.studies.critical_value(slab_problem(law), name)
 
 
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 @given(fall=st.floats(0.01, 0.5), rate=st.floats(1e-6, 1e3), exponent=st.integers(1, 6), viscosity=st.floats(0.0, 1.0))
 def test_steepest_fall_is_found_over_all_scales(fall, rate, exponent, viscosity):
     for law in (

@@ -13,6 +13,7 @@ from stickslip.contact.branches import resistance
 from stickslip.contact.rules.selection import flaw, selection_table
 from stickslip.problem.selection_rule import SELECTION_RULES, SelectionTable, registered
 from stickslip.resistance import Branch
+from tests.limits import examples
 
 from .laws import Wavy, hyperbolic, slab_problem
 
@@ -194,7 +195,7 @@ def can_be_followed(table):
     return True
 
 
-@settings(max_examples=500)
+@settings(max_examples=examples(500))
 @given(
     stick=st.sampled_from([level for level in LEVELS if level <= 0.0]),
     ends=st.lists(st.tuples(st.sampled_from(LEVELS), st.sampled_from(LEVELS)), min_size=1, max_size=4),

@@ -17,6 +17,7 @@ from stickslip.foundation.axis import Axis
 from stickslip.friction import LAWS
 from stickslip.problem.selection_rule import SELECTION_RULES
 from tests.friction.drawn import laws
+from tests.limits import examples
 
 from .laws import SLAB, S, Z, hyperbolic, slab_problem
 
@@ -119,7 +120,7 @@ def problem_of(law, stress=1e8, slip=0.0):
     return ss.Problem(replace(SLAB, normal_stress=stress), law, initial_slip=slip, initial_excess=0.0)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @given(law=KINDS, data=st.data())
 def test_a_map_over_any_two_numbers_has_the_margins_of_its_points(law, data):
     problem = problem_of(law)

@@ -15,6 +15,7 @@ from stickslip.contact.branches import branches_of, rate_on, resistance
 from stickslip.contact.rules.selection import OF_LEVELS, RULES, levels, selection_table
 from stickslip.problem.selection_rule import SELECTION_RULES
 from stickslip.resistance import Branch
+from tests.limits import examples
 
 from .laws import ALPHA_C, S, Wavy, Z, hyperbolic, q_of, slab_problem, wavy_laws
 
@@ -157,7 +158,7 @@ def best(rule, g, stable, excess):
     return min(alive, key=lambda i: 0.0 if i < 0 else area(g, 0.0, rate_on(g, stable[i], excess), excess))
 
 
-@settings(max_examples=5)
+@settings(max_examples=examples(5))
 @given(law=wavy_laws, slip=st.floats(0.0, 10.0), share=st.floats(-0.5, 1.0), rule=st.sampled_from(SELECTION_RULES[1:]))
 def test_memoryless_rules_agree_with_brute_force(law, slip, share, rule):
     g = resistance(slab_problem(law), slip)
@@ -178,7 +179,7 @@ def test_memoryless_rules_agree_with_brute_force(law, slip, share, rule):
     assert {settle(table, start, excess) for start in starts} == {wanted}
 
 
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 @given(law=wavy_laws, slip=st.floats(0.0, 10.0), path=st.lists(st.floats(-0.5, 1.0), min_size=2, max_size=8))
 def test_perfect_delay_takes_the_nearest_stable_root(law, slip, path):
     g = resistance(slab_problem(law), slip)

@@ -28,6 +28,7 @@ def found_for(law: Any, stiffness: float, mass: float = 10.0, damping: float = 0
     return proven_slidings(ss.Problem(body, law, pull_rate=1e-6))
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("evolution", ["ageing", "slip", "prz"])
 @pytest.mark.parametrize("mass", [1e-3, 1e6])
 def test_the_critical_rate_of_rice_and_ruina_is_enclosed(evolution: str, mass: float):
@@ -105,6 +106,7 @@ def test_blocks_under_two_states_change_where_eigenvalues_do(seed: int):
             assert bool(np.linalg.eigvals(matrix).real.max() < 0.0) == is_said_stable(found, rate), rate
 
 
+@pytest.mark.slow
 def test_states_that_feel_each_other_are_proven():
     """mu = f + A z^2 with z' = (x - z)/T and x' = (v - x)/T - c z, against eigenvalues of equations written by hand."""
     law = ss.friction.FromExpression(
@@ -230,6 +232,7 @@ def is_said_stable(found: Any, rate: float) -> bool:
     return not above[0].stable_above if above else bool(found.slidings[0].stable)
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("seed", range(6))
 def test_laws_drawn_at_random_change_where_eigenvalues_do(seed: int):
     """Eigenvalues of three equations of motion, at 15 rates away from the changes, have the sign that the proof says."""
@@ -250,7 +253,7 @@ def test_laws_drawn_at_random_change_where_eigenvalues_do(seed: int):
             assert roots_are_left(law, body, rate) == is_said_stable(found, rate), rate
 
 
-@pytest.mark.sampled(every=4)
+@pytest.mark.sampled(every=8)
 @pytest.mark.parametrize("seed", range(16))
 def test_slabs_drawn_at_random_change_where_eigenvalues_do(seed: int):
     """Eigenvalues of a slab whose waves are polynomials have the sign that the proof says, at 15 rates away from the changes."""
@@ -330,6 +333,7 @@ def close_to_its_edge(drawn: np.random.Generator, slab: ss.ElasticSlab, slopes: 
     return replace(slab, thickness=slab.thickness * (1.0 + width * drawn.uniform(-1.0, 1.0)))
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("width", [0.0, 0.3])
 @pytest.mark.parametrize("late", [-1.0, 1.0])
 def test_no_slopes_in_a_cell_that_is_decided_have_another_count_of_roots(width: float, late: float):

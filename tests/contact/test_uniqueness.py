@@ -11,6 +11,7 @@ from stickslip.contact.regime_map import regime_map
 from stickslip.contact.uniqueness import uniqueness_of
 from stickslip.foundation.axis import Axis
 from stickslip.problem.selection_rule import SELECTION_RULES
+from tests.limits import examples
 
 from .laws import S, Wavy, Z, hyperbolic, slab_problem
 
@@ -50,7 +51,7 @@ def test_there_are_two_admissible_rates_at_the_folds():
     assert fast == pytest.approx(0.05 * S / Z, rel=1e-13, abs=0)
 
 
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 @given(load=st.floats(-2e8, 2e8), alpha=st.floats(0.01, 1e5), slip=st.floats(-3.0, 3.0))
 def test_backward_slip_mirrors_forward_slip(load, alpha, slip):
     for law in (hyperbolic(alpha), ss.friction.SinusoidalSlip(0.6, 0.2, 5.0), ss.friction.Coulomb(0.6, 0.2)):
@@ -60,7 +61,7 @@ def test_backward_slip_mirrors_forward_slip(load, alpha, slip):
         assert np.all(np.diff(found.admissible(load)) > 0)
 
 
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 @given(load=st.floats(0.0, 2e8), alpha=st.floats(0.01, 1e5))
 def test_admissible_rates_solve_the_quadratic(load, alpha):
     """alpha Z v^2 + (Z + alpha (S muD - load)) v + S muS - load = 0, with stick below the static strength."""

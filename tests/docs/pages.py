@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import ast
 import io
+import operator
 import re
 import shlex
 import shutil
@@ -27,7 +28,10 @@ from pathlib import Path
 from unittest.mock import patch
 
 import matplotlib as mpl
+from typer.main import get_command
 
+import stickslip
+from stickslip.cli.app import TyperException, app
 from stickslip.cli.main import main
 
 ROOT = Path(__file__).parents[2]
@@ -164,10 +168,50 @@ LONG = ('"10 years" --catalogue', '"35 mm/year"', "pull_rate=0.5)", "stickslip a
 """Texts in blocks that take several seconds each, and on which no other block depends: they are run with the slow tests."""
 
 
+LONG_PAGES = {
+    "block-or-slab", "energy", "fault-in-2d-and-3d", "have-a-record", "inside-the-slab", "large-faults", "laws-and-bodies",
+    "long-runs", "measured-friction", "schemes", "schemes-at-a-jump", "sweeps", "which-rule",
+}  # fmt: skip
+"""Pages that take more than five seconds each: they are run with the slow tests, and what they type is read with the quick ones."""
+
+
 def has_long_blocks(page: Path) -> bool:
-    """Return True if `run_page` leaves something out unless it is asked for the whole page."""
+    """Return True if the slow tests alone run the whole page."""
     text = page.read_text(encoding="utf-8")
-    return any(one in text for one in LONG)
+    return page.stem in LONG_PAGES or any(one in text for one in LONG)
+
+
+def unknown_to_python(page: Path) -> list[str]:
+    """The names below `ss` of ```python blocks that the package does not have; a block that is no Python is an error."""
+    found = []
+    for block in blocks_of(page):
+        for node in ast.walk(ast.parse(block.text)) if block.language == "python" else ():
+            dotted = ast.unparse(node) if isinstance(node, ast.Attribute) else ""
+            if re.fullmatch(r"ss(\.\w+)+", dotted) and not _is_known(dotted):
+                found.append(f"{page.name}, line {block.line}: {dotted}")
+    return found
+
+
+def _is_known(dotted: str) -> bool:
+    try:
+        operator.attrgetter(dotted.removeprefix("ss."))(stickslip)
+    except AttributeError:
+        return False
+    return True
+
+
+def unknown_to_the_shell(page: Path) -> list[str]:
+    """The commands of a page that cannot be read: a command or an option that there is not, or a value of the wrong type."""
+    group, found = get_command(app), []
+    for block in blocks_of(page):
+        for command in commands_of(block) if block.language == "console" else ():
+            for typed in (one for one in (command.before, command.arguments) if one and command.code == 0):
+                if not typed[0].startswith("-"):
+                    try:
+                        group.get_command(None, typed[0]).make_context(typed[0], typed[1:])
+                    except (AttributeError, TyperException) as error:
+                        found.append(f"{page.name}, line {block.line}: {typed}: {error!r}")
+    return found
 
 
 def run_page(page: Path, *, whole: bool) -> None:

@@ -17,12 +17,15 @@ from stickslip.problem.selection_rule import registered
 from stickslip.scenarios.library import names
 from tests.docs.pages import (
     LINK,
+    LONG_PAGES,
     PAGES,
     PAPER,
     ROOT,
     blocks_of,
     has_long_blocks,
     run_page,
+    unknown_to_python,
+    unknown_to_the_shell,
     wrong_numbers,
 )
 
@@ -38,11 +41,29 @@ def _forget_rules() -> Iterator[None]:
     registered.clear()
 
 
-@pytest.mark.parametrize("page", [page for page in PAGES if page != PAPER], ids=page_name)  # tests/paper runs that page
+QUICK = [page for page in PAGES if page != PAPER and page.stem not in LONG_PAGES]  # tests/paper runs that page
+
+
+@pytest.mark.usefixtures("blank_pictures")
+@pytest.mark.parametrize("page", QUICK, ids=page_name)
 def test_every_example_does_what_its_page_shows(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """All but the blocks that take long, for which there is the next test."""
+    """All but the pages and the blocks that take long, for which there are the next two tests."""
     monkeypatch.chdir(tmp_path)
     run_page(page, whole=False)
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if page.stem in LONG_PAGES], ids=page_name)
+def test_what_a_long_page_types_can_be_read(page: Path) -> None:
+    assert unknown_to_python(page) == []
+    assert unknown_to_the_shell(page) == []
+
+
+def test_what_cannot_be_read_is_noticed(tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    page.write_text("```python\nss.simulate(ss.friction.Colomb())\n```\n```console\n$ stickslip run a.toml --duraton 3\n```\n")
+    assert [one.partition(": ")[2] for one in unknown_to_python(page)] == ["ss.friction.Colomb"]
+    (line,) = unknown_to_the_shell(page)
+    assert "No such option" in line
 
 
 @pytest.mark.slow

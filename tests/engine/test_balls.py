@@ -23,6 +23,7 @@ from stickslip.friction.formula import functions as elementary
 from stickslip.friction.formula.text import to_text
 from tests.engine.balls import Disc, Drawn, drawn, exact_distance, farthest, radius_of
 from tests.engine.formulas import FORMULAS, JET, compiled
+from tests.limits import examples
 
 inside = st.floats(0.05, 0.95)
 
@@ -38,7 +39,7 @@ def descent(coefficients: np.ndarray) -> float:
 
 
 @given(st.lists(inside, min_size=1, max_size=5, unique=True))
-@settings(max_examples=200)
+@settings(max_examples=examples(200))
 def test_first_descent_is_the_first_root(roots: list[float]) -> None:
     roots = sorted(roots)
     if min(np.diff([0.0, *roots])) < 1e-3:
@@ -49,7 +50,7 @@ def test_first_descent_is_the_first_root(roots: list[float]) -> None:
 
 
 @given(st.floats(1e-6, 0.3), inside)
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 def test_no_crossing_is_missed_between_two_close_roots(gap: float, centre: float) -> None:
     """Both roots lie inside one step: a sign test at its ends would see nothing."""
     if centre + gap >= 1.0:
@@ -70,7 +71,7 @@ def test_a_root_at_the_start_counts_only_where_the_polynomial_falls() -> None:
 
 
 @given(st.lists(st.floats(-3, 3), min_size=TERMS, max_size=TERMS), st.floats(0, 0.9), st.floats(0.01, 1.0))
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 def test_restrict_is_a_change_of_variable(coefficients: list[float], start: float, width: float) -> None:
     c, out = np.array(coefficients), np.empty(TERMS)
     restrict(c, start, width, out)
@@ -80,7 +81,7 @@ def test_restrict_is_a_change_of_variable(coefficients: list[float], start: floa
 
 
 @given(st.lists(st.floats(-3, 3), min_size=2, max_size=9))
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 def test_the_maximum_agrees_with_a_dense_scan(coefficients: list[float]) -> None:
     c = padded(np.array(coefficients))
     scan = Polynomial(c)(np.linspace(0, 1, 20001))
@@ -89,7 +90,7 @@ def test_the_maximum_agrees_with_a_dense_scan(coefficients: list[float]) -> None
 
 
 @given(st.lists(inside, min_size=1, max_size=6, unique=True))
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 def test_crossings_are_all_roots(roots: list[float]) -> None:
     roots = sorted(roots)
     if len(roots) > 1 and min(np.diff(roots)) < 1e-3:

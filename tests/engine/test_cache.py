@@ -139,7 +139,7 @@ def sound(script: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, P
     return roots
 
 
-@pytest.mark.sampled(every=9)
+@pytest.mark.sampled(every=18)
 @pytest.mark.parametrize("damage", DAMAGE)
 @pytest.mark.parametrize("kind", KINDS)
 def test_what_is_damaged_is_compiled_again(kind: str, damage: str, tmp_path: Path, script: Path, sound: dict[str, Path]) -> None:
@@ -160,6 +160,7 @@ def test_what_is_damaged_is_compiled_again(kind: str, damage: str, tmp_path: Pat
     assert files_in(root) == before
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("plain", ["0", "1"])
 def test_without_a_cache_folder_each_process_compiles_for_itself(plain: str, script: Path, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
@@ -170,6 +171,7 @@ def test_without_a_cache_folder_each_process_compiles_for_itself(plain: str, scr
     assert (tmp_path / "file").read_text() == ""
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize(
     ("names", "plain", "loaded"), [("keys", "0", 4), ("compiled-*", "0", 0), ("*/plain", "1", 2), ("*/plain/*", "1", 2)]
 )
@@ -217,6 +219,7 @@ def test_the_cache_keeps_the_files_that_were_used_last(tmp_path: Path, monkeypat
     assert (folder / "own.txt").exists()
 
 
+@pytest.mark.slow
 def test_what_another_process_removed_is_compiled_again(script: Path, tmp_path: Path, sound: dict[str, Path]) -> None:
     shutil.copytree(sound["0"], tmp_path / "root")
     (folder,) = (tmp_path / "root").glob("compiled-*")

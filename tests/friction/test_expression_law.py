@@ -16,6 +16,7 @@ from stickslip.friction import FromExpression, HyperbolicRate
 from stickslip.friction.formula.expression import RATE, SLIP, Expression, Parameter, as_expression
 from stickslip.friction.formula.operations import FUNCTIONS, OPERATIONS
 from stickslip.friction.formula.text import parse, to_text
+from tests.limits import examples
 from tests.messages import refused
 
 HYPERBOLIC = "mu_d + (mu_s - mu_d)/(1 + alpha*v)"
@@ -145,7 +146,7 @@ def test_everything_else_is_refused_in_one_line(text: str, message: str) -> None
     assert any(part in said for part in message.split("|"))
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(st.text(max_size=60))
 def test_no_text_does_anything_but_give_a_tree_or_one_line(text: str) -> None:
     _, refusal = tried(text, ("a",))

@@ -26,6 +26,7 @@ from stickslip.friction.formula.differences import difference
 from stickslip.problem.fields import INITIAL_STATES
 from stickslip.scenarios.scenario import Scenario, read_scenario
 from stickslip.scenarios.templates import template
+from tests.limits import examples
 
 from .drawn import compiled_value, laws
 
@@ -95,7 +96,9 @@ def test_unknown_memories_are_refused() -> None:
 
 
 KINDS = pytest.mark.parametrize("kind", LAWS)
-quick = settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow])
+quick = settings(
+    max_examples=examples(30), deadline=None, suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow]
+)
 SLIPS = np.concatenate(([0.0], np.geomspace(1e-6, 10.0, 60), np.linspace(0.0, 4.0, 41)))
 RATES = np.concatenate(([0.0], np.geomspace(1e-6, 10.0, 60), np.linspace(0.0, 4.0, 41)))
 
@@ -164,7 +167,7 @@ def test_the_tree_is_the_formula_and_its_slopes_are_derivatives(kind: str, data:
 @pytest.mark.sampled(every=7)
 @KINDS
 @given(data=st.data())
-@settings(quick, max_examples=10)
+@settings(quick, max_examples=examples(10))
 def test_compiled_code_is_the_formula(kind: str, data: st.DataObject) -> None:
     law = data.draw(laws(kind))
     i = data.draw(st.integers(0, len(law.pieces) - 1))

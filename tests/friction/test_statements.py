@@ -19,6 +19,7 @@ from stickslip.friction.formula.functions import exp, sin, tanh
 from stickslip.friction.law import check_statements
 from stickslip.scenarios.scenario import read_scenario
 from stickslip.scenarios.templates import template
+from tests.limits import examples
 from tests.messages import refused
 
 F = ss.friction
@@ -191,7 +192,7 @@ def test_friction_below_zero_is_allowed_where_the_law_says_so() -> None:
     dynamic=st.floats(0.0, 2.0),
     rate=st.floats(-12.0, 4.0).map(lambda power: 10.0**power),
 )
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=examples(300), deadline=None)
 def test_an_honest_class_is_never_refused(static: float, dynamic: float, rate: float) -> None:
     law = Own(static, dynamic, rate)
     Bell(static, dynamic, rate)
@@ -225,7 +226,7 @@ KNOWN = st.one_of(
 
 @pytest.mark.filterwarnings("ignore::stickslip.foundation.errors.InputWarning")
 @given(law=KNOWN)
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=examples(300), deadline=None)
 def test_the_statements_of_the_laws_of_the_package_hold(law: FrictionLaw) -> None:
     check_statements(law)
 

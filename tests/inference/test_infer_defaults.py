@@ -65,7 +65,11 @@ KINDS: dict[str, tuple[ss.Problem, dict[str, Any], dict[str, float], dict[str, A
 }
 
 
-@pytest.mark.parametrize("kind", KINDS)
+LONG = {"event by event", "features"}
+"""Kinds that take several seconds; `test_infer_starts.py` and `test_infer_features.py` fit shorter records with one start."""
+
+
+@pytest.mark.parametrize("kind", [pytest.param(one, marks=pytest.mark.slow) if one in LONG else one for one in KINDS])
 def test_a_record_of_each_kind_gives_its_numbers_back_with_the_default_options(kind: str) -> None:
     problem, data, truth, options = KINDS[kind]
     study = ss.studies.infer(problem, data, list(truth), **options)

@@ -98,14 +98,15 @@ def test_weights_are_those_of_rsfit3000() -> None:
 
 def test_weights_and_windows_change_the_numbers_of_a_wrong_model_and_are_told() -> None:
     shear = friction(TRUTH.pull_rate) + 0.003 * CLOCK**2 + 5e-5 * correlated(1800, 0.0, 5)
-    study = ss.studies.infer(GUESS, read(shear), FREE, starts=1, windows=True)
+    free = ["distance", "reference"]
+    study = ss.studies.infer(GUESS, read(shear), free, starts=1, windows=True)
     assert study.windows is not None
-    assert study.windows.columns.tolist() == ["begin", "end", "samples", *NAMES]
-    assert study.windows.loc[0, NAMES].tolist() == list(study.values.values())
+    assert study.windows.columns.tolist() == ["begin", "end", "samples", *NAMES[2:]]
+    assert study.windows.loc[0, NAMES[2:]].tolist() == list(study.values.values())
     assert len(study.windows) == 4
     assert np.ptp(study.windows["friction.distance"]) > 0.1 * study.values["friction.distance"]
     assert any(note.startswith("over 4 windows of") for note in study.notes)
-    weighted = ss.studies.infer(GUESS, read(shear), FREE, starts=1, weight=1.0)
+    weighted = ss.studies.infer(GUESS, read(shear), free, starts=1, weight=1.0)
     assert abs(weighted.values["friction.distance"] / 30e-6 - 1.0) < abs(study.values["friction.distance"] / 30e-6 - 1.0)
 
 
@@ -162,14 +163,14 @@ def test_covariances_are_the_products_with_whole_matrices() -> None:
 
 
 def test_intervals_hold_the_truth_under_noise_that_remembers_itself() -> None:
-    """120 draws of four numbers: 95 % with a standard error of 1 % (numbers of one draw are not independent: 2 %)."""
+    """40 draws of four numbers: 95 % with a standard error of 1.7 % (numbers of one draw are not independent: 3 %)."""
     influence, block = np.linalg.pinv(SLOPES).T, [ResidualBlock(slice(0, 1200), TIME)]
     held = 0
-    for seed in range(120):
+    for seed in range(40):
         noise = drawn(seed)
         width = np.sqrt(np.diag(spread_by(influence, memory_of(left_of(noise), SLOPES, block), block)))
         held += int(np.sum(np.abs(influence.T @ noise) < 1.96 * width))
-    assert 0.91 < held / 480.0 < 0.98
+    assert 0.88 < held / 160.0 < 0.99
 
 
 def test_a_misfit_is_told_from_noise_that_is_larger_somewhere() -> None:
@@ -181,4 +182,4 @@ def test_a_misfit_is_told_from_noise_that_is_larger_somewhere() -> None:
     found = unevenness(larger, SLOPES, WHITE, block)
     assert found.found > 1.2
     assert found.misfit == 1.0
-    assert all(unevenness(left_of(drawn(seed)), SLOPES, NOISE, block).found == 1.0 for seed in range(50))
+    assert all(unevenness(left_of(drawn(seed)), SLOPES, NOISE, block).found == 1.0 for seed in range(20))

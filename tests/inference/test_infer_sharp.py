@@ -104,6 +104,7 @@ def test_a_jump_is_found_and_its_time_is_as_unsure_as_the_samples_are_apart() ->
     assert width == pytest.approx(EVERY / np.sqrt(6.0), rel=0.2)  # its two ends are each unsure by the twelfth part of the square
 
 
+@pytest.mark.slow
 def test_words_say_that_impedance_and_travel_time_are_determined_and_density_wave_speed_and_thickness_are_not() -> None:
     study = jumping(1, (*JUMPING, "wave_speed"), "shear_stress,slip")
     (note,) = [one for one in study.notes if "none of the three" in one]

@@ -76,6 +76,7 @@ def test_a_stiffness_that_the_record_contradicts_is_asked_about() -> None:
     assert not any(question in one for one in right)
 
 
+@pytest.mark.slow
 def test_of_many_parts_some_are_fitted_and_a_note_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(import_module("stickslip.inference.infer"), "MOST_PARTS", 3)
     monkeypatch.setattr(import_module("stickslip.inference.infer"), "MOST_SEARCHED", 2)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -22,6 +23,13 @@ TRUTH = {
     "friction.reference": TRUE.reference,
 }
 GUESS = ss.Problem(ss.SpringBlock(20.0, 9e7, 5e4), ss.friction.RateAndState(0.6, 0.01, 0.013, 1e-5), pull_rate=1e-6)
+NEAR = replace(
+    GUESS,
+    body=replace(GUESS.body, stiffness=TRUE.stiffness),
+    friction=replace(GUESS.friction, b=TRUE.b, distance=TRUE.distance),
+)
+"""A problem of which only a and the reference are to be found."""
+TWO = ("friction.a", "friction.reference")
 CLOCK = np.linspace(0.0, 200.0, 1501)
 CLEAN = TRUE.friction(CLOCK, TIMES, RATES)
 STEPS = ss.loading.Steps(TIMES, RATES)
@@ -34,7 +42,7 @@ def record(noise: float = 2e-4, per_sample: float = 0.0, seed: int = 1) -> pd.Da
 
 
 def inferred(data: Any = None, free: Any = tuple(TRUTH), **options: Any) -> Inference:
-    return ss.studies.infer(GUESS, record() if data is None else data, free, **({"starts": 1} | options))
+    return ss.studies.infer(NEAR if free == TWO else GUESS, record() if data is None else data, free, **({"starts": 1} | options))
 
 
 @cache

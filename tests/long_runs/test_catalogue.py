@@ -87,6 +87,7 @@ def test_netcdf_holds_scenario_status_and_units(tmp_path: Path) -> None:
         assert [file[name].attrs["units"] for name in ("start", "slip", "peak_rate", "traction_drop")] == ["s", "m", "m s-1", "Pa"]
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(("name", "unit"), [("slab that heals", "J m-2"), ("block that heals", "J")])
 def test_netcdf_names_the_units_of_energies(name: str, unit: str, tmp_path: Path) -> None:
     problem, duration = RUNS[name]
@@ -181,7 +182,7 @@ ss.catalogue(problem, 1e9, "events.{suffix}", checkpoint_every=0.0, progress=lam
 """
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=4)
 @pytest.mark.skipif(os.name != "posix", reason="needs SIGKILL")
 @pytest.mark.parametrize(("suffix", "with_signal"), [("csv", "SIGKILL"), ("nc", "SIGKILL"), ("csv", "SIGINT"), ("nc", "SIGINT")])
 def test_a_killed_or_interrupted_catalogue_ends_with_the_same_rows(suffix: str, with_signal: str, tmp_path: Path) -> None:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import pandas as pd
 import pytest
@@ -19,8 +21,17 @@ from tests.long_runs.problems import RUNS
 PROBLEM, DURATION = RUNS["slab that heals"]
 
 
+@cache
+def first_files(suffix: str) -> dict[str, bytes]:
+    """What a catalogue that has begun has written, by the names of its files."""
+    with TemporaryDirectory() as folder:
+        ss.catalogue(PROBLEM, 0.6 * DURATION, Path(folder) / f"events.{suffix}")
+        return {path.name: path.read_bytes() for path in Path(folder).iterdir()}
+
+
 def began(tmp_path: Path, suffix: str = "csv") -> Path:
-    ss.catalogue(PROBLEM, 0.6 * DURATION, tmp_path / f"events.{suffix}")
+    for name, content in first_files(suffix).items():
+        (tmp_path / name).write_bytes(content)
     return tmp_path / "events.checkpoint.nc"
 
 

@@ -75,7 +75,7 @@ def around_leaps(name: str) -> list[int]:
     return sorted(stops | {steps})
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("name", RUNS)
 def test_a_run_stopped_around_leaps_resumes_bit_for_bit(name: str, tmp_path: Path) -> None:
     whole, path, duration = whole_run(name), tmp_path / "run.nc", RUNS[name][1]
@@ -88,7 +88,7 @@ def test_a_run_stopped_around_leaps_resumes_bit_for_bit(name: str, tmp_path: Pat
         assert differences(continued(path, duration), whole) == [], f"after {stop} steps"
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("name", RUNS)
 def test_a_run_that_ended_within_a_leap_continues_as_if_it_had_not(name: str, tmp_path: Path) -> None:
     """The end of the first run cuts a leap, or allows none: a longer one takes it whole."""
@@ -127,6 +127,7 @@ def test_a_number_of_events_stops_a_creeping_run(events: int, tmp_path: Path) ->
     assert "creeping" in {report.doing for report in seen} or events == 1
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("name", RUNS)
 def test_a_catalogue_is_the_table_of_the_whole_run(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "CAPACITY", 64)

@@ -46,7 +46,7 @@ def stopped(problem: ss.Problem, duration: float, steps: int, path: Path) -> Che
     return run.snapshot()
 
 
-@pytest.mark.sampled(every=7)
+@pytest.mark.sampled(every=9)
 @pytest.mark.parametrize("name", RUNS)
 def test_a_run_stopped_anywhere_resumes_bit_for_bit(name: str, tmp_path: Path) -> None:
     problem, duration = RUNS[name]
@@ -89,7 +89,7 @@ def test_those_stops_meet_the_engine_in_every_state(tmp_path: Path) -> None:
 def test_a_finished_run_continues_as_if_it_had_not_ended(name: str, tmp_path: Path) -> None:
     problem, duration = RUNS[name]
     whole, path = ss.simulate(problem, duration), tmp_path / "run.nc"
-    for share in np.random.default_rng(len(name)).uniform(0.02, 0.98, 3):
+    for share in np.random.default_rng(len(name)).uniform(0.02, 0.98, 2):
         save_checkpoint(ss.simulate(problem, share * duration), path)
         assert differences(continued(path, duration), whole) == [], f"from {share} of the way"
     assert differences(ss.resume(path, duration), whole) == []

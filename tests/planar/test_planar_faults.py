@@ -160,6 +160,7 @@ def test_friction_that_falls_to_zero_is_not_negative() -> None:
     assert ss.simulate(contact(ss.friction.ExponentialSlipWeakening(0.7, 0.0, 0.4), {}), 12.0, frames=16).status.ok
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("law", [LAW, ss.friction.HyperbolicRate(0.8, 0.3, 0.1)], ids=["of slip", "of rate"])
 def test_a_fault_on_which_nothing_slips_has_an_answer(law: Any, tmp_path: Path) -> None:
     """The strength is 80 MPa or 70 MPa (LAW), the largest load nine tenths of it."""

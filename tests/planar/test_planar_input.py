@@ -109,6 +109,7 @@ def rough(low: float, high: float) -> np.ndarray:
     return low + (high - low) * ROUGH.random(PLACES)
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize(
     ("problem", "along"),
     [

@@ -50,6 +50,7 @@ def test_a_front_is_timed_and_its_speed_found() -> None:
     assert np.isnan(rupture_times(TIMES, 0.0 * rate, 1e-3)).all()
 
 
+@pytest.mark.slow
 def test_a_uniform_contact_has_the_pulses_of_the_slab_in_1d() -> None:
     problem = ss.scenarios["fig5-slab-reconstructed"].problem
     contact = ss.PlanarSlab(problem, nodes=8, length=1.4e4)
@@ -74,6 +75,7 @@ def test_the_process_zone_of_linear_weakening_is_that_of_the_closed_form() -> No
     assert "NOT resolved" in str(run)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("plane", [False, True])
 def test_a_run_draws_itself_with_units(plane: bool) -> None:
     grid = {"width": 2e4, "width_nodes": 16} if plane else {}
@@ -82,6 +84,7 @@ def test_a_run_draws_itself_with_units(plane: bool) -> None:
     assert all(unit in labels for unit in ("(km)", "(m/s)", "(s)"))
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("plane", [False, True])
 def test_a_film_shows_the_contact_frame_by_frame(plane: bool, tmp_path: Path) -> None:
     """What moves from frame 3 to frame 4: the fields, and the clock."""

@@ -130,7 +130,7 @@ LAWS = {
 }
 
 
-QUICK = ("state", "half-space above")
+QUICK = ("half-space above",)
 
 
 @pytest.mark.parametrize("name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in LAWS])
@@ -146,6 +146,7 @@ def test_any_law_on_a_uniform_contact_is_the_slab_in_1d(name: str) -> None:
     assert errors[1] < 0.6 * errors[0]
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(("kh", "rate"), [(0.0, 1.287839), (0.5, 1.186815), (1.0, 0.811499)])
 def test_a_disturbance_of_a_wavenumber_grows_as_the_closed_form_says(kh: float, rate: float) -> None:
     """q coth(q h) = alpha_w, lambda = c sqrt(q^2 - k^2), to 1e-4 of the rate, which the time steps leave: half as long, 2e-5.
@@ -260,6 +261,7 @@ def agree(one: Any, other: Any) -> bool:
     return all(np.abs(np.subtract(a, b)).max() < 1e-12 * np.abs(a).max() for a, b in zip(one, other, strict=True))
 
 
+@pytest.mark.slow
 def test_two_devices_give_the_numbers_of_one_and_transpose_planes() -> None:
     """The compiled step of a plane exchanges parts (all-to-all), and never gathers a plane."""
     (one, slip, _), (two, others, exchanges) = (answered(started(count)) for count in (1, 2))

@@ -106,6 +106,7 @@ class Killed(BaseException):
     """In place of a signal that no process survives."""
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(
     "place", ["sync", "write_variables", *(pytest.param(one, marks=pytest.mark.slow) for one in ("consolidate", "in_attributes"))]
 )
@@ -144,6 +145,7 @@ ss.simulate(patch(nodes=32, length=2e4), 12.0, frames=10, checkpoint="run.zarr",
 """
 
 
+@pytest.mark.slow
 def test_a_run_that_was_killed_continues_bit_for_bit(tmp_path: Path, whole: Any) -> None:
     path = os.pathsep.join([str(Path(ss.__file__).parents[1]), str(Path(__file__).parents[2])])
     done = subprocess.run([sys.executable, "-c", RUN], cwd=tmp_path, env=os.environ | {"PYTHONPATH": path}, check=False)
