@@ -1,4 +1,4 @@
-"""Every step carries a bound of what it lacks: the bound holds, and slip meets every feature of a law on its way."""
+"""Every step carries a bound of what it lacks: the bound holds, and the law is met where coefficients of a series vanish."""
 
 from __future__ import annotations
 
@@ -58,36 +58,6 @@ def off_the_law(solution: ss.Solution, times: Floats) -> float:
     law, rate = solution.problem.friction, solution.slip_rate(times)
     miss = np.abs(np.abs(solution.traction(times)) / 1e8 - law.coefficient(solution.slip(times), np.abs(rate)))
     return float(np.max(np.where(rate != 0.0, miss, 0.0)))
-
-
-@pytest.mark.sampled(every=7)
-@pytest.mark.parametrize(
-    "formula",
-    [
-        "0.6 + 0.05*exp(-((u - 1)/{w})**2)",
-        "0.6 + 0.05*tanh((u - 1)/{w})",
-        "0.6 + 0.05/(1 + exp((u - 1)/{w}))",
-        "0.6 + 0.05/(1 + ((u - 1)/{w})**2)",
-        "0.6 + 0.05*sqrt((u - 1)**2 + {w}**2)",
-        "0.6 + 0.05*exp(-((u - 1)/0.1)**2)*sin(u/{w})",
-        "0.6 + 0.04*exp(-((u - 1)/{w})**2) - 0.02*exp(-((u - 1.5)/{w})**2)*tanh((u - 1.5)/{w})",
-    ],
-)
-@pytest.mark.parametrize("width", [1e-1, 1e-2, 1e-4])
-def test_slip_meets_every_feature_on_its_way(formula: str, width: float) -> None:
-    """The times of slips next to the feature come from the run itself: it is met if they are there, and the law holds at them.
-
-    Traction within 2e-9 of the normal stress; before features were looked for it was off by up to 5 %.
-    """
-    law = F.FromExpression(formula.format(w=width))
-    solution = ss.simulate(ss.Problem(SLAB, law, initial_excess=2e7), 4.0)
-    pieces = solution.history
-    start = pieces.store.slip
-    assert solution.status.ok
-    assert start[0] == 0.0
-    assert np.count_nonzero(np.abs(start - 1.0) < 6.0 * width) >= 3
-    near = np.concatenate([np.linspace(a, b, 33) for a, b in zip(pieces.start, pieces.end, strict=True)])
-    assert off_the_law(solution, near) < 2e-9
 
 
 @pytest.mark.parametrize("power", [4, 6, 8, 20])

@@ -258,20 +258,6 @@ def test_a_driver_that_gives_way_determines_the_rate_of_steady_sliding(driver: f
     assert run.slip_rate(np.linspace(0.0, run.duration, 100)) == pytest.approx(problem.rate, rel=1e-9)
 
 
-def test_scenario_command_line_and_file_know_steady_sliding(tmp_path: Path) -> None:
-    scenario = ss.scenarios["fig6-slab"].with_values({"initial.rate": "steady", "pull_rate": 10.0, "duration": 10.0})
-    assert 'rate = "steady"' in scenario.to_toml()
-    path = tmp_path / "steady.toml"
-    path.write_text(scenario.to_toml())
-    assert ss.load_scenario(path).problem == scenario.problem
-    assert "initial.rate" not in scenario.problem.parameters
-    run = ss.simulate(scenario)
-    run.to_netcdf(tmp_path / "run.nc")
-    assert ss.open_solution(tmp_path / "run.nc").problem == scenario.problem
-    assert float(run.slip_rate(3.0)) == pytest.approx(10.0, rel=1e-12)
-    assert "a batch starts from rest" in why_not(scenario, [], ["slip"])
-
-
 SCENARIO = """
 [body]
 kind = "spring-block"
@@ -293,13 +279,21 @@ duration = "0.2 s"
 """
 
 
-@pytest.mark.sampled(every=3)
-@pytest.mark.parametrize("initial", ["", 'rate = "1 mm/s"', 'rate = "1 mm/s"\nload = "60 MN"\nstate = "0.2 s"'])
-def test_scenario_and_file_keep_the_initial_rate_bit_for_bit(initial: str, tmp_path: Path) -> None:
+@pytest.mark.sampled(every=4)
+@pytest.mark.parametrize(
+    ("initial", "rate"),
+    [
+        ("", None),
+        ('rate = "1 mm/s"', 1e-3),
+        ('rate = "1 mm/s"\nload = "60 MN"\nstate = "0.2 s"', 1e-3),
+        ('rate = "steady"', "steady"),
+    ],
+)
+def test_scenario_and_file_keep_the_initial_rate_bit_for_bit(initial: str, rate: float | str | None, tmp_path: Path) -> None:
     path = tmp_path / "start.toml"
     path.write_text(SCENARIO.replace("INITIAL", initial))
     scenario = ss.load_scenario(path)
-    assert scenario.problem.initial_rate == (1e-3 if initial else None)
+    assert scenario.problem.initial_rate == rate
     run = ss.simulate(scenario)
     path.write_text(scenario.to_toml())
     assert ss.load_scenario(path).problem == scenario.problem
@@ -350,6 +344,8 @@ def test_a_law_without_state_starts_so_too_and_is_no_case_for_a_batch() -> None:
     steady = ss.Problem(block, Smooth(0.6, 1e-3), pull_rate=1e-2)
     assert ss.simulate(steady, 5.0).slip_rate(np.linspace(0.0, 5.0, 50)) == pytest.approx(1e-2, rel=1e-12)
     assert "starts at a slip rate of its own" in why_not(Scenario(steady, 5.0), ["friction.top"], ["slip"])
+    sticks = ss.Problem(block, STICKING, pull_rate=1e-2, initial_rate="steady")
+    assert "a batch starts from rest" in why_not(Scenario(sticks, 5.0), [], ["slip"])
     light = Scenario(ss.Problem(replace(SLAB, contact_mass=0.0), Smooth(0.6, 1e-3), pull_rate=1e-2, initial_load=1e7), 5.0)
     assert "starts at a slip rate of its own" in why_not(light, ["body.contact_mass"], ["slip"])
     assert why_not(light, ["friction.top"], ["slip"]) == ""

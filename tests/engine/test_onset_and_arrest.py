@@ -144,18 +144,6 @@ def test_slips_that_touch_are_events_of_their_own_at_every_rate() -> None:
     assert every.start.to_numpy().tolist() == fast.start.to_numpy().tolist()
 
 
-def test_where_the_rate_turns_on_the_way_the_threshold_cuts() -> None:
-    """A damped block creeps over bumps and never rests: slip began long before, and the rate has turned since."""
-    law = F.SinusoidalSlip(0.5, 0.1, 2.0)
-    run = ss.simulate(ss.Problem(ss.SpringBlock(2.0, 1.0, 10.0, damping=4.0), law, pull_rate=0.01, initial_excess=0.0), 900.0)
-    cut = run.catalogue(0.2)
-    assert len(cut) == 3
-    for time in (cut.start, cut.end):
-        assert run.slip_rate(time.to_numpy()) == pytest.approx(0.2, rel=1e-12, abs=0.0)
-    assert cut.traction_before.to_numpy() == pytest.approx(run.traction(cut.start.to_numpy()), rel=1e-12, abs=0.0)
-    assert run.events.start[0] == 0.0
-
-
 def test_a_rate_that_turns_is_noticed_and_rounding_is_not() -> None:
     """v = 1 + 3 x - 2 x^2 rises to x = 3/4 and falls to 2 at x = 1."""
     memory = Spare.table(1)

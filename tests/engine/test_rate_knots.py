@@ -9,7 +9,6 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 import stickslip as ss
 
@@ -35,25 +34,6 @@ def test_a_contact_with_mass_passes_knots_when_the_closed_form_says_so() -> None
         expected.append(time)
     assert passed == pytest.approx(expected, rel=1e-10, abs=0.0)
     assert run.slip_rate(np.array(passed)) == pytest.approx(LAW.rates[1:], rel=1e-10, abs=0.0)
-
-
-def test_a_block_that_speeds_up_and_slows_down_over_knots_agrees_with_scipy() -> None:
-    scipy_integrate = pytest.importorskip("scipy.integrate")
-    block = ss.SpringBlock(mass=2.8e9, stiffness=3e10, normal_force=1e11)
-    problem = ss.Problem(block, LAW, pull_rate=0.1, initial_excess=1e10)
-    run = ss.simulate(problem, block.period)
-    arrest = float(run.catalogue(0.0).end.iloc[0])
-    normal, load = block.normal_force, problem.load
-
-    def motion(t: float, y: NDArray[np.float64]) -> list[float]:
-        force = load + block.stiffness * (0.1 * t - y[0]) - normal * np.interp(y[1], LAW.rates, LAW.coefficients)
-        return [y[1], force / block.mass]
-
-    theirs = scipy_integrate.solve_ivp(motion, (0.0, 0.99 * arrest), [0.0, 0.0], rtol=1e-12, atol=1e-14, max_step=3e-4)
-    assert theirs.y[1].max() > LAW.rates[3]
-    assert run.slip(theirs.t) == pytest.approx(theirs.y[0], rel=0.0, abs=1e-8 * theirs.y[0].max())
-    assert run.slip_rate(theirs.t) == pytest.approx(theirs.y[1], rel=0.0, abs=1e-7 * theirs.y[1].max())
-    assert np.unique(run.history.store.law_piece[run.history.store.mode > 0]).tolist() == [0, 1, 2, 3, 4]
 
 
 def stable_rates(load: float) -> list[float]:
