@@ -1,4 +1,4 @@
-"""Coulomb friction is the limit of the hyperbolic law, and pulses have their closed form."""
+"""The error follows the tolerance; Coulomb friction is the limit of the hyperbolic law."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import pytest
 import stickslip as ss
 from stickslip.reference.slab import PulseTrain
 from stickslip.studies.verdict import local_orders
-from tests.problems import DENSITY, IMPEDANCE, MODULUS, NORMAL, ROUND, SLAB, THICKNESS, slip_law_slab
+from tests.problems import DENSITY, IMPEDANCE, MODULUS, NORMAL, ROUND, SLAB, THICKNESS, slip_law_block, slip_law_slab
 
 ALPHAS = 10.0 ** np.arange(1, 7)
 DROP = 0.5
@@ -38,6 +38,30 @@ def test_slip_of_a_block_tends_to_the_coulomb_limit_with_order_one() -> None:
     orders = local_orders(1.0 / ALPHAS, missing(BLOCK))[1:]
     assert (np.diff(orders) > 0.0).all()
     assert orders[-1] == pytest.approx(1.0, abs=1e-4)
+
+
+CASES = {
+    "slab": (slip_law_slab(50.0, 1e-3, extra_load=3430.0, pull=0.0), 9.0),
+    "block": (slip_law_block(5.0, MODULUS * 1e3), 3.0),
+}
+
+
+def error(problem: ss.Problem, duration: float, rtol: float, truth: ss.Solution) -> float:
+    times = np.linspace(0.0, duration, 400)
+    slip = truth.slip(times) - problem.initial_slip
+    return float(np.max(np.abs(ss.simulate(problem, duration, rtol=rtol).slip(times) - problem.initial_slip - slip)) / np.ptp(slip))
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_error_follows_tolerance(name: str) -> None:
+    problem, duration = CASES[name]
+    truth = ss.simulate(problem, duration, rtol=1e-15)
+    tolerances = 10.0 ** np.arange(-5, -12, -1)
+    errors = np.array([error(problem, duration, rtol, truth) for rtol in tolerances])
+    slope = np.polyfit(np.log10(tolerances), np.log10(errors), 1)[0]
+    assert 0.8 < slope < 1.3
+    # the pulses amplify an error of the start by the ratio of their rates, here about 100
+    assert np.all(errors < 100 * tolerances)
 
 
 def test_pulses_under_constant_load_have_their_closed_form() -> None:
