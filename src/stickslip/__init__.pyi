@@ -3,7 +3,7 @@
 # What slides, what resists it, what drives it
 # Many runs
 from . import figures, friction, loading, studies
-from .bodies import ElasticSlab, RotatingBlock, SpringBlock, TorsionalString
+from .bodies import ElasticSlab, LayeredSlab, RotatingBlock, SpringBlock, TorsionalString
 from .explorer.notebook import explore
 
 # One run
@@ -28,6 +28,7 @@ __all__ = [
     "InputError",
     "PlanarSlab",
     "Problem",
+    "LayeredSlab",
     "RotatingBlock",
     "Solution",
     "SpringBlock",

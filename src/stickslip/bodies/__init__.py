@@ -1,11 +1,12 @@
 """The bodies: a rigid block on a spring and an elastic slab that slide, and a disc on a spring and a string that turn."""
 
-from stickslip.bodies.contract import MACHINE, Body, BodyOnCharacteristics, BodyWithWaves, as_waves, has_dashpot
+from stickslip.bodies.contract import MACHINE, Body, BodyOnCharacteristics, BodyWithWaves, as_waves, has_dashpot, mass_field
+from stickslip.bodies.layered import LayeredSlab
 from stickslip.bodies.sliding import ElasticSlab, SpringBlock, as_block, as_slab
 from stickslip.bodies.turning import RotatingBlock, TorsionalString
 
 BODIES: dict[str, type[BodyOnCharacteristics]] = {
-    body.kind: body for body in (SpringBlock, ElasticSlab, RotatingBlock, TorsionalString)
+    body.kind: body for body in (SpringBlock, ElasticSlab, LayeredSlab, RotatingBlock, TorsionalString)
 }
 """Every body by its name in scenario files."""
 
@@ -16,6 +17,7 @@ __all__ = [
     "BodyOnCharacteristics",
     "BodyWithWaves",
     "ElasticSlab",
+    "LayeredSlab",
     "RotatingBlock",
     "SpringBlock",
     "TorsionalString",
@@ -23,4 +25,5 @@ __all__ = [
     "as_slab",
     "as_waves",
     "has_dashpot",
+    "mass_field",
 ]

@@ -73,6 +73,8 @@ class BodyOnCharacteristics(Body, Protocol):
 
     has_waves: ClassVar[bool]
     """True if slip sends waves into the body, which come back as load one round trip later; False if the body is rigid."""
+    is_uniform: ClassVar[bool]
+    """False if the waves are reflected on their way, too, where layers meet."""
 
     @property
     def driver_impedance(self) -> float:
@@ -109,6 +111,16 @@ class BodyOnCharacteristics(Body, Protocol):
         """The time (s) after which slip acts on the contact again: 2 h/c of a slab, the period of a block."""
         ...
 
+    @property
+    def inflow_delay(self) -> float:
+        """How much later (s) than it is prescribed a loading acts on what the engine follows: h/c of a slab, 0 of a block."""
+        ...
+
+    @property
+    def last_impedance(self) -> float:
+        """The impedance at the driver (Pa s/m)."""
+        ...
+
 
 MACHINE = "a driver with a mass or an integral gain"
 """Words for a driver that is a machine (`BodyOnCharacteristics.has_machine`)."""
@@ -117,6 +129,11 @@ MACHINE = "a driver with a mass or an integral gain"
 def has_dashpot(body: BodyOnCharacteristics) -> bool:
     """Return True if the contact of a body with waves resists slip by another damping than its waves, whose damping is Z."""
     return body.has_waves and body.damping != body.impedance
+
+
+def mass_field(body: BodyOnCharacteristics) -> str:
+    """Return the name of the field for the mass that slips with the contact of a body with waves."""
+    return cast(BodyWithWaves, body).mass_field
 
 
 def check_body(body: BodyOnCharacteristics, normal: str) -> None:
@@ -166,8 +183,8 @@ class BodyWithWaves(BodyOnCharacteristics, Protocol):
 
 def as_waves(body: BodyOnCharacteristics, refusal: str = "needs a body with waves") -> BodyWithWaves:
     """Return a body that must carry waves. Raises InputError with the text `refusal` for a rigid one."""
-    if not body.has_waves:
-        raise InputError(refusal)
+    if not body.has_waves or not body.is_uniform:
+        raise InputError(refusal if not body.has_waves else f"{refusal}: a {type(body).__name__} has layers")
     return cast(BodyWithWaves, body)
 
 
@@ -175,6 +192,7 @@ class WithWaves:
     """What follows from the numbers of a `BodyWithWaves`: a base for such bodies."""
 
     has_waves: ClassVar[bool] = True
+    is_uniform: ClassVar[bool] = True
 
     @property
     def damping(self: BodyWithWaves) -> float:
@@ -190,6 +208,16 @@ class WithWaves:
     def round_trip_time(self: BodyWithWaves) -> float:
         """The two-way travel time R (s), after which a wave that slip has sent out comes back as load."""
         return self.two_way_time
+
+    @property
+    def inflow_delay(self: BodyWithWaves) -> float:
+        """The travel time h / c (s) from the driver to the contact."""
+        return self.distance / self.wave_speed
+
+    @property
+    def last_impedance(self: BodyWithWaves) -> float:
+        """The impedance at the driver (Pa s/m), that of the contact in a uniform body."""
+        return self.impedance
 
     @property
     def has_inertia(self: BodyWithWaves) -> bool:
@@ -259,6 +287,7 @@ class OnSpring:
     """What follows from the numbers of a rigid body on a spring: a base for such bodies."""
 
     has_waves: ClassVar[bool] = False
+    is_uniform: ClassVar[bool] = True
     has_inertia: ClassVar[bool] = True
     driver_impedance: ClassVar[float] = math.inf
     """The end of the spring is displaced as prescribed, as the face of a slab is by a rigid driver."""
@@ -267,6 +296,12 @@ class OnSpring:
     driver_inertia: ClassVar[float] = 0.0
     driver_integral_gain: ClassVar[float] = 0.0
     reflection: ClassVar[float] = 0.0
+    inflow_delay: ClassVar[float] = 0.0
+
+    @property
+    def last_impedance(self: BodyOnCharacteristics) -> float:
+        """The `impedance`."""
+        return self.impedance
 
     @property
     def round_trip_time(self: BodyOnCharacteristics) -> float:

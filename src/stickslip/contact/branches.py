@@ -12,9 +12,9 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.bodies import as_waves
 from stickslip.contact.folds import Certificate, certificate
 from stickslip.contact.roots import bracketed_newton
+from stickslip.foundation.errors import InputError
 from stickslip.problem.problem import Problem
 from stickslip.resistance import Branch, Resistance
 
@@ -25,9 +25,10 @@ def resistance(problem: Problem, law_slip: float | None = None) -> Resistance:
     A contact mass does not enter: a contact with mass settles to g. Raises InputError for a block, whose slip rate is a state and
     solves no contact equation.
     """
-    slab = as_waves(problem.body, "contact equation: a block has none, its slip rate follows from its inertia")
+    if not problem.body.has_waves:
+        raise InputError("contact equation: a block has none, its slip rate follows from its inertia")
     slip = problem.law_slip if law_slip is None else float(law_slip)
-    return Resistance(problem.friction, slab.damping, problem.normal, slip)
+    return Resistance(problem.friction, problem.body.damping, problem.normal, slip)
 
 
 def branches(problem: Problem, law_slip: float | None = None) -> tuple[Branch, ...]:

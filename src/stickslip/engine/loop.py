@@ -115,11 +115,17 @@ def make_pass(run: Run, last_trip: int, last_phase: float) -> int:
 @kernel
 def obstacle(run: Run) -> int:
     """Return the code of the reason why the run cannot go on, or Stop.NONE."""
-    if run.counts.length + ROOM > run.capacity:
+    if run.counts.length + ROOM > run.capacity or lacks_rows(run):
         return Stop.FULL
     if run.counts.stalled > LARGEST_STALL or run.counts.unresolved_slips > LARGEST_STORM:
         return Stop.STORM
     return Stop.NEED_BRANCHES if run.counts.folds_move == 1 and needs_branches(run) else Stop.NONE
+
+
+@kernel
+def lacks_rows(run: Run) -> bool:
+    """Return True if a body of layers needs more rows of waves than there are, for this round trip and the one before."""
+    return run.counts.cells > 0 and run.counts.length - run.counts.previous_from + ROOM > run.wave_rows
 
 
 @kernel
@@ -129,6 +135,8 @@ def missing_part(run: Run) -> int:
         return EnginePart.LOADING_HISTORY
     if run.driver == 0 and run.counts.driven == 1:
         return EnginePart.DRIVER
+    if run.ladder == 0 and run.counts.cells > 0:
+        return EnginePart.LADDER
     if run.moving_folds == 0 and run.counts.folds_move == 1:
         return EnginePart.MOVING_FOLDS
     return EnginePart.ECHO_QUEUE if run.echo_queue == 0 and run.counts.sparse == 1 else EnginePart.NONE

@@ -17,6 +17,7 @@ from stickslip.engine.state.layout import Counts, EnginePart, Integers, Params, 
 from stickslip.engine.state.workspace import Run, borrow
 from stickslip.engine.waves.driver import drive
 from stickslip.engine.waves.echo_queue import build_queue, end_trip, next_echo
+from stickslip.engine.waves.ladder import serve
 from stickslip.engine.waves.varying_forcing import enter_segment, take_loading, trips_withstood
 from stickslip.foundation.constants import RIGID
 
@@ -62,6 +63,12 @@ def driver(memory: int, task: int, number: float) -> float:
     return drive(borrow(memory))
 
 
+@kernel
+def ladder(memory: int, task: int, number: float) -> float:
+    """Serve a body of layers: see `Task`."""
+    return serve(borrow(memory), task, number)
+
+
 @cache
 def part_at(part: Any) -> int:
     """Return the address of a part. Compiles it, or takes it from the cache on disk."""
@@ -77,6 +84,7 @@ PARTS = {
     EnginePart.ECHO_QUEUE: echo_queue,
     EnginePart.MOVING_FOLDS: moving_folds,
     EnginePart.DRIVER: driver,
+    EnginePart.LADDER: ladder,
 }
 """The function of each part; its address is the field of the same name in `workspace.Run`."""
 

@@ -154,11 +154,11 @@ def steady_inflow(problem: Problem) -> tuple[float, float]:
     if not body.has_waves:
         return body.stiffness * problem.first_pull_rate, 0.0
     if body.is_driven_rigidly:
-        return 2.0 * body.impedance * problem.first_pull_rate, 0.0
+        return 2.0 * body.last_impedance * problem.first_pull_rate, 0.0
     gain, far = gain_of(body), problem.far_stress
     assert not isinstance(far, LoadingHistory)
     excess = far_excess(problem) if far is None else far - problem.strength
-    growth, delay = problem.far_stress_rate, 0.5 * body.round_trip_time
+    growth, delay = problem.far_stress_rate, body.inflow_delay
     return gain * body.driver_impedance * problem.first_pull_rate + gain * (excess - growth * delay), gain * growth
 
 
@@ -215,9 +215,9 @@ def inflow_of(problem: Problem) -> Inflow:
         return _inflow([Segment(0.0, value, slope)], SILENT, 0.0, problem)
     if not body.has_waves:
         return _inflow(*_scaled(problem.pull_rate, body.stiffness), 0.0, problem)
-    delay = 0.5 * body.round_trip_time
+    delay = body.inflow_delay
     if body.is_driven_rigidly:
-        return _inflow(*_scaled(problem.pull_rate, 2.0 * body.impedance), delay, problem)
+        return _inflow(*_scaled(problem.pull_rate, 2.0 * body.last_impedance), delay, problem)
     return _inflow(*_lossy(problem), delay, problem)
 
 

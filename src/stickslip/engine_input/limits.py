@@ -51,6 +51,8 @@ def creep_tolerance(problem: Problem, creep_rtol: float | None, rtol: float) -> 
 def leaps_over(problem: Problem) -> Over:
     """Return what a run of a problem may leap over."""
     rigid = problem.body.is_driven_rigidly
+    if not problem.body.is_uniform:
+        return ""
     return _but_pull(problem) if problem.pull_rate != 0.0 or not rigid else ""
 
 
@@ -86,6 +88,8 @@ def missing_for_creep(problem: Problem) -> str:
     body, law = problem.body, problem.friction
     if not body.has_waves:
         return "a slab, which creeps from round trip to round trip"
+    if not body.is_uniform:
+        return "a body of one layer"
     if not body.is_driven_rigidly:
         return "a rigid driver (no driver_impedance)"
     if body.has_inertia:
@@ -116,7 +120,7 @@ def check_shortest_event(problem: Problem, shortest: float | None, where: str, n
     if shortest is None or shortest == 0.0:
         return shortest
     body = problem.body
-    if not (body.has_waves and body.is_driven_rigidly):
+    if not (body.has_waves and body.is_uniform and body.is_driven_rigidly):
         raise InputError(f"{where}: {name} must be 0 here: only under a slab with a rigid driver do echoes get ever shorter")
     if problem.varies:
         raise InputError(f"{where}: {name} must be 0 here: events are lumped under a constant pull and normal load only")
@@ -134,6 +138,7 @@ def lumps_by_itself(problem: Problem) -> bool:
     body, law = problem.body, problem.friction
     return (
         body.has_waves
+        and body.is_uniform
         and body.is_driven_rigidly
         and not body.has_inertia
         and not problem.varies
@@ -149,7 +154,7 @@ def automatic_length(body: BodyOnCharacteristics) -> float:
 
 def wait_for_creep(count: Counts, problem: Problem, creep_rtol: float | None) -> None:
     """Have the engine pause when a run that leaps automatically has had PATIENCE round trips with slip."""
-    if creep_rtol is None and _but_pull(problem):
+    if creep_rtol is None and problem.body.is_uniform and _but_pull(problem):
         count.creep_in = PATIENCE
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.bodies import as_waves
+from stickslip.bodies import mass_field
 from stickslip.contact.rules.selection import rule_of
 from stickslip.contact.uniqueness import regime_of
 from stickslip.engine.compiled_formula import CompiledFormula, compile_formula, keep_with
@@ -20,6 +20,7 @@ from stickslip.engine.state.layout import Counts, FirstLoad, Integers, LawPiece,
 from stickslip.engine.state.workspace import counts_in, lend_problem, memory_of, params_in
 from stickslip.engine_input.branch_table import branch_of, is_algebraic, table_of_branches
 from stickslip.engine_input.forcing import breaks_of, inflow_of, machine_at_first, pressing_of, pull_of, steady_inflow, wave_before
+from stickslip.engine_input.ladder import first_pieces, ladder_of, set_counts
 from stickslip.engine_input.limits import set_length, set_lumping
 from stickslip.engine_input.shaking import force_steps, shaking_of, tone_of
 from stickslip.foundation.constants import RIGID
@@ -66,7 +67,7 @@ def _of_problem(problem: Problem, _: SelectionRule) -> tuple[Setup, State, Count
     params = parameters_of(problem)
     branches, params.stick_to = table_of_branches(problem, 0.0)
     first = first_load_varying(problem) if problem.varies else first_load(problem)
-    setup = Setup(params, *law_tables(problem), branches, first, loading_of(problem))
+    setup = Setup(params, *law_tables(problem), branches, first, loading_of(problem), ladder_of(problem))
     for shared in (params.numbers, *setup[1:]):
         shared.flags.writeable = False
     state, counts = start_of(problem)
@@ -84,7 +85,7 @@ def check_unique(problem: Problem) -> None:
         at = f"under {brief(most.normal, problem.load_unit)}"
         why = f"{at} several slip rates solve the contact equation, and the folds between them would move"
         raise InputError(
-            f"normal_load: {why}: give the contact a mass ({as_waves(problem.body).mass_field}), or a constant normal load"
+            f"normal_load: {why}: give the contact a mass ({mass_field(problem.body)}), or a constant normal load"
         )
 
 
@@ -130,12 +131,16 @@ def parameters_of(problem: Problem) -> Params:
         params.stiffness = body.stiffness
     if problem.varies:
         params.tone_frequency = tone_of(problem).frequency
-        params.inflow_from = 0.0 if problem.ground is not None else 0.5 * problem.round_trip_time
+        params.inflow_from = 0.0 if problem.ground is not None else body.inflow_delay
     elif not body.has_waves:
         params.ramp = body.stiffness * problem.first_pull_rate * problem.round_trip_time
     else:
         params.inflow, params.inflow_rate = steady_inflow(problem)
         params.ramp = params.inflow if body.is_driven_rigidly else problem.far_stress_rate * body.round_trip_time
+    if not body.is_uniform:
+        params.inflow_from = body.inflow_delay
+        if body.is_driven_rigidly and not problem.varies:
+            params.ramp = body.stiffness * problem.first_pull_rate * body.round_trip_time
     if body.has_machine:
         params.reflection = RIGID
         params.driver_inertia, params.driver_impedance = body.driver_inertia, body.driver_impedance
@@ -167,6 +172,8 @@ SAFETY = 0.1
 def first_load(problem: Problem) -> at.Floats:
     """Return the load of the first round trip (minus the reference), linear between its breaking points."""
     body, excess = problem.body, problem.excess
+    if not body.is_uniform:
+        return first_pieces(problem)
     if not body.has_waves:
         return _pieces([0.0, problem.round_trip_time], [excess], [body.stiffness * problem.first_pull_rate])
     slope = body.impedance * problem.initial_shear / (0.5 * body.round_trip_time)  # G (V - v0) / h
@@ -187,6 +194,8 @@ def first_load_varying(problem: Problem) -> at.Floats:
     Its parts are so short that a tone in them is a polynomial to rounding.
     """
     body, excess = problem.body, problem.excess
+    if not body.is_uniform:
+        return _parts(problem, first_pieces(problem))
     if not body.has_waves:
         return _parts(problem, _pieces([0.0, problem.round_trip_time], [excess], [0.0]))
     r, half = RIGID if body.has_machine else body.reflection, 0.5 * body.round_trip_time
@@ -339,6 +348,7 @@ def start_of(problem: Problem) -> tuple[State, Counts]:
     count.states, count.sticks = len(problem.contact_law.states), problem.friction.sticks
     count.given = problem.contact_law.given
     count.one_way = problem.one_way
+    set_counts(count, problem)
     count.reverses = sum(2**n for n in problem.friction.reverses)
     if problem.has_initial_rate or not problem.friction.sticks:
         state.rate_now = problem.rate

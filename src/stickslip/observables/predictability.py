@@ -125,4 +125,4 @@ def attributes_of(prediction: Predictability | None) -> dict[str, str | float]:
 
 def is_followed(problem: Problem) -> bool:
     """Return True if the growth of a disturbance is known for this problem."""
-    return is_algebraic(problem) and not (problem.folds_move or problem.body.has_machine)
+    return is_algebraic(problem) and not (problem.folds_move or problem.body.has_machine or not problem.body.is_uniform)

@@ -6,17 +6,17 @@ A piece of history is an interval with load and slip rate as polynomials. A bloc
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Self
 
 import numpy as np
 
 from stickslip.creep.stepper import CreepLeaps
-from stickslip.engine.loop import run_until
+from stickslip.engine.loop import lacks_rows, run_until
 from stickslip.engine.on_demand import lend_part, lend_parts_at_hand
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import EchoNode, Floats, Integers, Setup, Stop, Store
-from stickslip.engine.state.workspace import counts_in, lend, lend_history, scratch_in, state_in
+from stickslip.engine.state.workspace import FIRST_ROW, NO_WAVES, Run, counts_in, lend, lend_history, scratch_in, state_in
 from stickslip.engine.waves.echo_queue import rebuild_queue
 from stickslip.engine_input.branch_table import renewed
 from stickslip.engine_input.limits import creep_tolerance, lumping_note, split_time
@@ -29,6 +29,8 @@ from stickslip.trajectory.status import Checkpoint, engine, rounding_note
 
 FIRST_CAPACITY = 256
 """Initial room of a run in pieces of history, 0.1 MB; the room grows fourfold when it is full."""
+FIRST_ROWS = 64
+"""Initial number of rows of waves of a body of layers; it grows fourfold when they are not enough for two round trips."""
 SPARE = 16
 """Room beyond the largest number of pieces allowed: the engine calls a history full when it has room for fewer than 8 more."""
 
@@ -46,6 +48,8 @@ class Session:
     echoes: Integers
     """Table of `EchoNode`, with a row for each piece of history."""
     leaps: CreepLeaps | None = None
+    waves: Floats = field(default_factory=NO_WAVES.copy)
+    """Rows of waves of a body of layers: see `engine.waves.ladder`."""
     before_end: Checkpoint | None = None
     """Checkpoint of the moment before the end of the run cut a piece or a leap; None if it has not yet done so."""
     forgotten: int = 0
@@ -59,7 +63,9 @@ class Session:
         self.last = split_time(self.options.duration, self.problem.round_trip_time)
         if self.leaps is not None:
             self.leaps.begin(self.count)
-        lend_history(self.memory, self.store, self.echoes)
+        if self.count.cells > 0 and not len(self.waves):
+            self.waves = np.zeros((FIRST_ROW + FIRST_ROWS, int(self.count.cells), at.TERMS))
+        lend_history(self.memory, self.store, self.echoes, self.waves)
         lend_parts_at_hand(self.memory)
 
     @classmethod
@@ -84,7 +90,7 @@ class Session:
         return run
 
     def _lend(self) -> None:
-        lend(self.memory, self.setup, self.store, self.echoes)
+        lend(self.memory, self.setup, self.store, self.echoes, self.waves)
 
     @property
     def length(self) -> int:
@@ -147,10 +153,25 @@ class Session:
     def grow(self) -> bool:
         """Make room for more pieces. Returns False if there are as many as the options allow, or if memory is short."""
         max_pieces = self.options.most_pieces
+        if lacks_rows(Run(self.memory)):
+            return self._more_rows()
         if self.length >= max_pieces:
             return False
         with suppress(MemoryError):
             self.reserve(min(4 * len(self.store.pieces), max_pieces + SPARE))
+            return True
+        return False
+
+    def _more_rows(self) -> bool:
+        """Make room for more rows of waves. Returns False if memory is short."""
+        before = len(self.waves) - FIRST_ROW
+        with suppress(MemoryError):
+            waves = np.zeros((FIRST_ROW + 4 * before, *self.waves.shape[1:]))
+            waves[:FIRST_ROW] = self.waves[:FIRST_ROW]
+            kept = np.arange(int(self.count.previous_from), self.length) + int(self.count.wave_shift)
+            waves[FIRST_ROW + kept % (4 * before)] = self.waves[FIRST_ROW + kept % before]
+            self.waves = waves
+            self._lend()
             return True
         return False
 
@@ -176,6 +197,7 @@ class Session:
         self.count.echo_of = place[self.count.echo_of]
         for name in ("length", "trip_from", "previous_from", "previous_to", "new_from"):
             setattr(self.count, name, getattr(self.count, name) - dropped)
+        self.count.wave_shift += dropped
         self._rebuild_queue()
         self.forgotten += dropped
         return dropped
@@ -199,7 +221,7 @@ class Session:
         """Return a checkpoint of the present state."""
         stick_to = np.array([self.params.stick_to])
         state, count, scratch = self.state.numbers.copy(), self.count.numbers.copy(), self.scratch.copy()
-        return Checkpoint(state, count, scratch, self.setup.branches.copy(), stick_to, engine())
+        return Checkpoint(state, count, scratch, self.setup.branches.copy(), stick_to, engine(), self.waves.copy())
 
     def checkpoint(self) -> Checkpoint:
         """Return the checkpoint where this run, or a longer one, would continue."""
@@ -209,6 +231,7 @@ class Session:
         """Go back to a checkpoint, on the same history or a copy of it."""
         self.state.numbers[:], self.count.numbers[:] = checkpoint.state, checkpoint.count
         self.scratch[:] = checkpoint.scratch
+        self.waves = checkpoint.waves.copy()
         self.setup = self.setup._replace(branches=checkpoint.branch.copy())
         self.params.stick_to = checkpoint.stick_to[0]
         self.end_is_ahead = False

@@ -5,12 +5,13 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cache
 from pathlib import Path
 
 from stickslip.engine.compile.cache import SOURCES
 from stickslip.engine.state.layout import Counts, Floats, Integers, Stop
+from stickslip.engine.state.workspace import NO_WAVES
 from stickslip.foundation.show import brief
 
 DECIDE = (
@@ -30,6 +31,7 @@ class Checkpoint:
     branch: Floats  # Setup.branch, which changes with slip for some laws
     stick_to: Floats  # (1,): Setup.params.stick_to, which changes with it
     engine: str  # hash of the code that made it
+    waves: Floats = field(default_factory=NO_WAVES.copy)  # rows of waves of a body of layers, which are of two round trips only
 
     @property
     def length(self) -> int:

@@ -15,6 +15,7 @@ from stickslip.engine.on_demand import lend_parts_of_batch
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, EchoNode, Floats, Integers, Params, Setup, Store
 from stickslip.engine.state.workspace import ADDRESSES, RUN_SIZE, Run, lend
+from stickslip.engine_input.ladder import NO_LADDER
 from stickslip.engine_input.prepare import NOT_VARYING
 from stickslip.trajectory.slip_events import EventTurns
 from stickslip.trajectory.turning_points import Known, Spare, Turn
@@ -157,7 +158,7 @@ def table_of(setups: Setups, work: Workspace) -> tuple[Integers, Integers]:
     The addresses have the shape (WIDTH, ADDRESSES), the strides (ADDRESSES,). A stride is 0 for a table that all members share.
     """
     params = Params(setups.params[0])
-    own = Setup(params, setups.law[0], setups.constants[0], setups.branch_table[0], setups.first_load[0], NOT_VARYING)
+    own = Setup(params, setups.law[0], setups.constants[0], setups.branch_table[0], setups.first_load[0], NOT_VARYING, NO_LADDER)
     addresses = np.empty((WIDTH, ADDRESSES), np.int64)
     for n in range(WIDTH):
         lend(work.table[n], own, Store(*(table[n] for table in work.store)), work.echoes[n])

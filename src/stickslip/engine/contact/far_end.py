@@ -9,6 +9,8 @@ from __future__ import annotations
 import math
 
 from stickslip.engine.compile.kernels import kernel
+from stickslip.engine.memory.addresses import call_part
+from stickslip.engine.state.layout import Task
 from stickslip.engine.state.workspace import Run
 from stickslip.foundation.constants import DEAD_LOAD, RIGID
 
@@ -24,20 +26,20 @@ def sent_back(run: Run) -> float:
 
 @kernel
 def gain_of_echo(run: Run) -> float:
-    """Return the factor (1) from the size of an error of a wave to that of its echo; NaN if it depends on its duration."""
-    return math.nan if run.counts.driven == 1 else abs(sent_back(run))
+    """Return the factor (1) from the size of an error of a wave to that of its echo; NaN if there is more than one echo."""
+    return math.nan if run.counts.driven == 1 or run.counts.cells > 0 else abs(sent_back(run))
 
 
 @kernel
 def is_rigid(run: Run) -> bool:
     """Return True for a slab under a rigid driver: a load at rest comes back whole, plus the same ramp in each round trip."""
-    return run.counts.is_block == 0 and run.counts.driven == 0 and run.params.reflection == RIGID
+    return run.params.reflection == RIGID and not (run.counts.is_block == 1 or run.counts.driven == 1 or run.counts.cells > 0)
 
 
 @kernel
 def is_dead_load(run: Run) -> bool:
     """Return True for a slab under a dead load: each second round trip at rest is the same."""
-    return run.params.reflection == DEAD_LOAD
+    return run.params.reflection == DEAD_LOAD and run.counts.cells == 0
 
 
 FADED = 1e-17
@@ -47,4 +49,6 @@ FADED = 1e-17
 @kernel
 def has_faded(run: Run) -> bool:
     """Return True if the round trips of a slab at rest, but for the ramp, no longer differ: differences fade by |r| in each."""
+    if run.counts.cells > 0:
+        return call_part(run.ladder, run, Task.IS_SETTLED, 0.0) == 1.0
     return run.counts.trips_at_rest > 0 and abs(run.params.reflection) ** (run.counts.trips_at_rest - 1) < FADED

@@ -6,7 +6,9 @@ import math
 
 from stickslip.engine.compile.kernels import inlined, kernel
 from stickslip.engine.contact.far_end import gain_of_echo
+from stickslip.engine.memory.addresses import call_part
 from stickslip.engine.series.polynomial import degree, fill
+from stickslip.engine.state.layout import Task
 from stickslip.engine.state.workspace import Run
 
 RESOLVED = 1e-12
@@ -64,6 +66,8 @@ def record(run: Run, xi_to: float) -> None:
         if run.state.residual > run.state.largest_residual:
             run.state.largest_residual = run.state.residual
         note_slip(run, n, phase_from)
+        if run.counts.cells > 0:
+            call_part(run.ladder, run, Task.KEEP_WAVES, xi_to)
         run.counts.length = n + 1
         run.counts.jump = run.counts.cause = run.counts.stalled = 0
     else:

@@ -7,10 +7,11 @@ import math
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import end_branch, friction_at, is_knot, rate_on_branch, towards
 from stickslip.engine.contact.pieces import note_degree, phase_at
+from stickslip.engine.memory.addresses import call_part
 from stickslip.engine.memory.pointers import numbers_of
 from stickslip.engine.series.polynomial import copy, evaluate, fill, restrict, total
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import Cause, Floats, NearFold
+from stickslip.engine.state.layout import Cause, Floats, NearFold, Task
 from stickslip.engine.state.workspace import Run
 
 SHORTEST_FOLD = 1e-9
@@ -88,10 +89,15 @@ def approach_fold(run: Run, width: float) -> float:
     backwards, squared = run.trial, run.spare
     restrict(run.load, run.state.xi + width, -width, backwards)  # from the fold backwards: z on [0, 1]
     share = share_described(backwards)
+    if run.counts.cells > 0:
+        share = min(share, call_part(run.ladder, run, Task.SHARE_DESCRIBED, width))
     if share < 1.0:
         return (1.0 - share) * width
     set_aside(run, width)
+    if run.counts.cells > 0:
+        call_part(run.ladder, run, Task.WAVES_TO_FOLD, width)
     phase_from, phase_to = phase_at(run, run.state.xi), phase_at(run, run.state.xi + width)
+    restrict(run.load, run.state.xi + width, -width, backwards)  # the waves have used its place
     square_variable(backwards, squared)
     restrict(squared, 1.0, -1.0, run.load)
     run.state.phase_from, run.state.phase_to = phase_from, phase_to
@@ -138,6 +144,8 @@ def depart_from_fold(run: Run, left: float) -> None:
         restrict(run.load, run.state.xi, width, forwards)
     set_aside(run, width)
     square_variable(forwards, run.load)
+    if run.counts.cells > 0:
+        call_part(run.ladder, run, Task.WAVES_FROM_FOLD, width)
     phase_from, phase_to = phase_at(run, run.state.xi), phase_at(run, run.state.xi + width)
     run.state.phase_from, run.state.phase_to = phase_from, phase_to
     run.state.speed, run.state.bend, run.state.xi = 0.0, phase_to - phase_from, 0.0
@@ -196,6 +204,8 @@ def leave_fold_piece(run: Run) -> None:
     copy(numbers_of(run.saved), numbers_of(run.state), at.SAVED)
     state.rate_now, state.slip_now, state.law_slip, state.last_step = rate, slipped, law_slip, last
     copy(run.saved_load, run.load, at.TERMS)
+    if run.counts.cells > 0:
+        call_part(run.ladder, run, Task.WAVES_GO_ON, 0.0)
     note_degree(run)
     reached = run.counts.at_fold == NearFold.APPROACHING
     run.counts.at_fold = NearFold.NONE

@@ -168,6 +168,10 @@ class Counts(MemoryRecord):
     driven: int  # 1 if the driver is a machine (`waves.driver`)
     driver_trip: int  # round trip up to which a machine has been followed
     degree: int  # degree of the present piece of load: its coefficients beyond are zero
+    cells: int  # number of cells of a body of layers (`waves.ladder`); 0 for any other body
+    first_side: int  # number of those on the first side of the contact
+    joined: int  # 1 if both sides move with the contact, as the two parts of a bowed string; 0 if slip is between them
+    wave_shift: int  # row of waves of piece n: n + wave_shift, modulo their number
 
 
 class SeriesInput(MemoryRecord):
@@ -262,6 +266,7 @@ class EnginePart(IntEnum):
     ECHO_QUEUE = 3
     MOVING_FOLDS = 4
     DRIVER = 5
+    LADDER = 6
 
 
 class Task(IntEnum):
@@ -285,6 +290,22 @@ class Task(IntEnum):
     """Find the way to the moving fold into which the series runs."""
     DRIVE = 8
     """Add what a driver that is a machine sends, and cut the piece of load where its series would not be exact enough."""
+    CROSS_CELLS = 9
+    """Let the waves of a body of layers cross two cells, and bring what arrives at the contact."""
+    SEND_IN = 10
+    """Put a piece of inflow, which stands in place of the load, among these waves, and bring what arrives at the contact."""
+    CUT_WAVES = 11
+    """Restrict these waves to a part of the piece of load."""
+    KEEP_WAVES = 12
+    """Keep these waves, and the one that leaves the contact, with the piece of the history that is being recorded."""
+    SHARE_DESCRIBED = 13
+    """Find the share of the way back from a fold on which the waves can be written in the root of time."""
+    WAVES_TO_FOLD = 14
+    WAVES_FROM_FOLD = 15
+    WAVES_GO_ON = 16
+    """Set the waves aside and write them in the root of time, before or behind a fold; take them up again."""
+    IS_SETTLED = 17
+    """Find whether the waves of each round trip at rest are those of the one before, but for the ramp."""
 
 
 class Stop(IntEnum):
@@ -375,6 +396,20 @@ class LoadingSegment(MemoryRecord):
     shakes: float  # 1 while the ground under a slab moves, or its motion is on its way back, else 0
 
 
+class LadderCell(MemoryRecord):
+    """Hold one cell of a body of layers (`waves.ladder`); loads are minus the reference strength."""
+
+    impedance: float  # Pa s/m
+    reflection: float  # 1: share of a wave from the contact that comes back at the far end of the cell
+    is_last: float  # 1 if a driver is there, else 0
+    pulled: float  # 1: share in this driver's inflow of an inflow that varies; 0 without a driver
+    inflow: float  # Pa: what a steady driver sends, at t = 0; 0 without one
+    inflow_rate: float  # Pa/s: how fast it grows
+    inflow_before: float  # Pa: what a driver sends that keeps the initial state as it is, and reflects all
+    wave: float  # Pa: wave that left the even place of the cell one round trip before t = 0
+    growth: float  # Pa/s: how fast it grew
+
+
 class HistoryPiece(MemoryRecord):
     """Hold one piece of the history: a step of the contact, with load and slip rate as polynomials in xi on [0, 1]."""
 
@@ -458,6 +493,7 @@ class Setup(NamedTuple):
     branches: Floats  # table of Branch
     first_load: Floats  # table of FirstLoad
     loading: Floats  # table of LoadingSegment
+    ladder: Floats  # table of LadderCell
 
 
 class Store(NamedTuple):

@@ -26,6 +26,7 @@ from stickslip.engine.state.layout import (
     Friction,
     HistoryPiece,
     Integers,
+    LadderCell,
     LawPiece,
     LawValue,
     LoadingSegment,
@@ -36,6 +37,8 @@ from stickslip.engine.state.layout import (
     Store,
 )
 
+FIRST_ROW = 2
+"""First row of waves (1) that belongs to the history: before it come those of the piece of load, and of one that is set aside."""
 MATRIX_ROWS = 110
 """Rows of TERMS numbers (1) that the matrix and the right-hand side of the equations of an implicit step fill."""
 
@@ -48,9 +51,11 @@ class Run(MemoryRecord):
     branch_table: BranchRow = records_at(BranchRow)
     first_load: FirstLoad = records_at(FirstLoad)
     loading: LoadingSegment = records_at(LoadingSegment)
+    ladder_cells: LadderCell = records_at(LadderCell)
     history: HistoryPiece = records_at(HistoryPiece)  # the tables of the history (`Store`)
     history_state: Floats = floats_at()
     echoes: EchoNode = records_at(EchoNode)  # the trees of echoes (`waves.echo_queue`)
+    waves: Floats = floats_at()  # the rows of waves of a body of layers (`waves.ladder`)
 
     pieces: int  # number of pieces of the law
     size: int  # number of constants of a piece of the law
@@ -63,6 +68,8 @@ class Run(MemoryRecord):
     echo_queue: int
     moving_folds: int
     driver: int
+    ladder: int
+    wave_rows: int  # number of rows of waves that fit, besides those of the piece of load
     missing: int  # the part that the engine has asked for, as a code of `Part`
 
     params: Params = inside(Params)
@@ -110,6 +117,8 @@ PARAMS, STATE, COUNTS = (
 """Places of the problem's numbers, of the state and of the counts."""
 SCRATCH = Run.places["load"].first
 """First place of scratch space in a run's memory; it extends to the end."""
+NO_WAVES = np.zeros((0, 0, TERMS))
+"""Rows of waves of a body without layers: there are none."""
 WORK_ROWS = (RUN_SIZE - SCRATCH) // TERMS
 """Length of scratch space, in rows of TERMS numbers."""
 
@@ -149,13 +158,13 @@ def scratch_in(memory: Integers) -> Floats:
     return memory[SCRATCH:].view(np.float64).reshape(WORK_ROWS, TERMS)
 
 
-def lend(memory: Integers, setup: Setup, store: Store, echoes: Integers) -> None:
+def lend(memory: Integers, setup: Setup, store: Store, echoes: Integers, waves: Floats = NO_WAVES) -> None:
     """Write the addresses and lengths of all tables into the memory of a run.
 
     The caller keeps the tables alive, and lends them again if they have moved.
     """
     lend_problem(memory, setup)
-    lend_history(memory, store, echoes)
+    lend_history(memory, store, echoes, waves)
 
 
 def lend_problem(memory: Integers, setup: Setup) -> None:
@@ -170,12 +179,14 @@ def lend_problem(memory: Integers, setup: Setup) -> None:
     run.branches, run.loads, run.segments = len(setup.branches), len(setup.first_load), len(setup.loading)
 
 
-def lend_history(memory: Integers, store: Store, echoes: Integers) -> None:
-    """Write the addresses of the tables of the history and their length into the memory of a run."""
+def lend_history(memory: Integers, store: Store, echoes: Integers, waves: Floats = NO_WAVES) -> None:
+    """Write the addresses of the tables of the history and their lengths into the memory of a run."""
+    tables = (*store, echoes, waves)
     if UNCOMPILED:
-        lend_memory(*store, echoes)
-    memory[HISTORY] = [addressof(_START.from_buffer(table.data)) for table in (*store, echoes)]
-    Run(memory).capacity = len(store.pieces)
+        lend_memory(*tables)
+    memory[HISTORY] = [addressof(_START.from_buffer(table.data)) for table in tables]
+    run = Run(memory)
+    run.capacity, run.wave_rows = len(store.pieces), len(waves) - FIRST_ROW
 
 
 _START = c_char * 0

@@ -56,6 +56,8 @@ def bring_first(run: Run) -> None:
     fill(run.load, 0.0)
     run.load[0] = first.load
     run.load[1] = first.slope * run.state.speed
+    if run.counts.cells > 0:
+        call_part(run.ladder, run, Task.CROSS_CELLS, 0.0)
     if run.counts.is_block == 1 and run.counts.trip > 0:
         run.load[0] = run.state.load_now + trips_leaped(run, run.counts.length - 1) * run.params.ramp
     # from the phase h/c on, the load of a slab's first round trip holds the initial state, reflected by the driver
@@ -80,6 +82,10 @@ def bring_echo(run: Run) -> None:
     left = run.history[source]
     rate, load = left.rate, left.load
     run.state.amplified = left.amplified * left.gain
+    if run.counts.cells > 0:
+        jumps = call_part(run.ladder, run, Task.CROSS_CELLS, 0.0) == 1.0
+        run.counts.arriving = Cause.ECHO if jumps else Cause.NO_CAUSE
+        return
     for k in range(TERMS):
         run.load[k] = share * (2.0 * params.impedance * rate[k] - load[k])
     time = run.counts.trip * params.round_trip_time + run.state.phase_from

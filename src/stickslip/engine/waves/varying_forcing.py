@@ -15,7 +15,7 @@ from stickslip.engine.contact.far_end import has_faded, is_rigid
 from stickslip.engine.contact.pieces import xi_at
 from stickslip.engine.contact.pressing import couple, is_pressing, press, pressing_at
 from stickslip.engine.memory.addresses import call_part
-from stickslip.engine.series.polynomial import RECIPROCAL, copy, maximum, restrict, total
+from stickslip.engine.series.polynomial import RECIPROCAL, copy, fill, maximum, restrict, total
 from stickslip.engine.state.layout import NEVER, TERMS, Task
 from stickslip.engine.state.workspace import Run
 from stickslip.engine.waves.driver_at_rest import trips_of_machine
@@ -38,7 +38,11 @@ def take_loading(run: Run) -> None:
         end, phase_to = min(xi_at(run, change), 1.0), change
     if begin > 0.0 or end < 1.0:
         cut(run, begin, end, phase, phase_to)
-    if run.counts.driven == 0:
+    if run.counts.cells > 0:
+        fill(run.load, 0.0)
+        add_loading(run)
+        call_part(run.ladder, run, Task.SEND_IN, 0.0)
+    elif run.counts.driven == 0:
         add_loading(run)
     elif run.counts.trip > 0 or run.state.phase_from >= 0.5 * run.params.round_trip_time:
         kept = call_part(run.driver, run, Task.DRIVE, 0.0)
@@ -80,6 +84,9 @@ def next_change(run: Run) -> float:
 def cut(run: Run, begin: float, end: float, phase: float, phase_to: float) -> None:
     """Restrict the piece of load to xi from `begin` to `end`, whose phases (s) are `phase` and `phase_to`."""
     width = end - begin
+    if run.counts.cells > 0:
+        run.state.xi = begin
+        call_part(run.ladder, run, Task.CUT_WAVES, end)
     restrict(run.load, begin, width, run.spare)
     copy(run.spare, run.load, TERMS)
     run.state.speed = (run.state.speed + 2.0 * run.state.bend * begin) * width

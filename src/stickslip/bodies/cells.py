@@ -1,0 +1,50 @@
+"""Cut layers into cells of equal travel time."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from stickslip.foundation.errors import InputError
+
+MOST_CELLS = 4096
+"""Largest number of cells (1) that layers are cut into."""
+
+
+class Cells(NamedTuple):
+    """Layers in cells of equal travel time: the number of cells of each layer, the time (s) of one, and the largest error (1).
+
+    The error is that of the travel time of a layer, relative to this time.
+    """
+
+    counts: tuple[int, ...]
+    time: float
+    error: float
+
+
+def cut_into_cells(times: ArrayLike, allowed: float) -> Cells:
+    """Cut layers with these travel times (s) into as few cells of equal time as the allowed relative error (1) permits.
+
+    The travel time of all layers together stays what it is. Raises InputError if it takes more than MOST_CELLS cells.
+    """
+    given = np.asarray(times, float)
+    total, best = float(given.sum()), Cells((), 0.0, np.inf)
+    for number in range(len(given), MOST_CELLS + 1):
+        counts = np.maximum(np.rint(given * (number / total)), 1.0)
+        time = total / float(counts.sum())
+        error = float(np.max(np.abs(counts * time / given - 1.0)))
+        if error < best.error and counts.sum() <= MOST_CELLS:
+            best = Cells(tuple(counts.astype(int).tolist()), time, error if error > ROUNDING else 0.0)
+        if best.error <= allowed:
+            return best
+    found = f"{best.error:.2g}" if np.isfinite(best.error) else "no cut at all"
+    raise InputError(
+        f"travel times of the layers from {given.min():.3g} to {given.max():.3g} s: {MOST_CELLS} cells of equal time give them to "
+        f"{found}, and {allowed:g} is asked for: allow a larger travel_time_error, or join thin layers"
+    )
+
+
+ROUNDING = 1e-13
+"""Errors (1) up to this size are those of the division, and count as none."""
