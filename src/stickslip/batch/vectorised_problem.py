@@ -180,6 +180,8 @@ def _of_run(scenario: Scenario, parameters: Sequence[str]) -> Iterator[str]:
     """Yield a reason if the run has a limit of events, a machine as driver, a varying load, or leaps over creep from its start."""
     if scenario.max_events is not None:
         yield "[run] events: a batch runs for a time, not until a number of events"
+    if not scenario.problem.body.is_uniform:
+        yield f"[body] a {scenario.problem.body.kind} is followed one run at a time"
     machine = ("body.driver_inertia", "body.driver_integral_gain")
     if scenario.problem.body.has_machine or any(name in parameters for name in machine):
         yield f"[body] {MACHINE} is followed one run at a time"

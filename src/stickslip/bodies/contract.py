@@ -257,7 +257,7 @@ class WithWaves:
         return self.modulus / self.distance
 
 
-def check_driver(body: BodyWithWaves) -> None:
+def check_driver(body: BodyOnCharacteristics) -> None:
     """Raise InputError if the mass and the gains of a driver do not go together."""
     owner = type(body).__name__
     rigid, gain = np.isinf(body.driver_impedance), np.greater(body.driver_integral_gain, 0.0)
@@ -273,7 +273,7 @@ def check_driver(body: BodyWithWaves) -> None:
         )
 
 
-def check_equivalent(body: BodyWithWaves) -> None:
+def check_equivalent(body: BodyOnCharacteristics) -> None:
     """Raise InputError unless the driver of a body is rigid: otherwise no spring is left in slow motion."""
     if not body.is_driven_rigidly:
         raise InputError(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import accumulate
+from itertools import accumulate, pairwise
 from typing import ClassVar
 
 import numpy as np
@@ -23,10 +23,9 @@ LARGEST_ERROR = 0.1
 """Largest relative error (1) of a layer's travel time that may be allowed."""
 
 
-def of_layers(unit: str, meaning: str) -> Numbers:
-    """Return the field for a number of each layer, from the contact outwards."""
-    found: Numbers = declare(NumberSeries(Quantity(unit, f"{meaning} of each layer, from the contact outwards", above=0), least=1))
-    return found
+def of_layers(unit: str, meaning: str) -> NumberSeries:
+    """Declare a number of each layer, from the contact outwards."""
+    return NumberSeries(Quantity(unit, f"{meaning} of each layer, from the contact outwards", above=0), least=1)
 
 
 @dataclass(frozen=True)
@@ -48,9 +47,9 @@ class LayeredSlab(Declared, WithWaves):
     driver_inertia: ClassVar[float] = 0.0
     driver_integral_gain: ClassVar[float] = 0.0
 
-    thickness: Numbers = of_layers("m", "thickness h")
-    density: Numbers = of_layers("kg/m^3", "density rho")
-    wave_speed: Numbers = of_layers("m/s", "shear wave speed c")
+    thickness: Numbers = declare(of_layers("m", "thickness h"))
+    density: Numbers = declare(of_layers("kg/m^3", "density rho"))
+    wave_speed: Numbers = declare(of_layers("m/s", "shear wave speed c"))
     normal_stress: Number = quantity("Pa", "normal stress S on the contact, compression positive", above=0)
     driver_impedance: Number = quantity(
         "Pa s/m",
@@ -167,7 +166,7 @@ class LayeredSlab(Declared, WithWaves):
         It is above 0 in front of a stiffer layer.
         """
         zs = self.impedances
-        return tuple((beyond - near) / (beyond + near) for near, beyond in zip(zs, zs[1:], strict=False))
+        return tuple((beyond - near) / (beyond + near) for near, beyond in pairwise(zs))
 
     def equivalent_block(self) -> SpringBlock:
         """Return the block to which the slab is equivalent in slow motion, for each m^2 of contact.

@@ -162,6 +162,16 @@ def steady_inflow(problem: Problem) -> tuple[float, float]:
     return gain * body.driver_impedance * problem.first_pull_rate + gain * (excess - growth * delay), gain * growth
 
 
+def steady_ramp(problem: Problem) -> float:
+    """Return the growth of the load of a body with waves at rest in one round trip (Pa), under a loading that does not vary."""
+    body = problem.body
+    if not body.is_driven_rigidly:
+        return problem.far_stress_rate * body.round_trip_time
+    if body.is_uniform:
+        return 2.0 * body.impedance * problem.first_pull_rate
+    return body.stiffness * problem.first_pull_rate * body.round_trip_time
+
+
 def gain_of(body: BodyOnCharacteristics) -> Any:
     """Return the share (1) of the stress of a driver that it sends to the contact; 1 for a machine, which the stress moves."""
     return 1.0 if body.has_machine else 1.0 + body.reflection

@@ -19,7 +19,16 @@ from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, FirstLoad, Integers, LawPiece, LoadingSegment, Params, Setup, State
 from stickslip.engine.state.workspace import counts_in, lend_problem, memory_of, params_in
 from stickslip.engine_input.branch_table import branch_of, is_algebraic, table_of_branches
-from stickslip.engine_input.forcing import breaks_of, inflow_of, machine_at_first, pressing_of, pull_of, steady_inflow, wave_before
+from stickslip.engine_input.forcing import (
+    breaks_of,
+    inflow_of,
+    machine_at_first,
+    pressing_of,
+    pull_of,
+    steady_inflow,
+    steady_ramp,
+    wave_before,
+)
 from stickslip.engine_input.ladder import first_pieces, ladder_of, set_counts
 from stickslip.engine_input.limits import set_length, set_lumping
 from stickslip.engine_input.shaking import force_steps, shaking_of, tone_of
@@ -84,9 +93,7 @@ def check_unique(problem: Problem) -> None:
     if problem.friction.depends_on_rate and regime_of(most) != "regular":
         at = f"under {brief(most.normal, problem.load_unit)}"
         why = f"{at} several slip rates solve the contact equation, and the folds between them would move"
-        raise InputError(
-            f"normal_load: {why}: give the contact a mass ({mass_field(problem.body)}), or a constant normal load"
-        )
+        raise InputError(f"normal_load: {why}: give the contact a mass ({mass_field(problem.body)}), or a constant normal load")
 
 
 def check_machine(problem: Problem) -> None:
@@ -136,11 +143,8 @@ def parameters_of(problem: Problem) -> Params:
         params.ramp = body.stiffness * problem.first_pull_rate * problem.round_trip_time
     else:
         params.inflow, params.inflow_rate = steady_inflow(problem)
-        params.ramp = params.inflow if body.is_driven_rigidly else problem.far_stress_rate * body.round_trip_time
-    if not body.is_uniform:
         params.inflow_from = body.inflow_delay
-        if body.is_driven_rigidly and not problem.varies:
-            params.ramp = body.stiffness * problem.first_pull_rate * body.round_trip_time
+        params.ramp = steady_ramp(problem)
     if body.has_machine:
         params.reflection = RIGID
         params.driver_inertia, params.driver_impedance = body.driver_inertia, body.driver_impedance

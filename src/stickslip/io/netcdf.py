@@ -54,7 +54,7 @@ KINDS = {
 DRAWN_POINTS = 2000
 """Number of evenly spaced times of the stored curves, besides the breaking points: enough for a figure."""
 
-AXES = (("numbers",), ("counts",), ("rows", "terms"), ("branches", "levels"), ("one",))
+AXES = (("numbers",), ("counts",), ("rows", "terms"), ("branches", "levels"), ("one",), ("wave_rows", "cells", "terms"))
 """Names of the dimensions of a checkpoint's arrays, in the order of `checkpoint.ARRAYS`."""
 
 
@@ -204,7 +204,8 @@ def history_variables(solution: Solution) -> dict[str, Variable]:
     variables = _history(solution)
     if solution.checkpoint is not None:
         axes = {name: tuple(f"engine_{axis}" for axis in of) for name, of in zip(ARRAYS, AXES, strict=True)}
-        variables |= {f"engine_{name}": Variable(axes[name], getattr(solution.checkpoint, name)) for name in ARRAYS}
+        arrays = {name: getattr(solution.checkpoint, name) for name in ARRAYS}
+        variables |= {f"engine_{name}": Variable(axes[name], array) for name, array in arrays.items() if array.size}
     return variables
 
 
@@ -333,7 +334,7 @@ def _solution(dataset: xr.Dataset, path: Path) -> Solution:
     history = History(store, scenario.problem, round_trip_time, ramp, reached, creep=creep, max_events=counted)
     checkpoint = None
     if "engine" in attributes:
-        arrays = {name: _array(dataset, f"engine_{name}") for name in ARRAYS}
+        arrays = {name: _array(dataset, f"engine_{name}") for name in ARRAYS if name != "waves" or "engine_waves" in dataset}
         checkpoint = Checkpoint(**arrays, engine=str(attributes["engine"]))
     about = scenario.max_events, scenario.creep_rtol, scenario.shortest_event
     lumping, rounding = (printable(str(attributes.get(name, ""))) for name in ("lumping", "rounding"))

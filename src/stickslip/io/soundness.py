@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from stickslip.engine.memory.records import MemoryRecord
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import BranchRow, Cause, Counts, HistoryPiece, Incoming, Setup, State, Stop
-from stickslip.engine.state.workspace import WORK_ROWS, counts_in
+from stickslip.engine.state.workspace import FIRST_ROW, NO_WAVES, WORK_ROWS, counts_in
 from stickslip.engine_input.branch_table import table_of_branches
 from stickslip.engine_input.prepare import prepare
 from stickslip.foundation.constants import RIGID
@@ -32,7 +32,10 @@ LAST_CAUSE = Cause.HEALING
 """Largest code for the cause of a shock."""
 FINITE = ("phase_from", "phase_to", "speed", "bend", "slip", "law_slip", "load", "rate")
 """Fields of a piece of the history that must be finite."""
-SAME = ("is_block", "has_inertia", "is_algebraic", "states", "given", "reverses", "sticks", "folds_move", "knots_in_rate", "varies")
+SAME = (
+    *("is_block", "has_inertia", "is_algebraic", "states", "given", "reverses", "sticks", "folds_move", "knots_in_rate"),
+    *("varies", "driven", "one_way", "cells", "first_side", "joined"),
+)
 """Counts that follow from the problem alone, so that those in a file must be the same."""
 FLAGS = ("moved", "jump", "stiff", "branch_ended", "is_locked", "to_the_end", "sparse", "lumped", "lumps")
 """Counts that are 0 or 1."""
@@ -174,6 +177,9 @@ def _shapes_of_checkpoint(checkpoint: Checkpoint) -> Iterator[Fault]:
     }
     for name, shape in shapes.items():
         yield f"shape or type of engine_{name}", not _is(getattr(checkpoint, name), shape, "f")
+    count = Counts(checkpoint.count)
+    rows = (max(len(checkpoint.waves), FIRST_ROW + 1), int(count.cells), at.TERMS) if count.cells > 0 else NO_WAVES.shape
+    yield "shape or type of engine_waves", not _is(checkpoint.waves, rows, "f")
     yield "shape or type of engine_count", not _is(checkpoint.count, (Counts.total,), "i")
 
 
@@ -198,6 +204,7 @@ def _faults_of_places(count: Counts, setup: Setup, pieces: int, leaps: int) -> I
     yield "engine_count echo_of", not -1 <= count.echo_of < length
     yield "engine_count piece", not 0 <= count.piece < len(setup.law)
     yield "engine_count segment", not 0 <= count.trip_segment <= count.segment < len(setup.loading)
+    yield "engine_count wave_shift", not 0 <= count.wave_shift <= at.NEVER
     yield "engine_count creep_leaps", not 0 <= count.creep_leaps <= leaps
     yield "engine_count degree", not 0 <= count.degree < at.TERMS
 
@@ -221,6 +228,7 @@ def _faults_of_state(checkpoint: Checkpoint, history: History) -> Iterator[Fault
     state, round_trip = State(checkpoint.state), history.round_trip_time
     finite = _places(state, *(name for name in State.places if name not in FREE))
     yield "engine_state: a number that is not finite", not np.isfinite(finite).all()
+    yield "engine_waves: a number that is not finite", not np.isfinite(checkpoint.waves).all()
     yield "engine_state xi", not -ROUND_TRIP_ROUNDING <= state.xi <= 1.0 + ROUND_TRIP_ROUNDING
     yield "engine_state: times", _no_interval(state.phase_from, state.phase_to, round_trip)
     yield "engine_state last_step", not state.last_step > 0.0

@@ -129,6 +129,8 @@ class ProblemFields(CheckedArguments):
             self._check_ground(self.ground)
 
     def _check_ground(self, ground: Ground) -> None:
+        if not self.body.is_uniform:
+            raise InputError(f"Problem: ground that moves is not followed under a {type(self.body).__name__}: give an ElasticSlab")
         if self.body.has_machine:
             cure = "set driver_inertia and driver_integral_gain to 0, or leave the ground at rest"
             raise InputError(f"Problem: ground that moves is not followed under {MACHINE}: {cure}")

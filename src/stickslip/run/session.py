@@ -12,11 +12,11 @@ from typing import Self
 import numpy as np
 
 from stickslip.creep.stepper import CreepLeaps
-from stickslip.engine.loop import lacks_rows, run_until
+from stickslip.engine.loop import ROOM, run_until
 from stickslip.engine.on_demand import lend_part, lend_parts_at_hand
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import EchoNode, Floats, Integers, Setup, Stop, Store
-from stickslip.engine.state.workspace import FIRST_ROW, NO_WAVES, Run, counts_in, lend, lend_history, scratch_in, state_in
+from stickslip.engine.state.workspace import FIRST_ROW, NO_WAVES, counts_in, lend, lend_history, scratch_in, state_in
 from stickslip.engine.waves.echo_queue import rebuild_queue
 from stickslip.engine_input.branch_table import renewed
 from stickslip.engine_input.limits import creep_tolerance, lumping_note, split_time
@@ -153,7 +153,7 @@ class Session:
     def grow(self) -> bool:
         """Make room for more pieces. Returns False if there are as many as the options allow, or if memory is short."""
         max_pieces = self.options.most_pieces
-        if lacks_rows(Run(self.memory)):
+        if self.count.cells > 0 and self.length - self.count.previous_from + ROOM > len(self.waves) - FIRST_ROW:
             return self._more_rows()
         if self.length >= max_pieces:
             return False

@@ -108,6 +108,8 @@ def stability_of(problem: Problem) -> str:
         return f"friction weakens with slip: alpha_w h = {number:.6g} (a rigid driver holds it below 1, this one is not rigid)"
     if number < 1:
         return f"statically stable: alpha_w h = {number:.6g} < 1, friction weakens more slowly than the slab unloads: it creeps"
+    if not body.is_uniform:
+        return f"statically unstable: alpha_w h = {number:.6g} > 1"
     rate = growth_rate(as_waves(body), -by_slip)
     return f"statically unstable: alpha_w h = {number:.6g} > 1; a small disturbance grows at {rate:.6g} /s"
 

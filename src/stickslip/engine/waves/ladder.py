@@ -26,7 +26,7 @@ from stickslip.foundation.constants import RIGID
 
 AIR, ASIDE = 0, 1
 """Rows of the piece of load that the contact meets, and of one that is set aside next to a fold."""
-STILL = 1e-13
+STILL = 4e-15
 """Waves have settled when they differ from those one round trip ago, but for the ramp, by less than this share (1) of the loads."""
 JUMP = 1e-12
 """The load jumps between two pieces if it changes by more than this share (1) of itself and of the reference strength."""

@@ -1,0 +1,117 @@
+"""A slab of layers: published numbers, and a slab cut into layers of equal impedance."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from tests.messages import refused
+
+DENSITY, SPEED, THICKNESS, NORMAL = 2800.0, 3500.0, 1e4, 1e8
+T = THICKNESS / (10 * SPEED)
+RATE_LAW = ss.friction.HyperbolicRate(0.8, 0.3, 1.0)
+COULOMB = ss.friction.Coulomb(0.8, 0.3)
+SOFT = {"thickness": [1e3, 8e3], "density": [DENSITY] * 2, "wave_speed": [SPEED / 2, SPEED]}
+"""Two of ten parts of the paper's slab, those at the contact, with half the impedance and the same travel time."""
+
+
+def layered(*shares: float, **numbers: Any) -> ss.LayeredSlab:
+    """Return the paper's slab cut into layers of one kind, which have these shares of its thickness."""
+    count = len(shares)
+    return ss.LayeredSlab([THICKNESS * share for share in shares], [DENSITY] * count, [SPEED] * count, NORMAL, **numbers)
+
+
+def test_a_soft_layer_turns_one_slip_into_two() -> None:
+    # Goupillaud's recursion outside the package: 9.204081633 m/s until 4 T, 13.965527813 m/s from 36 T to 40 T, 26.479553652 m
+    run = ss.simulate(ss.Problem(ss.LayeredSlab(**SOFT, normal_stress=NORMAL), RATE_LAW, 1e-12, initial_excess=0.0), 60 * T)
+    shocks = run.shocks
+    np.testing.assert_allclose(shocks.time / T, [0.0, 4.0, 36.0, 40.0], rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(shocks.rate_after, [9.204081633, 0.0, 13.965527813, 0.0], rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(run.slip(60 * T), 26.479553652, rtol=1e-10, atol=0.0)
+
+
+def test_coulomb_friction_answers_each_round_trip_of_a_soft_layer() -> None:
+    run = ss.simulate(ss.Problem(ss.LayeredSlab(**SOFT, normal_stress=NORMAL), COULOMB, 1e-12, initial_excess=0.0), 60 * T)
+    np.testing.assert_allclose(run.shocks.time / T, [0.0, 4.0, 8.0, 12.0, 16.0, 20.0], rtol=1e-12, atol=1e-12)
+    rates = [10.204082, 3.401361, 5.668934, 4.913076, 5.165029, 0.0]
+    np.testing.assert_allclose(run.shocks.rate_after, rates, rtol=1e-6, atol=1e-12)
+
+
+CASES: dict[str, tuple[dict[str, Any], dict[str, Any], float]] = {
+    "rate law": ({}, {"friction": RATE_LAW, "pull_rate": 0.05 / ss.YEAR, "initial_excess": 0.0}, 12.0),
+    "slip law": (
+        {},
+        {"friction": ss.friction.SinusoidalSlip(1.0, 0.5, 5.0), "pull_rate": 1e-9, "initial_excess": 0.0, "initial_slip": 0.5},
+        8.0,
+    ),
+    "contact mass": (
+        {"contact_mass": 1e5},
+        {"friction": ss.friction.LinearSlipWeakening(0.677, 0.525, 0.4), "pull_rate": 0.1, "initial_excess": 0.0},
+        40.0,
+    ),
+    "fold and dead load": ({"driver_impedance": 0.0}, {"friction": RATE_LAW, "pull_rate": 2.6, "initial_load": 60e6}, 9.0),
+    "lossy driver": (
+        {"driver_impedance": 4.9e6},
+        {"friction": COULOMB, "pull_rate": 0.0, "far_stress_rate": 3.0, "initial_load": 60e6},
+        20e6 / 3.0 + 40.0,
+    ),
+    "states": (
+        {},
+        {
+            "friction": ss.friction.RateAndState(0.01, 0.015, 0.05, 0.6, 1e-6),
+            "pull_rate": 0.3,
+            "initial_load": 65e6,
+            "initial_state": 1e4,
+        },
+        60.0,
+    ),
+    "pull in steps": (
+        {},
+        {"friction": replace(RATE_LAW, alpha=0.1), "pull_rate": ss.loading.Steps([0.0, 3.0, 20.0], [0.5, 0.1, 0.7]), "initial_excess": 0.0},
+        100.0,
+    ),
+    "far stress in steps": (
+        {"driver_impedance": 2e7},
+        {
+            "friction": RATE_LAW,
+            "far_stress": ss.loading.Steps([0.0, 3.0, 20.0, 1e7], [70e6, 85e6, 20e6, 90e6]),
+            "initial_load": 70e6,
+        },
+        1e7 + 30.0,
+    ),
+}
+
+
+@pytest.mark.parametrize("shares", [(0.2, 0.8), (0.3, 0.4, 0.3)])
+@pytest.mark.parametrize("name", CASES)
+def test_layers_of_equal_impedance_are_one_slab(name: str, shares: tuple[float, ...]) -> None:
+    body, problem, duration = CASES[name]
+    runs = [
+        ss.simulate(ss.Problem(one, **problem), duration)
+        for one in (ss.ElasticSlab(DENSITY, SPEED, THICKNESS, NORMAL, **body), layered(*shares, **body))
+    ]
+    times = np.linspace(0.0, duration, 2001)
+    slip, cut = (run.slip(times) for run in runs)
+    assert runs[0].status.name == runs[1].status.name
+    np.testing.assert_allclose(cut, slip, rtol=1e-8, atol=1e-9 * slip.max())
+    np.testing.assert_allclose(runs[1].events.start, runs[0].events.start, rtol=1e-9, atol=1e-9)
+
+
+BAD: dict[str, tuple[dict[str, Any], str]] = {
+    "no layers": ({"thickness": [], "density": [], "wave_speed": []}, "LayeredSlab: thickness must have 1 to "),
+    "other length": ({"density": [DENSITY]}, "LayeredSlab: thickness, density and wave_speed need one number for each layer, got"),
+    "no thickness": ({"thickness": [0.0, 8e3]}, "LayeredSlab: thickness[0] must be greater than 0 m, got 0"),
+    "too many cells": ({"thickness": [1e-3, 8e3]}, "LayeredSlab: travel times of the layers from 5.71e-07 to 2.29 s: 4096 cells"),
+    "contrast": ({"density": [1e300, DENSITY]}, "LayeredSlab: density[0] must lie within 1e+50 kg/m^3, got 1e+300"),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_bad_layers_are_refused_in_one_line(name: str) -> None:
+    change, words = BAD[name]
+    with refused(begins=words):
+        ss.LayeredSlab(**(SOFT | change), normal_stress=NORMAL)  # type: ignore[arg-type]
