@@ -3,7 +3,7 @@
 # What slides, what resists it, what drives it
 # Many runs
 from . import figures, friction, loading, studies
-from .bodies import ElasticSlab, LayeredSlab, RotatingBlock, SpringBlock, TorsionalString
+from .bodies import ElasticSlab, LayeredSlab, RotatingBlock, SpringBlock, TorsionalString, TwoSlabs
 from .explorer.notebook import explore
 
 # One run
@@ -33,6 +33,7 @@ __all__ = [
     "Solution",
     "SpringBlock",
     "TorsionalString",
+    "TwoSlabs",
     "catalogue",
     "explore",
     "figures",

@@ -71,7 +71,11 @@ CASES: dict[str, tuple[dict[str, Any], dict[str, Any], float]] = {
     ),
     "pull in steps": (
         {},
-        {"friction": replace(RATE_LAW, alpha=0.1), "pull_rate": ss.loading.Steps([0.0, 3.0, 20.0], [0.5, 0.1, 0.7]), "initial_excess": 0.0},
+        {
+            "friction": replace(RATE_LAW, alpha=0.1),
+            "pull_rate": ss.loading.Steps([0.0, 3.0, 20.0], [0.5, 0.1, 0.7]),
+            "initial_excess": 0.0,
+        },
         100.0,
     ),
     "far stress in steps": (
@@ -115,3 +119,32 @@ def test_bad_layers_are_refused_in_one_line(name: str) -> None:
     change, words = BAD[name]
     with refused(begins=words):
         ss.LayeredSlab(**(SOFT | change), normal_stress=NORMAL)  # type: ignore[arg-type]
+
+
+ONE = ([THICKNESS], [DENSITY], [SPEED])
+TWO: dict[str, dict[str, Any]] = {
+    "rate law": {"friction": RATE_LAW, "pull_rate": 0.1, "initial_excess": 0.0},
+    "Coulomb": {"friction": COULOMB, "pull_rate": ss.loading.Steps([0.0, 3.0, 20.0], [0.5, 0.1, 0.7]), "initial_excess": 0.0},
+    "lossy": {"friction": COULOMB, "far_stress": 85e6, "initial_load": 70e6},
+}
+
+
+@pytest.mark.parametrize(("sides", "factor"), [("apart", 0.5), ("joined", 2.0)])
+@pytest.mark.parametrize("name", TWO)
+def test_two_equal_slabs_are_one_of_half_or_twice_the_impedance(name: str, sides: str, factor: float) -> None:
+    driver = 4e6 if name == "lossy" else np.inf
+    two = ss.TwoSlabs(*ONE, *ONE, NORMAL, driver_impedance=driver, other_driver_impedance=driver, sides=sides)
+    one = ss.ElasticSlab(factor * DENSITY, SPEED, THICKNESS, NORMAL, driver_impedance=factor * driver)
+    runs = [ss.simulate(ss.Problem(body, **TWO[name]), 40.0) for body in (one, two)]
+    times = np.linspace(0.0, 40.0, 1001)
+    slip, of_two = (run.slip(times) for run in runs)
+    np.testing.assert_allclose(of_two, slip, rtol=1e-11, atol=1e-12 * slip.max())
+    assert (two.impedance, two.stiffness) == pytest.approx((one.impedance, one.stiffness), rel=1e-14)
+    if name != "lossy":
+        block, known = two.equivalent_block(), one.equivalent_block()
+        assert (block.mass, block.stiffness) == pytest.approx((known.mass, known.stiffness), rel=1e-14)
+
+
+def test_two_slabs_refuse_a_mass_between_them() -> None:
+    with refused('TwoSlabs: contact_mass needs sides = "joined"'):
+        ss.TwoSlabs(*ONE, *ONE, NORMAL, contact_mass=1.0)

@@ -1,12 +1,12 @@
 """The bodies: a rigid block on a spring and an elastic slab that slide, and a disc on a spring and a string that turn."""
 
 from stickslip.bodies.contract import MACHINE, Body, BodyOnCharacteristics, BodyWithWaves, as_waves, has_dashpot, mass_field
-from stickslip.bodies.layered import LayeredSlab
+from stickslip.bodies.layered import LayeredSlab, OfLayers, TwoSlabs
 from stickslip.bodies.sliding import ElasticSlab, SpringBlock, as_block, as_slab
 from stickslip.bodies.turning import RotatingBlock, TorsionalString
 
 BODIES: dict[str, type[BodyOnCharacteristics]] = {
-    body.kind: body for body in (SpringBlock, ElasticSlab, LayeredSlab, RotatingBlock, TorsionalString)
+    body.kind: body for body in (SpringBlock, ElasticSlab, LayeredSlab, TwoSlabs, RotatingBlock, TorsionalString)
 }
 """Every body by its name in scenario files."""
 
@@ -18,9 +18,11 @@ __all__ = [
     "BodyWithWaves",
     "ElasticSlab",
     "LayeredSlab",
+    "OfLayers",
     "RotatingBlock",
     "SpringBlock",
     "TorsionalString",
+    "TwoSlabs",
     "as_block",
     "as_slab",
     "as_waves",

@@ -1,110 +1,75 @@
-"""Define a slab of layers: each has its own density, wave speed and thickness."""
+"""Define bodies of layers: a slab, and two slabs with the contact between them or on both."""
 
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import accumulate, pairwise
-from typing import ClassVar
+from typing import ClassVar, cast
 
-import numpy as np
-
-from stickslip.bodies.cells import Cells, cut_into_cells
-from stickslip.bodies.contract import WithWaves, check_body, check_driver, check_equivalent
+from stickslip.bodies.cells import Cells
+from stickslip.bodies.contract import BodyOnCharacteristics, WithWaves, check_body, check_equivalent
+from stickslip.bodies.layers import Layers, cells_for, check_lengths, of_layers, travel_times
 from stickslip.bodies.sliding import SpringBlock
-from stickslip.foundation.constants import RIGID
 from stickslip.foundation.conversion import Number, Numbers
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.quantities import NumberSeries, Quantity, declare, quantity
+from stickslip.foundation.quantities import Choice, Quantity, declare, quantity
 from stickslip.foundation.show import Declared
 
-LARGEST_ERROR = 0.1
-"""Largest relative error (1) of a layer's travel time that may be allowed."""
+APART, JOINED = "apart", "joined"
+"""What slips on two slabs: one on the other, or both on a third body, such as the two parts of a string under a bow."""
 
 
-def of_layers(unit: str, meaning: str) -> NumberSeries:
-    """Declare a number of each layer, from the contact outwards."""
-    return NumberSeries(Quantity(unit, f"{meaning} of each layer, from the contact outwards", above=0), least=1)
+def _driver(side: str) -> Quantity:
+    meaning = f"impedance Zd of the driver{side}: inf for a rigid driver, 0 for a dead load"
+    return Quantity("Pa s/m", meaning, at_least=0, infinite=True, word="rigid")
 
 
-@dataclass(frozen=True)
-class LayeredSlab(Declared, WithWaves):
-    """A slab of layers in antiplane or in-plane shear, with friction at x = 0, and a driver behind the last layer.
+class OfLayers(WithWaves, ABC):
+    """What follows from the stacks of layers of a body, one or two: a base for such bodies."""
 
-    A wave is reflected where layers of different impedance rho c meet. The layers are cut into cells that a wave crosses in equal
-    times; their travel times are rounded to whole numbers of cells, with a relative error of at most `travel_time_error`, while
-    their impedances, and the travel time of all together, stay as given. Raises InputError if a number is out of range, if the
-    lists differ in length, or if no more than 4096 cells can be so exact.
-    """
-
-    kind: ClassVar[str] = "layered-slab"
-    source: ClassVar[str] = "Goupillaud 1961, Geophysics 26, 754, for the layers; Campillo et al. 1996, eqs (7)-(13)"
-    load_unit: ClassVar[str] = "Pa"
-    normal_field: ClassVar[str] = "normal_stress"
-    mass_field: ClassVar[str] = "contact_mass"
     is_uniform: ClassVar[bool] = False
     driver_inertia: ClassVar[float] = 0.0
     driver_integral_gain: ClassVar[float] = 0.0
+    contact_mass: Number
+    normal_stress: Number
 
-    thickness: Numbers = declare(of_layers("m", "thickness h"))
-    density: Numbers = declare(of_layers("kg/m^3", "density rho"))
-    wave_speed: Numbers = declare(of_layers("m/s", "shear wave speed c"))
-    normal_stress: Number = quantity("Pa", "normal stress S on the contact, compression positive", above=0)
-    driver_impedance: Number = quantity(
-        "Pa s/m",
-        "impedance Zd of the driver: inf for a rigid driver, 0 for a dead load",
-        at_least=0,
-        infinite=True,
-        word="rigid",
-        default=math.inf,
-    )
-    contact_mass: Number = quantity("kg/m^2", "mass of the sliding face, per unit area", at_least=0, default=0.0)
-    travel_time_error: Number = quantity("1", "largest relative error of a layer's travel time", above=0, default=1e-3)
+    @property
+    @abstractmethod
+    def stacks(self) -> tuple[Layers, ...]:
+        """The layers of each side, with their cells."""
 
-    def __post_init__(self) -> None:
-        check_body(self, "normal_stress")
-        check_driver(self)
-        lengths = {name: len(getattr(self, name)) for name in ("thickness", "density", "wave_speed")}
-        if len(set(lengths.values())) > 1:
-            found = ", ".join(f"{number} of {name}" for name, number in lengths.items())
-            raise InputError(f"LayeredSlab: thickness, density and wave_speed need one number for each layer, got {found}")
-        if self.travel_time_error > LARGEST_ERROR:
-            raise InputError(f"LayeredSlab: travel_time_error must be at most {LARGEST_ERROR:g}, got {self.travel_time_error:g}")
-        try:
-            _ = self.cells
-        except InputError as error:
-            raise InputError(f"LayeredSlab: {error}") from None
-
-    @cached_property
+    @property
+    @abstractmethod
     def cells(self) -> Cells:
         """The cells of equal travel time that the layers are cut into."""
-        return cut_into_cells(self.travel_times, self.travel_time_error)
 
     @property
-    def travel_times(self) -> tuple[float, ...]:
-        """The time h/c (s) that a wave takes to cross each layer, before it is rounded."""
-        return tuple(h / c for h, c in zip(self.thickness, self.wave_speed, strict=True))
+    def is_joined(self) -> bool:
+        """True if there are two sides that move as one."""
+        return False
 
-    @property
-    def impedances(self) -> tuple[float, ...]:
-        """The impedance rho c of each layer (Pa s/m)."""
-        return tuple(rho * c for rho, c in zip(self.density, self.wave_speed, strict=True))
-
-    @property
-    def cell_impedances(self) -> tuple[float, ...]:
-        """The impedance of each cell (Pa s/m), from the contact outwards."""
-        return tuple(z for z, count in zip(self.impedances, self.cells.counts, strict=True) for _ in range(count))
+    def _together(self, numbers: tuple[float, ...]) -> float:
+        """Return what several impedances or stiffnesses are together: sides that are joined resist side by side."""
+        if len(numbers) == 1:
+            return numbers[0]
+        return sum(numbers) if self.is_joined else 1.0 / sum(1.0 / one for one in numbers)
 
     @property
     def impedance(self) -> float:
-        """The impedance Z of the layer at the contact (Pa s/m), which damps the slip there."""
-        return self.impedances[0]
+        """The impedance Z at the contact (Pa s/m), which damps the slip there."""
+        return self._together(tuple(one.impedances[0] for one in self.stacks))
 
     @property
     def last_impedance(self) -> float:
-        """The impedance of the layer at the driver (Pa s/m)."""
-        return self.impedances[-1]
+        """The impedance of the layer at the (first) driver (Pa s/m)."""
+        return self.stacks[0].impedances[-1]
+
+    @property
+    def stiffness(self) -> float:
+        """The decrease of the load per metre of slow slip under rigid drivers (Pa/m)."""
+        return self._together(tuple(one.stiffness for one in self.stacks))
 
     @property
     def round_trip_time(self) -> float:
@@ -113,34 +78,23 @@ class LayeredSlab(Declared, WithWaves):
 
     @property
     def two_way_time(self) -> float:
-        """The two-way travel time (s) from the contact to the driver, through all layers."""
-        return 2.0 * sum(self.travel_times)
+        """The longest two-way travel time (s) from the contact to a driver, through all layers."""
+        return 2.0 * max(sum(one.counts) * one.time for one in self.stacks)
 
     @property
     def inflow_delay(self) -> float:
-        """How much later (s) than the driver sends it a load joins the waves at the places that count: see `waves.ladder`."""
-        return self.cells.time if len(self.cell_impedances) % 2 == 1 else 0.0
+        """How much later (s) than the driver sends it a load joins the waves where they are followed: see `engine.waves.ladder`."""
+        return self.stacks[0].inflow_delay
+
+    @property
+    def is_driven_rigidly(self) -> bool:
+        """True if no driver gives way."""
+        return all(math.isinf(one.driver_impedance) for one in self.stacks)
 
     @property
     def distance(self) -> float:
         """The thickness of all layers (m), with their travel times rounded to cells."""
-        return math.fsum(self.rounded_thickness)
-
-    @property
-    def rounded_thickness(self) -> tuple[float, ...]:
-        """The thickness of each layer (m) that makes its travel time a whole number of cells."""
-        time = self.cells.time
-        return tuple(n * time * c for n, c in zip(self.cells.counts, self.wave_speed, strict=True))
-
-    @property
-    def compliances(self) -> tuple[float, ...]:
-        """The shift of each cell in slow slip per shear stress, T / Z (m/Pa)."""
-        return tuple(self.cells.time / z for z in self.cell_impedances)
-
-    @property
-    def stiffness(self) -> float:
-        """The decrease of the load per metre of slow slip under a rigid driver (Pa/m): the layers are springs in series."""
-        return 1.0 / math.fsum(self.compliances)
+        return math.fsum(h for one in self.stacks for h in one.thickness)
 
     @property
     def normal_load(self) -> float:
@@ -154,29 +108,127 @@ class LayeredSlab(Declared, WithWaves):
 
     @cached_property
     def reflection(self) -> float:
-        """The reflection coefficient of the driver for waves in the last layer."""
-        if math.isinf(self.driver_impedance):
-            return RIGID
-        return (self.last_impedance - self.driver_impedance) / (self.last_impedance + self.driver_impedance)
-
-    @property
-    def interface_reflections(self) -> tuple[float, ...]:
-        """The share of a wave of stress from the contact that comes back where a layer meets the next one: (Z' - Z) / (Z' + Z).
-
-        It is above 0 in front of a stiffer layer.
-        """
-        zs = self.impedances
-        return tuple((beyond - near) / (beyond + near) for near, beyond in pairwise(zs))
+        """The reflection coefficient of the (first) driver for waves in the last layer."""
+        return self.stacks[0].reflection
 
     def equivalent_block(self) -> SpringBlock:
-        """Return the block to which the slab is equivalent in slow motion, for each m^2 of contact.
+        """Return the block to which the body is equivalent in slow motion, for each m^2 of contact.
 
-        Its stiffness is that of the layers in series. Its mass has the kinetic energy of the slab, in which the velocity falls
-        from the contact to the driver in proportion to the compliance passed. Raises InputError if the driver is not rigid.
+        Its stiffness is that of the layers in series, and of both sides in series, or side by side if they are joined. Its mass has
+        the kinetic energy of the layers, in which the velocity falls from the contact to a driver in proportion to the compliance
+        passed. Raises InputError if a driver is not rigid.
         """
-        check_equivalent(self)
-        time, zs = self.cells.time, self.cell_impedances
-        passed = np.array([0.0, *accumulate(self.compliances)]) * self.stiffness
-        near, far = 1.0 - passed[:-1], 1.0 - passed[1:]
-        mass = float(np.sum(np.array(zs) * time * (near * near + near * far + far * far))) / 3.0
-        return SpringBlock(mass=mass + self.contact_mass, stiffness=self.stiffness, normal_force=self.normal_stress)
+        check_equivalent(cast(BodyOnCharacteristics, self))
+        whole = self.stiffness
+        shares = [1.0 if self.is_joined else whole / one.stiffness for one in self.stacks]
+        mass = sum(share * share * one.slow_mass for share, one in zip(shares, self.stacks, strict=True))
+        return SpringBlock(mass=mass + self.contact_mass, stiffness=whole, normal_force=self.normal_stress)
+
+
+@dataclass(frozen=True)
+class LayeredSlab(Declared, OfLayers):
+    """A slab of layers in antiplane or in-plane shear, with friction at x = 0, and a driver behind the last layer.
+
+    A wave is reflected where layers of different impedance rho c meet. The layers are cut into cells that a wave crosses in equal
+    times; their travel times are rounded to whole numbers of cells, with a relative error of at most `travel_time_error`, while
+    their impedances, and the travel time of all together, stay as given. Raises InputError if a number is out of range, if the
+    lists differ in length, or if no more than 4096 cells can be so exact.
+    """
+
+    kind: ClassVar[str] = "layered-slab"
+    source: ClassVar[str] = "Goupillaud 1961, Geophysics 26, 754, for the layers; Campillo et al. 1996, eqs (7)-(13)"
+    load_unit: ClassVar[str] = "Pa"
+    normal_field: ClassVar[str] = "normal_stress"
+    mass_field: ClassVar[str] = "contact_mass"
+
+    thickness: Numbers = declare(of_layers("m", "thickness h"))
+    density: Numbers = declare(of_layers("kg/m^3", "density rho"))
+    wave_speed: Numbers = declare(of_layers("m/s", "shear wave speed c"))
+    normal_stress: Number = quantity("Pa", "normal stress S on the contact, compression positive", above=0)
+    driver_impedance: Number = declare(_driver(""), math.inf)
+    contact_mass: Number = quantity("kg/m^2", "mass of the sliding face, per unit area", at_least=0, default=0.0)
+    travel_time_error: Number = quantity("1", "largest relative error of a layer's travel time", above=0, default=1e-3)
+
+    def __post_init__(self) -> None:
+        check_body(self, "normal_stress")
+        check_lengths(type(self).__name__, ("thickness", "density", "wave_speed"), (self.thickness, self.density, self.wave_speed))
+        _ = self.cells
+
+    @cached_property
+    def cells(self) -> Cells:
+        """The cells of equal travel time that the layers are cut into."""
+        return cells_for(type(self).__name__, travel_times(self.thickness, self.wave_speed), self.travel_time_error)
+
+    @cached_property
+    def stacks(self) -> tuple[Layers, ...]:
+        """The layers with their cells."""
+        return (Layers(tuple(self.density), tuple(self.wave_speed), self.cells.counts, self.cells.time, self.driver_impedance),)
+
+
+@dataclass(frozen=True)
+class TwoSlabs(Declared, OfLayers):
+    """Two slabs of layers on both sides of a contact, each with a driver behind its last layer.
+
+    With sides = "apart" one slab slips on the other: the driver of the first one is pulled, that of the other one is held. With
+    sides = "joined" both move as one on the contact, as the two parts of a string do under a bow, and both drivers are pulled; the
+    friction is then shared between them. Layers are cut into cells as those of a `LayeredSlab` are. A contact mass is that of the
+    place where the slabs are joined. Raises InputError if a number is out of range, if lists differ in length, or if no more than
+    4096 cells can be so exact.
+    """
+
+    kind: ClassVar[str] = "two-slabs"
+    source: ClassVar[str] = "Goupillaud 1961, Geophysics 26, 754, for the layers; Campillo et al. 1996, eqs (7)-(13)"
+    load_unit: ClassVar[str] = "Pa"
+    normal_field: ClassVar[str] = "normal_stress"
+    mass_field: ClassVar[str] = "contact_mass"
+
+    thickness: Numbers = declare(of_layers("m", "thickness h"))
+    density: Numbers = declare(of_layers("kg/m^3", "density rho"))
+    wave_speed: Numbers = declare(of_layers("m/s", "shear wave speed c"))
+    other_thickness: Numbers = declare(of_layers("m", "on the other side, thickness"))
+    other_density: Numbers = declare(of_layers("kg/m^3", "on the other side, density"))
+    other_wave_speed: Numbers = declare(of_layers("m/s", "on the other side, shear wave speed"))
+    normal_stress: Number = quantity("Pa", "normal stress S on the contact, compression positive", above=0)
+    driver_impedance: Number = declare(_driver(""), math.inf)
+    other_driver_impedance: Number = declare(_driver(" on the other side"), math.inf)
+    contact_mass: Number = quantity("kg/m^2", "mass at the contact of joined sides, per unit area", at_least=0, default=0.0)
+    travel_time_error: Number = quantity("1", "largest relative error of a layer's travel time", above=0, default=1e-3)
+    sides: str = declare(Choice("whether slip is between the sides, or they slip as one", (APART, JOINED)), APART)
+
+    def __post_init__(self) -> None:
+        check_body(self, "normal_stress")
+        own = type(self).__name__
+        for prefix in ("", "other_"):
+            names = [f"{prefix}{name}" for name in ("thickness", "density", "wave_speed")]
+            check_lengths(own, names, [getattr(self, name) for name in names])
+        if self.contact_mass > 0.0 and not self.is_joined:
+            raise InputError(
+                f'{own}: contact_mass needs sides = "joined": between two slabs it is not clear which of them it is on'
+            )
+        _ = self.cells
+
+    @property
+    def is_joined(self) -> bool:
+        """True if both sides move as one."""
+        return self.sides == JOINED
+
+    @cached_property
+    def cells(self) -> Cells:
+        """The cells of equal travel time that the layers of both sides are cut into.
+
+        Both drivers are an even number of cells away from the contact, or both an odd number.
+        """
+        times = travel_times(self.thickness, self.wave_speed) + travel_times(self.other_thickness, self.other_wave_speed)
+        found, own = cells_for(type(self).__name__, times, self.travel_time_error), len(self.thickness)
+        if sum(found.counts[:own]) % 2 == sum(found.counts[own:]) % 2:
+            return found
+        return Cells(tuple(2 * count for count in found.counts), 0.5 * found.time, found.error)
+
+    @cached_property
+    def stacks(self) -> tuple[Layers, ...]:
+        """The layers of both sides with their cells."""
+        own, counts, time = len(self.thickness), self.cells.counts, self.cells.time
+        return (
+            Layers(tuple(self.density), tuple(self.wave_speed), counts[:own], time, self.driver_impedance),
+            Layers(tuple(self.other_density), tuple(self.other_wave_speed), counts[own:], time, self.other_driver_impedance),
+        )

@@ -1,20 +1,23 @@
 """Prepare a body of layers for the engine: its cells, and the waves in them before the start (`engine.waves.ladder`).
 
-At the start the stress is the same everywhere and grows everywhere at the same rate, and the velocity rises from the contact to the
+At the start the stress is the same along each side and grows at the same rate, and the velocity rises from the contact to the
 driver in proportion to the compliance passed. These waves are straight lines in time.
 """
 
 from __future__ import annotations
 
-from itertools import accumulate
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 
-from stickslip.bodies import LayeredSlab
+from stickslip.bodies import OfLayers
+from stickslip.bodies.layers import Layers
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, FirstLoad, LadderCell
-from stickslip.engine_input.forcing import far_excess, steady_inflow
+from stickslip.engine_input.forcing import far_excess
+from stickslip.foundation.errors import InputError
+from stickslip.loading import LoadingHistory
 from stickslip.problem.problem import Problem
 
 NO_LADDER = LadderCell.table(0)
@@ -22,60 +25,103 @@ NO_LADDER = LadderCell.table(0)
 
 
 class Side(NamedTuple):
-    """One side of the contact: a body of layers whose driver moves at a rate V (m/s) at first, and the contact at another (m/s)."""
+    """One side of the contact at the start; velocities (m/s) are towards forward slip, stresses minus the reference (Pa)."""
 
-    body: LayeredSlab
-    driver_rate: float
+    layers: Layers
     contact_rate: float
+    driver_rate: float
+    pulled_at: float
+    """Rate at which the driver is pulled: not the rate of the slab there if the driver gives way."""
     stress: float
-    """Shear stress at the start, minus that of the reference strength (Pa)."""
-    inflow: tuple[float, float]
-    """What the driver sends at t = 0 (Pa), and how fast it grows (Pa/s); 0 if it varies."""
-    pulled: float
-    """Share of a varying inflow that this side's driver sends."""
+    far_stress: float
+    far_stress_rate: float
+    share: float
+    """Share (1) in the load and its growth."""
 
 
 def ladder_of(problem: Problem) -> at.Floats:
-    """Return the table of `LadderCell` of a problem; an empty one for a body of one layer, which is a plain slab."""
+    """Return the table of `LadderCell` of a problem; an empty one for a body that is uniform."""
     body = problem.body
-    if body.is_uniform:
+    if not isinstance(body, OfLayers):
         return NO_LADDER
-    assert isinstance(body, LayeredSlab)
-    inflow = (0.0, 0.0) if problem.varies else steady_inflow(problem)
-    driver = problem.rate + problem.initial_shear
-    return cells_of(Side(body, driver, problem.rate, far_excess(problem), inflow, 1.0))
+    tables = [_cells_of(side) for side in sides_of(problem, body)]
+    for table, pulled in zip(tables, _pulled(problem, body), strict=True):
+        cells = LadderCell.of(table)
+        cells.pulled[-1] = pulled
+        if problem.varies:
+            cells.inflow[-1] = cells.inflow_rate[-1] = 0.0
+    return np.concatenate(tables)
 
 
-def cells_of(side: Side) -> at.Floats:
+def sides_of(problem: Problem, body: OfLayers) -> Iterator[Side]:
+    """Yield the sides of the contact as they are at the start."""
+    shear, rate, pull = problem.initial_shear, problem.rate, problem.first_pull_rate
+    stress, growth = far_excess(problem), problem.far_stress_rate
+    given = problem.far_stress
+    assert problem.varies or not isinstance(given, LoadingHistory)
+    far = stress if given is None or isinstance(given, LoadingHistory) else given - problem.strength
+    whole = body.stiffness
+    for n, layers in enumerate(body.stacks):
+        if body.is_joined:
+            share = layers.stiffness / whole
+            yield Side(layers, rate, rate + shear, pull, share * stress, share * far, share * growth, share)
+        elif n == 0:
+            driver = rate + shear
+            yield Side(layers, driver - shear * whole / layers.stiffness, driver, pull, stress, far, growth, 1.0)
+        else:
+            yield Side(layers, -shear * whole / layers.stiffness, 0.0, 0.0, stress, far, growth, 1.0)
+
+
+def _pulled(problem: Problem, body: OfLayers) -> list[float]:
+    """Return the share in a varying inflow, that of the first driver, of each driver. Raises InputError if it is unclear."""
+    if len(body.stacks) == 1 or not problem.loading_varies:
+        return [1.0] * len(body.stacks)
+    far = isinstance(problem.far_stress, LoadingHistory)
+    if not body.is_driven_rigidly:
+        what = "far_stress" if far else "pull_rate"
+        raise InputError(f"Problem: {what} that varies needs rigid drivers on both sides of a {type(body).__name__}")
+    first, other = (one.impedances[-1] for one in body.stacks)
+    return [1.0, other / first if body.is_joined else 0.0]
+
+
+def _cells_of(side: Side) -> at.Floats:
     """Return the cells of one side, from the contact outwards."""
-    body = side.body
-    zs, time = body.cell_impedances, body.cells.time
-    passed = np.array([0.0, *accumulate(body.compliances)]) * body.stiffness
-    rates = side.contact_rate + (side.driver_rate - side.contact_rate) * passed
-    growth = body.stiffness * (side.driver_rate - side.contact_rate)
+    layers = side.layers
+    zs, time = np.array(layers.cell_impedances), layers.time
+    rates = side.contact_rate + (side.driver_rate - side.contact_rate) * layers.passed
+    growth = layers.stiffness * (side.driver_rate - side.contact_rate)
     table = LadderCell.table(len(zs))
     cells = LadderCell.of(table)
     cells.impedance = zs
-    beyond = np.array([*zs[1:], np.nan])
-    cells.reflection = np.append(((np.array(zs) - beyond) / (np.array(zs) + beyond))[:-1], body.reflection)
-    cells.is_last[-1], cells.pulled[-1] = 1.0, side.pulled
-    cells.inflow[-1], cells.inflow_rate[-1] = side.inflow
+    cells.reflection[:-1], cells.reflection[-1] = (zs[:-1] - zs[1:]) / (zs[:-1] + zs[1:]), layers.reflection
+    cells.is_last[-1] = 1.0
+    cells.inflow[-1], cells.inflow_rate[-1] = _steady_inflow(side)
     cells.inflow_before[-1] = 2.0 * zs[-1] * side.driver_rate
-    for n, z in enumerate(zs):
-        away = n % 2 == 0  # the even place of the cell is the one nearer to the contact
-        sign = -1.0 if away else 1.0
-        place = n if away else n + 1
-        cells.wave[n] = z * rates[place] + sign * (side.stress - growth * 2.0 * time)
-        cells.growth[n] = sign * growth
+    place = np.arange(len(zs))
+    away = place % 2 == 0  # the even place of the cell is the one nearer to the contact
+    sign = np.where(away, -1.0, 1.0)
+    cells.ramp_share = side.share * sign
+    cells.wave = zs * rates[np.where(away, place, place + 1)] + sign * (side.stress - growth * 2.0 * time)
+    cells.growth = sign * growth
     return table
+
+
+def _steady_inflow(side: Side) -> tuple[float, float]:
+    """Return what the driver of a side sends where waves are followed, at t = 0 (Pa), and how fast it grows (Pa/s)."""
+    layers = side.layers
+    if np.isinf(layers.driver_impedance):
+        return 2.0 * layers.impedances[-1] * side.pulled_at, 0.0
+    gain, growth = 1.0 + layers.reflection, side.far_stress_rate
+    sent = layers.driver_impedance * side.pulled_at + side.far_stress - growth * layers.inflow_delay
+    return gain * sent, gain * growth
 
 
 def set_counts(counts: Counts, problem: Problem) -> None:
     """Set the counts of a body of layers at t = 0."""
-    if problem.body.is_uniform:
-        return
-    assert isinstance(problem.body, LayeredSlab)
-    counts.cells = counts.first_side = len(problem.body.cell_impedances)
+    body = problem.body
+    if isinstance(body, OfLayers):
+        cells = [sum(one.counts) for one in body.stacks]
+        counts.cells, counts.first_side, counts.joined = sum(cells), cells[0], body.is_joined
 
 
 def first_pieces(problem: Problem) -> at.Floats:

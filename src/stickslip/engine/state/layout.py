@@ -408,6 +408,7 @@ class LadderCell(MemoryRecord):
     inflow_before: float  # Pa: what a driver sends that keeps the initial state as it is, and reflects all
     wave: float  # Pa: wave that left the even place of the cell one round trip before t = 0
     growth: float  # Pa/s: how fast it grew
+    ramp_share: float  # 1: how much it grows with the ramp of the load at rest; below 0 if it leaves the contact
 
 
 class HistoryPiece(MemoryRecord):

@@ -74,13 +74,6 @@ def side_of(run: Run, side: int) -> tuple[int, int]:
     return (0, run.counts.first_side) if side == 0 else (run.counts.first_side, run.counts.cells)
 
 
-@kernel
-def grows(run: Run, cell: int) -> float:
-    """Return -1 if the wave that leaves the even place of a cell falls as the stress grows, as it does away from the contact."""
-    place = cell if cell < run.counts.first_side else cell - run.counts.first_side
-    return -1.0 if place % 2 == 0 else 1.0
-
-
 # ---- what arrives -----------------------------------------------------------------------------------------------------------
 
 
@@ -99,7 +92,7 @@ def cross_cells(run: Run) -> bool:
         leaped = run.counts.trip - run.history[source].trip - 1
         if leaped > 0:
             for cell in range(run.counts.cells):
-                wave_in(run, AIR, cell)[0] += grows(run, cell) * leaped * run.params.ramp
+                wave_in(run, AIR, cell)[0] += run.ladder_cells[cell].ramp_share * leaped * run.params.ramp
     for side in range(2):
         first, past = side_of(run, side)
         meet(run, first, past, 0)
@@ -279,7 +272,7 @@ def is_settled(run: Run) -> bool:
             return False
         for cell in range(run.counts.cells):
             before, now = wave_in(run, row_of(run, source), cell), wave_in(run, row_of(run, n), cell)
-            change = abs(now[0] - before[0] - grows(run, cell) * run.params.ramp)
+            change = abs(now[0] - before[0] - run.ladder_cells[cell].ramp_share * run.params.ramp)
             for k in range(1, TERMS):
                 change += abs(now[k] - before[k])
             if change > STILL * largest:
