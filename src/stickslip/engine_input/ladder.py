@@ -24,7 +24,7 @@ NO_LADDER = LadderCell.table(0)
 """Table `Setup.ladder` of a body without layers."""
 
 
-class Side(NamedTuple):
+class StartingSide(NamedTuple):
     """One side of the contact at the start; velocities (m/s) are towards forward slip, stresses minus the reference (Pa)."""
 
     layers: Layers
@@ -53,7 +53,7 @@ def ladder_of(problem: Problem) -> at.Floats:
     return np.concatenate(tables)
 
 
-def sides_of(problem: Problem, body: OfLayers) -> Iterator[Side]:
+def sides_of(problem: Problem, body: OfLayers) -> Iterator[StartingSide]:
     """Yield the sides of the contact as they are at the start."""
     shear, rate, pull = problem.initial_shear, problem.rate, problem.first_pull_rate
     stress, growth = far_excess(problem), problem.far_stress_rate
@@ -64,12 +64,12 @@ def sides_of(problem: Problem, body: OfLayers) -> Iterator[Side]:
     for n, layers in enumerate(body.stacks):
         if body.is_joined:
             share = layers.stiffness / whole
-            yield Side(layers, rate, rate + shear, pull, share * stress, share * far, share * growth, share)
+            yield StartingSide(layers, rate, rate + shear, pull, share * stress, share * far, share * growth, share)
         elif n == 0:
             driver = rate + shear
-            yield Side(layers, driver - shear * whole / layers.stiffness, driver, pull, stress, far, growth, 1.0)
+            yield StartingSide(layers, driver - shear * whole / layers.stiffness, driver, pull, stress, far, growth, 1.0)
         else:
-            yield Side(layers, -shear * whole / layers.stiffness, 0.0, 0.0, stress, far, growth, 1.0)
+            yield StartingSide(layers, -shear * whole / layers.stiffness, 0.0, 0.0, stress, far, growth, 1.0)
 
 
 def _pulled(problem: Problem, body: OfLayers) -> list[float]:
@@ -84,7 +84,7 @@ def _pulled(problem: Problem, body: OfLayers) -> list[float]:
     return [1.0, other / first if body.is_joined else 0.0]
 
 
-def _cells_of(side: Side) -> at.Floats:
+def _cells_of(side: StartingSide) -> at.Floats:
     """Return the cells of one side, from the contact outwards."""
     layers = side.layers
     zs, time = np.array(layers.cell_impedances), layers.time
@@ -106,7 +106,7 @@ def _cells_of(side: Side) -> at.Floats:
     return table
 
 
-def _steady_inflow(side: Side) -> tuple[float, float]:
+def _steady_inflow(side: StartingSide) -> tuple[float, float]:
     """Return what the driver of a side sends where waves are followed, at t = 0 (Pa), and how fast it grows (Pa/s)."""
     layers = side.layers
     if np.isinf(layers.driver_impedance):
