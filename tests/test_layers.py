@@ -66,7 +66,7 @@ ROOMS = {
         ("loop",),
     ),
     "problem": (("ground", "run_quantities", "selection_rule"), ("fields",), ("parameters", "start"), ("problem",)),
-    "engine_input": (("branch_table", "forcing", "limits"), ("shaking",), ("prepare",)),
+    "engine_input": (("branch_table", "forcing", "limits"), ("ladder", "shaking"), ("prepare",)),
     "planar": (
         ("driving", "echo", "layout", "memory", "nodes"),
         ("friction", "slab"),

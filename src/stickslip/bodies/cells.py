@@ -13,7 +13,7 @@ MOST_CELLS = 4096
 """Largest number of cells (1) that layers are cut into."""
 
 
-class Cells(NamedTuple):
+class CellCut(NamedTuple):
     """Layers in cells of equal travel time: the number of cells of each layer, the time (s) of one, and the largest error (1).
 
     The error is that of the travel time of a layer, relative to this time.
@@ -24,19 +24,19 @@ class Cells(NamedTuple):
     error: float
 
 
-def cut_into_cells(times: ArrayLike, allowed: float) -> Cells:
+def cut_into_cells(times: ArrayLike, allowed: float) -> CellCut:
     """Cut layers with these travel times (s) into as few cells of equal time as the allowed relative error (1) permits.
 
     The travel time of all layers together stays what it is. Raises InputError if it takes more than MOST_CELLS cells.
     """
     given = np.asarray(times, float)
-    total, best = float(given.sum()), Cells((), 0.0, np.inf)
+    total, best = float(given.sum()), CellCut((), 0.0, np.inf)
     for number in range(len(given), MOST_CELLS + 1):
         counts = np.maximum(np.rint(given * (number / total)), 1.0)
         time = total / float(counts.sum())
         error = float(np.max(np.abs(counts * time / given - 1.0)))
         if error < best.error and counts.sum() <= MOST_CELLS:
-            best = Cells(tuple(counts.astype(int).tolist()), time, error if error > ROUNDING else 0.0)
+            best = CellCut(tuple(counts.astype(int).tolist()), time, error if error > ROUNDING else 0.0)
         if best.error <= allowed:
             return best
     found = f"{best.error:.2g}" if np.isfinite(best.error) else "no cut at all"

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar, cast
 
-from stickslip.bodies.cells import Cells
+from stickslip.bodies.cells import CellCut
 from stickslip.bodies.contract import BodyOnCharacteristics, WithWaves, check_body, check_equivalent
 from stickslip.bodies.layers import Layers, cells_for, check_lengths, of_layers, travel_times
 from stickslip.bodies.sliding import SpringBlock
@@ -42,7 +42,7 @@ class OfLayers(WithWaves, ABC):
 
     @property
     @abstractmethod
-    def cells(self) -> Cells:
+    def cells(self) -> CellCut:
         """The cells of equal travel time that the layers are cut into."""
 
     @property
@@ -155,7 +155,7 @@ class LayeredSlab(Declared, OfLayers):
         _ = self.cells
 
     @cached_property
-    def cells(self) -> Cells:
+    def cells(self) -> CellCut:
         """The cells of equal travel time that the layers are cut into."""
         return cells_for(type(self).__name__, travel_times(self.thickness, self.wave_speed), self.travel_time_error)
 
@@ -213,7 +213,7 @@ class TwoSlabs(Declared, OfLayers):
         return self.sides == JOINED
 
     @cached_property
-    def cells(self) -> Cells:
+    def cells(self) -> CellCut:
         """The cells of equal travel time that the layers of both sides are cut into.
 
         Both drivers are an even number of cells away from the contact, or both an odd number.
@@ -222,7 +222,7 @@ class TwoSlabs(Declared, OfLayers):
         found, own = cells_for(type(self).__name__, times, self.travel_time_error), len(self.thickness)
         if sum(found.counts[:own]) % 2 == sum(found.counts[own:]) % 2:
             return found
-        return Cells(tuple(2 * count for count in found.counts), 0.5 * found.time, found.error)
+        return CellCut(tuple(2 * count for count in found.counts), 0.5 * found.time, found.error)
 
     @cached_property
     def stacks(self) -> tuple[Layers, ...]:

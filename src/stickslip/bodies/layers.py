@@ -9,7 +9,7 @@ from itertools import accumulate, pairwise
 
 import numpy as np
 
-from stickslip.bodies.cells import Cells, cut_into_cells
+from stickslip.bodies.cells import CellCut, cut_into_cells
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import InputError
@@ -102,7 +102,7 @@ def check_lengths(owner: str, names: Sequence[str], lists: Sequence[Sequence[flo
         raise InputError(f"{owner}: {', '.join(names[:-1])} and {names[-1]} need one number for each layer, got {found}")
 
 
-def cells_for(owner: str, times: tuple[float, ...], allowed: float) -> Cells:
+def cells_for(owner: str, times: tuple[float, ...], allowed: float) -> CellCut:
     """Return the cells of layers with these travel times (s). Raises InputError, which begins with `owner`, if there are none."""
     if allowed > LARGEST_ERROR:
         raise InputError(f"{owner}: travel_time_error must be at most {LARGEST_ERROR:g}, got {allowed:g}")
