@@ -70,7 +70,7 @@ def called(function: Any, given: list[Block | float]) -> Block:
     return np.concatenate([one.ravel() for one in copies if isinstance(one, np.ndarray)])
 
 
-@pytest.mark.sampled(every=12)
+@pytest.mark.sampled(every=24)
 @pytest.mark.parametrize("kind", LAWS)
 def test_functions_of_a_law_have_the_bits_of_numba(kind: str) -> None:
     law, rng = example_law(kind), np.random.default_rng(1)
@@ -117,6 +117,7 @@ HELPERS |= {"exp_radius": 3, "sine_radius": 3, "log_radius": 2, "power_radius": 
 HELPERS |= {"fused": 3, "min": 2, "max": 2, "abs": 1, "sqrt": 1, "sin": 1, "cos": 1, "exp": 1, "log": 1}
 
 
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize("part", ["radii", "radii_in_lanes"])
 @pytest.mark.parametrize("helper", HELPERS)
 def test_helpers_have_the_bits_of_numba(helper: str, part: str) -> None:

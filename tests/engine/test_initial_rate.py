@@ -37,7 +37,7 @@ EACH_BODY = pytest.mark.parametrize("name", BODIES)
 BOTH_WAYS = pytest.mark.parametrize("way", [1, -1])
 
 
-@pytest.mark.sampled(every=7)
+@pytest.mark.sampled(every=2)
 @EACH_BODY
 @BOTH_WAYS
 @pytest.mark.parametrize("evolution", ["ageing", "slip", "prz"])
@@ -113,6 +113,7 @@ def waves_towards(problem: ss.Problem) -> Callable[[float], float]:
     return arriving
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("name", [name for name in BODIES if name != "block"])
 def test_a_slab_out_of_balance_agrees_with_scipy_from_the_start(name: str) -> None:
     """The first round trip, in which all that arrives is the initial state of the slab: 1e-8 of the slip, 1e-7 of ln v.

@@ -63,6 +63,7 @@ def test_a_block_under_a_law_of_slip_rate_ends_at_the_rate_at_which_friction_is_
     assert last == pytest.approx(5.0 * math.acos(-(1.0 - 1e-5)), abs=5e-5)
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("depth", [0.1, 1e-2, 1e-4])
 def test_leaps_over_creep_do_not_pass_over_a_dip(depth: float) -> None:
     """A stiff slab creeps along m + a cos(u/w), whose first zero is at u = w acos(-m/a)."""

@@ -308,8 +308,16 @@ def name_of(path: Path) -> str:
     return path.stem.partition("_")[2]
 
 
-@pytest.mark.sampled(every=5)
-@pytest.mark.parametrize("path", EXAMPLES, ids=name_of)
+QUICK = {
+    "first_event", "scenario_with_other_numbers", "is_it_unique", "four_selection_rules", "own_selection_rule", "own_friction_law",
+    "figure_for_teaching", "tides", "triggered_by_a_wave", "seismograms", "bowed_string", "kolsky_bar",
+}  # fmt: skip
+"""Examples that take about a second each or less; the others, up to a minute long, are run with the slow tests."""
+
+
+@pytest.mark.parametrize(
+    "path", [path if name_of(path) in QUICK else pytest.param(path, marks=pytest.mark.slow) for path in EXAMPLES], ids=name_of
+)
 def test_example_computes_what_its_check_says_and_draws_a_figure(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     names, figures = run_by_blocks(path)
     assert figures, "an example has a picture in the gallery"

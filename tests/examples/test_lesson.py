@@ -58,6 +58,7 @@ def test_cells_of_the_first_lesson_run_in_order_without_an_answer(capsys: pytest
     assert [round(year, 1) for year in names["years"].values()] == [468.8, 468.8, 394.3, 378.3]
 
 
+@pytest.mark.slow
 def test_cells_of_the_second_lesson_run_in_order_and_only_soft_machines_stick_and_slip(capsys: pytest.CaptureFixture[str]) -> None:
     run(cells(SECOND))
     said = capsys.readouterr().out

@@ -135,6 +135,7 @@ def drawn(name: str) -> tuple[ss.Solution, xr.Dataset]:
     return run, energy.data(run)
 
 
+@pytest.mark.usefixtures("coarse")
 @pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("name", DRAWN)
 def test_areas_stack_up_to_the_total(name: str) -> None:
@@ -155,12 +156,14 @@ def test_areas_stack_up_to_the_total(name: str) -> None:
     assert worst_imbalance(run) < 1e-9
 
 
+@pytest.mark.usefixtures("coarse")
 def test_the_parts_miss_the_total_if_one_is_left_out() -> None:
     _, dataset = drawn("slab, lossy")
     without = sum(dataset[part] for part in energy.PARTS if part != "radiated")
     assert float(abs(without - dataset.total).max() / dataset.total.max()) > 0.1
 
 
+@pytest.mark.usefixtures("coarse")
 def test_a_long_run_is_shown_around_its_event_with_units() -> None:
     run = ss.simulate(SLAB_PROBLEM, 480 * ss.YEAR)
     axes = run.plot.energy().axes[0]

@@ -132,7 +132,7 @@ CATALOGUES = {
 SIZES = [None, "single column", "3.4 x 3 in", "16 x 10 cm"]
 
 
-@pytest.mark.sampled(every=7)
+@pytest.mark.sampled(every=14)
 @pytest.mark.parametrize("size", SIZES)
 @pytest.mark.parametrize("kind", CATALOGUES)
 def test_a_catalogue_without_its_run_is_legible_in_any_size(kind: str, size: str | None) -> None:
@@ -142,7 +142,7 @@ def test_a_catalogue_without_its_run_is_legible_in_any_size(kind: str, size: str
         assert illegible(figure) == []
 
 
-@pytest.mark.sampled(every=5)
+@pytest.mark.sampled(every=9)
 @pytest.mark.parametrize("size", SIZES)
 @pytest.mark.parametrize("scenario", ["cycles-block", "fig6-slab", "second-event-maximal", "second-event-minimal"])
 def test_a_catalogue_with_its_run_is_legible_in_any_size(scenario: str, size: str | None) -> None:

@@ -229,7 +229,7 @@ def test_comparison_is_labelled(side_by_side: xr.Dataset) -> None:
 def test_a_dataset_read_back_draws_the_same(side_by_side: xr.Dataset, tmp_path: Path) -> None:
     side_by_side.to_netcdf(tmp_path / "data.nc", engine="h5netcdf")
     again = xr.load_dataset(tmp_path / "data.nc", engine="h5netcdf")
-    assert image(comparison.draw(side_by_side), "svg") == image(comparison.draw(again), "svg")
+    assert image(comparison.draw(side_by_side), "png", 50.0) == image(comparison.draw(again), "png", 50.0)
 
 
 def test_schemes_draw_errors_of_all_and_curves_of_the_finest_meshes() -> None:

@@ -40,6 +40,7 @@ def without_unit(figure: Figure) -> list[str]:
 # ---- space and time ------------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.usefixtures("coarse")
 def test_images_are_means_over_their_cells(run: ss.Solution) -> None:
     """Where no front passes, the field in the middle: relative 1e-9. In all, they sum to what the contact slipped: 1e-12."""
     dataset = inside.space_time_data(run)
@@ -70,6 +71,7 @@ def test_no_pulse_falls_between_the_columns() -> None:
     assert abs(sampled / whole - 1.0) > 1e-2
 
 
+@pytest.mark.usefixtures("coarse")
 def test_characteristics_leave_with_shocks_and_bounce(run: ss.Solution) -> None:
     """One zigzag: the second shock is the echo of the first; h/c from side to side, relative 1e-12."""
     dataset = inside.space_time_data(run)
@@ -78,6 +80,7 @@ def test_characteristics_leave_with_shocks_and_bounce(run: ss.Solution) -> None:
     assert dataset.front_x.values.tolist() == [0.0, 1e4] * 3
 
 
+@pytest.mark.usefixtures("coarse")
 @pytest.mark.sampled(every=3)
 @pytest.mark.parametrize(("driver", "corners"), [(1.0, 2), (0.98, 2), (0.0, 5)])
 def test_characteristics_end_where_the_driver_lets_them_out(driver: float, corners: int) -> None:
@@ -88,6 +91,7 @@ def test_characteristics_end_where_the_driver_lets_them_out(driver: float, corne
     assert int(np.isfinite(dataset.front_time.values[0]).sum()) == corners
 
 
+@pytest.mark.usefixtures("coarse")
 def test_too_many_characteristics_are_not_drawn() -> None:
     critical = ss.load_scenario("fig7-slab-critical").problem
     run = ss.simulate(critical, 94_300.0)
@@ -95,6 +99,7 @@ def test_too_many_characteristics_are_not_drawn() -> None:
     assert inside.space_time_data(run, 93_900.0, 94_300.0).sizes["front"] == 0
 
 
+@pytest.mark.usefixtures("coarse")
 def test_a_long_run_is_shown_around_an_event() -> None:
     """In local time, from a quarter of a round trip before it to a round trip behind it; what is asked for wins."""
     run = ss.simulate(SLAB_PROBLEM, 480 * ss.YEAR)
@@ -109,6 +114,7 @@ def test_a_long_run_is_shown_around_an_event() -> None:
     assert float(asked.contact_time[-1]) == 3.0
 
 
+@pytest.mark.usefixtures("coarse")
 @pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("name", ["rate law", "pulses", "laboratory"])
 def test_space_time_has_units_and_all_of_the_slab(name: str, run: ss.Solution) -> None:
@@ -122,9 +128,10 @@ def test_space_time_has_units_and_all_of_the_slab(name: str, run: ss.Solution) -
     assert figure.axes[0].get_ylim()[1] == pytest.approx(100.0 if name == "laboratory" else 10.0, rel=1e-12)
 
 
+@pytest.mark.usefixtures("coarse")
 def test_the_same_data_draw_the_same(run: ss.Solution) -> None:
     dataset = inside.space_time_data(run, 0.0, 8.0)
-    assert image(inside.draw_space_time(dataset), "png") == image(inside.draw_space_time(dataset), "png")
+    assert image(inside.draw_space_time(dataset), "png", 50.0) == image(inside.draw_space_time(dataset), "png", 50.0)
 
 
 # ---- snapshots -----------------------------------------------------------------------------------------------------------------

@@ -112,6 +112,7 @@ def _force(front: Front, end: float) -> float:
     return float(np.polyfit(times[seen][momentum < 3.2], momentum[momentum < 3.2], 1)[0])
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(("speed", "near"), [(0.3, 10.0), (0.9, 22.0)])
 def test_a_steady_front_releases_g0_whatever_its_speed(speed: float, near: float) -> None:
     """Forced by strength that falls in time: (tau0 - tau_d)^2 h / (2 G) within 1e-3, from the energy of the slab."""

@@ -35,6 +35,7 @@ METHODS = (volume, convolution)
 Method = Callable[[PlanarCase, float, int], PlanarSeries]
 
 
+@pytest.mark.slow
 def test_uniform_slip_is_that_of_the_engine_in_1d() -> None:
     """The paper's slab, reconstructed: slip 0.376105283 m, arrest at R. Both methods are of order 2, and equal to rounding."""
     problem = replace(ss.load_scenario("fig5-slab-reconstructed").problem, pull_rate=0.0)
@@ -55,9 +56,7 @@ def test_uniform_slip_is_that_of_the_engine_in_1d() -> None:
     assert convolution(case, 1.1 * R, 900).slip == pytest.approx(found.slip, abs=1e-10)
 
 
-@pytest.mark.parametrize(
-    ("method", "drivers"), [(volume, ((math.inf, 0.05), (0.0, 0.0), (3e6, 0.0))), (convolution, ((math.inf, 0.05), (3e6, 0.0)))]
-)
+@pytest.mark.parametrize(("method", "drivers"), [(volume, ((math.inf, 0.05), (0.0, 0.0))), (convolution, ((3e6, 0.0),))])
 def test_uniform_slip_under_a_pull_and_under_other_drivers_is_that_of_the_engine(
     method: Method, drivers: tuple[tuple[float, float], ...]
 ) -> None:
@@ -75,6 +74,7 @@ def test_uniform_slip_under_a_pull_and_under_other_drivers_is_that_of_the_engine
         assert found.slip_rate[smooth, 1] == pytest.approx(run.slip_rate(found.times[smooth]), abs=2e-3 * run.slip_rate(0.0))
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("driver_impedance", [math.inf, 0.3, 0.0])
 def test_methods_agree_and_the_difference_falls(driver_impedance: float) -> None:
     """Weakening, echoes and arrest: 1.5e-3 of the largest slip at 128 steps in R; arrest and onset spoil order 2 a little."""

@@ -112,6 +112,7 @@ def test_delay_at_a_fold_is_the_zero_of_the_airy_function(kind: str) -> None:
     assert left[0] - left[1] == pytest.approx(left[1] - left[2], rel=0.01, abs=0.0)
 
 
+@pytest.mark.slow
 def test_on_the_first_event_all_rules_agree() -> None:
     found = schemes(SECOND.problem, 12.0, "lag", MESHES)
     assert found.paths.groups() == (("perfect-delay", "maxwell", "minimal", "maximal"),)
@@ -119,6 +120,7 @@ def test_on_the_first_event_all_rules_agree() -> None:
     assert found.table.slip_order.iloc[-1] == pytest.approx(0.95, abs=0.05)
 
 
+@pytest.mark.slow
 def test_a_regular_contact_is_a_check_of_convergence() -> None:
     regular = replace(SECOND.problem, friction=replace(LAW, alpha=0.1), pull_rate=0.1)
     found = schemes(regular, 20.0, "contact-mass", MESHES[1:])
@@ -126,6 +128,7 @@ def test_a_regular_contact_is_a_check_of_convergence() -> None:
     assert found.table.slip_order.iloc[-1] == pytest.approx(1.0, abs=0.03)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(("kind", "nearest"), [("contact-mass", "perfect-delay"), ("lag", "maxwell")])
 def test_after_a_rest_the_second_event_follows_no_rule(kind: str, nearest: str) -> None:
     """The layers of the first event come back as spikes of the load, as narrow as the size but not lower: they begin early."""
