@@ -64,7 +64,7 @@ CASES = [
     ),
     (
         ["run", "fig6-block-printed", "--shortest-event", "1 ms"],
-        "run: --shortest-event must be 0 here: only under a slab with a",
+        "run: --shortest-event must be 0 here: only with waves and a",
     ),
     (["run", "fig6-slab", "--energy"], "run: --energy belongs to --catalogue FILE"),
     (
@@ -75,7 +75,7 @@ CASES = [
     (["run", "fig6-slab", "--shortest-event", "1 parsec"], "run: --shortest-event"),
     (
         ["run", "cycles-block", "--creep-rtol", "1e-6"],
-        "run: --creep-rtol must be 0 here: leaps over creep need a slab, which creeps",
+        "run: --creep-rtol must be 0 here: leaps over creep need a slab or a string, which creeps",
     ),
     (["run", "fig5-slab-printed", "--creep-rtol=-1"], "run: --creep-rtol must be 0 (no leaps over creep, every round trip is run)"),
     (["run", "fig6-slab", "--rtol", "much"], "run: --rtol must be a number, got 'much'"),
@@ -92,7 +92,7 @@ CASES = [
         ["check", "fig6-block-printed", "--figure", "a.png"],
         "figure of the set K: the slip rate does not follow from the load alone",
     ),
-    (["run", "fig6-block-printed", "--path", "a.png"], "run: --path needs a slab without contact mass"),
+    (["run", "fig6-block-printed", "--path", "a.png"], "run: --path needs a slab or a string without a mass at its contact"),
     (["check", "fig6-slab", "--map", "alpha=1..2"], "check: a map needs two --map and a --figure, got 1 and none"),
     (["check", "fig6-slab", *2 * ["--map", "alpha=1..2"]], "check: a map needs two --map and a --figure, got 2 and none"),
     (["check", "fig6-slab", *2 * ["--map", "alpha=1..2"], "--figure", "a.png"], "regime map: needs two different parameters"),
@@ -108,8 +108,8 @@ CASES = [
         ["check", "fig6-slab", "--map", "thickness=1 kg..2 km", "--map", "static=0.1..1", "--figure", "a.png"],
         "check: --map: body.thickness must be a number in m or a text with a unit",
     ),
-    (["run", "cycles-block", "--space-time", "a.png"], "run: --space-time needs a slab: a block is rigid"),
-    (["run", "cycles-block", "--animation", "a.gif"], "run: --animation needs a slab: a block is rigid"),
+    (["run", "cycles-block", "--space-time", "a.png"], "run: --space-time needs a slab or a string: a block is rigid"),
+    (["run", "cycles-block", "--animation", "a.gif"], "run: --animation needs a slab or a string: a block is rigid"),
     (["run", "fig6-slab", "--animation", "a.avi"], "--animation a.avi: the name must end in .gif or .mp4 or .webm"),
     (["run", "fig6-slab", "--animation", "no/a.gif"], "--animation no/a.gif: there is no folder no"),
     (["run", "fig6-slab", "--space-time", "a.gif"], "--space-time a.gif: the name must end in .png or .pdf or .svg"),

@@ -85,7 +85,7 @@ def test_a_resumed_run_continues_as_if_it_had_not_stopped(tmp_path: Path) -> Non
     ("problem", "options", "message"),
     [
         (SLOW, {"shortest_event": -1.0}, "shortest_event must be at least 0 s, got -1"),
-        (ss.load_scenario("fig6-block-printed").problem, {"shortest_event": 1e-3}, "only under a slab with a rigid driver"),
+        (ss.load_scenario("fig6-block-printed").problem, {"shortest_event": 1e-3}, "only with waves and a rigid driver"),
         (printed(1), {"creep_rtol": -1e-6}, "creep_rtol must be"),
         (replace(printed(1), body=replace(BODY, driver_impedance=1e7)), {"creep_rtol": 1e-6}, "a rigid driver"),
         (replace(printed(1), pull_rate=0.0), {"creep_rtol": 1e-6}, "a pull rate that is not 0"),

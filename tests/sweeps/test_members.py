@@ -13,6 +13,7 @@ import pytest
 
 import stickslip as ss
 from stickslip.observables.energy.balance import energy
+from stickslip.observables.severity import severity
 from stickslip.scenarios.scenario import load_scenario, read_scenario
 from stickslip.sweeps.design.quantities import QUANTITIES, quantities_named
 from stickslip.sweeps.execution.chunk import BAD_PARAMETERS, ERROR, MEANINGS, NOT_RUN, ChunkResult, Work, one_by_one, run_chunk
@@ -109,6 +110,7 @@ def test_quantities_are_those_of_the_solution(name: str) -> None:
         "end_time": scenario.duration,
         "arrested": float(solution.slip_rate(scenario.duration) == 0.0),
         "sticking": sticking(solution),
+        "severity": severity(solution),
         "irregular": 0.0,
         "branches": 1,
     }

@@ -187,7 +187,7 @@ def _of_run(scenario: Scenario, parameters: Sequence[str]) -> Iterator[str]:
         yield f"[body] {MACHINE} is followed one run at a time"
     elif scenario.problem.varies:
         yield "[loading] a batch needs a pull, far stress and normal load that do not vary in time"
-    if scenario.problem.one_way:
+    if scenario.problem.one_way or "loading.one_way" in parameters:
         yield "[loading] one_way: a batch slips both ways"
     if scenario.creep_rtol is not None and scenario.creep_rtol > 0.0:
         yield "[run] creep_rtol: a batch cannot leap over creep from the start of a run"

@@ -1,6 +1,6 @@
 """The bodies: a rigid block on a spring and an elastic slab that slide, and a disc on a spring and a string that turn."""
 
-from stickslip.bodies.contract import MACHINE, Body, BodyOnCharacteristics, BodyWithWaves, as_waves, has_dashpot, mass_field
+from stickslip.bodies.contract import MACHINE, Body, BodyOnCharacteristics, BodyWithWaves, as_waves, has_dashpot
 from stickslip.bodies.layered import LayeredSlab, OfLayers, TwoSlabs
 from stickslip.bodies.sliding import ElasticSlab, SpringBlock, as_block, as_slab
 from stickslip.bodies.turning import RotatingBlock, TorsionalString
@@ -27,5 +27,4 @@ __all__ = [
     "as_slab",
     "as_waves",
     "has_dashpot",
-    "mass_field",
 ]

@@ -11,7 +11,7 @@ import numpy as np
 
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.names import si_unit
+from stickslip.foundation.names import KINDS, Name, si_unit
 from stickslip.foundation.quantities import check_fields
 
 
@@ -19,7 +19,7 @@ class Body(Protocol):
     """What every body that slides on a contact has, whatever solves its motion.
 
     Its loads are stresses (Pa), forces (N) or torques (N m). Units below are for a slab; for a block read N for Pa, and kg for
-    kg/m^2; for a body that turns N m for Pa, kg m^2 for kg/m^2, and rad for m where it is slip.
+    kg/m^2; for a body that turns N m for Pa, kg m^2 for kg/m^2, and rad for m where it is slip (`Problem.unit_of`).
     """
 
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
@@ -28,6 +28,8 @@ class Body(Protocol):
     """Name in scenario files."""
     load_unit: ClassVar[str]
     """SI unit of loads and tractions, which decides the other units: a row of `foundation.names.KINDS`."""
+    noun: ClassVar[str]
+    """What sentences call the body: "slab", "block" or "string"."""
 
     @property
     def normal_field(self) -> str:
@@ -131,15 +133,10 @@ def has_dashpot(body: BodyOnCharacteristics) -> bool:
     return body.has_waves and body.damping != body.impedance
 
 
-def mass_field(body: BodyOnCharacteristics) -> str:
-    """Return the name of the field for the mass that slips with the contact of a body with waves."""
-    return cast(BodyWithWaves, body).mass_field
-
-
-def check_body(body: BodyOnCharacteristics, normal: str) -> None:
-    """Check the fields of a body whose normal load is called `normal`: a number, whereas a history belongs to the problem."""
-    value = getattr(body, normal)
-    if hasattr(value, "segments"):
+def check_body(body: BodyOnCharacteristics) -> None:
+    """Check the fields of a body. Its normal load is one number, whereas a history belongs to the problem."""
+    normal = KINDS[body.load_unit].normal
+    if hasattr(getattr(body, normal), "segments"):
         one = f"{type(body).__name__}: {normal} is one number, that at the start"
         raise InputError(f"{one}: a history is normal_load of the Problem, [loading.normal_load] in a scenario")
     check_fields(body)
@@ -150,6 +147,10 @@ class BodyWithWaves(BodyOnCharacteristics, Protocol):
 
     mass_field: ClassVar[str]
     """Name of the field for the mass that slips with the contact."""
+    modulus_name: ClassVar[Name]
+    """Name, symbol, unit and meaning of the modulus."""
+    impedance_formula: ClassVar[str]
+    """The impedance in symbols, for people."""
 
     @property
     def wave_speed(self) -> float:
@@ -188,7 +189,22 @@ def as_waves(body: BodyOnCharacteristics, refusal: str = "needs a body with wave
     return cast(BodyWithWaves, body)
 
 
-class WithWaves:
+class WithNormalLoad:
+    """The normal load of a body whose field for it has the usual name: a base for bodies."""
+
+    @property
+    def normal_field(self: Body) -> str:
+        """The name of the field that holds the normal load."""
+        return KINDS[self.load_unit].normal
+
+    @property
+    def normal_load(self: Body) -> float:
+        """The normal load S on the contact, compression positive (Pa, N or N m)."""
+        found: float = getattr(self, self.normal_field)
+        return found
+
+
+class WithWaves(WithNormalLoad):
     """What follows from the numbers of a `BodyWithWaves`: a base for such bodies."""
 
     has_waves: ClassVar[bool] = True
@@ -278,14 +294,15 @@ def check_equivalent(body: BodyOnCharacteristics) -> None:
     if not body.is_driven_rigidly:
         raise InputError(
             f"{type(body).__name__}: equivalent_block needs a rigid driver: behind one of finite impedance nothing holds the "
-            f"{'slab' if body.load_unit == 'Pa' else 'string'} in the slow limit, so there is no spring; got "
+            f"{body.noun} in the slow limit, so there is no spring; got "
             f"driver_impedance = {body.driver_impedance:g} {si_unit('impedance', body.load_unit)}"
         )
 
 
-class OnSpring:
+class OnSpring(WithNormalLoad):
     """What follows from the numbers of a rigid body on a spring: a base for such bodies."""
 
+    noun: ClassVar[str] = "block"
     has_waves: ClassVar[bool] = False
     is_uniform: ClassVar[bool] = True
     has_inertia: ClassVar[bool] = True

@@ -29,6 +29,7 @@ def _driver(side: str) -> Quantity:
 class OfLayers(WithWaves, ABC):
     """What follows from the stacks of layers of a body, one or two: a base for such bodies."""
 
+    noun: ClassVar[str] = "slab"
     is_uniform: ClassVar[bool] = False
     driver_inertia: ClassVar[float] = 0.0
     driver_integral_gain: ClassVar[float] = 0.0
@@ -97,11 +98,6 @@ class OfLayers(WithWaves, ABC):
         return math.fsum(h for one in self.stacks for h in one.thickness)
 
     @property
-    def normal_load(self) -> float:
-        """The normal stress S (Pa)."""
-        return self.normal_stress
-
-    @property
     def inertia(self) -> float:
         """The contact mass (kg/m^2)."""
         return self.contact_mass
@@ -138,7 +134,6 @@ class LayeredSlab(Declared, OfLayers):
     kind: ClassVar[str] = "layered-slab"
     source: ClassVar[str] = "Goupillaud 1961, Geophysics 26, 754, for the layers; Campillo et al. 1996, eqs (7)-(13)"
     load_unit: ClassVar[str] = "Pa"
-    normal_field: ClassVar[str] = "normal_stress"
     mass_field: ClassVar[str] = "contact_mass"
 
     thickness: Numbers = declare(of_layers("m", "thickness h"))
@@ -150,7 +145,7 @@ class LayeredSlab(Declared, OfLayers):
     travel_time_error: Number = quantity("1", "largest relative error of a layer's travel time", above=0, default=1e-3)
 
     def __post_init__(self) -> None:
-        check_body(self, "normal_stress")
+        check_body(self)
         check_lengths(type(self).__name__, ("thickness", "density", "wave_speed"), (self.thickness, self.density, self.wave_speed))
         _ = self.cells
 
@@ -179,7 +174,6 @@ class TwoSlabs(Declared, OfLayers):
     kind: ClassVar[str] = "two-slabs"
     source: ClassVar[str] = "Goupillaud 1961, Geophysics 26, 754, for the layers; Campillo et al. 1996, eqs (7)-(13)"
     load_unit: ClassVar[str] = "Pa"
-    normal_field: ClassVar[str] = "normal_stress"
     mass_field: ClassVar[str] = "contact_mass"
 
     thickness: Numbers = declare(of_layers("m", "thickness h"))
@@ -196,7 +190,7 @@ class TwoSlabs(Declared, OfLayers):
     sides: str = declare(Choice("whether slip is between the sides, or they slip as one", (APART, JOINED)), APART)
 
     def __post_init__(self) -> None:
-        check_body(self, "normal_stress")
+        check_body(self)
         own = type(self).__name__
         for prefix in ("", "other_"):
             names = [f"{prefix}{name}" for name in ("thickness", "density", "wave_speed")]

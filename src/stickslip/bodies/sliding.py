@@ -9,6 +9,7 @@ from typing import ClassVar
 from stickslip.bodies.contract import BodyOnCharacteristics, OnSpring, WithWaves, check_body, check_driver, check_equivalent
 from stickslip.foundation.conversion import Number, OptionalNumber
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.names import Name
 from stickslip.foundation.quantities import quantity
 from stickslip.foundation.show import Declared
 
@@ -20,7 +21,6 @@ class SpringBlock(Declared, OnSpring):
     kind: ClassVar[str] = "spring-block"
     source: ClassVar[str] = "Campillo et al. 1996, eqs (4)-(6); the damping is an addition"
     load_unit: ClassVar[str] = "N"
-    normal_field: ClassVar[str] = "normal_force"
 
     mass: Number = quantity("kg", "mass m", above=0)
     stiffness: Number = quantity("N/m", "stiffness K of the spring", above=0)
@@ -28,12 +28,7 @@ class SpringBlock(Declared, OnSpring):
     damping: Number = quantity("N s/m", "viscous resistance to slip", at_least=0, default=0.0)
 
     def __post_init__(self) -> None:
-        check_body(self, "normal_force")
-
-    @property
-    def normal_load(self) -> float:
-        """The normal force S (N)."""
-        return self.normal_force
+        check_body(self)
 
     @property
     def inertia(self) -> float:
@@ -55,8 +50,10 @@ class ElasticSlab(Declared, WithWaves):
     kind: ClassVar[str] = "elastic-slab"
     source: ClassVar[str] = "Campillo et al. 1996, eqs (7)-(13)"
     load_unit: ClassVar[str] = "Pa"
-    normal_field: ClassVar[str] = "normal_stress"
+    noun: ClassVar[str] = "slab"
     mass_field: ClassVar[str] = "contact_mass"
+    modulus_name: ClassVar[Name] = Name("shear modulus", "G", "Pa", "shear modulus rho c^2")
+    impedance_formula: ClassVar[str] = "rho c"
 
     density: Number = quantity("kg/m^3", "density rho", above=0)
     wave_speed: Number = quantity("m/s", "shear wave speed c", above=0)
@@ -82,7 +79,7 @@ class ElasticSlab(Declared, WithWaves):
     )
 
     def __post_init__(self) -> None:
-        check_body(self, "normal_stress")
+        check_body(self)
         check_driver(self)
         if self.p_wave_speed is not None and self.p_wave_speed <= self.wave_speed * math.sqrt(4 / 3):
             limit = self.wave_speed * math.sqrt(4 / 3)
@@ -109,11 +106,6 @@ class ElasticSlab(Declared, WithWaves):
     def distance(self) -> float:
         """The thickness (m)."""
         return self.thickness
-
-    @property
-    def normal_load(self) -> float:
-        """The normal stress S (Pa)."""
-        return self.normal_stress
 
     @property
     def inertia(self) -> float:

@@ -11,6 +11,7 @@ import numpy as np
 from stickslip.bodies.contract import OnSpring, WithWaves, check_body, check_driver, check_equivalent
 from stickslip.foundation.conversion import Number, OptionalNumber
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.names import Name
 from stickslip.foundation.quantities import quantity
 from stickslip.foundation.show import Declared
 
@@ -29,7 +30,6 @@ class RotatingBlock(Declared, OnSpring):
     kind: ClassVar[str] = "rotating-block"
     source: ClassVar[str] = "Campillo et al. 1996, eqs (4)-(6), with angles for lengths and torques for forces"
     load_unit: ClassVar[str] = "N m"
-    normal_field: ClassVar[str] = "normal_torque"
 
     inertia: Number = quantity("kg m^2", "moment of inertia I", above=0)
     stiffness: Number = quantity("N m/rad", "stiffness K of the torsion spring", above=0)
@@ -37,12 +37,7 @@ class RotatingBlock(Declared, OnSpring):
     damping: Number = quantity("N m s", "viscous resistance to slip", at_least=0, default=0.0)
 
     def __post_init__(self) -> None:
-        check_body(self, "normal_torque")
-
-    @property
-    def normal_load(self) -> float:
-        """The torque of friction if mu is 1 (N m)."""
-        return self.normal_torque
+        check_body(self)
 
 
 @dataclass(frozen=True)
@@ -60,7 +55,10 @@ class TorsionalString(Declared, WithWaves):
     kind: ClassVar[str] = "torsional-string"
     source: ClassVar[str] = "Campillo et al. 1996, eqs (7)-(13), with angles for lengths and torques for stresses"
     load_unit: ClassVar[str] = "N m"
+    noun: ClassVar[str] = "string"
     mass_field: ClassVar[str] = "inertia"
+    modulus_name: ClassVar[Name] = Name("torsional rigidity", "GJ", "N m^2", "torque per twist of a metre")
+    impedance_formula: ClassVar[str] = "sqrt(I G J)"
 
     length: Number = quantity("m", "length of the string", above=0)
     density: Number = quantity("kg/m^3", "density rho", above=0)
@@ -92,7 +90,7 @@ class TorsionalString(Declared, WithWaves):
     inertia: Number = quantity("kg m^2", "moment of inertia of bit and collars", at_least=0, default=0.0)
 
     def __post_init__(self) -> None:
-        check_body(self, "normal_torque")
+        check_body(self)
         check_driver(self)
         if (self.polar_moment is None) == (self.outer_diameter is None) or (self.polar_moment is not None and self.inner_diameter):
             raise InputError("TorsionalString: give either outer_diameter, with inner_diameter of a pipe, or polar_moment")

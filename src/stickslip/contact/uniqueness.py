@@ -341,7 +341,7 @@ def _summary(
     if window is None:
         reason = "the resistance Z v + S mu(v) rises with the slip rate everywhere"
         return f"{law}: regular. The slip rate is unique: {reason}. {idle}{bound}"
-    unit, rate = problem.load_unit, si_unit("slip_rate", problem.load_unit)
+    unit, rate = problem.load_unit, problem.unit_of("slip_rate")
     flat = "; ".join(
         f"{p.rate_from:.6g} to {p.rate_to:.6g} {rate} at a load of {brief(g.strength + p.excess, unit, 9)}" for p in g.plateaus
     )
@@ -363,5 +363,5 @@ def _summary(
 def _named(problem: Problem, g: Resistance) -> str:
     law = problem.friction
     moving = law.depends_on_slip and law.depends_on_rate
-    slip = f"{g.law_slip:.6g} {si_unit('slip', problem.load_unit)}"
+    slip = f"{g.law_slip:.6g} {problem.unit_of('slip')}"
     return f"{type(law).__name__} at a slip of {slip}" if moving else type(law).__name__

@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 from typing import Literal
 
-from stickslip.bodies import BodyOnCharacteristics, has_dashpot
+from stickslip.bodies import BodyOnCharacteristics, as_waves, has_dashpot
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, Params
 from stickslip.foundation.errors import InputError
@@ -87,13 +87,13 @@ def missing_for_creep(problem: Problem) -> str:
     """Return what a problem lacks for leaps over creep under a law of slip, besides a pull rate; empty if it lacks nothing."""
     body, law = problem.body, problem.friction
     if not body.has_waves:
-        return "a slab, which creeps from round trip to round trip"
+        return "a slab or a string, which creeps from round trip to round trip"
     if not body.is_uniform:
         return "a body of one layer"
     if not body.is_driven_rigidly:
         return "a rigid driver (no driver_impedance)"
     if body.has_inertia:
-        return "a contact without mass (no contact_mass)"
+        return f"a contact without mass (no {body.mass_field})"
     if has_dashpot(body):
         return f"a contact that waves alone damp (the damping of this {type(body).__name__} is not its impedance)"
     if law.states or law.depends_on_rate:
@@ -121,7 +121,7 @@ def check_shortest_event(problem: Problem, shortest: float | None, where: str, n
         return shortest
     body = problem.body
     if not (body.has_waves and body.is_uniform and body.is_driven_rigidly):
-        raise InputError(f"{where}: {name} must be 0 here: only under a slab with a rigid driver do echoes get ever shorter")
+        raise InputError(f"{where}: {name} must be 0 here: only with waves and a rigid driver do echoes get ever shorter")
     if problem.varies:
         raise InputError(f"{where}: {name} must be 0 here: events are lumped under a constant pull and normal load only")
     largest = LARGEST_SHARE * body.round_trip_time

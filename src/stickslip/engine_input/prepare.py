@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.bodies import mass_field
 from stickslip.contact.rules.selection import rule_of
 from stickslip.contact.uniqueness import regime_of
 from stickslip.engine.compiled_formula import CompiledFormula, compile_formula, keep_with
@@ -93,7 +92,7 @@ def check_unique(problem: Problem) -> None:
     if problem.friction.depends_on_rate and regime_of(most) != "regular":
         at = f"under {brief(most.normal, problem.load_unit)}"
         why = f"{at} several slip rates solve the contact equation, and the folds between them would move"
-        raise InputError(f"normal_load: {why}: give the contact a mass ({mass_field(problem.body)}), or a constant normal load")
+        raise InputError(f"normal_load: {why}: give the contact a mass ({problem.body.mass_field}), or a constant normal load")
 
 
 def check_machine(problem: Problem) -> None:

@@ -25,6 +25,8 @@ class KindOfBody:
     slip: str
     energy: str
     loads: str
+    normal: str
+    """The field of a body, and the heading of a column, with the normal load."""
     impedance: str
     names: Mapping[str, str] = field(default_factory=dict)
     """Names of quantities where they differ from those in `QUANTITIES`."""
@@ -33,12 +35,13 @@ class KindOfBody:
 
 
 KINDS = {
-    "Pa": KindOfBody("m", "J/m^2", "stress", "Pa s/m"),
-    "N": KindOfBody("m", "J", "force", "N s/m", {"traction": "friction force", "load": "spring force"}),
+    "Pa": KindOfBody("m", "J/m^2", "stress", "normal_stress", "Pa s/m"),
+    "N": KindOfBody("m", "J", "force", "normal_force", "N s/m", {"traction": "friction force", "load": "spring force"}),
     "N m": KindOfBody(
         "rad",
         "J",
         "torque",
+        "normal_torque",
         "N m s",
         {
             **{"slip": "angle", "event_slip": "angle in the event", "slip_rate": "rotation rate"},

@@ -21,10 +21,9 @@ from numpy.typing import NDArray
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.conversion import as_text, has_unit, to_number, unit_among
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.names import TURNS, own_units
 from stickslip.foundation.units import si_base
 
-_BY_ANGLE = {"m": "rad", "m/s": "rad/s", "s/m": "s/rad", "1/m": "1/rad"}
-"""Units in which a law is declared, with those that its numbers have where the contact turns."""
 LARGEST_WHOLE = 16
 """Largest magnitude of a whole-numbered quantity; such quantities are exponents."""
 LARGEST, SMALLEST = 1e50, 1e-50
@@ -332,9 +331,8 @@ def given_in(owner: Any) -> str:
     found = ""
     for name, (declared, _) in fields_of(type(owner)).items():
         item, value = declared.item if isinstance(declared, NumberSeries) else declared, getattr(owner, name)
-        if not (isinstance(item, Quantity) and item.unit in _BY_ANGLE):
+        if not (isinstance(item, Quantity) and "rad" in (turned := own_units(TURNS).get(item.unit, ""))):
             continue
-        turned = _BY_ANGLE[item.unit]
         for one in value if isinstance(value, list | tuple) else (value,):
             if isinstance(one, str) or has_unit(one):
                 unit = unit_among(one, f"{item.unit} or {turned}")

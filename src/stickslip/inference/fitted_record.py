@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.names import si_unit
 from stickslip.inference.certainty.certainty import Certainty, Profile
 from stickslip.inference.certainty.sampling import PosteriorWalk
 from stickslip.inference.fit.by_features import FeatureModel
@@ -200,6 +199,6 @@ class FittedRecord(StudyWithDataset):
         table, rows = self.curves[self.curves.fitted], {}
         for name, size in self.model.sizes.items():
             rest = table.residual[table.quantity == name].dropna().to_numpy()
-            unit = si_unit(name, self.model.problem.load_unit)
+            unit = self.model.problem.unit_of(name)
             rows[name] = (len(rest), size, self.model.memory.get(name, WHITE).time, float(np.sqrt(np.mean(rest**2))), unit)
         return pd.DataFrame.from_dict(rows, orient="index", columns=["samples", "noise", "memory", "rms", "unit"])

@@ -16,7 +16,6 @@ from stickslip.foundation.arguments import check_whole, for_users, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.atomic_write import write_atomically, write_table
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.names import si_unit
 from stickslip.foundation.netcdf_file import write
 from stickslip.foundation.quantities import Choice, fields_of
 from stickslip.foundation.show import brief, with_uncertainty
@@ -105,9 +104,7 @@ class Inference(FittedRecord):
     def headline(self) -> str:
         """One line: how many numbers were found from how many samples, and the noise."""
         shared = sum(one.part is None for one in self.free)
-        sizes = ", ".join(
-            f"{name} {brief(size, si_unit(name, self.model.problem.load_unit), 3)}" for name, size in self.model.sizes.items()
-        )
+        sizes = ", ".join(f"{name} {brief(size, self.model.problem.unit_of(name), 3)}" for name, size in self.model.sizes.items())
         what = "scatter" if self.model.of_means else "noise"
         return f"{shared} number{'' if shared == 1 else 's'} from {self.model.counted}, {what}: {sizes}; intervals of 95 %"
 

@@ -60,9 +60,7 @@ AXES = (("numbers",), ("counts",), ("rows", "terms"), ("branches", "levels"), ("
 
 def about_curves(problem: Problem) -> dict[str, dict[str, str]]:
     """Return the attributes units and long_name of each curve of a run, and of its time."""
-    found = {
-        name: {"units": in_files(si_unit(name, problem.load_unit)), "long_name": one.meaning} for name, one in QUANTITIES.items()
-    }
+    found = {name: {"units": in_files(problem.unit_of(name)), "long_name": one.meaning} for name, one in QUANTITIES.items()}
     for name, state in zip(STATE_NAMES, problem.friction.states, strict=False):
         found[name]["units"] = state.unit
     return found

@@ -17,6 +17,7 @@ import stickslip
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.atomic_write import write_atomically
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.names import TURNS
 from stickslip.io.sampling import SampledRun, Sampling, sample
 from stickslip.problem.problem import Problem
 from stickslip.scenarios.entries import to_table
@@ -42,8 +43,11 @@ def write_scec(
     the slip of this model, those with v- are zero, and the last one is the normal stress. There tension is positive, as in TPV29 to
     TPV37, so that the normal stress is negative. The forces of a block are written as stresses on an area of 1 m^2.
 
-    Raises InputError as `sample` does, and for a header text with line breaks or control characters.
+    Raises InputError as `sample` does, for a contact that turns, and for a header text with line breaks or control characters.
     """
+    if run.problem.load_unit == TURNS:
+        what = f"a contact that turns ({type(run.problem.body).__name__})"
+        raise InputError(f"export: the layout of the SCEC has slip in m and stress in MPa, {what} has neither: write netCDF")
     for name, text in (("problem", problem), ("station", station)):
         if not text.isprintable():
             raise InputError(f"{name} must be one line of text, got {text!r}")

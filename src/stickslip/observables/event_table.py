@@ -174,11 +174,11 @@ EVENT_COLUMNS = {
     ),
     "traction_after": Column("load", "friction at rest after", lambda e: e.history.problem.strength + e.after),
     "traction_drop": Column("load", "traction_before - traction_after", lambda e: e.before - e.after, 6),
-    "static_drop": Column("load", "stiffness (G/h, or K) times slip", lambda e: e.history.problem.body.stiffness * e.slip, 7),
+    "static_drop": Column("load", "stiffness of the body times slip", lambda e: e.history.problem.body.stiffness * e.slip, 7),
     "pulses": Column("1", "maxima of |v| separated by minima below half the lower one", lambda e: e.events.pulses, 8),
     "phase": Column(
         "1",
-        "part of the row (round trip of a slab, period of a block) that has passed at the start",
+        "part of the row (round trip, or period of a block) that has passed at the start",
         lambda e: e.placed[1] / e.history.round_trip_time,
     ),
     "amplification": Column(
@@ -199,7 +199,7 @@ ENERGY_COLUMNS = {
     "damped": Column("energy", "dissipated by the block's damping", lambda e: e.energies["damped"]),
     "trapped": Column(
         "energy",
-        "energy of waves travelling in the slab at the end, beyond that of the same mean stress at rest",
+        "energy of waves travelling in the body at the end, beyond that of the same mean stress at rest",
         lambda e: e.energies["trapped"],
     ),
     "heat": Column("energy", "friction heat, from the law", lambda e: e.energies["heat"]),

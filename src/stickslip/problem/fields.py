@@ -14,7 +14,7 @@ from stickslip.bodies import BODIES, MACHINE, BodyOnCharacteristics
 from stickslip.foundation.arguments import CheckedArguments, check_type, is_number, shown
 from stickslip.foundation.conversion import Converted, Number, OptionalNumber, WithUnit
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.names import KINDS, TURNS, own_units, si_unit
+from stickslip.foundation.names import KINDS, own_units, si_unit
 from stickslip.foundation.quantities import Quantity, check_fields, in_units, quantities_of, quantity
 from stickslip.friction import FrictionLaw
 from stickslip.friction.contract import STATE_NAMES
@@ -120,7 +120,10 @@ class ProblemFields(CheckedArguments):
                 "Problem: only one of ground_velocity and ground_acceleration may be given: one follows from the other"
             )
         if isinstance(self.far_stress_rate, LoadingHistory):
-            raise InputError("Problem: far_stress_rate must be a number in Pa/s: what may vary in time is pull_rate or far_stress")
+            unit = self.unit_of("far_stress_rate")
+            raise InputError(
+                f"Problem: far_stress_rate must be a number in {unit}: what may vary in time is pull_rate or far_stress"
+            )
         for name in self._varying:
             getattr(self, name).check()
         if self.normal_load is not None:
@@ -135,7 +138,8 @@ class ProblemFields(CheckedArguments):
             cure = "set driver_inertia and driver_integral_gain to 0, or leave the ground at rest"
             raise InputError(f"Problem: ground that moves is not followed under {MACHINE}: {cure}")
         if self.body.has_inertia and ground.velocity_jumps:
-            why = "an infinite force on a mass: join the points (piecewise-linear), beginning with 0 m/s"
+            unit = self.unit_of("ground_velocity")
+            why = f"an infinite force on a mass: join the points (piecewise-linear), beginning with 0 {unit}"
             raise InputError(f"Problem: ground_velocity jumps, which is {why}, or give ground_acceleration")
         pulls = [getattr(self, name) for name in self._varying if name not in HISTORIES_ONLY]
         if ground.tone.amplitude != 0.0 and any(one.tone.amplitude != 0.0 for one in pulls):
@@ -148,7 +152,8 @@ class ProblemFields(CheckedArguments):
                 f"Problem: normal_load must stay above 0 {unit}, but may fall to {history.lowest:g}: the contact would open"
             )
         if abs(history.first - self.normal) > SAME * self.normal:
-            given = f"normal_load begins with {history.first:.12g} {unit}, but the body's {field_name} is {self.normal:.12g} {unit}"
+            own = field_name if getattr(self.body, field_name) == self.normal else f"normal load by its {field_name}"
+            given = f"normal_load begins with {history.first:.12g} {unit}, but the body's {own} is {self.normal:.12g} {unit}"
             raise InputError(f"Problem: {given}: make them equal")
         if history.tone.amplitude != 0.0 and any(one.slope for one in history.segments):
             raise InputError("Problem: normal_load: a sinusoid beside slopes is not followed: its straight parts must be constant")
@@ -187,13 +192,12 @@ class ProblemFields(CheckedArguments):
         healed = law.sticks or (law.reverses and self.initial_load is not None)
         steady = self.has_initial_rate and self.starts_steadily
         for i, state in enumerate(() if steady else law.states):
-            field_name = INITIAL_STATES[i]
+            field_name, unit = INITIAL_STATES[i], own_units(self.body.load_unit).get(state.unit, state.unit)
             value = getattr(self, field_name)
             if value is None and not healed:
-                raise InputError(f"Problem: needs {field_name}, the {state.meaning}, in {state.unit}")
+                raise InputError(f"Problem: needs {field_name}, the {state.meaning}, in {unit}")
             signed = state.signed or state.reverses
             above = None if law.sticks or signed else 0.0
-            unit = own_units(self.body.load_unit).get(state.unit, state.unit)
             declared = Quantity(unit, state.meaning, above=above, at_least=None if signed else 0.0)
             if isinstance(value, str) and value == STEADY:
                 _ = self._steady_states  # refuses where there is none
@@ -206,8 +210,8 @@ class ProblemFields(CheckedArguments):
 
     def _check_far_side(self) -> None:
         if self.body.is_driven_rigidly and (self.far_stress is not None or self.far_stress_rate != 0.0):
-            what = "string" if self.body.load_unit == TURNS else "slab"
-            raise InputError(f"Problem: far_stress and far_stress_rate need a {what} with a finite driver_impedance")
+            noun = self.body.noun if self.body.has_waves else "slab"
+            raise InputError(f"Problem: far_stress and far_stress_rate need a {noun} with a finite driver_impedance")
 
     def _check_one_way(self) -> None:
         if not isinstance(self.one_way, bool):
@@ -228,7 +232,7 @@ class ProblemFields(CheckedArguments):
         return len(self._varying) > 0 or self.body.has_machine
 
     def normal_at(self, t: ArrayLike) -> NDArray[np.float64]:
-        """Return the normal load S (Pa or N) at times (s since the start of the run) of any shape."""
+        """Return the normal load S (Pa, N or N m) at times (s since the start of the run) of any shape."""
         return np.full(np.shape(t), self.normal) if self.normal_load is None else self.normal_load.at(t)
 
     @property
@@ -261,13 +265,18 @@ class ProblemFields(CheckedArguments):
 
     @property
     def normal(self) -> float:
-        """S: the normal stress (Pa) of the slab, or the normal force (N) of the block; at the start if it varies."""
+        """S: the normal stress (Pa), force (N) or torque (N m) of the body; at the start if it varies."""
         return self.body.normal_load
 
     @property
     def load_unit(self) -> str:
-        """The unit of loads and tractions: Pa for the slab, N for the block."""
+        """The unit of loads and tractions: Pa for the slab, N for the block, N m for what turns."""
         return self.body.load_unit
+
+    def unit_of(self, name: str) -> str:
+        """Return the SI unit that a field of the problem, or a quantity of `foundation.names.si_unit`, has with this body."""
+        declared = quantities_of(ProblemFields).get(name)
+        return si_unit(name, self.load_unit) if declared is None else own_units(self.load_unit).get(declared.unit, declared.unit)
 
     @property
     def law_slip(self) -> float:
@@ -310,7 +319,7 @@ class ProblemFields(CheckedArguments):
 
     @cached_property
     def strength(self) -> float:
-        """The static strength S mu_static(u0) at the start (Pa or N).
+        """The static strength S mu_static(u0) at the start (Pa, N or N m).
 
         It is the reference from which loads are stored as differences. For a law that sticks and has a state it is the strength
         in the healed state 0. For a law that never sticks it is 0.

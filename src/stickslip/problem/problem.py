@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.names import own_units, si_unit
+from stickslip.foundation.names import own_units
 from stickslip.foundation.quantities import quantities_of
 from stickslip.foundation.show import Declared, brief, brief_repr, fields_in, html_table, shown_fields
 from stickslip.friction.contract import one_argument
@@ -134,8 +134,7 @@ class Problem(ProblemFields):
         shown = dict(shown_fields(self, units))
         shown["friction"] = self.law_text
         for name in self._varying:
-            unit = quantities_of(Problem)[name].unit
-            shown[name] = brief_repr(getattr(self, name), {VARYING: units.get(unit, unit)})
+            shown[name] = brief_repr(getattr(self, name), {VARYING: self.unit_of(name)})
         for name, state in zip(INITIAL_STATES, self.friction.states, strict=False):
             if getattr(self, name) is not None:
                 value = getattr(self, name)
@@ -178,7 +177,7 @@ class Problem(ProblemFields):
                 " starts in steady sliding"
             )
         if self.has_initial_rate and resistance_slope(self) <= 0.0:
-            rate = brief(self.rate, si_unit("slip_rate", self.load_unit))
+            rate = brief(self.rate, self.unit_of("slip_rate"))
             raise InputError(
                 f"Problem: initial_rate: at {rate} friction falls faster with the slip rate than waves carry"
                 " away, so that a contact without mass leaves this rate at once: give another rate, or the contact a mass"
@@ -186,19 +185,14 @@ class Problem(ProblemFields):
 
     @property
     def loading_texts(self) -> dict[str, str]:
-        """Short descriptions of the pull rate and, if given, of the far stress and its rate of change, by field name."""
-        return {
-            name: f"{value.kind}, {brief(value.first, unit)} at first" if isinstance(value, LoadingHistory) else brief(value, unit)
-            for name, value, unit in (
-                ("pull_rate", self.pull_rate, si_unit("slip_rate", self.load_unit)),
-                ("far_stress", self.far_stress, self.load_unit),
-                ("far_stress_rate", self.far_stress_rate or None, si_unit("load_rate", self.load_unit)),
-                ("normal_load", self.normal_load, self.load_unit),
-                ("ground_velocity", self.ground_velocity, si_unit("slip_rate", self.load_unit)),
-                ("ground_acceleration", self.ground_acceleration, si_unit("slip_acceleration", self.load_unit)),
-            )
-            if value is not None
-        }
+        """Short descriptions of the pull rate and of what else is given of the loading, by field name."""
+        given = {name: getattr(self, name) for name in quantities_of(Problem) if not name.startswith("initial_")}
+        given["far_stress_rate"] = self.far_stress_rate or None
+        return {name: self._loading_text(value, self.unit_of(name)) for name, value in given.items() if value is not None}
+
+    @staticmethod
+    def _loading_text(value: LoadingHistory | float, unit: str) -> str:
+        return f"{value.kind}, {brief(value.first, unit)} at first" if isinstance(value, LoadingHistory) else brief(value, unit)
 
     def pull_rate_at(self, t: ArrayLike) -> NDArray[np.float64]:
         """Return the pull rate V (m/s) at times (s since the start of the run) of any shape."""

@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.bodies import BodyWithWaves, as_waves
+from stickslip.bodies import BodyWithWaves, ElasticSlab, as_waves
 from stickslip.contact.critical import critical_normal_stress
 from stickslip.contact.regime_map import regimes_along_slip
 from stickslip.contact.sliding import SteadySlidings
 from stickslip.contact.steady import proven_slidings
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
 from stickslip.engine_input.limits import MOST_PIECES, PATIENCE, automatic_length, creep_tolerance, leaps_over, lumps_by_itself
-from stickslip.foundation.names import own_units, si_unit
+from stickslip.foundation.names import own_units
 from stickslip.foundation.quantities import Choice, LawField, NamedNumbers, NumberSeries, Quantity, Text, fields_of, in_units
 from stickslip.foundation.show import brief
 from stickslip.friction import FrictionLaw, RateAndState, SinusoidalSlip
@@ -152,35 +152,33 @@ def _of_law(law: FrictionLaw | LoadingHistory, prefix: str = "", *, units: Mappi
 
 def _derived(problem: Problem) -> list[Fact]:
     body, unit = problem.body, problem.load_unit
-    impedance, stiffness, load_rate = (si_unit(name, unit) for name in ("impedance", "stiffness", "load_rate"))
+    impedance, stiffness, load_rate = (problem.unit_of(name) for name in ("impedance", "stiffness", "load_rate"))
     start = [Fact("load", problem.load, unit, "shear load on the contact at the start")]
     if problem.friction.sticks:
         start.insert(0, Fact("strength", problem.strength, unit, "static strength S mu at the start"))
         start.append(Fact("excess", problem.excess, unit, "load minus static strength"))
     if problem.has_initial_rate:
-        start.append(Fact("v0", problem.rate, si_unit("slip_rate", unit), "slip rate at the start"))
+        start.append(Fact("v0", problem.rate, problem.unit_of("slip_rate"), "slip rate at the start"))
     start += _steady(problem)
     first = ", at first" if problem.loading_varies else ""
     if not body.has_waves:
         size = math.sqrt(body.stiffness) * math.sqrt(body.inertia)
         return [
             Fact("period", body.round_trip_time, "s", "period 2 pi sqrt(m/K) of free oscillation"),
-            Fact("sqrt(K m)", size, impedance, "impedance of the block, in place of Z"),
+            Fact("sqrt(K m)", size, impedance, f"impedance of the {body.noun}, in place of Z"),
             Fact("K V", body.stiffness * problem.first_pull_rate, load_rate, f"rate of loading while stuck{first}"),
             *start,
         ]
     of = "of sharp fronts" if body.has_machine else "of waves"
-    slab = unit == "Pa"
-    gh, slip = ("G/h", "metre") if slab else ("GJ/h", "radian")
+    waves = as_waves(body)
+    _, symbol, of_modulus, meaning = waves.modulus_name
     return [
-        Fact("Z", body.impedance, impedance, "impedance rho c" if slab else "impedance sqrt(I G J)"),
-        Fact("G", as_waves(body).modulus, "Pa", "shear modulus rho c^2")
-        if slab
-        else Fact("GJ", as_waves(body).modulus, "N m^2", "torque per twist of a metre"),
+        Fact("Z", body.impedance, impedance, f"impedance {waves.impedance_formula}"),
+        Fact(symbol, waves.modulus, of_modulus, meaning),
         Fact("R", body.round_trip_time, "s", "two-way travel time 2 h/c"),
-        Fact(gh, body.stiffness, stiffness, f"load lost per {slip} of slow slip"),
-        Fact("r", as_waves(body).front_reflection, "1", f"reflection {of} at the driver: -1 rigid, 0 matched, +1 dead load"),
-        Fact(f"{gh[:-2]} V/h", body.stiffness * problem.first_pull_rate, load_rate, "rate of loading at first"),
+        Fact(f"{symbol}/h", body.stiffness, stiffness, "load lost by slow slip"),
+        Fact("r", waves.front_reflection, "1", f"reflection {of} at the driver: -1 rigid, 0 matched, +1 dead load"),
+        Fact(f"{symbol} V/h", body.stiffness * problem.first_pull_rate, load_rate, "rate of loading at first"),
         *start,
         *_pulses(problem),
     ]
@@ -243,7 +241,7 @@ def _along_slip(problem: Problem, contact: Uniqueness) -> str:
     if contact.resistance is None or not (law.depends_on_slip and law.depends_on_rate):
         return ""
     intervals = regimes_along_slip(problem)
-    unit = si_unit("slip", problem.load_unit)
+    unit = problem.unit_of("slip")
     texts = [f"{one.regime} from {one.slip_from:.6g} to {one.slip_to:.6g} {unit}" for one in intervals]
     return f"{', '.join(texts)} of slip: the folds move as it slips"
 
@@ -278,12 +276,12 @@ def _noise(law: FrictionLaw, contact: Uniqueness) -> list[str]:
 
 def _slab_warnings(scenario: Scenario, body: BodyWithWaves, contact: Uniqueness) -> list[str]:
     found, problem = [], scenario.problem
-    strain = abs(problem.load) / body.modulus if problem.load_unit == "Pa" else 0.0  # of a string: its radius is not known
+    strain = abs(problem.load) / body.modulus if isinstance(body, ElasticSlab) else 0.0  # a string may have an unknown radius
     if strain > LARGE_STRAIN:
         found.append(f"the shear strain at the start is {strain:.3g}: linear elasticity is doubtful beyond {LARGE_STRAIN:g}")
     if problem.friction.memory == "since-arrest" and body.inertia == 0.0 and body.is_driven_rigidly:
         found.append(
-            "friction heals instantly and the slab has no contact_mass:"
+            f"friction heals instantly and the {body.noun} has no {body.mass_field}:"
             " under slow loading it creeps in tiny slips after the first event"
         )
     if scenario.duration < body.two_way_time:

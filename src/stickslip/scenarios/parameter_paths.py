@@ -34,8 +34,6 @@ WHOLE = ("run.events", "contact.nodes", "contact.width_nodes", "contact.frames")
 """Parameters that count."""
 EXCLUDE_EACH_OTHER = {"initial.load": "excess", "initial.excess": "load"}
 """A scenario has either an initial load or an initial excess. The one that is given another value replaces the other."""
-TOGETHER = (("initial.load", "initial.excess"), *((PRESSING, f"body.{name}") for name in ("normal_stress", "normal_force")))
-"""Pairs of parameters; only one of each pair can be given another value."""
 MAY_BE_STEADY = ("initial.rate", *(f"initial.{name}" for name in STATE_NAMES))
 """Parameters for which "steady" stands for steady sliding; as initial rate it takes the place of load and states, too."""
 _STEP = re.compile(r"(?P<name>[^\[]+)(?:\[(?P<index>\d+)\])?")
@@ -105,7 +103,7 @@ def document_with(scenario: Scenario, changes: Changes, where: str) -> dict[str,
 
     Raises InputError, which begins with `where`, if two of them exclude each other.
     """
-    _check_together(changes, where)
+    _check_together(scenario, changes, where)
     pressing = next((value for parameter, value in changes if parameter.name == PRESSING), None)
     document = copy.deepcopy((scenario if pressing is None else _pressed(scenario, pressing)).document)
     _put(document, [one for one in changes if one[0].name != PRESSING])
@@ -118,7 +116,7 @@ def put_into(document: Mapping[str, Any], scenario: Scenario, changes: Changes, 
     What the document leaves out, keeps in a file of its own, or has in several places needs the scenario's whole text, in SI.
     Raises InputError as `document_with` does.
     """
-    _check_together(changes, where)
+    _check_together(scenario, changes, where)
     found = copy.deepcopy(dict(document))
     try:
         _put(found, changes)
@@ -127,9 +125,9 @@ def put_into(document: Mapping[str, Any], scenario: Scenario, changes: Changes, 
     return found
 
 
-def _check_together(changes: Changes, where: str) -> None:
+def _check_together(scenario: Scenario, changes: Changes, where: str) -> None:
     names = {parameter.name for parameter, _ in changes}
-    for one, other in TOGETHER:
+    for one, other in (("initial.load", "initial.excess"), (PRESSING, f"body.{scenario.problem.body.normal_field}")):
         if {one, other} <= names:
             raise InputError(f"{where}: {one} and {other} exclude each other: give one of them")
 
@@ -181,6 +179,8 @@ def parameter_paths(scenario: Scenario) -> Iterator[ParameterPath]:
     ours = [ParameterPath(one.name, one.declared, one.written) for one in entries_of(problem)]
     for table in ("body", "friction", "loading", "initial"):
         yield from (one for one in ours if one.name.startswith(f"{table}."))
+        if table == "loading" and scenario.contact is None:
+            yield ParameterPath("loading.one_way", YES_OR_NO)
     yield ParameterPath(PRESSING, pressing_of(problem))
     if scenario.contact is not None:
         yield ParameterPath("run.duration", DURATION)

@@ -15,6 +15,7 @@ from stickslip.bodies import BODIES
 from stickslip.foundation.arguments import check_type, check_whole, shown
 from stickslip.foundation.conversion import unit_among
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.names import KINDS as KINDS_OF_BODIES
 from stickslip.foundation.names import own_units
 from stickslip.foundation.quantities import Field as Declared
 from stickslip.foundation.quantities import LawField, Quantity, fields_of, in_units
@@ -36,6 +37,8 @@ TABLES = ("body", "friction", "loading", "initial", "run")
 """The tables of a scenario."""
 CONTACT = "contact"
 """The table that a scenario has if its contact is a line or a plane of nodes."""
+ONE_WAY = "true: the contact never slips backwards"
+"""Meaning of the key one_way."""
 MOST_EVENTS = 10**12
 """Number of slip events that no run reaches."""
 NO_STATE = {"state": Quantity("1", "state variable of the friction law, if it has one")}
@@ -108,10 +111,6 @@ def entries_in(
     return {key_of(name, entry): (in_units(entry, units), default) for name, (entry, default) in fields_of(kind).items()}
 
 
-NORMAL_LOADS = {"Pa": "normal_stress", "N": "normal_force", "N m": "normal_torque"}
-"""Keys of [body] with the normal load, by its unit: a history of it has a table of its own, [loading.normal_load]."""
-
-
 def has_kind(table: str) -> bool:
     """Return True if a table has a key `kind`, which names a class."""
     return table in KINDS or "." in table
@@ -131,7 +130,7 @@ def keys_of(table: str, kind: type, states: tuple[StateVariable, ...] = ()) -> M
         keys["events"] = Key(lambda value, place: check_events(value, place.source.file, str(place)), None)
         keys["selection"] = Key(lambda value, place: check_rule(value, place.source.file, str(place)), SELECTION_RULES[0])
     if table == "loading":
-        keys["one_way"] = Key(partial(_read_as, bool, "true or false"), False)
+        keys["one_way"] = Key(partial(_read_as, bool, "true or false"), False, ONE_WAY)
     if table == CONTACT:
         keys["replicas"] = Key(partial(_read_as, bool, "true or false"), True)
         keys["along"] = Key(partial(_read_as, dict, "a table of what varies along the contact"), MappingProxyType({}))
@@ -149,9 +148,9 @@ def _read_entry(declared: Declared, value: Any, place: DocumentPlace) -> Any:
         texts = [one for entry in value.values() for one in (entry if isinstance(entry, list) else (entry,))]
         if place.key == "normal_load" and not {unit_among(one, VARYING) for one in texts} <= {"", unit}:
             raise InputError(f"{place.source.file}: [{place.inner}] must be in {unit}, as the loads of this body are")
-        heading = NORMAL_LOADS.get(unit, "") if place.key == "normal_load" else ""
+        heading = KINDS_OF_BODIES[unit].normal if place.key == "normal_load" and unit in KINDS_OF_BODIES else ""
         return read_part(place.inner, value, place.source, heading)
-    if place.table == "body" and place.key in NORMAL_LOADS.values() and isinstance(value, dict):
+    if place.table == "body" and isinstance(value, dict) and any(place.key == kind.normal for kind in KINDS_OF_BODIES.values()):
         raise InputError(f"{place.source.file}: {place} is one number, that at the start: a history is [loading.normal_load]")
     if place.source.load_unit:
         declared = in_units(declared, own_units(place.source.load_unit))

@@ -15,7 +15,7 @@ from stickslip.reference.slab import growth_rate
 
 
 def loading_rate(problem: Problem) -> float:
-    """Return the initial growth rate of the load on a stuck contact, Pa/s (block: N/s).
+    """Return the initial growth rate of the load on a stuck contact (Pa/s, N/s or N m/s).
 
     It is exact for a block, and a mean over round trips for a slab.
     """
@@ -27,7 +27,7 @@ def loading_rate(problem: Problem) -> float:
 
 def start_of(problem: Problem) -> str:
     """Return a sentence on the motion of the contact at t = 0+ and, if it sticks, on the time when it will slip."""
-    slip_rate = si_unit("slip_rate", problem.load_unit)
+    slip_rate = problem.unit_of("slip_rate")
     if problem.has_initial_rate:
         return f"slides from the start, at {problem.rate:.6g} {slip_rate}: {_why_it_slides(problem)}"
     if not problem.friction.sticks:
@@ -58,23 +58,24 @@ def _why_it_slides(problem: Problem) -> str:
         return "steady sliding" if problem.initial_rate is not None else "steady sliding at the pull rate"
     if problem.initial_rate is not None:
         return "as initial rate"
-    return "there the initial load and friction balance" + (f"; {OTHER_START}" if starts_otherwise(problem) else "")
+    other = other_start(problem)
+    return "there the initial load and friction balance" + (f"; {other}" if other else "")
 
 
-OTHER_START = (
-    "without contact_mass the slab behind the contact starts from rest, which is another start; with [initial] rate = 0 a mass"
-    " starts from there, too"
-)
-"""Sentence on the start of a contact with mass under a law that never sticks."""
-
-
-def starts_otherwise(problem: Problem) -> bool:
-    """Return True if a slab would start in another way with a contact mass than without, under a law that never sticks.
+def other_start(problem: Problem) -> str:
+    """Return a sentence if a slab or a string would start otherwise with a mass at the contact than without, else "".
 
     A contact without mass takes the slip rate that load and state determine at 0+, and the slab moves as if it had rested before.
+    That is so under a law that never sticks.
     """
     loaded = problem.initial_load is not None and problem.initial_rate is None
-    return problem.body.has_waves and not problem.friction.sticks and loaded
+    if problem.friction.sticks or not problem.body.has_waves or not loaded:
+        return ""
+    body = problem.body
+    return (
+        f"without {body.mass_field} the {body.noun} behind the contact starts from rest, which is another start; "
+        "with [initial] rate = 0 a mass starts from there, too"
+    )
 
 
 def wait_of(problem: Problem) -> float:
@@ -107,7 +108,9 @@ def stability_of(problem: Problem) -> str:
     if not body.is_driven_rigidly:
         return f"friction weakens with slip: alpha_w h = {number:.6g} (a rigid driver holds it below 1, this one is not rigid)"
     if number < 1:
-        return f"statically stable: alpha_w h = {number:.6g} < 1, friction weakens more slowly than the slab unloads: it creeps"
+        return (
+            f"statically stable: alpha_w h = {number:.6g} < 1, friction weakens more slowly than the {body.noun} unloads: it creeps"
+        )
     if not body.is_uniform:
         return f"statically unstable: alpha_w h = {number:.6g} > 1"
     rate = growth_rate(as_waves(body), -by_slip)
@@ -134,12 +137,13 @@ def _critical_stiffness(problem: Problem, law: RateAndState) -> str:
     if rate == 0.0:
         return "not pulled at first" if problem.loading_varies else "not pulled: it creeps to a halt, ever more slowly"
     under = ", under the first normal load" if problem.normal_varies else ""
-    unit = si_unit("stiffness", problem.load_unit)
+    unit = problem.unit_of("stiffness")
     sliding = SteadySliding(problem.normal, law.a, law.b, law.distance, rate)
     if not body.has_waves:
         critical, text = sliding.critical_stiffness(body.inertia, body.damping), "stiffness K"
     elif body.is_driven_rigidly and not body.has_inertia:
-        critical, text = sliding.critical_stiffness(), "stiffness G/h"
+        of = f" {as_waves(body).modulus_name.symbol}/h" if body.is_uniform else ""
+        critical, text = sliding.critical_stiffness(), f"stiffness{of}"
     else:
         return f"critical stiffness of slow sliding S (b - a) / Dc = {sliding.critical_stiffness():.6g} {unit}{under}"
     return f"{text} = {body.stiffness:.6g} against the critical {critical:.6g} {unit} of steady sliding at the {pull}{under}"

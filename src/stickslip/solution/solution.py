@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike
 
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.names import si_unit
 from stickslip.foundation.show import brief, how_long, html_table
 from stickslip.observables.event_table import events_table
 from stickslip.observables.proof import Proof, proven
@@ -223,7 +222,7 @@ class Solution(Exports):
         problem, events = self.problem, self.events
         loading = ", ".join(f"{name.replace('_', ' ')} {text}" for name, text in problem.loading_texts.items())
         most = events[["slip", "peak_rate"]].max()
-        slip, rate = (si_unit(name, problem.load_unit) for name in ("slip", "slip_rate"))
+        slip, rate = (problem.unit_of(name) for name in ("slip", "slip_rate"))
         largest = f", largest slip {brief(most.slip, slip)}, peak rate {most.peak_rate:.6g} {rate}" if len(events) else ""
         return [
             ("body", repr(problem.body)),

@@ -4,7 +4,7 @@ from .compare import Comparison, compare
 from .ensemble import Ensemble, ensemble
 from .find import Edge, find
 from .inference import Inference, Record, infer, ranking
-from .one_run import catalogue_statistics, critical_value, predictability, steady
+from .one_run import catalogue_statistics, critical_value, predictability, severity, steady
 from .schemes import Schemes, schemes
 
 __all__ = [
@@ -26,5 +26,6 @@ __all__ = [
     "predictability",
     "ranking",
     "schemes",
+    "severity",
     "steady",
 ]

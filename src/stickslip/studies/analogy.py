@@ -78,15 +78,16 @@ class Analogy(StudyWithDataset):
         table, percent = self.table, f"{100 * self.within:g} %"
         known, good = table.dropna(subset=[f"{one}_ratio" for one in QUANTITIES]), table[table.stands]
         count = f"at {len(good)} of {len(known)} points with an event (slip, peak rate and duration within {percent}, same pulses)"
-        where = f"the block stands for the slab {count}"
+        noun = self.problem.body.noun
+        where = f"the block stands for the {noun} {count}"
         if not good.empty:
             where += (
-                f": there friction weakens with slip up to {good.weakening_slip.max():.3g} times the stiffness, "
+                f": there friction weakens with slip up to {good.weakening_slip.max() + 0.0:.3g} times the stiffness, "
                 f"and with slip rate up to {good.weakening_rate.max():.3g} times the impedance"
             )
         ratios = ((name, known[f"{name}_ratio"]) for name in QUANTITIES)
         ranges = (f"{name.replace('_', ' ')} {ratio.min():.2g} to {ratio.max():.2g}" for name, ratio in ratios)
-        return f"{where}; slab over block: {', '.join(ranges)}"
+        return f"{where}; {noun} over block: {', '.join(ranges)}"
 
     def _lines(self) -> tuple[str, ...]:
         return (self.text,)
@@ -97,7 +98,7 @@ def block_for(problem: Problem) -> Problem:
 
     Raises InputError if the body is a block, or if the driver of the slab is not rigid.
     """
-    slab = as_waves(problem.body, "analogy: needs a slab: a block has no other block that stands for it")
+    slab = as_waves(problem.body, "analogy: needs a slab or a string: a block has no other block that stands for it")
     return replace(problem, body=slab.equivalent_block())
 
 

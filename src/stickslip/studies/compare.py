@@ -36,11 +36,11 @@ COLUMNS = {
     "pulses": ("", "maxima of the slip rate in the largest event, see `Solution.events`"),
     "slip": ("slip", "slip of the largest event"),
     "peak_rate": ("slip_rate", "largest slip rate of the run"),
-    "static_drop": ("load", "stiffness (G/h, or K) times the slip of the largest event"),
+    "static_drop": ("load", "stiffness of the body times the slip of the largest event"),
     "dynamic_drop": ("load", "traction at rest before the largest event minus the smallest one while it slips"),
     "duration": ("s", "duration of the first event; NaN if it is not over"),
     "shocks": ("", "jumps of the slip rate; it is smooth if there are none"),
-    "load_unit": ("", "unit of the drops: Pa (slab) or N (block)"),
+    "load_unit": ("", "unit of the drops: Pa (slab), N (block) or N m (what turns)"),
     "status": ("", "what ended the run"),
 }
 """Columns of the table, each with its unit, as `names.si_unit` understands it, and its meaning."""

@@ -1,4 +1,4 @@
-"""Studies that need a single problem or run: critical values, steady sliding, predictability and the statistics of a catalogue."""
+"""Studies of a single problem or run: critical values, steady sliding, predictability, severity, statistics of a catalogue."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -9,13 +9,14 @@ from stickslip.contact.steady import proven_slidings
 from stickslip.foundation.arguments import for_users
 from stickslip.observables.event_table import catalogue_statistics
 from stickslip.observables.predictability import predictability
+from stickslip.observables.severity import severity
 from stickslip.problem.problem import Problem
 from stickslip.scenarios.scenario import Scenario
 from stickslip.scenarios.source import read_source
 from stickslip.studies.find import from_rest as runs_from_rest
 from stickslip.study import TextProgress, telling
 
-__all__ = ["catalogue_statistics", "critical_value", "predictability", "steady"]
+__all__ = ["catalogue_statistics", "critical_value", "predictability", "severity", "steady"]
 
 
 @for_users

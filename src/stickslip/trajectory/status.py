@@ -105,7 +105,7 @@ STATUSES = {
     Stop.STORM: Status(
         "event storm",
         "events follow each other without any time between them, or are too short to be resolved: set shortest_event, or try a"
-        " contact_mass or another law",
+        " mass at the contact or another law",
         False,
     ),
     Stop.FAILED: Status(

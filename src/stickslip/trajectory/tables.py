@@ -11,7 +11,6 @@ from stickslip.contact.steady import steady_slidings
 from stickslip.contact.uniqueness import uniqueness_of
 from stickslip.engine_input.branch_table import is_algebraic
 from stickslip.engine_input.limits import leaps_over
-from stickslip.foundation.names import si_unit
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.history import History, Positions
 
@@ -102,7 +101,7 @@ def _lasts(problem: Problem) -> str:
     found = steady_slidings(problem).slidings
     if len(found) != 1:
         return "it slides steadily up to the end"
-    one, rigid, unit = found[0], problem.body.is_driven_rigidly, si_unit("slip_rate", problem.load_unit)
+    one, rigid, unit = found[0], problem.body.is_driven_rigidly, problem.unit_of("slip_rate")
     if one.lasts:
         return f"it {slides_on(one, is_driven_rigidly=rigid, unit=unit)}"
     return f"it slides steadily at {driven_at(one.rate, is_driven_rigidly=rigid, unit=unit)} to the end"

@@ -63,7 +63,7 @@ def run(
     r"""Simulate a scenario, or resume a run, and report what happened: slip events, shocks, and what ended the run.
 
     Times are in s, slips in m, slip rates in m/s, tractions in Pa (slab) or
-    N (block). Results and figures of earlier runs are replaced, each when its
+    N (block); of what turns in rad, rad/s and N m. Results and figures of earlier runs are replaced, each when its
     content is complete; data that stickslip did not write are not.
 
     \b
@@ -110,7 +110,7 @@ def run(
         chosen, found = list_events(request)
         show_catalogue(chosen, found)
         if pictures.wanted:
-            announce(*pictures.draw_events(found.read(), chosen.title or chosen.name))
+            announce(*pictures.draw_events(found.read(), chosen.title or chosen.name, chosen.problem.load_unit))
         _leave(found.status)
     chosen, solution = solve(request)
     show_solution(chosen, solution)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
+    from stickslip.problem.problem import Problem
     from stickslip.scenarios.scenario import Scenario
     from stickslip.solution.planar import PlanarSolution
     from stickslip.solution.solution import Solution
@@ -157,6 +158,13 @@ class StoredEvents(Stored):
 
     table: pd.DataFrame
 
+    @cached_property
+    def problem(self) -> Problem | None:
+        """The problem of the run; None if neither the catalogue nor a checkpoint beside it holds the scenario."""
+        from stickslip.scenarios.scenario import read_scenario
+
+        return read_scenario(self.scenario(), self.path.stem).problem if "scenario" in self.about else None
+
     def check(self, pictures: Pictures) -> None:
         """Refuse pictures that these results do not have. Raises InputError."""
         pictures.check_events(str(self.path))
@@ -165,12 +173,12 @@ class StoredEvents(Stored):
         """Print the summary on standard output."""
         from stickslip.cli.output.summary import show_events
 
-        show_events(self.path.stem, dict(self.table.items()), self.about)
+        show_events(self.path.stem, dict(self.table.items()), self.about, self.problem)
         self.print_origin()
 
     def draw(self, pictures: Pictures) -> None:
         """Draw the pictures and say which files were written."""
-        announce(*pictures.draw_events(self.table, self.path.stem))
+        announce(*pictures.draw_events(self.table, self.path.stem, "Pa" if self.problem is None else self.problem.load_unit))
 
 
 @dataclass(frozen=True)

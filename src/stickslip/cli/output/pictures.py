@@ -59,12 +59,12 @@ class Pictures:
         """Refuse, before the run, figures that this problem does not have. Raises InputError."""
         inside = [option for option in self.wanted if option in ("--space-time", "--animation")]
         if inside and not problem.body.has_waves:
-            raise InputError(f"{command}: {inside[0]} needs a slab: a block is rigid and has no interior field")
+            raise InputError(f"{command}: {inside[0]} needs a slab or a string: a block is rigid and has no interior field")
         if self.path is not None:
             from stickslip.contact.uniqueness import uniqueness_of
 
             if uniqueness_of(problem).resistance is None:
-                what = "a slab without contact mass: with inertia the slip rate is a state, there is no set K"
+                what = "a slab or a string without a mass at its contact: with inertia the slip rate is a state, there is no set K"
                 raise InputError(f"{command}: --path needs {what}")
 
     def check_events(self, where: str) -> None:
@@ -85,12 +85,15 @@ class Pictures:
             (self.figure, drawing(solution.plot, self.look)), (self.animation, lambda target: _animate(solution, target))
         )
 
-    def draw_events(self, table: pd.DataFrame, title: str) -> list[Path]:
-        """Draw the figure of a catalogue if it is wanted and there is an event, and return its file."""
+    def draw_events(self, table: pd.DataFrame, title: str, load_unit: str) -> list[Path]:
+        """Draw the figure of a catalogue, of a body whose loads have this unit, if it is wanted and there is an event.
+
+        Return its file.
+        """
         from stickslip.figures.runs import catalogue
 
         def draw(**place: Any) -> object:
-            return catalogue.draw(catalogue.data_of_events(table, title), **place)
+            return catalogue.draw(catalogue.data_of_events(table, title, load_unit), **place)
 
         return write_files((self._file_of_events(table), drawing(draw, self.look)))
 

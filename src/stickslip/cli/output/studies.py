@@ -55,8 +55,8 @@ def _drop(value: float, unit: str) -> str:
 
 def show_analogy(scenario: Scenario, found: Analogy) -> None:
     """Print the map of slips, slab over block, on standard output."""
-    screen = titled(scenario)
-    say(screen, f"slab over block: slip of the first event, over {found.x.parameter} (across) and {found.y.parameter} (down)\n")
+    screen, over = titled(scenario), f"over {found.x.parameter} (across) and {found.y.parameter} (down)"
+    say(screen, f"{found.problem.body.noun} over block: slip of the first event, {over}\n")
     ratios, columns = found.ratio("slip"), _spread(found.x.points)
     rows = [[number(found.y.values[i], 3), *(number(ratios[i, j], 3) for j in columns)] for i in _spread(found.y.points)]
     print_numbers(screen, ["", *(number(found.x.values[j], 3) for j in columns)], rows)

@@ -12,7 +12,7 @@ from stickslip.cli.output.show import console, fits, print_numbers, say, titled
 from stickslip.engine_input.limits import creep_tolerance
 from stickslip.foundation.names import readable_unit, si_unit
 from stickslip.foundation.show import clean, how_long, number, with_unit
-from stickslip.scenarios.scenario import doubts, read_scenario
+from stickslip.scenarios.scenario import doubts
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -71,7 +71,7 @@ def show_catalogue(scenario: Scenario, found: Catalogue) -> None:
     announce(*found.files)
 
 
-def show_events(name: str, table: Mapping[Any, Any], about: Mapping[str, Any]) -> None:
+def show_events(name: str, table: Mapping[Any, Any], about: Mapping[str, Any], problem: Problem | None) -> None:
     """Print on standard output the slip events of a catalogue, after what its attributes say about the run, if there are any."""
     screen = console()
     say(screen, clean(name), style="bold")
@@ -82,7 +82,7 @@ def show_events(name: str, table: Mapping[Any, Any], about: Mapping[str, Any]) -
         say(screen, clean(f"selection rule {about['selection_rule']}"))
         say(screen, *(clean(str(about[note])) for note in ("lumping", "rounding") if about.get(note)))
     screen.print()
-    _print_events(screen, table, read_scenario(str(about["scenario"]), name).problem if "scenario" in about else None)
+    _print_events(screen, table, problem)
 
 
 def _print_events(screen: Console, events: Mapping[Any, Any], problem: Problem | None) -> None:
@@ -104,7 +104,7 @@ def _print_events(screen: Console, events: Mapping[Any, Any], problem: Problem |
 
 def _unit(unit: str, problem: Problem | None) -> str:
     """Return the unit of a column as readers expect to see it, for a problem or for one that is not known."""
-    found = si_unit(unit) if problem is None else si_unit(unit, problem.load_unit)
+    found = si_unit(unit) if problem is None else problem.unit_of(unit)
     return "" if found == "1" else found
 
 

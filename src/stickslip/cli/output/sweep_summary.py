@@ -54,17 +54,15 @@ def show_sweep(title: str, dataset: xr.Dataset) -> int:
 
 
 def _on_starts(dataset: xr.Dataset, keys: Sequence[str]) -> list[str]:
-    """Return a line if members without contact mass start in another way than those with one."""
+    """Return a line if members without a mass at the contact start in another way than those with one."""
     from stickslip.scenarios.scenario import read_scenario
-    from stickslip.scenarios.stability import OTHER_START, starts_otherwise
+    from stickslip.scenarios.stability import other_start
 
-    if MASS not in keys or not 0.0 == float(dataset[MASS].min()) < float(dataset[MASS].max()):
+    problem = read_scenario(dataset.attrs["scenario"], "sweep").problem
+    mass = f"body.{getattr(problem.body, 'mass_field', '')}"
+    if mass not in keys or not 0.0 == float(dataset[mass].min()) < float(dataset[mass].max()):
         return []
-    return [f"note: {OTHER_START}"] if starts_otherwise(read_scenario(dataset.attrs["scenario"], "sweep").problem) else []
-
-
-MASS = "body.contact_mass"
-"""Parameter that makes some laws start in another way if it is 0."""
+    return [f"note: {other}"] if (other := other_start(problem)) else []
 
 
 def quantities_of(dataset: xr.Dataset) -> list[str]:

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from stickslip.explorer.model.words import short
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.foundation.names import si_unit
 from stickslip.inference.fit.model import OF_NO_ZERO, measured
 from stickslip.inference.fit.setup import SENSORS
 from stickslip.inference.record.record import SHEAR, Record
@@ -76,14 +75,14 @@ class StateCurve(NamedTuple):
 
 @dataclass(frozen=True)
 class BodyCurves:
-    """Slip (m), slip rate (m/s), traction and load (Pa, for a block N) of one body against time (s).
+    """Slip, slip rate, traction and load of one body against time (s), in the units of a body whose loads have `load_unit`.
 
     All arrays have one length. A shock has two points at one time, the limit from the left first.
     """
 
     body: Literal["slab", "block"]
     name: str
-    """How the legend calls it: "slab", "block", or "equivalent block"."""
+    """How the legend calls it: "slab", "block", "string", or "equivalent block"."""
     time: Floats
     slip: Floats
     slip_rate: Floats
@@ -91,7 +90,7 @@ class BodyCurves:
     load: Floats
     load_unit: str
     normal_load: float = 1.0
-    """Normal stress (Pa) or force (N) of this body: traction over it can be compared between slab and block."""
+    """Normal load of this body, in `load_unit`: traction over it can be compared between slab and block."""
     states: tuple[StateCurve, ...] = ()
     """The states of friction, at the same times."""
 
@@ -238,7 +237,7 @@ class Backdrop:
             zero = float(np.mean((data - model)[known])) if name in OF_NO_ZERO and known.any() else 0.0
             away = (data - zero - model)[known]
             size = float(np.sqrt(np.mean(away**2))) if known.any() else float("nan")
-            misfits.append(KeyNumber(f"misfit of {name.replace('_', ' ')}", size, si_unit(name, run.problem.load_unit)))
+            misfits.append(KeyNumber(f"misfit of {name.replace('_', ' ')}", size, run.problem.unit_of(name)))
             shift = run.problem.initial_slip - zero if name == "slip" else 0.0
             scale = run.problem.normal if name == "friction" else 1.0
             curves[DRAWN_AS[name]] = data * scale + shift

@@ -25,7 +25,7 @@ from stickslip.scenarios import library
 from stickslip.scenarios.contact import Contact
 from stickslip.scenarios.entries import describe, typed_number
 from stickslip.scenarios.parameter_paths import WHOLE, YES_OR_NO, ParameterPath, parameter_paths
-from stickslip.scenarios.schema import CONTACT, check_events, entries_in, kind_of
+from stickslip.scenarios.schema import CONTACT, ONE_WAY, check_events, entries_in, kind_of
 
 ControlKind = Literal["number", "whole", "choice", "text", "points"]
 
@@ -179,6 +179,12 @@ class _Tables:
             yield self.of("loading.pull_rate", HISTORIES[pull["kind"]], kinds, "Pull rate that varies")
         else:
             others = ControlGroup("loading", others.title, CONSTANT, (CONSTANT, *HISTORIES), others.controls)
+        if law.sticks:  # else the contact slips both ways
+            value = str(bool(self.setting.value("loading.one_way"))).lower()
+            only = Control(
+                "loading.one_way", "one way", ONE_WAY, "choice", value, choices=YES_OR_NO.allowed, rare=True, declared=YES_OR_NO
+            )
+            others = replace(others, controls=(*others.controls, only))
         if others.controls:
             yield others
         for name in ("far_stress", *HISTORIES_ONLY):

@@ -78,13 +78,14 @@ def run_companion(scenario: Scenario, told: Told) -> Solution | None:
     """Run the companion of a scenario, or return None if it has none, or if its run cannot start."""
     other = companion_of(scenario)
     try:
-        return None if other is None else run(other, lambda text: told(f"{_kind(other)}: {text}"))
+        return None if other is None else run(other, lambda text: told(f"{_beside_name(other.problem)}: {text}"))
     except InputError:
         return None
 
 
-def _kind(scenario: Scenario) -> str:
-    return "slab" if scenario.problem.body.has_waves else "equivalent block"
+def _beside_name(problem: Problem) -> str:
+    """Return what the legend calls the companion of a body."""
+    return problem.body.noun if problem.body.has_waves else f"equivalent {problem.body.noun}"
 
 
 LONG = 5_000
@@ -164,7 +165,7 @@ def _waves(shown: ShownInterval) -> SampledWaves | None:
 def _beside(companion: Solution | None) -> tuple[BodyCurves, ...]:
     if companion is None:
         return ()
-    return (motion(companion, "slab" if companion.problem.body.has_waves else "equivalent block"),)
+    return (motion(companion, _beside_name(companion.problem)),)
 
 
 def notes_of(scenario: Scenario, solution: Solution, contact: Uniqueness) -> tuple[str, ...]:
@@ -179,14 +180,14 @@ EVEN_TIMES = 400
 
 
 def motion(solution: Solution, name: str = "") -> BodyCurves:
-    """Return the motion of one body; `name` is what the legend calls it, by default "slab" or "block"."""
+    """Return the motion of one body; `name` is what the legend calls it, by default that of the body."""
     has_waves = solution.problem.body.has_waves
     known = solution.problem.friction.states
     names: tuple[Any, ...] = ("slip", "slip_rate", "traction", "load", *STATE_NAMES[: len(known)])
     time, (slip, rate, traction, load, *states) = solution.curves_together(names, points=EVEN_TIMES)
     return BodyCurves(
         body="slab" if has_waves else "block",
-        name=name or ("slab" if has_waves else "block"),
+        name=name or solution.problem.body.noun,
         time=time,
         slip=slip,
         slip_rate=rate,

@@ -18,7 +18,6 @@ from stickslip.explorer.model.solve import Stopped
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.axis import Axis
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.names import si_unit
 from stickslip.foundation.quantities import Quantity
 from stickslip.problem.parameters import PRESSING
 from stickslip.scenarios.parameter_paths import ParameterPath, find_parameter, parameter_paths, put_into, values_in
@@ -78,7 +77,7 @@ def strip_of(scenario: Scenario, where: Axis, told: Told = lambda text: None) ->
     values = where.values
     work = Work(scenario.to_toml(), (found,), quantities_named(KEPT))
     results, refused = _run(work, found.name, values, told)
-    units = {name: si_unit(QUANTITIES[name].unit, scenario.problem.load_unit) for name in KEPT}
+    units = {name: scenario.problem.unit_of(QUANTITIES[name].unit) for name in KEPT}
     here = present(scenario, found)
     return Strip(found.name, found.declared.meaning, found.unit, values, here, where.log, results, units, refused)
 

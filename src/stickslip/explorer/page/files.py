@@ -114,7 +114,9 @@ def fields_file(setting: Setting, answer: Any) -> bytes:
 
 def events_file(setting: Setting, answer: Answer) -> bytes:
     """Return the table of slip events as CSV, with all digits."""
-    about = _about(setting, "slip events; times in s, slips in m, slip rates in m/s, tractions in Pa (slab) or N (block)")
+    problem = answer.solution.problem
+    slip, rate = problem.unit_of("slip"), problem.unit_of("slip_rate")
+    about = _about(setting, f"slip events; times in s, slips in {slip}, slip rates in {rate}, tractions in {problem.load_unit}")
     return _written(".csv", lambda path: write_table(path, answer.solution.events, about))
 
 

@@ -55,15 +55,15 @@ def data(problem: Problem, solution: Solution | None = None, *, title: str = "",
     run slips, `set_slip` (m) are then some slips of the law that it passes, and `set_excess` (Pa), `set_kind` and `set_strength`
     (Pa, minus that at the start) are the sets there. The title is by default that of the run.
 
-    Raises InputError for a block, a contact mass, or a law with a state variable: the slip rate is then a state, or follows from
-    one, and there is no such set.
+    Units are those of a slab; a string has N m for Pa, and rad for m. Raises InputError for a block, a contact mass, or a law with
+    a state variable: the slip rate is then a state, or follows from one, and there is no such set.
     """
     contact = uniqueness_of(problem, law_slip)
     g = contact.resistance
     if g is None:
         why = "the slip rate does not follow from the load alone (inertia or a state variable)"
         raise InputError(f"figure of the set K: {why}: there is no set K to draw")
-    path = _path(solution, g.strength)
+    path, loads = _path(solution, g.strength, problem), problem.load_unit
     ends = [rate for b in contact.branches for rate in (b.rate_from, b.rate_to) if np.isfinite(rate)]
     rates = np.union1d(np.linspace(0.0, _fastest(contact, path["path_slip_rate"].values), _POINTS), ends)
     inside = [(b.rate_from <= rates) & (rates <= b.rate_to) for b in contact.branches]
@@ -71,28 +71,34 @@ def data(problem: Problem, solution: Solution | None = None, *, title: str = "",
     kind = np.where(np.any(inside, axis=0), 1, -1)
     kind = np.where(np.any(flat, axis=0), 0, kind) if flat else kind
     jumps = np.array([(j.rate_before, j.rate_after, j.load - g.strength) for j in contact.jumps]).reshape(-1, 3)
+    rate = problem.unit_of("slip_rate")
     contents = {
-        "excess": quantity("slip_rate", g.excess(rates), "load minus static strength", r"\beta - S\mu_s", "Pa"),
+        "excess": quantity("slip_rate", g.excess(rates), "load minus static strength", r"\beta - S\mu_s", loads),
         "kind": xr.Variable("slip_rate", kind, {"long_name": "1 stable, -1 unstable, 0 continuum"}),
-        "strength": quantity((), g.strength, "static strength", r"S\mu_s", "Pa"),
-        "jump": xr.Variable(("jumps", "value"), jumps, {"long_name": "rate before (m/s), rate after (m/s), excess (Pa)"}),
+        "strength": quantity((), g.strength, "static strength", r"S\mu_s", loads),
+        "jump": xr.Variable(
+            ("jumps", "value"), jumps, {"long_name": f"rate before ({rate}), rate after ({rate}), excess ({loads})"}
+        ),
     }
-    coordinates = {"slip_rate": curve_quantity("slip_rate", rates, "slip_rate")}
+    coordinates = {"slip_rate": curve_quantity("slip_rate", rates, "slip_rate", loads)}
     title = title or ("" if solution is None else title_of(solution))
-    attributes = {"title": title, "rule": contact.rule}
+    attributes = {"title": title, "rule": contact.rule, "load_unit": loads}
     moved = _moved(problem, g, rates, path["path_law_slip"].values)
     return xr.Dataset(contents | path | moved, coords=coordinates, attrs=attributes)
 
 
-def _path(solution: Solution | None, strength: float) -> dict[str, xr.Variable]:
+def _path(solution: Solution | None, strength: float, problem: Problem) -> dict[str, xr.Variable]:
     rate = load = slip = np.zeros(0)
+    loads = problem.load_unit
     if solution is not None:
         time, (rate, load) = solution.curves_together(("slip_rate", "load"))
         slip = solution.history.law_slip(solution.history.find(time, "right"))
     return {
-        "path_slip_rate": quantity("path", rate, "slip rate of the run", "v", "m/s"),
-        "path_excess": quantity("path", load - strength, "load of the run minus static strength", r"\beta - S\mu_s", "Pa"),
-        "path_law_slip": curve_quantity("path", slip, "slip"),
+        "path_slip_rate": quantity("path", rate, "slip rate of the run", "v", problem.unit_of("slip_rate")),
+        "path_excess": quantity(
+            "path", load - strength, "load of the run minus static strength", r"\beta - S\mu_s", problem.load_unit
+        ),
+        "path_law_slip": curve_quantity("path", slip, "slip", loads),
     }
 
 
@@ -108,9 +114,9 @@ def _moved(problem: Problem, start: Resistance, rates: Floats, slips: Floats) ->
     excess = np.array([g.excess(rates) for g in sets]).reshape(shape) + strength[:, None]
     kind = np.sign(np.array([g.slope(rates) for g in sets]).reshape(shape)).astype(int)
     return {
-        "set_slip": curve_quantity("set", chosen, "slip"),
-        "set_strength": quantity("set", strength, "static strength minus that at the start", "", "Pa"),
-        "set_excess": quantity(("set", "slip_rate"), excess, "load minus static strength at the start", "", "Pa"),
+        "set_slip": curve_quantity("set", chosen, "slip", problem.load_unit),
+        "set_strength": quantity("set", strength, "static strength minus that at the start", "", problem.load_unit),
+        "set_excess": quantity(("set", "slip_rate"), excess, "load minus static strength at the start", "", problem.load_unit),
         "set_kind": xr.Variable(("set", "slip_rate"), kind, {"long_name": "1 stable, -1 unstable, 0 continuum"}),
     }
 
@@ -165,7 +171,7 @@ class _Scales:
         self.strength = float(dataset["strength"])
         near = np.ptp(inside) < _TINY * self.strength
         self.origin = self.strength if near else 0.0
-        self.load = readable_unit("Pa", inside + (self.strength - self.origin))
+        self.load = readable_unit(dataset.attrs["load_unit"], inside + (self.strength - self.origin))
         self.rate = unit_shown(dataset["slip_rate"])
         self.label = rf"load $\beta$ {'minus static strength ' if near else ''}({self.load[0]})"
         room = 0.08 * float(np.ptp(inside)) or 1.0
@@ -234,7 +240,7 @@ def _draw_path(axes: Axes, dataset: xr.Dataset, scales: _Scales) -> None:
         steps = list(np.stack([points[:-1], points[1:]], axis=1))
         axes.add_collection(LineCollection(steps, colors=hues, linewidths=1.5, zorder=4.1), autolim=False)
         bar = axes.figure.colorbar(colour, ax=axes, pad=0.02)
-        bar.set_label(curve_label("slip", unit))
+        bar.set_label(curve_label("slip", unit, dataset.attrs["load_unit"]))
         bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value / size:.4g}"))
     _draw_arrows(axes, rate, load)
     look: dict[str, Any] = {"color": INK, "linestyle": "", "clip_on": False}

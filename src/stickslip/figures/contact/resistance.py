@@ -43,17 +43,18 @@ def data(problems: Mapping[str, Problem], largest_rate: float, titles: Mapping[s
     rates = np.linspace(0.0, largest_rate, 1201)
     contents: dict[str, xr.Variable] = {}
     for name, problem in problems.items():
-        g = resistance(problem)
-        slope = {"long_name": "slope of the resistance", "units": "Pa s/m"}
-        contents[f"{name}_resistance"] = curve_quantity("slip_rate", g.strength + g.excess(rates), "load")
+        g, loads = resistance(problem), problem.load_unit
+        slope = {"long_name": "slope of the resistance", "units": problem.unit_of("impedance")}
+        contents[f"{name}_resistance"] = curve_quantity("slip_rate", g.strength + g.excess(rates), "load", loads)
         contents[f"{name}_slope"] = xr.Variable("slip_rate", g.slope(rates), slope)
-        contents[f"{name}_strength"] = quantity((), g.strength, "static strength", r"\mu_S S", "Pa")
+        contents[f"{name}_strength"] = quantity((), g.strength, "static strength", r"\mu_S S", loads)
         for point, place in corners(problem, largest_rate).items():
-            where = {"long_name": f"point {point}: slip rate (m/s), load (Pa)", "units": "m/s, Pa"}
+            rate = problem.unit_of("slip_rate")
+            where = {"long_name": f"point {point}: slip rate ({rate}), load ({loads})", "units": f"{rate}, {loads}"}
             contents[f"{name}_point_{point}"] = xr.Variable("coordinate", list(place), where)
     shown_as = [(titles or {}).get(name, name) for name in problems]
     attributes = {"title": "The set K", "cases": list(problems), "case_titles": shown_as}
-    coordinates = {"slip_rate": curve_quantity("slip_rate", rates, "slip_rate"), "coordinate": ["slip_rate", "load"]}
+    coordinates = {"slip_rate": curve_quantity("slip_rate", rates, "slip_rate", loads), "coordinate": ["slip_rate", "load"]}
     return xr.Dataset(contents, coords=coordinates, attrs=attributes)
 
 

@@ -35,7 +35,7 @@ from stickslip.figures.style import (
 )
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.names import TURNS, name_of, readable_unit, si_unit
+from stickslip.foundation.names import name_of, readable_unit, si_unit
 from stickslip.foundation.place import Place
 from stickslip.observables.event_table import that_count
 from stickslip.observables.predictability import is_followed, predictability
@@ -84,7 +84,7 @@ def data(solution: Solution, event: int | None = None) -> xr.Dataset:
     lasting = window.shown[1] / 1.1
     near = solution.window(chosen, before=0.25 * CLOSE * lasting, after=CLOSE * lasting)
     loads = solution.problem.load_unit
-    contents = _events(table, si_unit("slip", loads))
+    contents = _events(table, loads)
     for name, readings in (("run", solution), ("window", window), ("close", near)):
         time, slip = readings.curve("slip" if name == "run" else "event_slip")
         contents[f"{name}_time"] = curve_quantity(f"{name}_point", time, "time")
@@ -93,17 +93,21 @@ def data(solution: Solution, event: int | None = None) -> xr.Dataset:
     horizon = predictability(solution).horizon if is_followed(solution.problem) else math.inf
     contents["horizon"] = quantity((), horizon, "predictability horizon", "", "s")
     contents["chosen"] = xr.Variable((), chosen % len(table))
-    return xr.Dataset(contents, attrs={"title": _title(title_of(solution), table)})
+    return xr.Dataset(contents, attrs={"title": _title(title_of(solution), table), "load_unit": loads})
 
 
-def data_of_events(table: pd.DataFrame, title: str = "") -> xr.Dataset:
-    """Return a catalogue without the run that made it, as `data` does but for the zooms. Raises InputError if it has no event."""
+def data_of_events(table: pd.DataFrame, title: str = "", load_unit: str = "Pa") -> xr.Dataset:
+    """Return a catalogue without the run that made it, as `data` does but for the zooms, for a body whose loads have this unit.
+
+    Raises InputError if it has no event.
+    """
     if table.empty:
         raise InputError("catalogue figure: there is no slip event")
-    return xr.Dataset(_events(table), attrs={"title": _title(title, table)})
+    return xr.Dataset(_events(table, load_unit), attrs={"title": _title(title, table), "load_unit": load_unit})
 
 
-def _events(table: pd.DataFrame, length: str = "m") -> dict[str, xr.Variable]:
+def _events(table: pd.DataFrame, load_unit: str) -> dict[str, xr.Variable]:
+    length = si_unit("slip", load_unit)
     about = {"start": ("start of the event", "s"), "slip": ("slip", length), "recurrence": ("recurrence time", "s")}
     found = {name: quantity("event", table[name].to_numpy(float), text, "", unit) for name, (text, unit) in about.items()}
     return found | {"whole_slip": quantity("whole_event", that_count(table, "slip"), "slip of events that are over", "", length)}
@@ -133,7 +137,7 @@ def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     _draw_zooms(axes, dataset)
     unit, size = time_unit(float(recurrence.max())) if len(recurrence) else ("s", 1.0)
     if "E" in axes:
-        _draw_distribution(axes["E"], dataset["whole_slip"])
+        _draw_distribution(axes["E"], dataset["whole_slip"], name_of("slip", dataset.attrs["load_unit"]))
     if "F" in axes:
         _draw_recurrence(axes["F"], recurrence / size, unit, narrow=narrow)
     if "G" in axes:
@@ -216,12 +220,7 @@ def _draw_time_line(axes: Axes, dataset: xr.Dataset, *, ring: bool) -> None:
     axes.set_ylim(bottom=low)
     if end > 0.0:  # else one event at 0 s is all there is
         axes.set_xlim(-0.02 * end, 1.02 * end)
-    axes.set(xlabel=curve_label("time", unit), ylabel=f"{name_of('slip', _loads(dataset))} ({length})")
-
-
-def _loads(dataset: xr.Dataset) -> str:
-    """Return the unit of loads of a body whose slip has the unit in the dataset."""
-    return TURNS if dataset["slip"].attrs["units"] == "rad" else "Pa"
+    axes.set(xlabel=curve_label("time", unit), ylabel=f"{name_of('slip', dataset.attrs['load_unit'])} ({length})")
 
 
 def _draw_zooms(panels: Mapping[str, Axes], dataset: xr.Dataset) -> None:
@@ -234,12 +233,12 @@ def _draw_zooms(panels: Mapping[str, Axes], dataset: xr.Dataset) -> None:
         axes.plot(time / size, slip / metres, color=GREEN)
         if name == "run":
             axes.axvline(float(dataset["start"][int(dataset["chosen"])]) / size, color=VERMILLION, linewidth=0.8, zorder=0)
-        axes.set(xlabel=f"{clock} ({unit})", ylabel=curve_label(curve, length, _loads(dataset)))
+        axes.set(xlabel=f"{clock} ({unit})", ylabel=curve_label(curve, length, dataset.attrs["load_unit"]))
         axes.xaxis.set_major_locator(MaxNLocator(4))
         zero_line(axes)
 
 
-def _draw_distribution(axes: Axes, slips: xr.DataArray) -> None:
+def _draw_distribution(axes: Axes, slips: xr.DataArray, name: str) -> None:
     slip = slips.values
     many, wide = len(slip) > WIDE, spans_decades(slip)
     unit, size = readable_unit(slips.attrs["units"], slip, log=wide)
@@ -253,7 +252,7 @@ def _draw_distribution(axes: Axes, slips: xr.DataArray) -> None:
         count_ticks(axes)
     if not wide and ordered[-1] > 0.0:
         axes.set_xlim(0.0, 1.15 * ordered[-1])
-    axes.set(xlabel=f"slip $x$ ({unit})", ylabel="events with slip ≥ $x$")
+    axes.set(xlabel=f"{name} $x$ ({unit})", ylabel=f"events with {name} ≥ $x$")
 
 
 def _draw_recurrence(axes: Axes, times: Floats, unit: str, *, narrow: bool) -> None:

@@ -30,7 +30,7 @@ from stickslip.figures.style import (
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.foundation.names import name_of, readable_unit, si_unit
+from stickslip.foundation.names import name_of, readable_unit
 from stickslip.foundation.place import Place
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.solution.evaluation import Curve, Readings, times_of
@@ -88,7 +88,7 @@ def draw_curve(axes: Axes, readings: Readings, name: Curve, span: Span) -> None:
         state = readings.problem.friction.states[STATE_NAMES.index(name)]
         size, text = 1.0, axis_text(name_of(name), "", state.unit)
     else:
-        unit, size = readable_unit(si_unit(name, readings.problem.load_unit), values, log=log)
+        unit, size = readable_unit(readings.problem.unit_of(name), values, log=log)
         text = curve_label(name, unit, readings.problem.load_unit)
     draw_line(axes, time / time_unit(span[1] - span[0])[1], values / size, log=log, color=COLOURS[name])
     axes.set_ylabel(text)
@@ -211,7 +211,7 @@ def draw_friction(axes: Axes, readings: Readings, span: Span, against: Literal["
     if against != "time":
         moving: Curve = slip if against == "slip" else "slip_rate"
         moved = getattr(readings, moving)(time)
-        unit, size = readable_unit(si_unit(moving, readings.problem.load_unit), moved)
+        unit, size = readable_unit(readings.problem.unit_of(moving), moved)
         across = moved / size
         axes.set_xlabel(curve_label(moving, unit, readings.problem.load_unit))
     else:

@@ -23,7 +23,7 @@ from stickslip.figures.style import (
     time_unit,
     title_of,
 )
-from stickslip.foundation.names import for_readers, name_of, readable_unit, si_unit
+from stickslip.foundation.names import for_readers, name_of, readable_unit
 from stickslip.foundation.place import Place
 from stickslip.observables.energy.balance import energies
 from stickslip.solution.interval import choose_interval
@@ -59,7 +59,7 @@ def data(readings: Readings, start: float | None = None, end: float | None = Non
     breaks = readings.breaks[(readings.breaks > start) & (readings.breaks < end)]
     time = np.union1d(np.linspace(start, end, TIMES), breaks if len(breaks) <= TIMES else [])
     found = energies(readings.history, readings.history.find(time, "right"))
-    unit = for_readers(si_unit("energy", readings.problem.load_unit))
+    unit = for_readers(readings.problem.unit_of("energy"))
     parts = {name: found[name] - found[name][0] for name in ("radiated", "damped", "heat")}
     parts |= {"elastic": found["elastic"] - found["elastic"].min(), "kinetic": found["kinetic"]}
     work = found["work"] - found["work"][0]

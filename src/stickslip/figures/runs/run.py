@@ -22,7 +22,7 @@ from stickslip.figures.runs.curves import (
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import GREY, INK, PALE, styled, time_unit, title_of
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.names import for_readers, readable_unit, si_unit
+from stickslip.foundation.names import for_readers, readable_unit
 from stickslip.foundation.place import Place
 from stickslip.loading import LoadingHistory
 from stickslip.problem.fields import MAY_VARY
@@ -115,9 +115,7 @@ def _draw_loading(panel: Axes, readings: Readings, name: str, start: float, end:
     if not is_band:
         values = values + tone.amplitude * np.sin(tone.frequency * time + tone.phase)
     spread, what = swing if is_band else 0.0, name.replace("_", " ")
-    kinds = {"pull_rate": "slip_rate", "ground_velocity": "slip_rate", "ground_acceleration": "slip_acceleration"}
-    si = si_unit(kinds.get(name, "load"), readings.problem.load_unit)
-    unit, scale = readable_unit(si, np.abs(values) + spread)
+    unit, scale = readable_unit(readings.problem.unit_of(name), np.abs(values) + spread)
     time = (time - begun) / size
     if is_band:
         panel.fill_between(

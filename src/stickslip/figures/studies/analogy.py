@@ -39,24 +39,24 @@ def data(found: Analogy) -> xr.Dataset:
     They are the three ratios slab / block, the numbers of pulses of slab and block, the two weakening numbers, and `stands` (1 if
     block and slab agree within the study's tolerance and have as many pulses).
     """
-    dims = ("y", "x")
+    dims, noun = ("y", "x"), found.problem.body.noun
     contents = {
         name: xr.Variable(dims, found.grid(name), {"units": "1"}) for name in (*NUMBERS, "pulses_slab", "pulses_block", "stands")
     }
     for one in QUANTITIES:
-        about = {"long_name": f"{one.replace('_', ' ')}, slab / block", "units": "1"}
+        about = {"long_name": f"{one.replace('_', ' ')}, {noun} / block", "units": "1"}
         contents[f"{one}_ratio"] = xr.Variable(dims, found.ratio(one), about)
     axes = parameter_numbers(found.problem, x=found.x, y=found.y)
     coordinates = {name: xr.Variable(name, one.values, one.attrs) for name, one in axes.items()}
-    return xr.Dataset(
-        contents, coords=coordinates, attrs={"title": "First slip event: slab against equivalent block", "within": found.within}
-    )
+    attributes = {"title": f"First slip event: {noun} against equivalent block", "within": found.within, "body": noun}
+    return xr.Dataset(contents, coords=coordinates, attrs=attributes)
 
 
 @styled
 def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw three maps of ratios in one scale of colours, and a map of the points at which the block can stand for the slab."""
     figure, axes = panels(2, 2, (7.2, 6.8), place, sharex=True, sharey=True)
+    noun = dataset.attrs["body"]
     ratios = {"cmap": "RdBu_r", "norm": LogNorm(1.0 / LARGEST_RATIO, LARGEST_RATIO)}
     for panel, one in zip(axes.flat, QUANTITIES, strict=False):
         image = draw_map(panel, dataset, dataset[f"{one}_ratio"].values, **ratios)
@@ -65,8 +65,8 @@ def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
         _draw_numbers(panel, dataset)
         draw_parameters(panel, dataset)
         panel.label_outer()
-    letter_panels(axes.flat, [*(f"ratio of {one.replace('_', ' ')}s" for one in QUANTITIES), "block stands for slab"])
-    bar = figure.colorbar(image, ax=axes, location="right", shrink=0.7, extend="both", label="ratio slab / block, (a) to (c)")
+    letter_panels(axes.flat, [*(f"ratio of {one.replace('_', ' ')}s" for one in QUANTITIES), f"block stands for {noun}"])
+    bar = figure.colorbar(image, ax=axes, location="right", shrink=0.7, extend="both", label=f"ratio {noun} / block, (a) to (c)")
     bar.ax.yaxis.set_major_locator(FixedLocator(TICKS))
     bar.ax.yaxis.set_major_formatter(FixedFormatter([f"{tick:g}" for tick in TICKS]))
     bar.ax.yaxis.set_minor_formatter(NullFormatter())
@@ -100,11 +100,8 @@ def _draw_stands(axes: Axes, dataset: xr.Dataset) -> list[Artist]:
     marks.append(Patch(color=NOT, label="(d) not so"))
     if differ:
         text = r"$\mathrm{n:m}$"
-        marks.append(
-            Line2D(
-                [], [], linestyle="none", marker=text, markersize=14, color=INK, label="(d) n pulses of the slab, m of the block"
-            )
-        )
+        pulses = f"(d) n pulses of the {dataset.attrs['body']}, m of the block"
+        marks.append(Line2D([], [], linestyle="none", marker=text, markersize=14, color=INK, label=pulses))
     return marks
 
 

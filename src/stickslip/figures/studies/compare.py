@@ -136,7 +136,7 @@ def _meaning(study: Comparison, row: str, *, mixed: bool) -> tuple[str, str, str
     """Return the name, the symbol and the SI unit of what the panel of a row shows."""
     loads = [run.problem.load_unit for run in study.runs.values()]
     if row == "slip":
-        return name_of(row), "u-u_0", si_unit(row, *loads)
+        return name_of(row, loads[0]), "u-u_0", si_unit(row, *loads)
     if row == "traction" and mixed:
         return "friction", r"\tau/S", "1"
     return name_of(row, loads[0]), QUANTITIES[row].symbol, si_unit(row, *loads)

@@ -64,7 +64,7 @@ def data(study: Inference) -> xr.Dataset:
         "quantity": xr.Variable("sample", table.quantity.to_numpy(str), {"long_name": "what was measured"}),
         "fitted": xr.Variable("sample", table.fitted.to_numpy(np.int8), {"long_name": "1 for samples that were fitted"}),
     }
-    units = {si_unit(name, study.model.problem.load_unit) for name in table.quantity.unique()}
+    units = {study.model.problem.unit_of(name) for name in table.quantity.unique()}
     unit = units.pop() if len(units) == 1 else "SI"
     for name, text in (("data", "measured"), ("model", "best run"), ("residual", "measured minus best run")):
         contents[name] = quantity("sample", table[name].to_numpy(), text, "", unit)

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
-from stickslip.foundation.names import si_unit
 from stickslip.inference.fit.memory import ResidualBlock
 from stickslip.inference.fit.model import FAILED, JUMPING, LARGEST, Model, measured
 from stickslip.inference.fit.part import Part
@@ -273,7 +272,7 @@ class FeatureModel(Model):
             for name, mean, error in zip(part.observed, means.values.tolist(), means.errors.tolist(), strict=True):
                 value, scatter = found.get(name, math.nan), float(np.std(part.record.measured[name]))
                 missed = not abs(value - mean) <= MISSED * math.hypot(error, ALLOWED * scatter)
-                rows.append((i, name, mean, error, value, si_unit(name, self.problem.load_unit), missed))
+                rows.append((i, name, mean, error, value, self.problem.unit_of(name), missed))
         return pd.DataFrame(rows, columns=["part", "feature", "mean", "error", "run", "unit", "missed"])
 
 

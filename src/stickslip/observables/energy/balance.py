@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 
 from stickslip.bodies import as_waves
 from stickslip.foundation.arrays import Floats
-from stickslip.foundation.names import in_files, si_unit
+from stickslip.foundation.names import in_files
 from stickslip.observables.energy.ground import pushing, shaken, shaking, speed, spring_force
 from stickslip.observables.quadrature import FULL, NODES, WEIGHTS, Integrand, between, up_to
 from stickslip.observables.waves import Radiation, Waves
@@ -37,7 +37,7 @@ LONG_NAMES = {
     "damped": "dissipated by the block's damping",
     "radiated": "energy radiated through a driver of finite impedance; work is net of it",
     "balance": "work - stored - heat - damped: zero for an exact solution",
-    "trapped": "energy of the waves inside the slab, beyond a state of uniform stress",
+    "trapped": "energy of the waves inside the body, beyond a state of uniform stress",
 }
 """Long names of the energies in a dataset."""
 CURVED_PLACES = NODES**2 * (3.0 - 2.0 * NODES)
@@ -64,7 +64,7 @@ def energy(history: History, t: ArrayLike, origin: float | None = None) -> xr.Da
     parts = energies(history, history.find(np.append(begin, time), "right"))
     since = {name: values[1:] - (values[0] if name != "trapped" else 0.0) for name, values in parts.items()}
     since["balance"] = since["work"] - since["stored"] - since["heat"] - since["damped"]
-    unit = in_files(si_unit("energy", history.problem.load_unit))
+    unit = in_files(history.problem.unit_of("energy"))
     variables = {name: ("time", since[name], {"units": unit, "long_name": text}) for name, text in LONG_NAMES.items()}
     return xr.Dataset(variables, coords={"time": ("time", time, {"units": "s"})})
 
@@ -112,15 +112,15 @@ def _block_events(history: History, first: Positions, last: Positions) -> dict[s
 
 
 def trapped_note(history: History) -> str:
-    """Return one line on the waves that travel in the slab at the end of a run; empty for a block, which has none."""
+    """Return one line on the waves that travel in the slab or string at the end of a run; empty for a block, which has none."""
     body = history.problem.body
     if not body.has_waves:
         return ""
     end = epochs(history, Positions.inside(len(history) - 1, 1.0))[0]
     energy = Waves(history, as_waves(body)).trapped(end)
     holds = history.problem.strength**2 / (2.0 * body.stiffness)
-    energy_unit, body_word = si_unit("energy", body.load_unit).replace("^", ""), "slab" if body.load_unit == "Pa" else "string"
-    share = f", {100.0 * energy / holds:.2g} % of what the {body_word} holds at its static strength" if holds > 0.0 else ""
+    energy_unit = history.problem.unit_of("energy").replace("^", "")
+    share = f", {100.0 * energy / holds:.2g} % of what the {body.noun} holds at its static strength" if holds > 0.0 else ""
     return f"{energy:.6g} {energy_unit} in waves at the end{share}"
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip.foundation.errors import InputError, nearest_and_all
+from stickslip.observables.severity import severity
 from stickslip.trajectory.slip_events import share_sticking
 
 if TYPE_CHECKING:
@@ -93,6 +94,11 @@ def _sticking(solution: Solution) -> float:
     return share_sticking(solution.history) if solution.status.ok else np.nan
 
 
+def _severity(solution: Solution) -> float:
+    """Return the severity of stick-slip in the last third of a run; NaN if the run has not reached its end."""
+    return severity(solution) if solution.status.ok else np.nan
+
+
 def _uniqueness(solution: Solution) -> Uniqueness:
     from stickslip.contact.uniqueness import uniqueness_of
 
@@ -107,6 +113,7 @@ def _irregular(solution: Solution) -> bool:
 
 IRREGULAR = "several slip rates solve the contact equation at some load, at the initial slip"
 STICKING = "share of the last third of the run in which the contact rests, or under a law without rest hardly moves"
+SEVERITY = "severity of stick-slip: half the range of the slip rate over its mean, in the last third of the run"
 _ALL = (
     Summary("events", "1", "slip events", lambda solution: len(solution.events)),
     Summary("pulses", "1", "pulses of all slip events", lambda solution: solution.events.pulses.sum()),
@@ -130,6 +137,7 @@ _ALL = (
     Summary("end_time", "s", "end of the run", lambda solution: solution.history.duration),
     Summary("arrested", "1", "at rest at the end of the run", lambda s: s.slip_rate(s.history.duration) == 0.0, is_flag=True),
     Summary("sticking", "1", STICKING, _sticking, ends=("slides", "sticks")),
+    Summary("severity", "1", SEVERITY, _severity),
     Summary("irregular", "1", IRREGULAR, _irregular, is_flag=True),
     Summary(
         "branches",
@@ -141,7 +149,7 @@ _ALL = (
     Summary("heat", "energy", "friction heat", _energy("heat")),
     Summary("damped", "energy", "energy dissipated by the block's damping", _energy("damped")),
     Summary("radiated", "energy", "energy radiated through a driver of finite impedance", _energy("radiated")),
-    Summary("trapped", "energy", "energy of the waves inside the slab at the end", _energy("trapped")),
+    Summary("trapped", "energy", "energy of the waves inside the body at the end", _energy("trapped")),
     Summary("balance", "energy", "energy balance of the run: zero for an exact solution", _energy("balance")),
 )
 QUANTITIES = {one.name: one for one in _ALL}

@@ -21,7 +21,7 @@ from stickslip.foundation import zarr_folder
 from stickslip.foundation.arguments import check_whole, shown
 from stickslip.foundation.constants import PAPER
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.names import in_files, si_unit
+from stickslip.foundation.names import in_files
 from stickslip.foundation.show import clean
 from stickslip.io.netcdf import about_curves
 from stickslip.io.zarr_store import FolderFormat, check_layout
@@ -101,7 +101,7 @@ def results(plan: Plan) -> dict[str, dict[str, Any]]:
     for one in plan.work.quantities:
         flags = {"flag_values": [0.0, 1.0], "flag_meanings": "no yes"} if one.is_flag else {}
         ends = {"ends": list(one.ends)} if one.ends else {}
-        found[one.name] = {"long_name": one.meaning, "units": in_files(si_unit(one.unit, problem.load_unit)), **flags, **ends}
+        found[one.name] = {"long_name": one.meaning, "units": in_files(problem.unit_of(one.unit)), **flags, **ends}
     if series is not None:
         known = about_curves(problem)
         found |= {name: dict(known[curve]) for curve, name in zip(series.curves, series.names, strict=True)}

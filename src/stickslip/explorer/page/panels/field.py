@@ -13,7 +13,7 @@ from stickslip.explorer.model.answer import Answer
 from stickslip.explorer.page.components import paint
 from stickslip.explorer.page.stage import NARROW, Stage, signed_scale
 from stickslip.explorer.page.view import Columns, LegendKey, Units, View, axis_label, single
-from stickslip.foundation.names import TURNS, readable_unit, si_unit
+from stickslip.foundation.names import readable_unit, si_unit
 
 TEXT = "Velocity, displacement or stress in the slab: distance from the contact against time, with wave fronts"
 EMPTY: Columns = {"velocity": [], "displacement": [], "stress": [], "x": [], "y": [], "dw": [], "dh": []}
@@ -51,7 +51,7 @@ def data_of(answer: Answer, units: Units) -> View:
         },
         limits={"place": (0.0, float(place[-1]))},
         fastest=largest,
-        titles={"field": axis_label("String:" if load_unit == TURNS else "Slab:", "x", units.place[0])},
+        titles={"field": axis_label(f"{answer.motions[0].name.capitalize()}:", "x", units.place[0])},
         keys={"field": (LegendKey(f"velocity {fields['velocity']['text']}", "signed", "scale"), LegendKey("wave front", "front"))},
         facts={"fields": fields},
     )

@@ -27,7 +27,7 @@ def data_of(answer: Answer, units: Units) -> View:
     """Return how much displacements are enlarged, and the length of the bar that shows their scale."""
     slab, slip = answer.slab, answer.motions[0].slip
     largest = float(np.abs(slab.displacement if slab is not None else slip - slip[0]).max()) or 1.0
-    unit, size = readable_unit("m", largest)
+    unit, size = readable_unit(units.slip_unit, largest)
     scale, bar = REACH * WIDTH / largest * units.slip[1], round_step(largest / size)
     keys = [LegendKey("velocity of particles", "signed", "scale")] if slab is not None else []
     height = (answer.slab.place[-1] + answer.slab.place[0]) / units.place[1] if answer.slab is not None else 1.0
