@@ -154,8 +154,15 @@ def test_two_clocks_without_a_common_time_and_columns_in_both_files_are_refused_
 
 def test_a_rotation_needs_the_radius_of_the_contact() -> None:
     data = {"time (s)": CLOCK, "mu": FRICTION, "Rotation (rpm)": np.full(len(CLOCK), 30.0)}
-    (note,) = Record.read(data).notes
-    assert note == ("rotation_rate is passed over: a column radius (mm), the mean radius of the contact, makes it the load point")
+    turning = Record.read(data)
+    assert (turning.slips_in, turning.load_rate) == ("rad", pytest.approx(np.pi))
+    assert turning.of_motion("rad", "RotatingBlock") is turning
+    sliding = turning.of_motion("m", "SpringBlock")
+    assert (sliding.load_rate, sliding.slips_in) == (None, "")
+    note = "the rotation is passed over: a column radius (mm), the mean radius of the contact, makes it the load point"
+    assert sliding.notes == (note,)
+    (passed,) = Record.read({**data, "slip (mm)": MOVED}).notes[1:]
+    assert passed.startswith("rotation_rate is passed over: a column radius (mm)")
     read = Record.read({**data, "mean radius (mm)": np.full(len(CLOCK), 20.0)})
     assert read.load_rate == pytest.approx(np.pi * 0.02)
     turned = Record.read({"time (s)": CLOCK, "mu": FRICTION, "Rotation (turn)": CLOCK, "radius (m)": np.full(len(CLOCK), 0.5)})

@@ -77,6 +77,8 @@ class BodyOnCharacteristics(Body, Protocol):
     """True if slip sends waves into the body, which come back as load one round trip later; False if the body is rigid."""
     is_uniform: ClassVar[bool]
     """False if the waves are reflected on their way, too, where layers meet."""
+    mass_field: ClassVar[str]
+    """Name of the field for the mass that slips with the contact."""
 
     @property
     def driver_impedance(self) -> float:
@@ -145,8 +147,6 @@ def check_body(body: BodyOnCharacteristics) -> None:
 class BodyWithWaves(BodyOnCharacteristics, Protocol):
     """A uniform body in which waves run along one line between the contact and the driver."""
 
-    mass_field: ClassVar[str]
-    """Name of the field for the mass that slips with the contact."""
     modulus_name: ClassVar[Name]
     """Name, symbol, unit and meaning of the modulus."""
     impedance_formula: ClassVar[str]

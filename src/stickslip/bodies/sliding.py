@@ -21,6 +21,7 @@ class SpringBlock(Declared, OnSpring):
     kind: ClassVar[str] = "spring-block"
     source: ClassVar[str] = "Campillo et al. 1996, eqs (4)-(6); the damping is an addition"
     load_unit: ClassVar[str] = "N"
+    mass_field: ClassVar[str] = "mass"
 
     mass: Number = quantity("kg", "mass m", above=0)
     stiffness: Number = quantity("N/m", "stiffness K of the spring", above=0)

@@ -30,6 +30,7 @@ class RotatingBlock(Declared, OnSpring):
     kind: ClassVar[str] = "rotating-block"
     source: ClassVar[str] = "Campillo et al. 1996, eqs (4)-(6), with angles for lengths and torques for forces"
     load_unit: ClassVar[str] = "N m"
+    mass_field: ClassVar[str] = "inertia"
 
     inertia: Number = quantity("kg m^2", "moment of inertia I", above=0)
     stiffness: Number = quantity("N m/rad", "stiffness K of the torsion spring", above=0)

@@ -61,9 +61,21 @@ COLUMNS: Mapping[str, HeadingColumn] = {
     "load_point": HeadingColumn("m", ("lp", "lpd", *_driven("displacement", "disp", "position")), signed=True),
     "load_rate": HeadingColumn("m/s", ("vlp", "v lp", *_driven("rate", "velocity", "speed")), signed=True),
     "rotation_rate": HeadingColumn(
-        "rad/s", ("rpm", "rotation", "rotation speed", "rotational speed", "angular velocity"), signed=True
+        "rad/s",
+        (
+            *("rpm", "rotation", "rotation speed", "rotational speed", "angular velocity"),
+            *("drive speed", "drive rpm", "top drive speed", "top drive rpm", *_driven("rate", "velocity", "speed")),
+        ),
+        signed=True,
     ),
-    "rotation": HeadingColumn("rad", ("angle", "rotation angle", "revolutions"), signed=True),
+    "rotation": HeadingColumn("rad", ("angle", "rotation angle", "revolutions", *_driven("position")), signed=True),
+    "slip_angle": HeadingColumn("rad", ("slip", "u", "bit angle"), signed=True),
+    "slip_rotation": HeadingColumn(
+        "rad/s", ("slip rate", "v", "rate", "speed", "bit speed", "bit rpm", "bit rotation"), signed=True
+    ),
+    "torque": HeadingColumn("N m", ("friction torque", "torque on bit", "traction", "tau", "τ"), signed=True),
+    "normal_torque": HeadingColumn("N m"),
+    "torque_deviation": HeadingColumn("N m", ("torque error", "sd torque")),
     "radius": HeadingColumn("m", ("mean radius", "equivalent radius")),
     "shear_force": HeadingColumn("N", ("force", "shear load", "friction force"), signed=True),
     "normal_force": HeadingColumn("N", ("normal load",)),

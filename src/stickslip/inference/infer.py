@@ -147,9 +147,9 @@ def infer(
         The data to fit: samples of the record, or features of its slip events (stick-slip), with their scatter from event to
         event.
     observe : str or list of str, optional
-        The samples to fit: friction, shear_stress or shear_force, slip, slip_rate; by default shear if the record has it, or else
-        all of them. Or the features to fit: peak, rest, drop (peak minus rest), recurrence, duration, event_slip, peak_rate; by
-        default all that the record has except the drop.
+        The samples to fit: friction, shear_stress, shear_force or torque, slip, slip_rate; by default shear if the record has it,
+        or else all of them. Or the features to fit: peak, rest, drop (peak minus rest), recurrence, duration, event_slip,
+        peak_rate; by default all that the record has except the drop.
     start : {"steady", "record", "problem"}, optional
         How the run begins: in steady sliding at the first pull rate (default for a law with a state that never sticks), with the
         load of the first samples (default for others), or as the problem says.

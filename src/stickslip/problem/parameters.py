@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Generic, NamedTuple, TypeVar
 
+from stickslip.bodies import BodyOnCharacteristics
 from stickslip.foundation.arguments import shown
 from stickslip.foundation.errors import InputError, full_name
 from stickslip.foundation.names import own_units
@@ -184,12 +185,17 @@ def pressed(problem: P, value: float) -> P:
 
     Raises InputError if the problem does not allow the value.
     """
-    factor, field_name = value / problem.normal, problem.body.normal_field
-    given = getattr(problem.body, field_name)
-    body = replace(problem.body, **{field_name: value if given == problem.normal else factor * given})
+    factor, body = value / problem.normal, pressed_body(problem, value)
     changes = {name: getattr(problem, name) for name in ("initial_load", "initial_excess", *STRESSES, "normal_load")}
     scaled = {name: _scaled(one, factor) for name, one in changes.items() if one is not None}
     return replace(problem, body=body, **scaled)
+
+
+def pressed_body(problem: ProblemFields, value: float) -> BodyOnCharacteristics:
+    """Return the body of a problem with another normal load: the weight on a string's bit is in proportion to it."""
+    body, name = problem.body, problem.body.normal_field
+    given = getattr(body, name)
+    return replace(body, **{name: value if given == problem.normal else value / problem.normal * given})
 
 
 def _scaled(value: Any, factor: float) -> Any:

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 FREE = 'The numbers to find, with commas: "a,b,body.stiffness".'
 BY = "What is fitted: samples, or features of slip events."
 OBSERVE = (
-    "Which samples or features: friction, shear_stress, shear_force, slip, slip_rate; peak, rest, drop, recurrence, duration, "
-    "event_slip, peak_rate."
+    "Which samples or features: friction, shear_stress, shear_force, torque, slip, slip_rate; peak, rest, drop, recurrence, "
+    "duration, event_slip, peak_rate."
 )
 START = "How the run begins: steady, record (load of the first samples) or problem."
 PRIOR = 'What you know beforehand: "friction.a=normal(0.01, 0.002)"; lognormal and uniform too.'
@@ -74,9 +74,9 @@ def infer(
     r"""Find the parameters with which a run follows a laboratory record, with their uncertainty.
 
     The data are columns with headings and units: time, friction (or
-    "tau (MPa)" with "sigma (MPa)", or shear_force), slip, slip_rate, and
-    load_point (displacement of the machine) or load_rate, which becomes the
-    loading. Two files with clocks of their own are one record if they are
+    "tau (MPa)" with "sigma (MPa)", or shear_force, or torque), slip,
+    slip_rate, and load_point (displacement of the machine) or load_rate,
+    which becomes the loading; of a contact that turns in deg and rpm. Two files with clocks of their own are one record if they are
     given as FIRST+SECOND@SECONDS, where SECONDS says how much later the
     zero of the second clock is. Each trial is a full run with inertia and
     waves, so that machine stiffness, steps of rate, holds and stick-slip

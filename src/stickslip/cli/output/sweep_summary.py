@@ -59,7 +59,7 @@ def _on_starts(dataset: xr.Dataset, keys: Sequence[str]) -> list[str]:
     from stickslip.scenarios.stability import other_start
 
     problem = read_scenario(dataset.attrs["scenario"], "sweep").problem
-    mass = f"body.{getattr(problem.body, 'mass_field', '')}"
+    mass = f"body.{problem.body.mass_field}"
     if mass not in keys or not 0.0 == float(dataset[mass].min()) < float(dataset[mass].max()):
         return []
     return [f"note: {other}"] if (other := other_start(problem)) else []

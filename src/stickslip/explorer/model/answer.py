@@ -14,7 +14,7 @@ from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.inference.fit.model import OF_NO_ZERO, measured
 from stickslip.inference.fit.setup import SENSORS
-from stickslip.inference.record.record import SHEAR, Record
+from stickslip.inference.record.record import SHEAR, SHEAR_IN, Record, is_of
 from stickslip.inference.record.resample import resampled
 from stickslip.problem.problem import Problem
 from stickslip.scenarios.scenario import Scenario
@@ -173,7 +173,7 @@ class Answer:
 
 MOST_SAMPLES = 20_000
 """Of more samples than this, means are drawn and compared."""
-DRAWN_AS = {"friction": "traction", "shear_stress": "traction", "shear_force": "traction", "slip": "slip", "slip_rate": "slip_rate"}
+DRAWN_AS = dict.fromkeys(SHEAR, "traction") | {"slip": "slip", "slip_rate": "slip_rate"}
 """Each measured quantity is drawn behind this curve of a motion."""
 
 
@@ -212,7 +212,7 @@ class Backdrop:
             raise InputError(f"explore: sensor {ascii(sensor)[:40]} is unknown; {nearest(sensor, SENSORS)}")
         found = cls(resampled(record, MOST_SAMPLES)[0], sensor)
         if not found._names(problem):
-            shear = "shear_stress" if problem.body.has_waves else "shear_force"
+            shear = SHEAR_IN[problem.load_unit]
             raise InputError(
                 f"{record.name}: nothing to draw behind a {problem.body.kind}; allowed: friction, {shear}, slip and slip_rate"
             )
@@ -220,8 +220,8 @@ class Backdrop:
 
     def _names(self, problem: Problem) -> list[str]:
         """Return the names of the quantities that are drawn, at most one of shear."""
-        other = "shear_force" if problem.body.has_waves else "shear_stress"
-        names = [name for name in self.record.measured if name != other]
+        moves = self.record.slips_in in ("", problem.unit_of("slip"))
+        names = [name for name in self.record.measured if is_of(name, problem) and (moves or name in SHEAR)]
         shear = [name for name in SHEAR if name in names]
         return [name for name in names if name not in shear[1:]]
 

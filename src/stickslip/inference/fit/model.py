@@ -14,6 +14,7 @@ from stickslip.foundation.errors import InputError
 from stickslip.inference.fit.free import DELAY, LOAD, SERVO, STATE, TREND, Free
 from stickslip.inference.fit.memory import Memory, ResidualBlock, independent
 from stickslip.inference.fit.part import Part, approached, changed
+from stickslip.inference.record.record import SHEAR
 from stickslip.inference.record.resample import RAMP, Jumps, jumps_in, spread, unsure
 from stickslip.problem.problem import Problem
 from stickslip.run.simulate import simulate
@@ -23,7 +24,7 @@ from stickslip.trajectory.history import Side
 
 OF_NO_ZERO = ("slip",)
 """Quantities with an arbitrary zero of the sensor: the mean of their residual is subtracted."""
-JUMPING = ("friction", "shear_stress", "shear_force", "slip_rate")
+JUMPING = (*SHEAR, "slip_rate")
 """Quantities that may jump in a run."""
 SEEN = 0.1
 """Jumps higher than this many standard deviations are spread between samples."""
@@ -112,7 +113,7 @@ class Model:
                 values = spread(values, time, self._jumps(run, part, name), self.blur)
             if name == "friction":
                 values = values + shift
-            elif name in ("shear_stress", "shear_force"):
+            elif name in SHEAR:
                 values = values + shift * run.problem.normal_at(time)
             found[name] = values
         return found

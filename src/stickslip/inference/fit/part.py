@@ -17,7 +17,7 @@ from stickslip.inference.record.loading import later, loading_of
 from stickslip.inference.record.noise import first_value, noise_of
 from stickslip.inference.record.record import Record
 from stickslip.loading import LoadingHistory, PiecewiseLinear, Steps
-from stickslip.problem.parameters import put_many
+from stickslip.problem.parameters import pressed_body, put_many
 from stickslip.problem.problem import Problem
 
 SMALLEST_NOISE = 1e-9
@@ -107,8 +107,7 @@ class Part:
         """Return a problem under the normal load of this part."""
         if self.pressing is None:
             return problem
-        body = replace(problem.body, **{problem.body.normal_field: self.pressing.first})
-        return replace(problem, body=body, normal_load=self.pressing)
+        return replace(problem, body=pressed_body(problem, self.pressing.first), normal_load=self.pressing)
 
     def from_time(self, record: Record, begin: float) -> Part:
         """Return the part that begins `begin` (s) later, with that piece of the record and its own motion of the load point."""
@@ -117,7 +116,7 @@ class Part:
         return replace(self, record=record, loading=None if loading is None else loading.rate, pressing=pressing)
 
     def first_load(self, normal: float) -> tuple[float, float]:
-        """Return the load at the first sample and its standard error (Pa or N), for a normal load (Pa or N)."""
+        """Return the load at the first sample and its standard error, for a normal load (all in Pa, N or N m)."""
         name = self.record.shear
         if name is None:
             raise InputError(
@@ -138,7 +137,8 @@ def steady(problem: Problem, rates: Mapping[str, Any]) -> Problem:
     pull = rates.get("pull_rate", problem.pull_rate)
     rate = pull.first if isinstance(pull, LoadingHistory) else pull
     if not law.states or law.sticks or rate == 0.0 or not hasattr(law, "steady_coefficient"):
-        raise InputError(f"infer: {law.kind} does not slide steadily at the first pull rate of {rate:g} m/s: start='record'")
+        unit = problem.unit_of("slip_rate")
+        raise InputError(f"infer: {law.kind} does not slide steadily at the first pull rate of {rate:g} {unit}: start='record'")
     load = problem.normal * float(law.steady_coefficient(abs(rate))) + body.damping * abs(rate)
     none |= {"initial_load": math.copysign(load, rate), "initial_state": "steady"}
     return replace(problem, **rates, **none)

@@ -12,7 +12,7 @@ import numpy as np
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.headings import COLUMNS
-from stickslip.foundation.names import TURNS
+from stickslip.foundation.names import KINDS, QUANTITIES, TURNS
 from stickslip.foundation.show import brief
 from stickslip.friction.law import FrictionLaw
 from stickslip.inference.fit.free import DELAY, LOAD, SERVO, STATE, TREND, Free, Prior, known_numbers
@@ -20,7 +20,7 @@ from stickslip.inference.fit.model import Model
 from stickslip.inference.fit.part import Part
 from stickslip.inference.record.features import arrests_in
 from stickslip.inference.record.loading import loading_of, normal_of
-from stickslip.inference.record.record import HIGHEST, LOWEST, MEASURED, SHEAR, Record
+from stickslip.inference.record.record import HIGHEST, LOWEST, MEASURED, SHEAR, SHEAR_IN, Record, is_of
 from stickslip.loading import LoadingHistory, PiecewiseLinear
 from stickslip.problem.problem import Problem
 
@@ -54,13 +54,11 @@ def parts_of(
     if problem.ground is not None or problem.one_way:
         what = "one_way" if problem.one_way else "ground that moves"
         raise InputError(f"infer: {what} is not fitted: leave it out")
-    if problem.load_unit == TURNS:
-        kind = type(problem.body).__name__
-        raise InputError(f"infer: a contact that turns ({kind}) is not fitted: give a slab or a block, and the radius beside rpm")
     if start is not None and start not in STARTS:
         raise InputError(f"infer: start {ascii(start)[:40]} is unknown; {nearest(str(start), STARTS)}")
     found, notes = [], []
-    for record in records:
+    for given in records:
+        record = given.of_motion(problem.unit_of("slip"), type(problem.body).__name__)
         loading = loading_of(record)
         observed = _observed(record, observe, problem)
         begins = start or ("steady" if problem.friction.states and not problem.friction.sticks else "record")
@@ -107,17 +105,19 @@ def _doubts(problem: Problem, rate: LoadingHistory | float) -> Iterator[str]:
     moving, assumed = np.abs(segments[segments != 0.0]), abs(problem.first_pull_rate)
     usual = float(moving[0]) if len(moving) else 0.0
     if assumed > 0.0 and usual > 0.0 and not assumed / FAR < usual < assumed * FAR:
-        speeds = f"{brief(usual, 'm/s', 3)}, and at {brief(assumed, 'm/s', 3)} in the problem"
+        unit = problem.unit_of("slip_rate")
+        speeds = f"{brief(usual, unit, 3)}, and at {brief(assumed, unit, 3)} in the problem"
         yield f"the load point moves at {speeds}: are the units of time and load point in their headings?"
 
 
-def _check_force(record: Record, normal: float) -> None:
-    """Raise InputError if the shear force is implausible as friction under the normal force of the problem (N)."""
-    size = float(np.nanmedian(np.abs(record.measured["shear_force"]))) / normal
+def _check_force(record: Record, name: str, problem: Problem) -> None:
+    """Raise InputError if the shear force or torque is implausible as friction under the normal load of the problem."""
+    size, unit = float(np.nanmedian(np.abs(record.measured[name]))) / problem.normal, problem.load_unit
     if not LOWEST < size < HIGHEST:
+        normal = f"{KINDS[unit].normal.replace('_', ' ')} of {brief(problem.normal, unit, 3)}"
         raise InputError(
-            f"{record.name}: shear_force is {size:.3g} times the problem's normal force of {brief(normal, 'N', 3)}, in the median: "
-            "is its unit in the heading, as shear_force (kN)?"
+            f"{record.name}: {name} is {size:.3g} times the problem's {normal}, in the median: "
+            f"is its unit in the heading, as {name} (k{unit})?"
         )
 
 
@@ -135,13 +135,14 @@ def _observed(record: Record, observe: Any, problem: Problem) -> tuple[str, ...]
             raise InputError(
                 f"{record.name}: {name} is the same number in all rows: its sensor was off, or another column is meant"
             )
-    if "shear_stress" in names and not problem.body.has_waves:
-        cure = "give normal_stress beside it, so that it becomes friction, or the force as shear_force"
-        raise InputError(f"{record.name}: the loads of a block are forces (N), and shear_stress is in Pa: {cure}")
-    if "shear_force" in names and problem.body.has_waves:
-        raise InputError(f"{record.name}: the loads of a slab are stresses (Pa): divide shear_force by the area of the contact")
-    if "shear_force" in names:
-        _check_force(record, problem.normal)
+    for name in names:
+        if not is_of(name, problem):
+            unit, given = problem.load_unit, QUANTITIES[name].unit
+            loads = f"the loads of a {problem.body.noun} are in {unit}, and {name} in {given}"
+            cure = f"give {KINDS[given].normal} beside it, so that it becomes friction, or {SHEAR_IN[unit]}"
+            raise InputError(f"{record.name}: {loads}: {cure}")
+        if name in SHEAR and QUANTITIES[name].unit in ("N", TURNS):
+            _check_force(record, name, problem)
     if sum(name in SHEAR for name in names) > 1:
         raise InputError(f"infer: observe: {' and '.join(one for one in names if one in SHEAR)} are one measurement: choose one")
     return tuple(names)

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from stickslip.bodies import ElasticSlab
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, full_name
 from stickslip.foundation.show import brief
@@ -120,7 +121,7 @@ def _of_law(problem: Problem, cycles: StickSlip, names: set[str]) -> Iterator[tu
     if hasattr(law, "static") and hasattr(law, "dynamic"):
         if not problem.body.has_waves and "body.stiffness" not in names and math.isfinite(cycles.rise):
             body: Any = problem.body
-            ratio = min(body.damping / (2.0 * math.sqrt(body.mass * cycles.rise)), 0.99)
+            ratio = min(body.damping / (2.0 * math.sqrt(body.inertia * cycles.rise)), 0.99)
             swing = math.exp(-math.pi * ratio / math.sqrt(1.0 - ratio**2))
         yield "friction.static", cycles.peak
         yield "friction.dynamic", (cycles.rest + swing * cycles.peak) / (1.0 + swing)
@@ -136,12 +137,14 @@ def _of_block(problem: Problem, part: Part, cycles: StickSlip, names: set[str]) 
         stiffness = cycles.rise
         yield "body.stiffness", stiffness
     if math.isfinite(cycles.duration):
-        yield "body.mass", stiffness * (cycles.duration / (COSINE if part.sensor == "spring" else math.pi)) ** 2
+        yield f"body.{body.mass_field}", stiffness * (cycles.duration / (COSINE if part.sensor == "spring" else math.pi)) ** 2
 
 
 def _of_slab(problem: Problem, cycles: StickSlip, names: set[str]) -> Iterator[tuple[str, float]]:
     """Yield thickness, wave speed or density of a slab: slip lasts for a round trip, and G/h is the rise between events."""
     body: Any = problem.body
+    if not isinstance(body, ElasticSlab):
+        return
     thickness, speed = float(np.sum(body.thickness)), float(np.mean(body.wave_speed))
     if np.ndim(body.thickness) or np.ndim(body.wave_speed):
         return
@@ -230,7 +233,7 @@ def _doubts(problem: Problem, part: Part, free: Sequence[Free]) -> Iterator[str]
     cycles, body = stick_slip(problem, part), problem.body
     stiffness = float(getattr(body, "stiffness", math.nan))
     if cycles is not None and not (CREEPS < cycles.rise / stiffness < STIFFER or math.isnan(cycles.rise / stiffness)):
-        rises, has = brief(cycles.rise, "N/m", 3), brief(stiffness, "N/m", 3)
+        rises, has = (brief(one, problem.unit_of("stiffness"), 3) for one in (cycles.rise, stiffness))
         yield (
             f"between slip events of {part.record.name} shear rises by {rises} of load point, and the stiffness of the problem is "
             f"{has}: should it be free?"

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.names import si_unit
 from stickslip.foundation.show import brief
 from stickslip.inference.record.noise import noise_of, saturated, spikes
 from stickslip.inference.record.record import HIGHEST, LOADING, LOWEST, SHEAR, Record
@@ -38,7 +37,7 @@ def checked(record: Record) -> Record:
     _check_signs(measured, record.load_point, notes)
     for name in SHEAR:
         if name in measured and (lone := spikes(measured[name])).any():
-            worst = brief(float(measured[name][lone][0]), si_unit(name, "Pa"))
+            worst = brief(float(measured[name][lone][0]), record.unit_of(name))
             measured[name] = np.where(lone, np.nan, measured[name])
             notes.append(f"{name} is far beyond the rest in {_samples(lone, 'lone ')}, as at {worst}: left out")
     if "friction" in measured:
@@ -47,7 +46,7 @@ def checked(record: Record) -> Record:
         flat = saturated(values)
         if flat.any():
             measured[name] = np.where(flat, np.nan, values)
-            at = f"{_samples(flat)} at {brief(float(values[flat][0]), si_unit(name, 'Pa'))}"
+            at = f"{_samples(flat)} at {brief(float(values[flat][0]), record.unit_of(name))}"
             notes.append(f"{name} is constant at the end of its range in {at}: the sensor was saturated there; they are left out")
     made = replace(record, measured=measured)
     _check_load_point(made)
@@ -130,7 +129,8 @@ def _contradictions(record: Record) -> Iterator[str]:
 def _contrary(record: Record, moved: Mapping[str, Floats], driven: Floats, where: tuple[str, int, int]) -> Iterator[str]:
     """Yield a sentence for each motion that is far larger than another at sample `above`, or far smaller at sample `below`."""
     other, above, below = where
-    least = 10.0 * noise_of(driven)
+    least, slip = 10.0 * noise_of(driven), record.unit_of("slip")
+    unit = "um" if slip == "m" else slip
     for name, reached in moved.items():
         for at, too_far in ((above, True), (below, False)):
             if 0 <= at < LATEST * len(reached):
@@ -138,9 +138,9 @@ def _contrary(record: Record, moved: Mapping[str, Floats], driven: Floats, where
             far, near = (reached[at], driven[at]) if too_far else (driven[at], reached[at])
             if far > CONTRARY[name] * max(float(near), 0.0) and far > least:
                 gone = "moves" if other == "the load point" else "grows by"
-                sizes = f"{brief(float(reached[at]), 'm', 3)} of slip, where {other} {gone} {brief(float(driven[at]), 'm', 3)}"
+                sizes = f"{brief(float(reached[at]), slip, 3)} of slip, where {other} {gone} {brief(float(driven[at]), slip, 3)}"
                 ends = f"by {record.time[at]:.6g} s {name} makes {sizes}"
-                yield f"{ends}: are its sign and its unit, as {name} ({'um' if name == 'slip' else 'um/s'}), right?"
+                yield f"{ends}: are its sign and its unit, as {name} ({unit if name == 'slip' else f'{unit}/s'}), right?"
                 break
 
 

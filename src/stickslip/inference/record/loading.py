@@ -116,7 +116,8 @@ def _steps(starts: Floats, rates: Floats) -> Steps | float:
 
 
 def _notes(record: Record, time: Floats, rates: Floats, coarser: float, noise: float) -> tuple[str, ...]:
-    what, unit = ("rate", "m/s") if record.load_point is None else ("displacement", "m")
+    what, of = ("rate", "slip_rate") if record.load_point is None else ("displacement", "slip")
+    unit = record.unit_of(of)
     parts = f"{len(rates)} part{'s' if len(rates) > 1 else ''} of constant rate"
     within = f"its noise of {brief(noise, unit, 3)}"
     within = within if coarser == 1.0 else f"{brief(coarser * noise, unit, 3)}, {coarser:g} times its noise"

@@ -25,9 +25,11 @@ LARGEST_FILE = 500_000_000
 """Largest file to read (bytes)."""
 MOST_SAMPLES = 5_000_000
 """Largest number of samples of a record."""
-NORMAL = ("normal_stress", "normal_force")
+NORMAL = ("normal_stress", "normal_force", "normal_torque")
 """Columns of the normal load: they make friction of shear, and may say how the contact is pressed."""
-BESIDE = (*NORMAL, "rotation_rate", "rotation", "radius")
+BY_ANGLE = {"slip_angle": "slip", "slip_rotation": "slip_rate", "rotation": "load_point", "rotation_rate": "load_rate"}
+"""Columns of angles and their rates, with what they are of a contact that turns."""
+BESIDE = (*NORMAL, *reversed(BY_ANGLE), "radius")
 """Columns that serve to compute others."""
 WANTED = ("time", *LOADING, *MEASURED, *BESIDE, *(f"{name}_deviation" for name in MEASURED))
 """All known columns."""
@@ -56,7 +58,8 @@ def read_record(source: Any, beside: Any = None, later: float = 0.0) -> Record:
     found, notes = read.columns, read.notes
     _take_ratio(found, "shear_stress", "normal_stress")
     _take_ratio(found, "shear_force", "normal_force")
-    _take_rotation(found, notes)
+    _take_ratio(found, "torque", "normal_torque")
+    slips_in = _motion_in(found, notes, read.place)
     notes += _passed_over(read)
     measured = {name: found[name] for name in MEASURED if name in found}
     if not measured:
@@ -77,6 +80,7 @@ def read_record(source: Any, beside: Any = None, later: float = 0.0) -> Record:
             notes=tuple(notes),
             normal=found.get(normal),
             normal_name=normal,
+            slips_in=slips_in,
         )
     )
 
@@ -173,17 +177,26 @@ def _take_ratio(found: dict[str, Floats], shear: str, normal: str) -> None:
         found["friction"] = np.where(np.isfinite(ratio), ratio, np.nan)
 
 
-def _take_rotation(found: dict[str, Floats], notes: list[str]) -> None:
-    """Compute the load point, or its rate, from a rotation and the radius of the contact, unless it is there."""
-    turned, made = ("rotation", "load_point") if "rotation" in found else ("rotation_rate", "load_rate")
-    if turned not in found or set(LOADING) & set(found):
-        return
-    if "radius" in found:
-        found[made] = found[turned] * float(np.nanmedian(found["radius"]))
+def _motion_in(found: dict[str, Floats], notes: list[str], place: str) -> str:
+    """Return the unit of slip in a record, and give columns of angles the names of what they are of a contact that turns.
+
+    A rotation of the machine with the radius of the contact makes the load point, or its rate, unless that is there. Raises
+    InputError if slip is an angle and anything else a length.
+    """
+    lengths = [name for name in BY_ANGLE.values() if name in found]
+    turned = next((name for name in ("rotation", "rotation_rate") if name in found), "")
+    made = BY_ANGLE.get(turned, "")
+    if turned and "radius" in found and not set(LOADING) & set(found):
+        found[made] = found.pop(turned) * float(np.nanmedian(found["radius"]))
         notes.append(f"{made} is {turned} times the radius")
-    else:
-        cure = "a column radius (mm), the mean radius of the contact, makes it the load point"
-        notes.append(f"{turned} is passed over: {cure}")
+        lengths.append(made)
+    elif turned and lengths and not set(LOADING) & set(found):
+        notes.append(f"{turned} is passed over: a column radius (mm), the mean radius of the contact, makes it the load point")
+    angles = [name for name in BY_ANGLE if name in found and not (lengths and name in ("rotation", "rotation_rate"))]
+    if lengths and angles:
+        raise InputError(f"{place}: {lengths[0]} is a length, and {BY_ANGLE[angles[0]]} an angle: a contact slides, or it turns")
+    found |= {BY_ANGLE[name]: found[name] for name in angles}
+    return "rad" if angles else "m" if lengths else ""
 
 
 def _in_order(found: dict[str, Floats], place: str, notes: list[str]) -> dict[str, Floats]:

@@ -11,11 +11,15 @@ import numpy as np
 from stickslip.foundation.arguments import CheckedArguments, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.names import QUANTITIES, TURNS, si_unit
 from stickslip.foundation.show import brief
 from stickslip.inference.record.features import FEATURES, LEVELS
+from stickslip.problem.problem import Problem
 
-SHEAR = ("friction", "shear_stress", "shear_force")
+SHEAR = ("friction", "shear_stress", "shear_force", "torque")
 """Possible measures of the resistance; the first of them that a record has is fitted."""
+SHEAR_IN = {QUANTITIES[name].unit: name for name in SHEAR[1:]}
+"""The measure of resistance in each unit of loads."""
 MEASURED = (*SHEAR, "slip", "slip_rate")
 """All quantities that can be fitted."""
 LOADING = ("load_point", "load_rate")
@@ -25,15 +29,21 @@ HIGHEST, LOWEST = 3.0, 1e-2
 """A record with a friction coefficient above HIGHEST is refused, one below LOWEST raises a doubt."""
 
 
+def is_of(name: str, problem: Problem) -> bool:
+    """Return True if a measured quantity is friction, a motion, or in the unit of the loads of a problem."""
+    return name not in SHEAR[1:] or QUANTITIES[name].unit == problem.load_unit
+
+
 @dataclass(frozen=True, eq=False)
 class Record(CheckedArguments):
     """A laboratory record in SI, at ascending times (s). Make one with `Record.read`.
 
-    `measured` holds friction (1), shear_stress (Pa), shear_force (N), slip (m) and slip_rate (m/s), NaN where nothing was measured,
-    and `deviations` the standard deviations given for them. `load_point` (m) and `load_rate` (m/s) are displacement and rate of the
-    load point, or None. `notes` say what was done with the record, one sentence each. `relative` is the noise of each sample
-    relative to the usual noise if some samples are means over more samples than others, or None. `normal` is the normal stress (Pa)
-    or normal force (N) by which shear was divided, as `normal_name` says, or None.
+    `measured` holds friction (1), shear_stress (Pa), shear_force (N), torque (N m), slip (m) and slip_rate (m/s), NaN where nothing
+    was measured, and `deviations` the standard deviations given for them. `load_point` (m) and `load_rate` (m/s) are displacement
+    and rate of the load point, or None. `notes` say what was done with the record, one sentence each. `relative` is the noise of
+    each sample relative to the usual noise if some samples are means over more samples than others, or None. `normal` is the normal
+    stress (Pa), force (N) or torque (N m) by which shear was divided, as `normal_name` says, or None. `slips_in` is "rad" if
+    motions are angles, with rad for m above, "m" if they are lengths, and "" if there are none.
     """
 
     time: Floats
@@ -46,6 +56,7 @@ class Record(CheckedArguments):
     relative: Floats | None = None
     normal: Floats | None = None
     normal_name: str = ""
+    slips_in: str = ""
 
     def __post_init__(self) -> None:
         if not isinstance(self.measured, Mapping) or not set(self.measured) <= {*MEASURED, *OF_EVENTS}:
@@ -63,9 +74,11 @@ class Record(CheckedArguments):
         ----------
         source : str, Path, DataFrame, mapping or Record
             A text file, or columns of numbers by their headings: `time` with any of `friction`, `shear_stress`, `shear_force`,
-            `slip` and `slip_rate`, and with `load_point` (displacement) or `load_rate` of the machine. Shear stress with
-            `normal_stress`, and shear force with `normal_force`, give friction; `rotation_rate` (rpm) with `radius` gives the load
-            rate. Headings may carry units, as in "tau (MPa)". "FIRST.csv+SECOND.csv@SECONDS" is short for `beside` and `later`.
+            `torque`, `slip` and `slip_rate`, and with `load_point` (displacement) or `load_rate` of the machine. Shear stress with
+            `normal_stress`, shear force with `normal_force`, and torque with `normal_torque` give friction; `rotation_rate` (rpm)
+            with `radius` gives the load rate. Without a radius the machine turns the contact itself, and slip may be in deg or rad
+            and its rate in rpm: such a record is of a body that turns. Headings may carry units, as in "tau (MPa)".
+            "FIRST.csv+SECOND.csv@SECONDS" is short for `beside` and `later`.
         begin, end : float, optional
             First and last time to use (s, as in the record).
         beside : str, Path, DataFrame or mapping, optional
@@ -109,6 +122,24 @@ class Record(CheckedArguments):
             relative=cut(self.relative),
             normal=cut(self.normal),
         )
+
+    def unit_of(self, name: str) -> str:
+        """Return the unit that a measured quantity has in this record."""
+        return si_unit(name, TURNS if self.slips_in == "rad" else "Pa")
+
+    def of_motion(self, unit: str, body: str) -> Record:
+        """Return the record for a contact of a body whose slip is in m or rad: without a drive that turns where the contact slides.
+
+        Raises InputError if slip or its rate is in the other unit.
+        """
+        if self.slips_in in ("", unit):
+            return self
+        slips = [name for name in ("slip", "slip_rate") if name in self.measured]
+        if self.slips_in == "rad" and not slips:
+            note = "the rotation is passed over: a column radius (mm), the mean radius of the contact, makes it the load point"
+            return replace(self, load_point=None, load_rate=None, notes=(*self.notes, note), slips_in="")
+        what = " and ".join(slips or [name for name in LOADING if getattr(self, name) is not None])
+        raise InputError(f"{self.name}: {what} in {self.slips_in}, where slip of a contact of {body} is in {unit}")
 
     @property
     def clock(self) -> Floats:
