@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
 from typing import Any, ClassVar
@@ -16,6 +16,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from stickslip.foundation.names import si_unit
 from stickslip.foundation.show import brief_repr
 from stickslip.friction import FrictionLaw
 from stickslip.friction.formula.differences import difference
@@ -37,8 +38,10 @@ class Plateau:
     rate_from: float
     rate_to: float
     excess: float
+    load_unit: str = field(default="Pa", repr=False)
+    """Unit of loads of the body, which decides the other units."""
 
-    units: ClassVar = {"rate_from": "m/s", "rate_to": "m/s", "excess": "Pa"}
+    units: ClassVar = {"rate_from": "slip_rate", "rate_to": "slip_rate", "excess": "load"}
     __repr__ = brief_repr
 
 
@@ -54,9 +57,16 @@ class Resistance:
     damping: float
     normal: float
     law_slip: float
+    load_unit: str = field(default="Pa", repr=False)
+    """Unit of loads of the body, which decides the other units."""
 
-    units: ClassVar = {"damping": "Pa s/m", "normal": "Pa", "law_slip": "m"}
+    units: ClassVar = {"damping": "impedance", "normal": "load", "law_slip": "slip"}
     __repr__ = brief_repr
+
+    @property
+    def rate_unit(self) -> str:
+        """The unit of slip rates: m/s, or rad/s of a contact that turns."""
+        return si_unit("slip_rate", self.load_unit)
 
     @property
     def strength(self) -> float:
@@ -132,7 +142,7 @@ class Resistance:
             if not np.isnan(level):
                 joined = bool(found) and found[-1].rate_to == low
                 start = found.pop().rate_from if joined else low
-                found.append(Plateau(start, high, level))
+                found.append(Plateau(start, high, level, self.load_unit))
         return tuple(found)
 
     def end_excess(self, rate: float) -> float:
@@ -209,6 +219,8 @@ class Branch:
     rate_to: float
     excess_from: float
     excess_to: float
+    load_unit: str = field(default="Pa", repr=False)
+    """Unit of loads of the body, which decides the other units."""
 
-    units: ClassVar = {"rate_from": "m/s", "rate_to": "m/s", "excess_from": "Pa", "excess_to": "Pa"}
+    units: ClassVar = {"rate_from": "slip_rate", "rate_to": "slip_rate", "excess_from": "load", "excess_to": "load"}
     __repr__ = brief_repr

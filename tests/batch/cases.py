@@ -135,7 +135,7 @@ CASES = {
     ),
     "string with collars": case(
         ss.TorsionalString(1770.0, 7850.0, 61e9, polar_moment=2.28e-5, normal_torque=15e3, inertia=305.0),
-        _f.ExponentialStribeck(0.8, 0.5, 1.1, 1.0, 0.0033),
+        _f.ExponentialStribeck(0.8, 0.5, 1.1),
         20.0,
         {"body.normal_torque": (1e4, 2e4), "body.inertia": (100.0, 500.0)},
         pull_rate=6.0,
@@ -143,7 +143,7 @@ CASES = {
     ),
     "disc": case(
         ss.RotatingBlock(305.0, 800.0, 15e3, damping=5.0),
-        _f.ExponentialStribeck(0.8, 0.5, 1.1, 1.0, 0.0033),
+        _f.ExponentialStribeck(0.8, 0.5, 1.1),
         20.0,
         {"body.stiffness": (400.0, 900.0), "loading.pull_rate": (1.0, 12.0)},
         pull_rate=6.0,

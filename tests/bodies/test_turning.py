@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -180,8 +181,19 @@ def test_sentences_on_steady_sliding_speak_of_rates_of_rotation() -> None:
     found = ss.studies.steady(BUNDLED, from_rest=False)
     assert str(found).startswith("At 60 rpm, traction 7.9023 kN m: stable")
     assert "m/s" not in str(found)
+    shown = repr((found.slidings, found.changes))
+    assert "rate='60 rpm', traction='7.9023 kN m'" in shown
+    assert "m/s" not in shown
     massless = ss.Problem(replace(STRING, inertia=0.0), BIT, pull_rate="60 rpm", initial_load=0.0)
-    assert " Pa" not in str(ss.uniqueness(massless))
+    contact = ss.uniqueness(massless)
+    assert not re.search(r" k?Pa\b|m/s", f"{contact} {contact!r} {contact.resistance!r} {contact.branches!r}")
+    falling = ss.friction.HyperbolicRate(0.8, 0.5, alpha="2 s/rad")
+    several = ss.uniqueness(replace(massless, friction=falling))
+    assert not re.search(r"Pa\b|m/s", f"{several} {several!r}")
+    assert several.regime == "irregular"
+    for part in (*several.folds, *several.jumps, *several.branches, several.loop):
+        assert not re.search(r"Pa\b|m/s", repr(part)), part
+        assert re.search(r"\d (k?N m|rad/s|rpm)", repr(part)), part
 
 
 @pytest.mark.parametrize(("heaviest", "message"), [(1.05, None), (1.3, r"several slip rates .* a mass \(inertia\)")])

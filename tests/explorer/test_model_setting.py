@@ -115,6 +115,16 @@ def test_exchanged_law_that_never_sticks_begins_at_its_own_friction() -> None:
     assert found["load"] == LAWS["rate-and-state"].start["coefficient"] * 1e8
 
 
+def test_a_field_forbids_backward_slip_where_the_law_sticks() -> None:
+    setting = Setting.bundled("fig6-slab")
+    field = controls(setting)["loading.one_way"]
+    assert (field.value, field.choices, field.rare) == ("false", ("true", "false"), True)
+    forbidden = setting.with_value("loading.one_way", field.read("true"))
+    assert forbidden.scenario().problem.one_way
+    assert controls(forbidden)["loading.one_way"].value == "true"
+    assert "loading.one_way" not in controls(Setting.bundled("rate-and-state-slab"))
+
+
 def test_entries_are_written_with_the_unit_in_which_they_were_given() -> None:
     setting = Setting.bundled("fig6-slab")
     thickness = controls(setting)["body.thickness"]

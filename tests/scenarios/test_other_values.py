@@ -19,6 +19,7 @@ EDITS = [
     ("fig6-slab", {"initial.load": "81 MPa"}, [("excess = 0.0", 'load = "81 MPa"')]),
     ("velocity-steps-block", {"loading.pull_rate.values[1]": "3 um/s"}, [('"10 um/s"', '"3 um/s"')]),
     ("bowed-string-slab", {"pressing": "2 Pa"}, [("normal_stress = 1.0", "normal_stress = 2.0"), ("load = 0.35", "load = 0.70")]),
+    ("fig6-slab", {"one_way": "true"}, [("[loading]\n", "[loading]\none_way = true\n")]),
     ("second-event-maximal", {"run.selection": "maxwell"}, [('selection = "maximal"', 'selection = "maxwell"')]),
 ]
 

@@ -28,7 +28,7 @@ def resistance(problem: Problem, law_slip: float | None = None) -> Resistance:
     if not problem.body.has_waves:
         raise InputError("contact equation: a block has none, its slip rate follows from its inertia")
     slip = problem.law_slip if law_slip is None else float(law_slip)
-    return Resistance(problem.friction, problem.body.damping, problem.normal, slip)
+    return Resistance(problem.friction, problem.body.damping, problem.normal, slip, problem.load_unit)
 
 
 def branches(problem: Problem, law_slip: float | None = None) -> tuple[Branch, ...]:
@@ -43,11 +43,11 @@ def branches(problem: Problem, law_slip: float | None = None) -> tuple[Branch, .
 def branches_of(g: Resistance, proof: Certificate | None = None) -> tuple[Branch, ...]:
     """Return the stable branches of a resistance, slowest first, from the proof of its folds (worked out here by default)."""
     if not g.law.depends_on_rate:
-        return (Branch(0.0, math.inf, g.start, math.inf),)
+        return (Branch(0.0, math.inf, g.start, math.inf, g.load_unit),)
     proof = proof or certificate(g)
     ends = [*([0.0] if len(proof.rates) % 2 == 0 else []), *proof.rates, math.inf]  # g rises at high rates
     return tuple(
-        Branch(low, high, g.end_excess(low), math.inf if math.isinf(high) else g.end_excess(high))
+        Branch(low, high, g.end_excess(low), math.inf if math.isinf(high) else g.end_excess(high), g.load_unit)
         for low, high in zip(ends[::2], ends[1::2], strict=True)
     )
 

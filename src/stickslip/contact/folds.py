@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import ClassVar, Literal
 
@@ -44,7 +44,10 @@ class Fold:
     enclosure: Interval | None = None
     """Interval of slip rates (m/s) where g is proven to turn exactly once; None if that is not decided."""
 
-    units: ClassVar = {"rate": "m/s", "load": "Pa", "enclosure": "m/s"}
+    load_unit: str = field(default="Pa", repr=False)
+    """Unit of loads of the body, which decides the other units."""
+
+    units: ClassVar = {"rate": "slip_rate", "load": "load", "enclosure": "slip_rate"}
     __repr__ = brief_repr
 
 
@@ -106,11 +109,13 @@ def certificate(g: Resistance, budget: int = MOST_EVALUATIONS) -> Certificate:
         found = find_turns(pieces_of([g], reach), budget, MOST_FOLDS)
     if len(found.known) > MOST_FOLDS:
         raise InputError(
-            f"{type(g.law).__name__}: g = Z v + S mu(v) turns more than {MOST_FOLDS} times up to {reach:.3g} m/s: friction that "
-            "rises and falls so often with the slip rate cannot be followed; make its features wider, or their height smaller"
+            f"{type(g.law).__name__}: g = Z v + S mu(v) turns more than {MOST_FOLDS} times up to {reach:.3g} {g.rate_unit}: "
+            "friction that rises and falls so often with the slip rate cannot be followed; make its features wider, or their "
+            "height smaller"
         )
     if found.at_end[-1] < 0 and reach == FASTEST and g.damping:
-        raise InputError(f"{type(g.law).__name__}: friction still falls at least as fast as Z v rises at {FASTEST:.3g} m/s")
+        fastest = f"{FASTEST:.3g} {g.rate_unit}"
+        raise InputError(f"{type(g.law).__name__}: friction still falls at least as fast as Z v rises at {fastest}")
     ends = list(zip(found.cells.low.tolist(), found.cells.high.tolist(), strict=True))
     sure = [end for end, known in zip(ends, found.known.tolist(), strict=True) if known == PROVEN]
     open_ = [end for end, known in zip(ends, found.known.tolist(), strict=True) if known != PROVEN]
@@ -163,20 +168,20 @@ def sentence(g: Resistance, proof: Certificate, folds: tuple[Fold, ...]) -> str:
     if not g.law.depends_on_rate:
         return ""
     if proof.verdict == "not decided":
-        places = _listed([f"between {low:.6g} and {high:.6g} m/s" for low, high in proof.undecided])
+        places = _listed([f"between {low:.6g} and {high:.6g} {g.rate_unit}" for low, high in proof.undecided])
         return f" Interval arithmetic does not decide whether g = Z v + S mu(v) turns {places}; elsewhere its turns are proven."
-    reach = f"up to {proof.reach:.3g} m/s"
+    reach = f"up to {proof.reach:.3g} {g.rate_unit}"
     if proof.reach < FASTEST:
-        reach += f", which loads up to {g.largest_load:.3g} Pa do not exceed; at faster ones it goes on turning"
+        reach += f", which loads up to {g.largest_load:.3g} {g.load_unit} do not exceed; at faster ones it goes on turning"
     if not proof.turns:
         return f" Proven by interval arithmetic: g = Z v + S mu(v) rises at every slip rate above 0, {reach}."
-    places = _listed([_place(fold) for fold in folds])
+    places = _listed([_place(fold, g.rate_unit) for fold in folds])
     return f" Proven by interval arithmetic: g = Z v + S mu(v) turns only at {places}, of all slip rates {reach}."
 
 
-def _place(fold: Fold) -> str:
+def _place(fold: Fold, unit: str) -> str:
     low, high = fold.enclosure or (fold.rate, fold.rate)
-    return f"{fold.rate:.9g} m/s" + (f" (to within {high - low:.1g})" if high > low else "")
+    return f"{fold.rate:.9g} {unit}" + (f" (to within {high - low:.1g})" if high > low else "")
 
 
 def _listed(places: list[str]) -> str:

@@ -46,7 +46,10 @@ class Sliding:
     period: float
     """Period (s) with which that disturbance swings, inf if it does not."""
 
-    units: ClassVar = {"rate": "m/s", "traction": "Pa or N", "growth": "1/s", "period": "s"}
+    load_unit: str = field(default="Pa", repr=False)
+    """Unit of loads of the body, which decides the other units."""
+
+    units: ClassVar = {"rate": "slip_rate", "traction": "load", "growth": "1/s", "period": "s"}
     __repr__ = brief_repr
 
     @property
@@ -85,7 +88,10 @@ class StabilityChange:
     enclosure: tuple[float, float] | None = None
     """Interval of slip rates (m/s) with a proof that it holds the change; None without a proof."""
 
-    units: ClassVar = {"rate": "m/s", "pull_rate": "m/s", "enclosure": "m/s"}
+    load_unit: str = field(default="Pa", repr=False)
+    """Unit of loads of the body, which decides the other units."""
+
+    units: ClassVar = dict.fromkeys(("rate", "pull_rate", "enclosure"), "slip_rate")
     __repr__ = brief_repr
 
 
@@ -100,25 +106,22 @@ class FromRest:
     runs: int
     duration: float
     """Duration of each run (s)."""
-    rate_unit: str = field(default="m/s", repr=False)
-    """Unit of the rates: rad/s where the contact turns."""
+    load_unit: str = field(default="Pa", repr=False)
+    """Unit of loads of the body, which decides the other units."""
 
-    units: ClassVar = {"sticks_at": "m/s", "slides_at": "m/s", "duration": "s"}
+    units: ClassVar = {"sticks_at": "slip_rate", "slides_at": "slip_rate", "duration": "s"}
     __repr__ = brief_repr
 
     def __str__(self) -> str:
         runs = f"{self.runs} exact run{'s' * (self.runs > 1)} of {brief(self.duration, 's', 3)}"
+        unit = si_unit("slip_rate", self.load_unit)
         if self.sticks_at is None:
             if self.slides_at is None:
                 return "from rest: not known, because a run did not reach its end"
-            return f"from rest it slides at {brief(self.slides_at, self.rate_unit, 3)}, too (by {runs})"
+            return f"from rest it slides at {brief(self.slides_at, unit, 3)}, too (by {runs})"
         if self.slides_at is None:
-            return (
-                f"from rest it still sticks at {brief(self.sticks_at, self.rate_unit, 3)} (by {runs}; stickslip find looks further)"
-            )
-        return (
-            f"from rest it sticks up to {brief(self.sticks_at, self.rate_unit, 3)} (to {100.0 * FROM_REST_WITHIN:g} %, by {runs})"
-        )
+            return f"from rest it still sticks at {brief(self.sticks_at, unit, 3)} (by {runs}; stickslip find looks further)"
+        return f"from rest it sticks up to {brief(self.sticks_at, unit, 3)} (to {100.0 * FROM_REST_WITHIN:g} %, by {runs})"
 
 
 FROM_REST_WITHIN = 0.02

@@ -236,7 +236,8 @@ class _Steady:
         disturbed, sign = self.disturbed(rate), math.copysign(1.0, self.drive)
         growth = disturbed.growth()
         period = 2.0 * math.pi / growth.frequency if growth.frequency else math.inf
-        return Sliding(sign * rate, sign * self.traction(rate), self.states(rate)[0], disturbed.is_stable(), growth.rate, period)
+        stable, unit = disturbed.is_stable(), self.problem.load_unit
+        return Sliding(sign * rate, sign * self.traction(rate), self.states(rate)[0], stable, growth.rate, period, unit)
 
     # ---- the rates ------------------------------------------------------------------------------------------------------------
 
@@ -267,7 +268,7 @@ class _Steady:
             return None
 
     def resistance(self, damping: float) -> Resistance:
-        return Resistance(self.problem.friction, damping, self.problem.normal, self.slip)
+        return Resistance(self.problem.friction, damping, self.problem.normal, self.slip, self.problem.load_unit)
 
     def changes(self) -> tuple[tuple[StabilityChange, ...], bool]:
         """Return where stability changes along the slip rate, and whether it is proven that it changes nowhere else."""
@@ -345,7 +346,7 @@ class _Steady:
         return sign_change(lambda rate: 1.0 if (self.disturbed(rate).is_stable() is True) == stable_above else -1.0, low, high)
 
     def _change(self, rate: float, stable_above: bool, enclosure: Any) -> StabilityChange:
-        return StabilityChange(rate, self._pull_rate(rate), stable_above, enclosure)
+        return StabilityChange(rate, self._pull_rate(rate), stable_above, enclosure, self.problem.load_unit)
 
     def _pull_rate(self, rate: float) -> float | None:
         """Return the pull rate (m/s) that makes the contact slide steadily at a slip rate, None if there is none."""

@@ -294,7 +294,7 @@ def _critical(problem: Problem, g: Resistance, slip: float | None) -> tuple[str,
 def _folds(g: Resistance, stable: tuple[Branch, ...], proof: Certificate) -> tuple[Fold, ...]:
     ends = {end: None for b in stable for end in ((b.rate_from, b.excess_from), (b.rate_to, b.excess_to))}
     moving = sorted((rate, excess) for rate, excess in ends if 0.0 < rate < np.inf)
-    return tuple(Fold(rate, g.strength + excess, proof.enclosure(rate)) for rate, excess in moving)
+    return tuple(Fold(rate, g.strength + excess, proof.enclosure(rate), g.load_unit) for rate, excess in moving)
 
 
 def _window(stable: tuple[Branch, ...]) -> tuple[float, float] | None:

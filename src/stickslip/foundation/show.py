@@ -14,7 +14,7 @@ import numpy as np
 
 from stickslip.foundation.arguments import CheckedArguments
 from stickslip.foundation.constants import YEAR
-from stickslip.foundation.names import has_prefixes, readable_unit, short_units
+from stickslip.foundation.names import has_prefixes, readable_unit, short_units, si_unit
 from stickslip.foundation.quantities import Choice, Field, LawField, NamedNumbers, NumberSeries, Quantity, fields_of, in_units
 
 _TIMES = ((YEAR, "years"), (86_400.0, "days"), (3_600.0, "hours"), (60.0, "min"), (1.0, "s"))
@@ -179,20 +179,21 @@ def brief_repr(owner: Any, units: Mapping[str, str] = MappingProxyType({})) -> s
     """Return a dataclass as the call that makes it, to 6 digits: "ElasticSlab(density='2800 kg/m^3', thickness='10 km', ...)".
 
     Fields with their default value are left out. The unit of a field is that of its declaration, or of its name in the class
-    attribute `units`; `units` here replaces declared units such as "Pa or N".
+    attribute `units`, where "slip_rate" and such words stand for the units of a body whose loads have the unit `load_unit` of the
+    owner; `units` here replaces declared units such as "Pa or N".
     """
     return f"{type(owner).__name__}({', '.join(f'{name}={text}' for name, text in shown_fields(owner, units))})"
 
 
 def shown_fields(owner: Any, units: Mapping[str, str] = MappingProxyType({})) -> Iterator[tuple[str, str]]:
     """Yield name and text of each field of a dataclass that differs from its default."""
-    plain = getattr(type(owner), "units", {})
+    plain, loads = getattr(type(owner), "units", {}), getattr(owner, "load_unit", "Pa")
     for field in dataclasses.fields(owner):
         value, declared = getattr(owner, field.name), field.metadata.get("declared")
         if not field.repr or (field.default is not dataclasses.MISSING and _same(value, field.default)):
             continue
         if declared is None and field.name in plain:
-            declared = Quantity(plain[field.name], "")
+            declared = Quantity(" ".join(si_unit(word, loads) for word in plain[field.name].split()), "")
         if isinstance(declared, LawField) and units:
             yield field.name, brief_repr(value, units)
         else:

@@ -108,7 +108,7 @@ def _balance(resistance: Callable[[Any], Floats], load: float, problem: ProblemF
     if beyond[0]:
         return 0.0
     if not beyond.any():
-        why = f"is more than the contact resists at any slip rate up to {FASTEST:g} m/s"
+        why = f"is more than the contact resists at any slip rate up to {FASTEST:g} {problem.unit_of('slip_rate')}"
         raise InputError(f"Problem: a load of {brief(load, problem.load_unit)} {why}: give initial_rate (0 is rest)")
     for _ in range(ROUNDS):
         high = max(int(np.argmax(beyond)), 1)

@@ -135,7 +135,7 @@ def doubts(problem: Problem) -> list[str]:
     found, static = [], problem.strength / problem.normal
     if static > LARGE_COEFFICIENT:
         found.append(f"the static friction coefficient is {static:.4g}; rock has 0.1 to 1: is it a percentage?")
-    if problem.body.has_waves and problem.normal < SMALL_STRESS:
+    if problem.load_unit == "Pa" and problem.normal < SMALL_STRESS:
         found.append(f"the normal stress is {problem.normal:.4g} Pa: mPa is a thousandth of a pascal, MPa is a million")
     return found
 

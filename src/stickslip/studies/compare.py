@@ -40,7 +40,7 @@ COLUMNS = {
     "dynamic_drop": ("load", "traction at rest before the largest event minus the smallest one while it slips"),
     "duration": ("s", "duration of the first event; NaN if it is not over"),
     "shocks": ("", "jumps of the slip rate; it is smooth if there are none"),
-    "load_unit": ("", "unit of the drops: Pa (slab), N (block) or N m (what turns)"),
+    "load_unit": ("", "unit of the drops, which is that of the loads"),
     "status": ("", "what ended the run"),
 }
 """Columns of the table, each with its unit, as `names.si_unit` understands it, and its meaning."""

@@ -13,7 +13,6 @@ from stickslip.contact.steady import steady_slidings
 from stickslip.foundation.arguments import for_users
 from stickslip.foundation.conversion import WithUnit
 from stickslip.foundation.errors import InputError, nearest_and_all
-from stickslip.foundation.names import si_unit
 from stickslip.foundation.quantities import Quantity
 from stickslip.foundation.show import brief
 from stickslip.problem.problem import Problem
@@ -191,7 +190,7 @@ def from_rest(problem: Problem, found: SteadySlidings, tell: TextProgress = lamb
             sticks, slides = (middle, slides) if search.at(math.copysign(middle, found.pull_rate)) else (sticks, middle)
     except InputError:  # a run did not reach its end: what was found before holds
         pass
-    return FromRest(sticks, slides, len(search.seen), lasts, si_unit("slip_rate", found.unit))
+    return FromRest(sticks, slides, len(search.seen), lasts, found.unit)
 
 
 @dataclass(frozen=True)

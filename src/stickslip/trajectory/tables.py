@@ -76,7 +76,8 @@ def creep_note(history: History) -> str:
     leaps, (row, trips, error, delay) = len(history.creep), history.creep.T
     passed = leaps_over(history.problem)
     over = f"{leaps} leap{'s' * (leaps > 1)} over {int(trips.sum())} round trips{f' of {passed}' * (passed != 'creep')}"
-    note = f"{over}, error at most {error.max():.1e} m of slip, {delay.max():.3g} s of time"
+    unit = history.problem.unit_of("slip")
+    note = f"{over}, error at most {error.max():.1e} {unit} of slip, {delay.max():.3g} s of time"
     ends = (row[-1] + trips[-1] + NEAR_THE_END) * history.round_trip_time >= history.duration
     return f"{note}; {_lasts(history.problem)}" if ends and _slides_steadily(history) else note
 

@@ -156,28 +156,31 @@ def _findings(found: Examination) -> Iterator[tuple[str, str]]:
         yield "along slip", found.along_slip
     for fact in found.critical:
         yield "critical value", f"{fact.name} = {brief(float(fact.value), fact.unit, 9)}; {fact.meaning}"
-    for fold in found.uniqueness.folds:
-        yield "fold", f"slip rate {fold.rate:.9g} m/s, load {brief(fold.load, 'Pa', 12)}{_proof(fold)}"
-    for low, high in found.uniqueness.undecided[:MOST_UNDECIDED]:
-        yield "not decided", f"whether there is a fold between {low:.9g} and {high:.9g} m/s"
-    yield from _by_rule(found.uniqueness)
+    contact = found.uniqueness
+    assert contact.problem is not None
+    loads, rates = contact.problem.load_unit, contact.problem.unit_of("slip_rate")
+    for fold in contact.folds:
+        yield "fold", f"slip rate {fold.rate:.9g} {rates}, load {brief(fold.load, loads, 12)}{_proof(fold, rates)}"
+    for low, high in contact.undecided[:MOST_UNDECIDED]:
+        yield "not decided", f"whether there is a fold between {low:.9g} and {high:.9g} {rates}"
+    yield from _by_rule(contact, loads, rates)
 
 
-def _proof(fold: Fold) -> str:
-    """Return how closely a fold is proven, as the end of a sentence."""
+def _proof(fold: Fold, unit: str) -> str:
+    """Return how closely a fold is proven, as the end of a sentence, with the unit of slip rates."""
     if fold.enclosure is None:
         return "; not proven"
     low, high = fold.enclosure
-    return f"; proven to within {high - low:.1g} m/s" if high > low else "; proven, at a kink of the law"
+    return f"; proven to within {high - low:.1g} {unit}" if high > low else "; proven, at a kink of the law"
 
 
-def _by_rule(contact: Uniqueness) -> Iterator[tuple[str, str]]:
-    """Yield what depends on the selection rule: the jumps, and the loop that they enclose."""
+def _by_rule(contact: Uniqueness, loads: str, unit: str) -> Iterator[tuple[str, str]]:
+    """Yield what depends on the selection rule: the jumps, and the loop that they enclose, with the units of loads and rates."""
     for jump in contact.jumps:
         change = jump.traction_after - jump.traction_before
-        rates = f"slip rate {jump.rate_before:.9g} to {jump.rate_after:.9g} m/s at a load of {brief(jump.load, 'Pa', 12)}"
-        yield f"jump {jump.direction} *", f"{rates}; traction changes by {brief(change, 'Pa')}"
+        rates = f"slip rate {jump.rate_before:.9g} to {jump.rate_after:.9g} {unit} at a load of {brief(jump.load, loads, 12)}"
+        yield f"jump {jump.direction} *", f"{rates}; traction changes by {brief(change, loads)}"
     if contact.jumps:
         retraced = ": the path is retraced" if contact.loop_area == 0.0 else " in the plane of load and slip rate"
-        yield "loop *", f"the load going up and down encloses {brief(contact.loop_area, 'Pa m/s')}{retraced}"
+        yield "loop *", f"the load going up and down encloses {brief(contact.loop_area, f'{loads} {unit}')}{retraced}"
         yield "*", f"depends on the rule '{contact.rule}'; nothing else above does."

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import ClassVar, Literal
 
@@ -30,10 +30,12 @@ class Jump:
     direction: Literal["up", "down"]
     traction_before: float
     traction_after: float
+    load_unit: str = field(default="Pa", repr=False)
+    """Unit of loads of the body, which decides the other units."""
 
     units: ClassVar = {
-        **dict.fromkeys(("rate_before", "rate_after"), "m/s"),
-        **dict.fromkeys(("load", "traction_before", "traction_after"), "Pa"),
+        **dict.fromkeys(("rate_before", "rate_after"), "slip_rate"),
+        **dict.fromkeys(("load", "traction_before", "traction_after"), "load"),
     }
     __repr__ = brief_repr
 
@@ -51,8 +53,10 @@ class Loop:
     branches: tuple[int, ...]
     jumps: tuple[Jump, ...]
     area: float
+    load_unit: str = field(default="Pa", repr=False)
+    """Unit of loads of the body, which decides the other units."""
 
-    units: ClassVar = {"area": "Pa m/s"}
+    units: ClassVar = {"area": "load slip_rate"}
     __repr__ = brief_repr
 
 
@@ -79,7 +83,7 @@ def _jump(g: Resistance, stable: tuple[Branch, ...], way: tuple[int, int], exces
     load = g.strength + excess
     before, after = (resolved(rate, load, g.damping) for rate in (before, after))
     sides = (load - g.damping * before, load - g.damping * after)
-    return Jump(before, after, load, "up" if way[1] > way[0] else "down", *sides)
+    return Jump(before, after, load, "up" if way[1] > way[0] else "down", *sides, g.load_unit)
 
 
 def resolved(rate: float, load: float, damping: float) -> float:
@@ -102,7 +106,7 @@ def loop_of(g: Resistance, stable: tuple[Branch, ...], table: SelectionTable) ->
         walked.append(table.descend(walked[-1], math.nextafter(levels[-1], -math.inf)))
     jumps = [_jump(g, stable, way, level) for way, level in zip(pairwise(walked), levels, strict=True)]
     enclosed = math.fsum(_against(g, jump, level) for jump, level in zip(jumps, levels, strict=True))  # areas cancel exactly
-    return Loop(tuple(walked), tuple(jump for jump in jumps if jump.rate_before != jump.rate_after), enclosed)
+    return Loop(tuple(walked), tuple(jump for jump in jumps if jump.rate_before != jump.rate_after), enclosed, g.load_unit)
 
 
 def _against(g: Resistance, jump: Jump, excess: float) -> float:

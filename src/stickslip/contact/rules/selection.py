@@ -160,7 +160,7 @@ def selection_table(problem: Problem, law_slip: float | None = None) -> tuple[Br
     if g.law.depends_on_rate and certificate(g).reach < FASTEST and not load_bound(problem, g) <= g.largest_load:
         raise InputError(
             f"{type(g.law).__name__}: g = Z v + S mu(v) turns more than {MOST_FOLDS} times, and its branches are known up to a "
-            f"load of {g.largest_load:.3g} Pa only, which the load of this problem may exceed"
+            f"load of {g.largest_load:.3g} {g.load_unit} only, which the load of this problem may exceed"
         )
     return stable, table_of(problem, g, stable)
 
