@@ -82,7 +82,7 @@ ROOMS = {
         ("examine_contact", "templates"),
     ),
     "observables": (
-        ("planar", "predictability", "proof", "quadrature", "rule_influence"),
+        ("planar", "predictability", "severity", "proof", "quadrature", "rule_influence"),
         ("waves",),
         ("energy", "field"),
         ("event_table",),

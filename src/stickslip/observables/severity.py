@@ -18,7 +18,7 @@ from stickslip.trajectory.turning_points import Turn
 TIME = Quantity("s", "time since the start of the run")
 
 
-class Run(Protocol):
+class RunWithHistory(Protocol):
     """What `severity` takes: a `Solution`."""
 
     @property
@@ -28,7 +28,7 @@ class Run(Protocol):
 
 
 @for_users
-def severity(run: Run, start: float | str | WithUnit | None = None, end: float | str | WithUnit | None = None) -> float:
+def severity(run: RunWithHistory, start: float | str | WithUnit | None = None, end: float | str | WithUnit | None = None) -> float:
     """Return the severity of stick-slip (1): half the range of the slip rate over the magnitude of its mean.
 
     It is 0 in steady sliding, and about 1 or more where the contact comes to rest again and again; drillers judge a bit by it. The
