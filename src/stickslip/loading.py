@@ -32,7 +32,7 @@ and Pa, N or N m for a far stress or a normal load.
 
 
 class Segment(NamedTuple):
-    """A straight part of a history from a time `start` (s) on: a value there (m/s, m/s^2, Pa or N), and its change per second.
+    """A straight part of a history from a time `start` (s) on: a value there, and its change per second.
 
     It lasts until the next segment or for ever.
     """
@@ -42,7 +42,7 @@ class Segment(NamedTuple):
     slope: float
 
     def at(self, time: float) -> float:
-        """Return the value (m/s, m/s^2, Pa or N) at a time (s since the start of the run)."""
+        """Return the value at a time (s since the start of the run)."""
         return self.value + self.slope * (time - self.start)
 
 
@@ -61,7 +61,8 @@ SILENT = Tone(0.0, 1.0, 0.0)
 class LoadingHistory(Declared, ABC):
     """A pull rate, far stress, normal load or motion of the ground as a function of time (s) since the start of the run.
 
-    Before the start of the run the value is the one at the start. A run meets the breaking points of the history exactly.
+    The values are in m/s or rad/s, m/s^2 or rad/s^2, Pa, N or N m: see `unit`. Before the start of the run the value is the one at
+    the start. A run meets the breaking points of the history exactly.
 
     Subclass this to add a history. A subclass is a frozen dataclass with a `kind`. To be usable in scenario files and saved runs it
     also declares its fields with `quantity` or `declare`, has an `example`, and is listed in HISTORIES. Its fields and its `source`
@@ -116,7 +117,7 @@ class LoadingHistory(Declared, ABC):
 
     @property
     def first(self) -> float:
-        """The value (m/s, m/s^2, Pa or N) at 0 s."""
+        """The value at 0 s."""
         return self.segments[0].value + self.tone.amplitude * math.sin(self.tone.phase)
 
     @property
@@ -127,7 +128,7 @@ class LoadingHistory(Declared, ABC):
 
     @property
     def highest(self) -> float:
-        """An upper bound of the values (m/s, m/s^2, Pa or N)."""
+        """An upper bound of the values."""
         ends = (one.at(end) for one, end in zip(self.segments, self._ends, strict=True))
         return max(*(one.value for one in self.segments), *ends) + abs(self.tone.amplitude)
 
@@ -137,7 +138,7 @@ class LoadingHistory(Declared, ABC):
         return [*(one.start for one in self.segments[1:]), math.inf if self.segments[-1].slope else self.segments[-1].start]
 
     def at(self, t: ArrayLike) -> NDArray[np.float64]:
-        """Return the values (m/s, m/s^2, Pa or N) of the history at times (s since the start of the run) of any shape.
+        """Return the values of the history at times (s since the start of the run) of any shape.
 
         At a jump it is the value after the jump; before 0 s it is the value at 0 s.
         """

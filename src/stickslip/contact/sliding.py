@@ -29,7 +29,7 @@ NEVER = 1e-20
 
 @dataclass(frozen=True)
 class Sliding:
-    """One steady sliding motion: slip rate (m/s) and traction (Pa or N) with their signs, and what a small disturbance does."""
+    """One steady sliding motion: slip rate and traction with their signs, and what a small disturbance does."""
 
     rate: float
     traction: float
@@ -153,7 +153,7 @@ class SteadySlidings:
     why_none: str = ""
     """Reason why there is no steady sliding; "" if there is."""
     traction_at_pull_rate: float = math.nan
-    """Friction (Pa or N) in steady sliding at the pull rate: the far stress with which a driver that gives way keeps its rate."""
+    """Friction in steady sliding at the pull rate: the far stress with which a driver that gives way keeps its rate."""
     unit: str = "Pa"
     """Unit of tractions."""
     is_calm: bool = False

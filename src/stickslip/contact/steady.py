@@ -202,7 +202,7 @@ class _Steady:
         return seen, law.inner_states(seen)
 
     def traction(self, rate: float) -> float:
-        """Return the traction (Pa or N) of steady sliding at a slip rate (m/s)."""
+        """Return the traction (Pa, N or N m) of steady sliding at a slip rate (m/s)."""
         mu = self.problem.friction.coefficient(self.slip, rate, one_argument(self.states(rate)[1]))
         return self.problem.normal * float(mu)
 

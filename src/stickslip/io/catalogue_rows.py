@@ -132,7 +132,7 @@ class Rows:
     def publish(self, about: Mapping[str, Any], load_unit: str) -> None:
         """Write the finished table with the attributes `about`, whole or not at all. Raises InputError if it cannot be written.
 
-        A CSV table is finished as it is. `load_unit` is Pa or N.
+        A CSV table is finished as it is. `load_unit` is Pa, N or N m.
         """
         suffix = self.path.suffix.lower()
         if suffix == ".parquet":

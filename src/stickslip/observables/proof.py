@@ -64,7 +64,7 @@ class Proof:
     """
 
     residual: float
-    """Largest bound (Pa; block: N) of |Z v + S mu(u, v) - load|, with inertia and damping where the contact has them."""
+    """Largest bound, in `unit`, of |Z v + S mu(u, v) - load|, with inertia and damping where the contact has them."""
     relative: float
     """The same as a share (1) of the normal stress, or force."""
     steps: int
@@ -74,7 +74,7 @@ class Proof:
     unproven: int
     """Number of pieces of the history that are checked at places only: the law is not analytic where the slip rate passes zero."""
     unit: str
-    """Unit of the residual: Pa or N."""
+    """Unit of the residual: Pa, N or N m."""
 
     units: ClassVar = {"relative": "1"}
     __repr__ = brief_repr

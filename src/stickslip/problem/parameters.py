@@ -181,7 +181,7 @@ def pressing_of(problem: ProblemFields) -> Quantity:
 
 
 def pressed(problem: P, value: float) -> P:
-    """Return a problem with another normal load (Pa or N), at the same ratios of initial load and far stress to it.
+    """Return a problem with another normal load (Pa, N or N m), at the same ratios of initial load and far stress to it.
 
     Raises InputError if the problem does not allow the value.
     """

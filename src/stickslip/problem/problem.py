@@ -45,9 +45,9 @@ class Problem(ProblemFields):
     initial_slip
         Slip u0 at the start (m).
     initial_load
-        Shear load on the contact at the start (Pa or N). Give either `initial_load` or `initial_excess`.
+        Shear load on the contact at the start (Pa, N or N m). Give either `initial_load` or `initial_excess`.
     initial_excess
-        Initial load minus static strength (Pa or N), stored without rounding. The strength is the strength against forward slip,
+        Initial load minus static strength, stored without rounding. The strength is the strength against forward slip,
         even if the load is negative. A law that never sticks has no strength to exceed: give its initial load.
     initial_state
         Initial value of the state of a law that has one, in the unit of the law. The default for a law that sticks is 0, the healed
@@ -283,7 +283,7 @@ class Problem(ProblemFields):
 
     @cached_property
     def excess(self) -> float:
-        """The initial load minus the static strength (Pa or N), without rounding if it was given as `initial_excess`.
+        """The initial load minus the static strength, without rounding if it was given as `initial_excess`.
 
         An initial load within 4 ulp of the strength, forward or backward, counts as equal to it.
         """
@@ -298,7 +298,7 @@ class Problem(ProblemFields):
 
     @property
     def load(self) -> float:
-        """The shear load on the contact at t = 0 (Pa or N)."""
+        """The shear load on the contact at t = 0 (Pa, N or N m)."""
         if self.initial_load is not None:
             return self.initial_load
         return self._start.load if self.initial_excess is None else self.strength + self.initial_excess

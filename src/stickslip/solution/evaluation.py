@@ -78,7 +78,7 @@ class Readings(NamesAttributes):
         return self.history.rate(at).reshape(shape)
 
     def traction(self, t: ArrayLike, side: Side = "right") -> Floats:
-        """Return the friction traction tau on the contact (slab: Pa, block: N) at times t; positive if it opposes forward slip."""
+        """Return the friction traction tau on the contact (Pa, N or N m) at times t; positive if it opposes forward slip."""
         at, shape = self._at(t, side)
         return (self.problem.strength + self.history.friction(at)).reshape(shape)
 

@@ -40,7 +40,7 @@ class Ensemble(RunsCompared):
     """The result of `ensemble`, which compares all runs from t = 0 to `until` (s).
 
     `runs` are those of the members that were finished, of `wanted` members, beside the undisturbed run `reference`. `pushes` were
-    added to the initial load (Pa; block: N); their largest magnitude is `size`, as a share of the static strength. Above
+    added to the initial load; their largest magnitude is `size`, as a share of the static strength. Above
     `event_rate` (m/s) slip counts as an event; None stands for the default of `Solution.catalogue`.
     """
 

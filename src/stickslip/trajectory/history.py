@@ -309,7 +309,7 @@ class History:
     # ---- values at positions ------------------------------------------------------------------------------------------------
 
     def excess(self, at: Positions) -> Floats:
-        """Return the load minus the reference strength, Pa (block: N)."""
+        """Return the load minus the reference strength (Pa, N or N m)."""
         value = horner(self.store.load[at.piece], at.xi)
         if at.at_rest.any() and self.problem.body.has_waves:
             left = 2.0 * self.problem.body.impedance * horner(self.store.rate[at.piece], at.xi)
@@ -394,7 +394,7 @@ class History:
         return np.where(at.before, self.problem.law_slip, self.problem.law_slip + self.store.law_slip[at.piece] + walked)
 
     def resistance(self, at: Positions) -> Floats:
-        """Return the traction of the law against slip, S mu(u, |v|, state), slab: Pa, block: N."""
+        """Return the traction of the law against slip, S mu(u, |v|, state) (Pa, N or N m)."""
         law, states = self.problem.contact_law, self.states(at)
         for n in law.reverses:
             states[n] = np.where(self.mode(at) < 0, -states[n], states[n])

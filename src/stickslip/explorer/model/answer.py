@@ -181,7 +181,7 @@ DRAWN_AS = dict.fromkeys(SHEAR, "traction") | {"slip": "slip", "slip_rate": "sli
 class Measured:
     """Samples of a record (SI) against the time of a run, and the misfit of each measured quantity.
 
-    `curves` are slip, slip_rate and traction (Pa, for a block N) as far as they were measured; `residuals` what is measured minus
+    `curves` are slip, slip_rate and traction (Pa, N or N m) as far as they were measured; `residuals` what is measured minus
     the run, without the zero of a sensor.
     """
 

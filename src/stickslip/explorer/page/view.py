@@ -73,7 +73,7 @@ class Units:
     stress: tuple[str, float]
     """That of traction and load against time."""
     offset: float
-    """What is taken off traction and load against time, because they hardly change (Pa or N); 0 usually."""
+    """What is taken off traction and load against time, because they hardly change; 0 usually."""
     load: tuple[str, float]
     on_curve: tuple[str, float]
     """Those of load and slip rate on the contact's curve."""

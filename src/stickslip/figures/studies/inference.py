@@ -130,7 +130,7 @@ def draw(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     """Draw record and best run, the residual and the slip rate below each other, and beside them pairs of numbers."""
     paired = _paired(dataset)
     count = max(len(paired) - 1, 0)
-    shown = PANELS if "feature" not in dataset else {name: name_of(name) for name in _features(dataset)}
+    shown = PANELS if "feature" not in dataset else {name: name_of(name, dataset.attrs["load_unit"]) for name in _features(dataset)}
     figure = sheet((7.2 if count else 5.0, max(5.4, 1.2 * len(shown) + 1.0)), **place)
     axes: Any = figure.subplot_mosaic(_layout(list(shown), count), width_ratios=[2.2, *[1.0] * count] if count else None)
     if "feature" in dataset:
@@ -153,7 +153,7 @@ def draw_features(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
     figure = sheet((6.4, 1.2 * len(shown) + 1.0), **place)
     axes: Any = figure.subplot_mosaic([[name] for name in shown])
     _draw_features(axes, dataset)
-    letter_panels([axes[name] for name in shown], [name_of(name) for name in shown])
+    letter_panels([axes[name] for name in shown], [name_of(name, dataset.attrs["load_unit"]) for name in shown])
     add_legend(axes[shown[0]], _marks(dataset))
     return figure
 
@@ -164,7 +164,8 @@ def draw_curves(dataset: xr.Dataset, name: str, **place: Unpack[Place]) -> Figur
     figure = sheet((6.4, 5.4), **place)
     axes: Any = figure.subplot_mosaic([["record"], ["residual"], ["rate"]])
     _draw_curves(axes, dataset, name)
-    letter_panels(list(axes.values()), [f"{name_of(name)}, record and best run", "residual", "slip rate of the best run"])
+    what, rate = (name_of(one, dataset.attrs["load_unit"]) for one in (name, "slip_rate"))
+    letter_panels(list(axes.values()), [f"{what}, record and best run", "residual", f"{rate} of the best run"])
     add_legend(axes["record"], _marks(dataset))
     return figure
 

@@ -43,7 +43,7 @@ def data_of(answer: Answer, units: Units) -> View:
     keys = [LegendKey("stick", "stick"), *(KEYS[kind] for kind in found), LegendKey("path", "path")]
     keys += [LegendKey("fold", "ink", "ring")] if len(folds) else []
     keys += [LegendKey("jump", "muted", "dot")] if len(jumps) else []
-    load = name_of("load", answer.motions[0].load_unit)
+    load, rate = (name_of(name, answer.motions[0].load_unit) for name in ("load", "slip_rate"))
     return View(
         columns=columns,
         limits={
@@ -51,7 +51,7 @@ def data_of(answer: Answer, units: Units) -> View:
             "contact_load": limits(contact.load / pascal, path["load"], columns["stick"]["load"][1]),
         },
         labels={
-            "axis:contact_rate@contact": axis_label(name_of("slip_rate"), plain_symbol("slip_rate"), units.on_curve[0]),
+            "axis:contact_rate@contact": axis_label(rate, plain_symbol("slip_rate"), units.on_curve[0]),
             "axis:contact_load@contact": axis_label(load, plain_symbol("load"), units.load[0]),
         },
         titles={"contact": "Contact g(v) at the slip of the start"} if answer.scenario.problem.friction.depends_on_slip else {},

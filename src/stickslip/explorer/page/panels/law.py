@@ -10,7 +10,7 @@ from stickslip.explorer.model.answer import Answer, LawPicture
 from stickslip.explorer.page.components import paint
 from stickslip.explorer.page.stage import Stage
 from stickslip.explorer.page.view import Columns, LegendKey, Units, View, axis_label, limits
-from stickslip.foundation.names import readable_unit
+from stickslip.foundation.names import name_of, plain_symbol, readable_unit
 
 TEXT = "Friction law: friction coefficient against slip or slip rate"
 
@@ -18,7 +18,7 @@ TEXT = "Friction law: friction coefficient against slip or slip rate"
 def data_of(answer: Answer, units: Units) -> View:
     """Return the curve, where the run went, and the texts of the axes."""
     law = answer.law
-    name, symbol = ("slip", "u") if law.along == "slip" else ("slip rate", "v")
+    name, symbol = name_of(law.along, answer.motions[0].load_unit), plain_symbol(law.along)
     unit = unit_along(law, units)
     x = place(law, law.x, unit)
     least, most = float(np.nanmin(x)), float(np.nanmax(x))
