@@ -36,7 +36,11 @@ REFUSED: list[tuple[Any, dict[str, Any], str]] = [
     ({"time (s)": CLOCK, "load point (m)": MOVED}, {}, "record: nothing measured"),
     ({"time (s)": CLOCK, "tau (N)": FRICTION}, {}, "record, column 2: the unit in the heading does not convert to Pa"),
     ({**GOOD, "friction": 100.0 * FRICTION}, {}, "record: friction is 60 in the median: is a stress in N, or friction in percent?"),
-    ({"time (s)": CLOCK, "tau (Pa)": 3e6 * FRICTION, "load point (m)": MOVED}, {}, "record: the loads of a block are forces (N)"),
+    (
+        {"time (s)": CLOCK, "tau (Pa)": 3e6 * FRICTION, "load point (m)": MOVED},
+        {},
+        "record: the loads of a block are in N",
+    ),
     ({**GOOD, "slip (m)": MOVED}, {}, "record: load_point and slip are the same numbers"),
     (stick_slip(1e-6 * CLOCK + 1e-4 * np.floor(CLOCK / 20.0)), {}, "record: load_point looks like slip"),
     ({**GOOD, "friction": np.full(len(CLOCK), np.nan)}, {}, "record: friction has no number in any row"),
@@ -76,7 +80,7 @@ def test_what_cannot_be_used_is_refused_in_one_line_with_the_cure(data: Any, opt
 
 def test_force_on_a_slab_and_its_sensor_are_refused() -> None:
     force = {"time (s)": CLOCK, "shear force (N)": 3e4 * FRICTION, "load point (m)": MOVED}
-    with pytest.raises(ss.InputError, match="the loads of a slab are stresses"):
+    with pytest.raises(ss.InputError, match="the loads of a slab are in Pa, and shear_force in N: give normal_force"):
         ss.studies.infer(SLAB, force, ["a"])
     with pytest.raises(ss.InputError, match="a slab has none"):
         ss.studies.infer(SLAB, GOOD, ["a"], sensor="spring")

@@ -42,7 +42,7 @@ def test_a_law_is_found_in_a_record_of_torque_and_rpm() -> None:
     assert "N m, slip_rate 0." in text
     assert "rpm" in text
     assert "m/s" not in text
-    assert found.problem.pull_rate == pytest.approx(20.0 * RPM, rel=1e-9)
+    assert found.model.parts[0].loading == pytest.approx(20.0 * RPM, rel=1e-9)
 
 
 def test_angles_are_read_with_their_units_and_torque_over_torque_is_friction() -> None:

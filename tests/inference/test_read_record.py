@@ -161,8 +161,8 @@ def test_a_rotation_needs_the_radius_of_the_contact() -> None:
     assert (sliding.load_rate, sliding.slips_in) == (None, "")
     note = "the rotation is passed over: a column radius (mm), the mean radius of the contact, makes it the load point"
     assert sliding.notes == (note,)
-    (passed,) = Record.read({**data, "slip (mm)": MOVED}).notes[1:]
-    assert passed.startswith("rotation_rate is passed over: a column radius (mm)")
+    passed = Record.read({**data, "slip (mm)": MOVED}).notes
+    assert any(one.startswith("rotation_rate is passed over: a column radius (mm)") for one in passed)
     read = Record.read({**data, "mean radius (mm)": np.full(len(CLOCK), 20.0)})
     assert read.load_rate == pytest.approx(np.pi * 0.02)
     turned = Record.read({"time (s)": CLOCK, "mu": FRICTION, "Rotation (turn)": CLOCK, "radius (m)": np.full(len(CLOCK), 0.5)})

@@ -73,7 +73,7 @@ COLUMNS: Mapping[str, HeadingColumn] = {
     "slip_rotation": HeadingColumn(
         "rad/s", ("slip rate", "v", "rate", "speed", "bit speed", "bit rpm", "bit rotation"), signed=True
     ),
-    "torque": HeadingColumn("N m", ("friction torque", "torque on bit", "traction", "tau", "τ"), signed=True),
+    "torque": HeadingColumn("N m", ("friction torque", "torque on bit", "traction", "tau", "τ", "far stress"), signed=True),
     "normal_torque": HeadingColumn("N m"),
     "torque_deviation": HeadingColumn("N m", ("torque error", "sd torque")),
     "radius": HeadingColumn("m", ("mean radius", "equivalent radius")),
@@ -90,6 +90,11 @@ COLUMNS: Mapping[str, HeadingColumn] = {
     "ground_acceleration": HeadingColumn("m/s^2", ("acceleration", "acc"), signed=True),
 }
 """The columns that are known, by their plain heading. Capitals, spaces, dots, - and _ make no difference, nor does CamelCase."""
+TURNED: Mapping[str, str] = {
+    **{"slip": "slip_angle", "slip_rate": "slip_rotation", "load_point": "rotation", "load_rate": "rotation_rate"},
+    **{"pull_rate": "rotation_rate", "far_stress": "torque"},
+}
+"""Columns of a contact that slides, with those that take their place where it turns; both have the same headings."""
 LARGEST: Mapping[str, float] = {"slip": 100.0, "slip_rate": 100.0, "load_point": 100.0, "load_rate": 100.0}
 """Largest values (SI) that no friction test reaches: beyond them the numbers are hardly in SI."""
 MOST_COLUMNS = 1000

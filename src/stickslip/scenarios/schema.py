@@ -15,8 +15,9 @@ from stickslip.bodies import BODIES
 from stickslip.foundation.arguments import check_type, check_whole, shown
 from stickslip.foundation.conversion import unit_among
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.headings import TURNED
 from stickslip.foundation.names import KINDS as KINDS_OF_BODIES
-from stickslip.foundation.names import own_units
+from stickslip.foundation.names import TURNS, own_units
 from stickslip.foundation.quantities import Field as Declared
 from stickslip.foundation.quantities import LawField, Quantity, fields_of, in_units
 from stickslip.friction import LAWS
@@ -230,6 +231,8 @@ def read_table(
             got = f"and {both} exclude each other" if both else f"must be text in quotes, got {shown(name)}"
             raise InputError(f"{source.file}: [{table}] file {got}")
         along = raw.get("along") if len(columns) > 2 else None
+        if source.load_unit == TURNS:
+            columns, along = {TURNED.get(column, column): key for column, key in columns.items()}, TURNED.get(str(along), along)
         points = read_points(name, source.folder, columns, f"{source.file}: [{table}] file", along)
         taken = {"file"} if along is None else {"file", "along"}
         raw = {key: value for key, value in raw.items() if key not in taken} | points

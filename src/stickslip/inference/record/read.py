@@ -14,7 +14,7 @@ from stickslip.foundation.arguments import as_path, shown
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.columns import Table, read_mapping
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.headings import find, missing, quoted
+from stickslip.foundation.headings import TURNED, find, missing, quoted
 from stickslip.foundation.quantities import Quantity
 from stickslip.foundation.text_columns import read_file
 from stickslip.inference.record.doubts import checked
@@ -27,7 +27,7 @@ MOST_SAMPLES = 5_000_000
 """Largest number of samples of a record."""
 NORMAL = ("normal_stress", "normal_force", "normal_torque")
 """Columns of the normal load: they make friction of shear, and may say how the contact is pressed."""
-BY_ANGLE = {"slip_angle": "slip", "slip_rotation": "slip_rate", "rotation": "load_point", "rotation_rate": "load_rate"}
+BY_ANGLE = {TURNED[name]: name for name in ("slip", "slip_rate", *LOADING)}
 """Columns of angles and their rates, with what they are of a contact that turns."""
 BESIDE = (*NORMAL, *reversed(BY_ANGLE), "radius")
 """Columns that serve to compute others."""
