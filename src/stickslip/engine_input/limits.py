@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 from typing import Literal
 
-from stickslip.bodies import BodyOnCharacteristics, as_waves, has_dashpot
+from stickslip.bodies import BodyOnCharacteristics, has_dashpot
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, Params
 from stickslip.foundation.errors import InputError
