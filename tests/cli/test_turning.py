@@ -106,4 +106,4 @@ def test_every_command_takes_what_turns_with_its_units_or_refuses_it_by_name(
     told = shown.out.replace("61 GPa", "") + "".join(one.read_text(encoding="utf-8") for one in Path().glob("a.csv"))
     assert not SLIDES.findall(told), told
     if "--catalogue" not in options:
-        assert re.search(r"\brad\b|\bN m\b|\brpm\b|\bJ\b|\bstring over block\b", told)
+        assert re.search(r"\brad\b|\bN m\b|\brpm\b|\b[kM]?J\b|\bstring over block\b", told)
