@@ -7,17 +7,16 @@ import hashlib
 import os
 import signal
 from collections import Counter
-from collections.abc import Generator, Mapping
+from collections.abc import Generator, Iterator, Mapping
 from pathlib import Path
-from typing import Any
 
 import llvmlite.binding as llvm
 import numpy as np
 import pytest
 from hypothesis import settings
-from matplotlib.figure import Figure
 
 import stickslip as ss
+from tests.pictures import blank
 
 LONGEST = 60
 """Characters of a name."""
@@ -69,14 +68,10 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 @pytest.fixture
-def blank_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let figures be written as empty pictures of their size, in a tenth of the time: `tests/figures` draws all of them."""
-    save = Figure.savefig
-
-    def save_blank(figure: Figure, file: Any, **look: Any) -> None:
-        save(Figure(figsize=tuple(figure.get_size_inches())), file, **look)
-
-    monkeypatch.setattr(Figure, "savefig", save_blank)
+def blank_pictures() -> Iterator[None]:
+    """Let figures be written as empty pictures."""
+    with blank():
+        yield
 
 
 def pytest_make_parametrize_id(val: object) -> str | None:

@@ -41,13 +41,13 @@ def answer(name: str) -> Answer:
 
 
 def on_slabs(test):
-    """Run a test for every scenario with a slab."""
-    return pytest.mark.parametrize("name", SLABS)(test)
+    """Run a test for scenarios with a slab."""
+    return pytest.mark.sampled(every=3)(pytest.mark.parametrize("name", SLABS)(test))
 
 
 def everywhere(test):
-    """Run a test for every bundled scenario."""
-    return pytest.mark.parametrize("name", NAMES)(test)
+    """Run a test for bundled scenarios."""
+    return pytest.mark.sampled(every=3)(pytest.mark.parametrize("name", NAMES)(test))
 
 
 @everywhere

@@ -250,6 +250,7 @@ def test_unknown_kind_is_refused_in_one_line(table: str) -> None:
     one_line(error)
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize(
     "name", ["fig6-slab", "fig5-slab-printed", "fig6-block-reconstructed", "stress-pulse-slab", "direct-shear-block"]
 )

@@ -148,7 +148,10 @@ def test_the_traction_of_a_block_that_sticks_has_no_notches() -> None:
     assert rate.max() == pytest.approx(float(slips.peak_rate.max()), rel=1e-2)
 
 
-NEVER_STICK = ["velocity-steps-block", "slide-hold-slide-block", "rate-and-state-slab", "rate-and-state-block"]
+NEVER_STICK = [
+    *("velocity-steps-block", "slide-hold-slide-block", "rate-and-state-slab"),
+    pytest.param("rate-and-state-block", marks=pytest.mark.slow),
+]
 
 
 @cache

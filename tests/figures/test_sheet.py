@@ -33,6 +33,9 @@ def plot(name: str, **place: Any) -> Any:
     return getattr(run().plot, name)(**place)
 
 
+pytestmark = pytest.mark.usefixtures("coarse")
+
+
 # ---- where ---------------------------------------------------------------------------------------------------------------------
 
 

@@ -52,6 +52,7 @@ def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     return files(out)
 
 
+@pytest.mark.slow
 def test_a_killed_worker_changes_nothing(two_workers: Client, undisturbed: dict[str, bytes], tmp_path: Path) -> None:
     killed = []
 

@@ -54,6 +54,7 @@ def test_the_sentence_is_shown_whole(page: Any, width: int, height: int, large: 
     assert below["y"] + below["height"] <= panels["y"] + 1
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(("width", "height"), SIZES)
 def test_buttons_of_the_bar_have_one_height_one_baseline_and_room_between_them(page: Any, width: int, height: int) -> None:
     page.set_viewport_size({"width": width, "height": height})
@@ -67,6 +68,7 @@ def test_buttons_of_the_bar_have_one_height_one_baseline_and_room_between_them(p
     assert switch["bottom"] - switch["top"] == pytest.approx(boxes[0]["bottom"] - boxes[0]["top"], abs=1.0)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(("width", "height"), SIZES)
 def test_first_words_in_the_bar_say_what_is_seen_and_what_to_move(page: Any, width: int, height: int) -> None:
     page.set_viewport_size({"width": width, "height": height})
