@@ -189,6 +189,7 @@ def test_new_lists_every_name(command, arguments: tuple[str, ...]):
         assert re.search(rf"^{name} ", shown.out, re.MULTILINE)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("name", of_each_kind(library.in_1d()))
 def test_check_prints_its_four_sections(command, name):
     shown = command("check", name)

@@ -61,7 +61,7 @@ def test_the_block_of_a_fit_takes_the_numbers_of_a_machine(command, points):
         assert (shown.code, said in shown.err, Path("b.toml").exists()) == (2, True, False), shown.err
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("how", [["--law", "hyperbolic-rate"], ["--smooth", "auto"], ["--smooth", "1e-4", "--monotone"], []])
 def test_the_scenario_is_checked_and_run_as_it_is(command, points, how):
     shown = command("fit", "data.csv", *how, "--out", "mine.toml", "--figure", "fit.png")

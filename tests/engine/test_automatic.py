@@ -121,6 +121,7 @@ def same_pieces(one: ss.Solution, other: ss.Solution, count: int) -> bool:
 # ---- creep --------------------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(("rtol", "error"), [(1e-10, 1e-4), (1e-6, 2e-2)])
 def test_a_plain_call_reaches_the_first_pulse(rtol: float, error: float) -> None:
     """2.71878 days of creep, 41 107 round trips, in a second; the error of the pulse's time (s) follows rtol."""

@@ -171,6 +171,7 @@ def years(tolerance: float) -> ss.Solution:
     return ss.simulate(printed(1), 5.026e6 * ROUND, creep_rtol=tolerance)
 
 
+@pytest.mark.slow
 def test_time_after_years_of_creep_is_sharp() -> None:
     """At the second pulse, local times count from a whole number of round trips."""
     run = years(1e-5)
@@ -183,6 +184,7 @@ def test_time_after_years_of_creep_is_sharp() -> None:
     np.testing.assert_allclose(np.diff(window.event_slip(near)), window.event.peak_rate * 1e-9, rtol=1e-5, atol=0.0)
 
 
+@pytest.mark.slow
 def test_slip_has_no_gap_at_the_borders_of_a_leap() -> None:
     run = years(1e-5)
     for epoch in (Epoch(0, 0.0), Epoch(41_000, 1.234), Epoch(5_025_990, 5.678)):
@@ -195,6 +197,7 @@ def test_slip_has_no_gap_at_the_borders_of_a_leap() -> None:
                 assert np.ptp(slip) < 1e-11 * slip[0]
 
 
+@pytest.mark.slow
 def test_the_printed_slab_creeps_for_years_without_gaps() -> None:
     """Creep behind the first pulse as well: 330 days, 5 million round trips, the second pulse; and the energy balances."""
     second = []

@@ -70,6 +70,7 @@ def called(function: Any, given: list[Block | float]) -> Block:
     return np.concatenate([one.ravel() for one in copies if isinstance(one, np.ndarray)])
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=24)
 @pytest.mark.parametrize("kind", LAWS)
 def test_functions_of_a_law_have_the_bits_of_numba(kind: str) -> None:

@@ -104,6 +104,7 @@ def test_a_mass_without_bound_is_a_rigid_driver() -> None:
     assert apart[1] / apart[2] == pytest.approx(10.0, rel=1e-3)
 
 
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize(("body", "law"), CASES)
 @pytest.mark.parametrize("history", [0.03, ss.loading.Sinusoidal(mean=0.03, amplitude=0.01, period=5.0 * T)])
 def test_energy_balances_with_the_work_of_the_gains(body: ElasticSlab, law: ss.FrictionLaw, history: object) -> None:

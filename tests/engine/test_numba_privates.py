@@ -28,6 +28,7 @@ def python(code: str, **environment: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=settings)
 
 
+@pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("what", MISSING)
 def test_what_is_missing_is_named(what: str) -> None:
     spoil, reason = MISSING[what]

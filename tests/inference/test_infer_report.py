@@ -13,6 +13,7 @@ from stickslip.inference.inference import Inference
 from stickslip.reports.inference import _digits, _measured
 from tests.html_page import Page, check_alone, check_form, check_links
 from tests.inference.velocity_steps import NEAR, TWO, inferred, record
+from tests.pictures import blank
 
 FREE = (*TWO, "body.mass")
 
@@ -27,7 +28,8 @@ def folder(found: Inference, tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("report") / "deep" / "folder"
     slip = replace(NEAR, friction=replace(NEAR.friction, evolution="slip"))
     other = ss.studies.infer(slip, record(), FREE, starts=1, held_out="110 s")
-    assert found.report(out, other) == out / "report.html"
+    with blank():
+        assert found.report(out, other) == out / "report.html"
     return out
 
 
@@ -74,7 +76,8 @@ def test_a_second_report_replaces_the_first_and_warns_of_a_run_that_misses_the_r
     data = record()
     data["mu"] += 0.02 * (data["time (min)"] > 2.5)
     study = inferred(data, ["friction.a"])
-    page = Page(study.report(folder).read_text(encoding="utf-8"))
+    with blank():
+        page = Page(study.report(folder).read_text(encoding="utf-8"))
     assert page.having("ul")[0] == {"class": "warnings", "aria-label": "Warnings"}
     assert "the run misses features of friction" in page.within("li")
     check_links(page, folder)

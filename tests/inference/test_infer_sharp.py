@@ -82,6 +82,7 @@ def test_a_jump_between_samples_is_spread_and_makes_both_samples_unsure() -> Non
     assert added == pytest.approx([0.0, 0.0, 24**-0.5, 24**-0.5, 0.0, 0.0])
 
 
+@pytest.mark.slow
 def test_static_friction_of_a_sharp_event_is_no_surer_than_the_mean_of_the_samples_before_it(weakening: Any) -> None:
     """The level of shear is known to the noise over the root of the number of samples, however sharp the event is."""
     study = weakening(0)

@@ -196,6 +196,7 @@ def test_the_energies_of_every_event_balance_and_its_window_is_the_run(body: ss.
         assert inside.velocity == pytest.approx(whole.velocity, abs=1e-9)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("ground", [Sinusoidal(0.0, 0.5, 0.4), Steps([0.0, 0.3, 0.7], [-0.4, 0.4, 0.0])], ids=["sinusoid", "steps"])
 def test_rate_and_state_on_shaken_ground_follows_an_own_integrator(ground: LoadingHistory) -> None:
     """To 1e-7 of the slip; steps of acceleration are met by implicit steps, too."""

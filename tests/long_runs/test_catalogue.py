@@ -57,7 +57,7 @@ def test_a_column_on_pulses_is_that_of_the_whole_run(name: str, monkeypatch: pyt
     same(table, ss.simulate(*RUNS[name]).catalogue())
 
 
-@pytest.mark.sampled(every=5)
+@pytest.mark.sampled(every=10)
 @pytest.mark.parametrize("name", RUNS)
 @pytest.mark.parametrize("capacity", [64, 512])
 def test_the_catalogue_is_the_table_of_the_whole_run(name: str, capacity: int, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -111,6 +111,7 @@ def test_a_finished_catalogue_continues(suffix: str, tmp_path: Path) -> None:
         same(ss.resume(tmp_path / "events.checkpoint.nc"), whole)
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=3)
 @pytest.mark.parametrize("name", ["rate law, fragments", "slab that heals", "block that heals"])
 def test_energies_survive_a_forgotten_history(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -113,6 +113,7 @@ def test_a_leap_that_is_not_restored_is_noticed(tmp_path: Path) -> None:
         assert differences(continued(path, duration), whole) != []
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("events", [1, 2])
 def test_a_number_of_events_stops_a_creeping_run(events: int, tmp_path: Path) -> None:
     """However often the run is looked at; and it says that it creeps."""
@@ -150,6 +151,7 @@ ss.simulate(problem, 200 * ss.YEAR, creep_rtol=1e-5, checkpoint="run.nc", checkp
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="needs SIGKILL")
 def test_a_killed_run_continues_bit_for_bit(tmp_path: Path) -> None:
     """Killed after a few checkpoints, or after more if there was no leap before these."""

@@ -189,6 +189,7 @@ def test_kill_leaves_a_checkpoint_that_continues(tmp_path: Path) -> None:
     assert differences(ss.resume(tmp_path / "run.nc", end), ss.simulate(begun.problem, end)) == []
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="needs SIGINT")
 def test_ctrl_c_leaves_a_solution_that_continues(tmp_path: Path) -> None:
     done = killed(LONG, tmp_path, "run.nc", signal.SIGINT)
@@ -199,6 +200,7 @@ def test_ctrl_c_leaves_a_solution_that_continues(tmp_path: Path) -> None:
     assert differences(ss.resume(tmp_path / "run.nc", end), ss.simulate(begun.problem, end)) == []
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("events", [1, 2])
 def test_an_event_that_begins_as_the_last_one_ends_is_not_counted(events: int, tmp_path: Path) -> None:
     """Undamped, an oscillating block turns round without rest: each swing begins in the instant in which the one before ends."""

@@ -14,6 +14,7 @@ SLAB = ss.ElasticSlab(2800, 3500, 1e4, 120e6, contact_mass=1e5)
 PLATE = 0.05 / ss.YEAR
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(("share", "years"), [(1.0, 278.2014), (10.0, 208.8326)])
 def test_a_driver_that_takes_up_waves_gives_one_event_after_the_other(share: float, years: float) -> None:
     """Equal events, each of the slip that the driver has moved since the last; the energy balance closes to 1e-10 of the heat."""

@@ -77,6 +77,7 @@ SPLIT = {
 }
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("name", SPLIT)
 def test_elastic_and_kinetic_energy_agree_with_the_field(name: str) -> None:
     """Stress and velocity inside the slab, squared and added up on a fine grid."""

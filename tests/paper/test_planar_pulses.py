@@ -109,6 +109,7 @@ def test_the_volume_method_sees_the_pulses_after_the_echo_too() -> None:
     assert peaks(*np.transpose(rates)) == pytest.approx(wanted[wanted < 2.0 * TRIP], abs=0.03)
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(("nucleus", "wanted"), [(0.8, 1), (2.0, 2)])
 def test_the_length_that_counts_is_that_over_which_slip_begins_at_once(nucleus: float, wanted: int) -> None:

@@ -35,6 +35,7 @@ def missed(run: PlanarSolution) -> float:
 SLOW = pytest.mark.slow
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("driver", ["half-space", *(pytest.param(one, marks=SLOW) for one in ("rigid", "dead load"))])
 def test_a_uniform_contact_has_the_energies_of_the_slab_in_1d(driver: str) -> None:
     """Each of them to 5e-3 of the heat, over 2.5 round trips. The steps are those of the distance of 31 m between nodes."""

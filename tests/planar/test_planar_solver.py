@@ -185,6 +185,7 @@ def test_a_disturbance_on_a_half_space_grows_as_the_closed_form_says() -> None:
     assert grows == pytest.approx(SPEED * math.sqrt(WEAKENING**2 - wavenumber**2), rel=1e-4, abs=0.0)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(("phase", "stable"), [(2.5, True), (3.2, False)])
 def test_steps_are_stable_up_to_a_phase_of_the_shortest_wave(phase: float, stable: bool) -> None:
     """The largest w dt is 2.5: there a disturbance from node to node fades, and at 3.2 it grows. Friction is constant."""
@@ -198,6 +199,7 @@ def test_steps_are_stable_up_to_a_phase_of_the_shortest_wave(phase: float, stabl
     assert size < 1e-3 * begun if stable else size > begun
 
 
+@pytest.mark.slow
 def test_a_plane_on_which_nothing_varies_with_z_is_a_line() -> None:
     problem = ss.Problem(SLAB, LAW, initial_load=60e6)
     nucleus = {"load": lambda y, *_: np.where(np.abs(y) < 4e3, 71e6, 60e6)}

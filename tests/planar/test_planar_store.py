@@ -420,6 +420,7 @@ def test_a_run_stopped_after_its_first_frame_can_continue(store: Path) -> None:
         assert (found.written, found.sent) == (1, 1)
 
 
+@pytest.mark.slow
 def test_python_without_assertions_is_refused_in_one_line(store: Path) -> None:
     code = "import stickslip as ss\ntry: ss.open_solution('run.zarr')\nexcept ss.InputError as error: print(error)"
     path = str(Path(ss.__file__).parents[1])

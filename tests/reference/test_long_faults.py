@@ -120,6 +120,7 @@ def test_a_steady_front_releases_g0_whatever_its_speed(speed: float, near: float
     assert _released(front, near, near + 6.0) == pytest.approx(THEORY.released_energy, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_slip_behind_a_steady_front_tends_to_its_end_from_below() -> None:
     """Forced at 0.6 c, 0.6 h wide: the overshoot is an error of order 1 in dy; the closed form of a sharp front within 1 %."""
     excess = []

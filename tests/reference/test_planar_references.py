@@ -84,6 +84,7 @@ def test_methods_agree_and_the_difference_falls(driver_impedance: float) -> None
     assert coarse / fine > 2.4
 
 
+@pytest.mark.slow
 def test_methods_agree_by_order_two_under_a_law_of_slip_and_slip_rate() -> None:
     """Without onset and arrest: 8e-5 of the largest slip at 64 steps in R, and a quarter of the difference at 32."""
     law = ss.friction.FromExpression("0.5 + 0.2*v/(0.1 + v)*(1 + 0.3*exp(-u/0.2))")

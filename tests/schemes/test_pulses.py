@@ -27,6 +27,7 @@ def test_a_massive_contact_rolls_over_the_next_barrier_below_the_critical_dampin
     assert (slip > 2.5 * np.pi / 50.0) == rolls
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(
     ("name", "gamma", "several"),
     [

@@ -128,6 +128,7 @@ def test_a_regular_contact_is_a_check_of_convergence() -> None:
     assert found.table.slip_order.iloc[-1] == pytest.approx(1.0, abs=0.03)
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(("kind", "nearest"), [("contact-mass", "perfect-delay"), ("lag", "maxwell")])
 def test_after_a_rest_the_second_event_follows_no_rule(kind: str, nearest: str) -> None:

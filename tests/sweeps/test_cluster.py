@@ -170,6 +170,7 @@ def test_a_sweep_can_start_inside_an_event_loop() -> None:
         asyncio.run(cell())
 
 
+@pytest.mark.slow
 def test_the_scheduler_may_be_named_by_a_file(open_scheduler: str, tmp_path: Path) -> None:
     file = tmp_path / "scheduler.json"
     file.write_text(f'{{"address": "{open_scheduler}"}}')
