@@ -33,6 +33,19 @@ def run() -> ss.Solution:
     return ss.simulate(PROBLEM, 20 * ss.YEAR)
 
 
+KEPT: list[bytes] = []
+"""The file of that run, once it has been written."""
+
+
+def saved(run: ss.Solution, folder: Path) -> Path:
+    """Put the file of the run into a folder: writing it takes longer than most of what is done with it."""
+    path = folder / "run.nc"
+    if not KEPT:
+        KEPT.append(run.to_netcdf(path).read_bytes())
+    path.write_bytes(KEPT[0])
+    return path
+
+
 def refused(act: Callable[[], object], *words: str) -> None:
     with pytest.raises(ss.InputError) as told:
         act()
@@ -54,7 +67,7 @@ def resealed(path: Path, edit: Callable[[h5py.File], object]) -> None:
 
 
 def test_no_damaged_file_is_read(run: ss.Solution, tmp_path: Path) -> None:
-    path = run.to_netcdf(tmp_path / "run.nc")
+    path = saved(run, tmp_path)
     whole, rng = path.read_bytes(), np.random.default_rng(1)
     for place in [0, len(whole) - 1, len(whole) - 70, *rng.integers(0, len(whole), 60).tolist()]:
         damaged = bytearray(whole)
@@ -67,7 +80,7 @@ def test_no_damaged_file_is_read(run: ss.Solution, tmp_path: Path) -> None:
 
 
 def test_other_readers_of_netcdf_do_not_mind_the_checksum(run: ss.Solution, tmp_path: Path) -> None:
-    with h5py.File(run.to_netcdf(tmp_path / "run.nc"), "r") as file:
+    with h5py.File(saved(run, tmp_path), "r") as file:
         assert file["history_load"].shape == (len(run.history), 19)
 
 
@@ -116,7 +129,7 @@ def check_edit(run: ss.Solution, tmp_path: Path, edit: Callable[[Checkpoint], ob
 
 @pytest.mark.parametrize("trips", [{0: -1}, {1: 5, 2: 3}, {-1: NEVER}], ids=["negative", "descend", "beyond all"])
 def test_a_row_of_a_piece_out_of_range_is_refused(run: ss.Solution, tmp_path: Path, trips: dict[int, int]) -> None:
-    path = run.to_netcdf(tmp_path / "run.nc")
+    path = saved(run, tmp_path)
 
     def edit(file: h5py.File) -> None:
         table = file["history_trip"][...]
@@ -129,7 +142,7 @@ def test_a_row_of_a_piece_out_of_range_is_refused(run: ss.Solution, tmp_path: Pa
 
 
 def test_tables_that_claim_more_than_the_file_holds_are_not_read(run: ss.Solution, tmp_path: Path) -> None:
-    path = run.to_netcdf(tmp_path / "run.nc")
+    path = saved(run, tmp_path)
 
     def claim(file: h5py.File) -> None:
         del file["history_load"]
@@ -151,7 +164,7 @@ def test_more_tables_or_attributes_than_any_run_has_are_counted_and_not_read(
     run: ss.Solution, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, what: str
 ) -> None:
     """The libraries take 5 ms for each: 8 000 small tables in 2.8 MB took 39 s."""
-    path = run.to_netcdf(tmp_path / "run.nc")
+    path = saved(run, tmp_path)
     resealed(path, NUMEROUS[what])
     monkeypatch.setattr("h5netcdf.File", None)
     monkeypatch.setattr("xarray.open_dataset", None)
@@ -159,21 +172,21 @@ def test_more_tables_or_attributes_than_any_run_has_are_counted_and_not_read(
 
 
 def test_links_out_of_the_file_are_not_followed(run: ss.Solution, tmp_path: Path) -> None:
-    path = run.to_netcdf(tmp_path / "run.nc")
+    path = saved(run, tmp_path)
     resealed(path, lambda file: file.__setitem__("elsewhere", h5py.ExternalLink("other.nc", "/x")))
     refused(lambda: ss.open_solution(path), "run.nc: not a file of stickslip: 'elsewhere' in it is a link")
 
 
 @pytest.mark.parametrize("name", ["history_rate", "engine_count", "round_trip_time"])
 def test_a_missing_table_is_refused_in_one_line(run: ss.Solution, tmp_path: Path, name: str) -> None:
-    path = run.to_netcdf(tmp_path / "run.nc")
+    path = saved(run, tmp_path)
     resealed(path, lambda file: file.__delitem__(name))
     refused(lambda: ss.open_solution(path), "run.nc: ")
 
 
 @pytest.mark.parametrize("value", ["", "x", np.inf, np.nan, [1, 2]])
 def test_an_attribute_that_is_no_number_is_refused_in_one_line(run: ss.Solution, tmp_path: Path, value: Any) -> None:
-    path = run.to_netcdf(tmp_path / "run.nc")
+    path = saved(run, tmp_path)
     resealed(path, lambda file: file.attrs.__setitem__("rtol", value))
     refused(lambda: ss.open_solution(path), "run.nc: not a file that stickslip has written: ")
 
@@ -182,7 +195,7 @@ def test_an_attribute_that_is_no_number_is_refused_in_one_line(run: ss.Solution,
 def test_texts_of_a_result_cannot_change_the_terminal(
     run: ss.Solution, tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    path = run.to_netcdf(tmp_path / "run.nc")
+    path = saved(run, tmp_path)
     resealed(path, lambda file: file.attrs.__setitem__(name, "a\n\x1b[31mred\x07"))
     stored(path).summarise()
     shown = capsys.readouterr().out
