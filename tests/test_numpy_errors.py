@@ -28,6 +28,7 @@ def scenario(body: str, law: str) -> Scenario:
 CASES = [("slab", law) for law in LAWS] + [("block", law) for law in list(LAWS)[::4]] + [("lab-slab", "hyperbolic-rate")]
 
 
+@pytest.mark.sampled(every=5)
 @pytest.mark.parametrize(("body", "law"), CASES)
 def test_uniqueness_and_check_need_no_setting_of_numpy(body: str, law: str) -> None:
     given = scenario(body, law)

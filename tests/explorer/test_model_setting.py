@@ -70,6 +70,7 @@ def test_what_a_field_shows_reads_back(name: str) -> None:
             assert (again.unit, again.size, again.slider) == (control.unit, control.size, control.slider)
 
 
+@pytest.mark.sampled(every=3)
 @everywhere
 def test_sliders_hold_the_value_and_what_they_give_is_read(name: str) -> None:
     setting = Setting.bundled(name)
@@ -156,6 +157,7 @@ def test_bad_entry_is_refused_in_one_line(path: str, typed: str, part: str) -> N
     assert part in one_line(error)
 
 
+@pytest.mark.sampled(every=3)
 @everywhere
 def test_every_exchange_of_a_kind_makes_a_scenario(name: str) -> None:
     for setting in exchanged(name):

@@ -183,6 +183,7 @@ ss.catalogue(problem, 1e9, "events.{suffix}", checkpoint_every=0.0, progress=lam
 """
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=4)
 @pytest.mark.skipif(os.name != "posix", reason="needs SIGKILL")
 @pytest.mark.parametrize(("suffix", "with_signal"), [("csv", "SIGKILL"), ("nc", "SIGKILL"), ("csv", "SIGINT"), ("nc", "SIGINT")])

@@ -88,6 +88,7 @@ def test_a_run_stopped_around_leaps_resumes_bit_for_bit(name: str, tmp_path: Pat
         assert differences(continued(path, duration), whole) == [], f"after {stop} steps"
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("name", RUNS)
 def test_a_run_that_ended_within_a_leap_continues_as_if_it_had_not(name: str, tmp_path: Path) -> None:

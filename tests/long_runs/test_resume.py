@@ -84,7 +84,7 @@ def test_those_stops_meet_the_engine_in_every_state(tmp_path: Path) -> None:
     assert expected <= met, expected - met
 
 
-@pytest.mark.sampled(every=7)
+@pytest.mark.sampled(every=14)
 @pytest.mark.parametrize("name", list(RUNS))
 def test_a_finished_run_continues_as_if_it_had_not_ended(name: str, tmp_path: Path) -> None:
     problem, duration = RUNS[name]

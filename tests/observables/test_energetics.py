@@ -28,6 +28,7 @@ def coulomb_block(damping: float, load: float = 4.1) -> ss.Problem:
     return ss.Problem(ss.SpringBlock(2.0, 50.0, 10.0, damping=damping), F.Coulomb(0.4, 0.3), initial_load=load)
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("name", RUNS)
 def test_every_event_balances(name: str) -> None:
     """In both tables, to 1e-9 of heat and of what is released, however late the event is; its pulses are those that are counted."""

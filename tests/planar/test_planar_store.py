@@ -265,6 +265,7 @@ def edited(path: Path, **changes: Any) -> None:
     netcdf_file.write(state.assign_attrs(digest=group.attrs["digest"]), path / "state.nc")
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize(
     ("changes", "word"),
     [
@@ -348,6 +349,7 @@ def bomb(path: Path) -> None:
     path.write_bytes(huge + google_crc32c.Checksum(huge).digest()[::-1])
 
 
+@pytest.mark.sampled(every=2)
 @pytest.mark.skipif(os.name != "posix", reason="needs pipes and links")
 @pytest.mark.parametrize(
     ("attack", "words"),

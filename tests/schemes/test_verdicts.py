@@ -185,6 +185,7 @@ def test_verdicts_by_scheme_on_the_loop(search: str, expected: str) -> None:
     assert found == {"sbp4": expected, "newmark": NONE, "backward-euler": NONE if search == "stick-first" else expected}
 
 
+@pytest.mark.slow
 @pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("search", ["stick-first", "continue"])
 def test_the_table_of_the_page_is_what_its_script_measures(search: str) -> None:
