@@ -16,9 +16,10 @@ YEAR = 31_557_600.0
 SHAKEN = ("sliding-block-shaken", "sliding-slab-shaken")
 VARYING = (*SHAKEN, "slide-hold-slide-block", "stress-pulse-slab", "tides-block", "velocity-steps-block")
 LABORATORY = ("bowed-string-slab", "direct-shear-block", "drill-string", "granite-slab", "kolsky-slab", "reversing-axis")
+LAYERS = ("bowed-string-tenth", "low-velocity-zone", "steel-on-granite")
 PLANAR = ("planar-patch", "planar-plane")
 CYCLES = ("cycles-block", "cycles-slab", "rate-and-state-block", "rate-and-state-slab")
-OURS = ("block-or-slab", *LABORATORY, *CYCLES, *VARYING, *PLANAR)
+OURS = ("block-or-slab", *LABORATORY, *CYCLES, *VARYING, *PLANAR, *LAYERS)
 PAPERS = [name for name in library.names() if name not in OURS]
 
 

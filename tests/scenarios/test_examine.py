@@ -12,7 +12,8 @@ from stickslip.contact.rules.loop import resolved
 from stickslip.friction import LAWS, FromTable, HyperbolicRate, RateAndState, SinusoidalSlip, TwoStateRateAndState
 from stickslip.reference.rate_and_state import SteadySliding
 from stickslip.scenarios import library
-from stickslip.scenarios.examine import Fact, examine
+from stickslip.scenarios.examine import examine
+from stickslip.scenarios.facts import Fact
 from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
 from stickslip.scenarios.templates import template
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.bodies import BodyWithWaves, ElasticSlab, as_waves
+from stickslip.bodies import BodyOnCharacteristics, BodyWithWaves, ElasticSlab, as_waves
 from stickslip.contact.critical import critical_normal_stress
 from stickslip.contact.regime_map import regimes_along_slip
 from stickslip.contact.sliding import SteadySlidings
@@ -29,6 +29,8 @@ from stickslip.problem.parameters import normal_name
 from stickslip.problem.problem import Problem
 from stickslip.reference.slab import PulseTrain
 from stickslip.scenarios.entries import key_of
+from stickslip.scenarios.examine_layers import first_echo, given_layers, layer_facts, of_layers, rest_warning, smallest_modulus
+from stickslip.scenarios.facts import Fact
 from stickslip.scenarios.scenario import Scenario, doubts
 from stickslip.scenarios.schema import quantities_in
 from stickslip.scenarios.stability import stability_of, start_of, wait_of
@@ -39,16 +41,6 @@ BARELY_ABOVE = 1.01
 """A growth of a disturbance below this factor (1) is shown as its excess over 1."""
 LARGE_STRAIN = 0.01
 """A larger shear strain (no unit) than this raises a warning: linear elasticity is doubtful."""
-
-
-@dataclass(frozen=True)
-class Fact:
-    """A number with its unit, or a word, with its name and its meaning."""
-
-    name: str
-    value: float | str
-    unit: str
-    meaning: str
 
 
 @dataclass(frozen=True)
@@ -90,7 +82,7 @@ def _given(scenario: Scenario) -> dict[str, list[Fact]]:
     facts = {"body": list[Fact](), "friction": _of_law(problem.friction, units=own_units(problem.load_unit))}
     owners = {"body": (problem.body, ""), "loading": (problem, ""), "initial": (problem, "initial_"), "run": (scenario, "")}
     for table, (owner, prefix) in owners.items():
-        facts[table] = []
+        facts[table] = [] if table != "body" or problem.body.is_uniform else given_layers(problem.body)
         for name, (declared, _) in quantities_in(table, type(problem.body), problem.friction.states).items():
             value = getattr(owner, prefix + name)
             if value == STEADY:
@@ -169,6 +161,8 @@ def _derived(problem: Problem) -> list[Fact]:
             Fact("K V", body.stiffness * problem.first_pull_rate, load_rate, f"rate of loading while stuck{first}"),
             *start,
         ]
+    if not body.is_uniform:
+        return [*layer_facts(of_layers(body), body.stiffness * problem.first_pull_rate), *start, *_pulses(problem)]
     of = "of sharp fronts" if body.has_machine else "of waves"
     waves = as_waves(body)
     _, symbol, of_modulus, meaning = waves.modulus_name
@@ -256,7 +250,7 @@ def warnings_of(scenario: Scenario, contact: Uniqueness) -> list[str]:
     if held and steady and not problem.varies and wait_of(problem) > scenario.duration:
         found.append("the run ends before loading reaches the static strength: nothing will slip")
     if problem.body.has_waves:
-        found += _slab_warnings(scenario, as_waves(problem.body), contact)
+        found += _slab_warnings(scenario, contact)
     rule = problem.rule
     if problem.why_not_run:
         found.append(f"it cannot be run: {problem.why_not_run}")
@@ -274,9 +268,12 @@ def _noise(law: FrictionLaw, contact: Uniqueness) -> list[str]:
     return [noise.warning(folds) for noise in noises if noise is not None]
 
 
-def _slab_warnings(scenario: Scenario, body: BodyWithWaves, contact: Uniqueness) -> list[str]:
-    found, problem = [], scenario.problem
-    strain = abs(problem.load) / body.modulus if isinstance(body, ElasticSlab) else 0.0  # a string may have an unknown radius
+def _slab_warnings(scenario: Scenario, contact: Uniqueness) -> list[str]:
+    found, problem, body = [], scenario.problem, scenario.problem.body
+    modulus, echo = _modulus_and_echo(body)
+    strain = (
+        abs(problem.load) / modulus if isinstance(body, ElasticSlab) or not body.is_uniform else 0.0
+    )  # a string may have an unknown radius
     if strain > LARGE_STRAIN:
         found.append(f"the shear strain at the start is {strain:.3g}: linear elasticity is doubtful beyond {LARGE_STRAIN:g}")
     if problem.friction.memory == "since-arrest" and body.inertia == 0.0 and body.is_driven_rigidly:
@@ -284,8 +281,10 @@ def _slab_warnings(scenario: Scenario, body: BodyWithWaves, contact: Uniqueness)
             f"friction heals instantly and the {body.noun} has no {body.mass_field}:"
             " under slow loading it creeps in tiny slips after the first event"
         )
-    if scenario.duration < body.two_way_time:
-        found.append(f"the run ends before the first echo returns at R = {body.two_way_time:.6g} s")
+    if scenario.duration < echo:
+        found.append(f"the run ends before the first echo returns at R = {echo:.6g} s")
+    if not body.is_uniform:
+        found += rest_warning(of_layers(body), scenario.duration, problem.friction.sticks)
     if contact.plateaus:
         found.append("a continuum of slip rates solves the contact equation at one load: no rule picks one of them")
     if contact.window is not None:
@@ -293,8 +292,16 @@ def _slab_warnings(scenario: Scenario, body: BodyWithWaves, contact: Uniqueness)
             found.append(
                 "the window of several slip rates is narrower than 1e-9 of the strength: small changes of the numbers matter"
             )
-        found += _chaos(body, contact)
+        found += _chaos(as_waves(body), contact) if body.is_uniform else []
     return found
+
+
+def _modulus_and_echo(body: BodyOnCharacteristics) -> tuple[float, float]:
+    """Return the (smallest) shear modulus (Pa) of a body with waves, and when the first echo returns (s)."""
+    if body.is_uniform:
+        return as_waves(body).modulus, as_waves(body).two_way_time
+    layers = of_layers(body)
+    return smallest_modulus(layers), first_echo(layers)
 
 
 def _chaos(body: BodyWithWaves, contact: Uniqueness) -> list[str]:

@@ -13,7 +13,8 @@ from stickslip.foundation.show import brief
 from stickslip.planar.nodes import varying
 from stickslip.planar.slab import ENOUGH_NODES, PlanarSlab
 from stickslip.scenarios.contact import LOCKED, Contact, Patch, PointsAlong
-from stickslip.scenarios.examine import LARGE_STRAIN, Examination, Fact, examine
+from stickslip.scenarios.examine import LARGE_STRAIN, Examination, examine
+from stickslip.scenarios.facts import Fact
 from stickslip.scenarios.scenario import Scenario, doubts
 from stickslip.scenarios.stability import loading_rate
 

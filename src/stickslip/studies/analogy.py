@@ -13,12 +13,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, cast
 
 import numpy as np
 import pandas as pd
 
-from stickslip.bodies import as_waves
+from stickslip.bodies import BodyWithWaves
 from stickslip.contact.critical import margin
 from stickslip.contact.regime_map import put_both, two_parameters
 from stickslip.foundation.arguments import for_users
@@ -98,8 +98,9 @@ def block_for(problem: Problem) -> Problem:
 
     Raises InputError if the body is a block, or if the driver of the slab is not rigid.
     """
-    slab = as_waves(problem.body, "analogy: needs a slab or a string: a block has no other block that stands for it")
-    return replace(problem, body=slab.equivalent_block())
+    if not problem.body.has_waves:
+        raise InputError("analogy: needs a slab or a string: a block has no other block that stands for it")
+    return replace(problem, body=cast(BodyWithWaves, problem.body).equivalent_block())
 
 
 @for_users
@@ -171,7 +172,7 @@ def weakening(problem: Problem) -> dict[str, float]:
 
     The keys are "weakening_slip" and "weakening_rate".
     """
-    body = as_waves(problem.body)
+    body = cast(BodyWithWaves, problem.body)
     by_slip = float(problem.friction.slopes(problem.law_slip)[0])
     massless = replace(problem, body=replace(body, **{body.mass_field: 0.0}))
     return {"weakening_slip": -problem.normal * by_slip / body.stiffness, "weakening_rate": 1.0 - margin(massless)}

@@ -97,8 +97,8 @@ def _steady(loaded: Scenario, *, runs: bool) -> SteadySlidings:
 def _show_contact(loaded: Scenario, drawing_wanted: object) -> None:
     """Print what was found about a scenario with a contact of many nodes. Raises InputError if a drawing is wanted."""
     from stickslip.cli.output.contact import size_of
-    from stickslip.scenarios.examine import Fact
     from stickslip.scenarios.examine_contact import examine_contact
+    from stickslip.scenarios.facts import Fact
 
     if drawing_wanted:
         raise InputError("check: figures and maps draw the contact equation of a single place: leave them out with a [contact]")

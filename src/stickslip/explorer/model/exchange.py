@@ -6,10 +6,10 @@ import math
 import tomllib
 from collections.abc import Mapping
 from copy import deepcopy
-from dataclasses import replace
-from typing import Any
+from dataclasses import fields, replace
+from typing import Any, cast
 
-from stickslip.bodies import BODIES, as_waves
+from stickslip.bodies import BODIES, BodyWithWaves
 from stickslip.explorer.model.controls import CONSTANT, bodies_beside
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.solve import slab_of_figure
@@ -25,6 +25,16 @@ from stickslip.scenarios import library
 from stickslip.scenarios.entries import Source, to_table
 from stickslip.scenarios.schema import KINDS, entries_in, kind_of, read_part
 from stickslip.scenarios.templates import STARTERS, example_of
+
+OF_LAYERS = {"layered-slab": "low-velocity-zone", "two-slabs": "steel-on-granite"}
+"""Bundled scenarios whose bodies of layers take the place of another body."""
+RIGID_DRIVER = {
+    "driver_impedance": math.inf,
+    "other_driver_impedance": math.inf,
+    "driver_inertia": 0.0,
+    "driver_integral_gain": 0.0,
+}
+"""Numbers of a driver that does not give way: the block equivalent to a body needs one."""
 
 
 def with_kind(setting: Setting, table: str, kind: str) -> Setting:
@@ -113,13 +123,14 @@ def _with_body(setting: Setting, kind: str) -> Setting:
     if kind not in bodies_beside(own.kind):
         raise InputError(f"{setting.name}: {own.kind} cannot be exchanged for {kind}: one slides, the other turns")
     if not BODIES[kind].has_waves:
-        plain = {"driver_impedance": math.inf, "driver_inertia": 0.0, "driver_integral_gain": 0.0}
-        whole = replace(as_waves(own), **plain)
-        body = to_table(whole.equivalent_block())
+        known = {one.name for one in fields(own)}
+        whole = replace(own, **{name: value for name, value in RIGID_DRIVER.items() if name in known})
+        body = to_table(cast(BodyWithWaves, whole).equivalent_block())
         loading = {key: value for key, value in (setting.value("loading") or {}).items() if not key.startswith("far_stress")}
         setting = setting.with_value("loading", loading)
     else:
         slab_name = STARTERS["string"] if own.load_unit == TURNS else slab_of_figure(setting.name) or STARTERS["slab"]
+        slab_name = OF_LAYERS.get(kind, slab_name)
         body = dict(tomllib.loads(library.text(slab_name))["body"])
     made = {"kind": kind} | _began(setting, "body", kind, body)
     run = {key: value for key, value in setting.value("run").items() if key not in ("creep_rtol", "shortest_event")}

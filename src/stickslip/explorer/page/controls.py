@@ -46,6 +46,8 @@ _SECTIONS = {
         "kolsky-slab",
         "cycles-slab",
         "bowed-string-slab",
+        "bowed-string-tenth",
+        "steel-on-granite",
         "reversing-axis",
     ),
 }

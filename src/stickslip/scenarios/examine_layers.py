@@ -1,0 +1,103 @@
+"""Find what a user should know about a body of layers before it is run: its layers, its cells, and what rest costs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from stickslip.bodies import BodyOnCharacteristics, LayeredSlab, OfLayers, TwoSlabs
+from stickslip.bodies.layers import Layers
+from stickslip.foundation.quantities import Choice, NumberSeries, fields_of
+from stickslip.scenarios.facts import Fact
+
+MANY_PIECES = 100_000
+"""From this many pieces of rest on (some seconds), a warning says how many there are."""
+
+
+def of_layers(body: BodyOnCharacteristics) -> LayeredSlab | TwoSlabs:
+    """Return a body that is not uniform."""
+    assert isinstance(body, LayeredSlab | TwoSlabs)
+    return body
+
+
+def given_layers(body: BodyOnCharacteristics) -> list[Fact]:
+    """Return the lists and the words that a body of layers was given; its numbers are given as those of other bodies are."""
+    facts = list[Fact]()
+    for name, (declared, _) in fields_of(type(body)).items():
+        value = getattr(body, name)
+        if isinstance(declared, NumberSeries):
+            facts.append(Fact(name, ", ".join(f"{one:.6g}" for one in value), declared.item.unit, declared.item.meaning))
+        elif isinstance(declared, Choice):
+            facts.append(Fact(name, value, "", declared.meaning))
+    return facts
+
+
+def layer_facts(body: OfLayers, load_rate: float) -> list[Fact]:
+    """Return what follows from the numbers of a body of layers; `load_rate` is the rate of loading at first (Pa/s)."""
+    cells, together = body.cells, "side by side" if body.is_joined else "in series"
+    sides = ", that of both sides" if len(body.stacks) > 1 else ""
+    found = [Fact("Z", body.impedance, "Pa s/m", f"impedance at the contact{sides}")]
+    for side, one in zip(_names(body), body.stacks, strict=True):
+        found += _of_side(side, one)
+    return [
+        *found,
+        Fact("R", body.two_way_time, "s", "longest two-way travel time to a driver, through all layers"),
+        Fact("cells", float(sum(cells.counts)), "1", f"of equal travel time: {_counts(cells.counts)} of the layers"),
+        Fact("time of a cell", cells.time, "s", "to the contact, a wave brings news every two of them"),
+        Fact("error", cells.error, "1", "largest relative error of a layer's travel time, rounded to cells"),
+        Fact(
+            "G/h",
+            body.stiffness,
+            "Pa/m",
+            f"load lost per metre of slow slip: the layers in series{sides and ', both sides '}{sides and together}",
+        ),
+        Fact("G V/h", load_rate, "Pa/s", "rate of loading at first"),
+    ]
+
+
+def _names(body: OfLayers) -> Sequence[str]:
+    return ("",) if len(body.stacks) == 1 else ("", "other ")
+
+
+def _counts(counts: Sequence[int]) -> str:
+    return " + ".join(str(one) for one in counts)
+
+
+def _of_side(side: str, one: Layers) -> Iterator[Fact]:
+    for i, (impedance, count) in enumerate(zip(one.impedances, one.counts, strict=True), 1):
+        name = f"{side}layer {i}"
+        yield Fact(f"Z of {name}", impedance, "Pa s/m", f"impedance rho c; two-way time {2.0 * count * one.time:.6g} s")
+    for i, share in enumerate(one.interface_reflections, 1):
+        yield Fact(
+            f"r of {side}{i}, {i + 1}", share, "1", f"reflection of stress where layer {i} meets layer {i + 1}, from the contact"
+        )
+    yield Fact(f"{side}r", one.reflection, "1", "reflection of waves at the driver: -1 rigid, 0 matched, +1 dead load")
+
+
+def rest_warning(body: OfLayers, duration: float, sticks: bool) -> list[str]:
+    """Return a warning about the cost of rest if every driver is rigid, for a law that sticks and a duration (s)."""
+    trips = duration / body.round_trip_time
+    if not (sticks and body.is_driven_rigidly and trips > MANY_PIECES):
+        return []
+    return [
+        f"waves between layers and rigid drivers never fade, so rest is followed through every round trip of two cells: about"
+        f" {trips:.2g} pieces, each of {sum(body.cells.counts)} cells; under long loading give a driver of finite impedance"
+    ]
+
+
+def smallest_modulus(body: OfLayers) -> float:
+    """Return the smallest shear modulus rho c^2 (Pa) of the layers."""
+    return min(rho * c * c for one in body.stacks for rho, c in zip(one.density, one.wave_speed, strict=True))
+
+
+def first_echo(body: OfLayers) -> float:
+    """Return when the first wave that slip has sent out comes back to the contact (s): from a driver, or where layers differ."""
+    return min(_first_echo(one) for one in body.stacks)
+
+
+def _first_echo(one: Layers) -> float:
+    passed = 0
+    for count, share in zip(one.counts, (*one.interface_reflections, one.reflection), strict=True):
+        passed += count
+        if share != 0.0:
+            break
+    return 2.0 * passed * one.time

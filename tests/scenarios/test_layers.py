@@ -1,0 +1,131 @@
+"""Bodies of layers in scenarios: what the bundled ones do, what `check` says, and which doors are open."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import stickslip as ss
+from stickslip.explorer.model.controls import controls_of
+from stickslip.explorer.model.exchange import with_kind
+from stickslip.explorer.model.setting import Setting
+from stickslip.explorer.model.solve import companion_of, motion
+from stickslip.scenarios.examine import examine
+from stickslip.scenarios.scenario import Scenario
+from tests.messages import refused
+
+NAMES = ("bowed-string-tenth", "low-velocity-zone", "steel-on-granite")
+
+
+def facts(name: str) -> dict[str, float | str]:
+    return {one.name: one.value for one in examine(ss.load_scenario(name)).derived}
+
+
+def test_the_fault_with_a_soft_layer_slips_twice() -> None:
+    run = ss.simulate("low-velocity-zone")
+    np.testing.assert_allclose(run.events.start, [0.0, 18 * TIME], rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(run.events.end, [2 * TIME, 20 * TIME], rtol=1e-12)
+    np.testing.assert_allclose(run.events.peak_rate, [9.204081633, 13.965527813], rtol=1e-9)
+    np.testing.assert_allclose(run.slip(35.0), 26.479553652, rtol=1e-10)
+
+
+TIME = 1000.0 / 1750.0
+"""The time (s) that a wave takes to cross the soft layer of low-velocity-zone, that of a cell."""
+
+
+def test_the_string_slips_for_a_tenth_of_a_period() -> None:
+    events = ss.simulate("bowed-string-tenth").events
+    period = 2 * 0.69 / 202.6
+    np.testing.assert_allclose(events.duration, 0.1 * period, rtol=1e-6)
+    apart = np.diff(events.start) / period
+    assert np.count_nonzero(np.abs(apart - 1.0) < 1e-6) == len(apart) - 2  # two slips are missing
+    assert events.peak_rate.between(0.51, 0.61).all()
+
+
+def test_plates_of_steel_and_granite_slip_within_two_round_trips() -> None:
+    events = ss.simulate("steel-on-granite").events
+    assert len(events) == 12
+    assert (events.duration < 61e-6).all()
+    np.testing.assert_allclose(events.recurrence[1:].mean(), 2.618e-3, rtol=1e-3)
+
+
+def test_check_shows_layers_and_cells() -> None:
+    found = facts("low-velocity-zone")
+    assert (found["cells"], found["error"], found["r"]) == (5.0, 0.0, -1.0)
+    assert found["Z of layer 1"] == pytest.approx(4.9e6)
+    assert found["r of 1, 2"] == pytest.approx(1 / 3)
+    assert found["R"] == pytest.approx(10 * TIME)
+    assert found["G/h"] == pytest.approx(1 / (1e3 / (2800 * 1750**2) + 8e3 / (2800 * 3500**2)))
+    other = facts("steel-on-granite")
+    assert other["Z"] == pytest.approx(1 / (1 / (7850 * 3200) + 1 / (2650 * 3000)))
+    assert other["Z of other layer 1"] == pytest.approx(2650 * 3000)
+
+
+def test_check_warns_of_rest_that_is_walked_through() -> None:
+    long = ss.load_scenario("low-velocity-zone").with_values({"duration": "1 year"})
+    (warning,) = examine(long).warnings
+    assert "about 2.8e+07 pieces, each of 5 cells; under long loading give a driver of finite impedance" in warning
+    assert not examine(long.with_values({"driver_impedance": 2e8})).warnings
+    assert "the run ends before the first echo returns at R = 1.14286 s" in examine(long.with_values({"duration": 1.0})).warnings
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_run_that_is_saved_goes_on_to_the_bit(name: str, tmp_path: Path) -> None:
+    scenario = ss.load_scenario(name)
+    whole, half = ss.simulate(scenario), ss.simulate(scenario, 0.4 * scenario.duration)
+    half.to_netcdf(tmp_path / "half.nc")
+    on = ss.resume(tmp_path / "half.nc", scenario.duration)
+    times = np.linspace(0.0, scenario.duration, 501)
+    np.testing.assert_array_equal(on.slip_rate(times), whole.slip_rate(times))
+    assert on.events.equals(whole.events)
+
+
+def test_numbers_of_layers_are_parameters() -> None:
+    scenario = ss.load_scenario("low-velocity-zone").with_values({"body.wave_speed[0]": "2000 m/s", "thickness[1]": 7e3})
+    assert tuple(scenario.problem.body.wave_speed) == (2000.0, 3500.0)
+    assert tuple(scenario.problem.body.thickness) == (1000.0, 7000.0)
+    table = ss.sweep("low-velocity-zone", {"body.wave_speed[0]": [1750.0, 3500.0]})
+    assert table.events.values.tolist() == [2, 1]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_explorer_shows_a_body_of_layers(name: str) -> None:
+    setting = Setting.bundled(name)
+    body = controls_of(setting)[0]
+    assert [one.kind for one in body.controls if one.path in ("body.thickness", "body.density", "body.wave_speed")] == [
+        "points"
+    ] * 3
+    scenario = setting.scenario()
+    assert motion(ss.simulate(scenario, max_pieces=100_000)).name == "slab"
+    companion = companion_of(scenario)
+    assert (companion is None) == (name == "bowed-string-tenth")  # whose drivers are not rigid
+    block = with_kind(setting, "body", "spring-block").scenario().problem.body
+    assert block.stiffness == pytest.approx(scenario.problem.body.stiffness)
+    for kind in ("layered-slab", "two-slabs"):
+        assert with_kind(Setting.bundled("fig6-slab"), "body", kind).scenario().problem.body.kind == kind
+
+
+Door = Callable[[Scenario], object]
+REFUSALS: dict[str, tuple[Door, str]] = {
+    "schemes": (lambda one: ss.studies.schemes(one), "schemes: a {} has no grid: they are of an ElasticSlab"),
+    "planar": (lambda one: ss.PlanarSlab(one.problem, 64, 1e3), "PlanarSlab: "),
+    "ground": (
+        lambda one: replace(one.problem, pull_rate=0.0, ground_velocity=ss.loading.Sinusoidal(0.0, 0.1, 1.0)),
+        "Problem: ground that moves is not followed under a {}",
+    ),
+    "creep": (lambda one: ss.simulate(one, creep_rtol=1e-6), "simulate: creep_rtol"),
+}
+"""Where bodies of layers are refused, and how the message begins, with the name of the body."""
+
+
+@pytest.mark.parametrize("name", ["low-velocity-zone", "steel-on-granite"])
+@pytest.mark.parametrize("door", REFUSALS)
+def test_what_bodies_of_layers_do_not_have_is_refused_in_one_line(door: str, name: str) -> None:
+    attempt, begins = REFUSALS[door]
+    scenario = ss.load_scenario(name)
+    with refused(begins=begins.format(type(scenario.problem.body).__name__)):
+        attempt(scenario)
