@@ -74,8 +74,8 @@ ROOMS = {
         ("solver",),
     ),
     "scenarios": (
-        ("contact", "entries", "library", "stability"),
-        ("schema", "text_of_files"),
+        ("contact", "entries", "facts", "library", "stability"),
+        ("examine_layers", "schema", "text_of_files"),
         ("contact_table",),
         ("scenario",),
         ("examine", "parameter_paths", "source"),
