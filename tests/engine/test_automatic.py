@@ -158,18 +158,6 @@ def test_the_tolerance_follows_rtol(rtol: float, tolerance: float) -> None:
     assert creep_tolerance(printed(1), 0.0, rtol) == 0.0
 
 
-@pytest.mark.sampled(every=3)
-@pytest.mark.parametrize("share", [0.004, 0.5, 0.99])
-def test_a_resumed_run_leaps_as_if_it_had_not_stopped(tmp_path: Path, share: float) -> None:
-    """Stopped before the first leap, in it, and behind it."""
-    whole = creeping(printed(1).pull_rate, 1e-6)
-    first = ss.simulate(printed(1), share * whole.creep.end.iloc[0], 1e-6)
-    resumed = stopped_and_continued(first, DAYS, tmp_path)
-    assert resumed.creep_rtol is None
-    assert differences(resumed, whole) == []
-    assert np.array_equal(resumed.history.creep, whole.history.creep)
-
-
 def test_a_member_of_a_batch_leaps_as_a_single_run() -> None:
     """Members that creep for long are run alone, the others are not changed by that."""
     scenario = replace(ss.load_scenario("fig5-slab-printed"), duration=DAYS)

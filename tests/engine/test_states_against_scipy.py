@@ -3,13 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
-from scipy.optimize import brentq
 
 import stickslip as ss
 from tests.engine.states_truth import (
@@ -17,14 +13,11 @@ from tests.engine.states_truth import (
     DAHL,
     FAULT,
     FLASH,
-    HEALING,
-    LIGHT,
     LUGRE,
     RATE,
     SLAB,
     TYPED_LUGRE,
     WARM,
-    Floats,
     Truth,
     block_truth,
     largest_difference,
@@ -122,56 +115,6 @@ def test_a_block_that_is_launched_follows_one_state_through_a_stick_slip_event(e
     energy, moving = run.energy(t), 0.5 * LAB.mass * (run.slip_rate(t) ** 2 - 1e-6)
     assert np.abs(energy.balance).max() < 1e-9 * float(energy.heat[-1])
     assert energy.kinetic.to_numpy() == pytest.approx(moving, rel=1e-12, abs=1e-12 * np.abs(moving).max())
-
-
-# ---- rest ----------------------------------------------------------------------------------------------------------------------
-
-
-def stick_slip(force: Callable[[float], float], z: float, t: Floats) -> tuple[Floats, Floats]:
-    """Slip and state at times t of a block that sticks under HEALING, forward; scipy finds onset and arrest."""
-    body, now, u = LIGHT, 0.0, 0.0
-    slip, state = np.full_like(t, np.nan), np.full_like(t, np.nan)
-    exact: dict[str, Any] = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-15, "dense_output": True}
-
-    def slips(s: float, y: Floats) -> list[float]:
-        net = force(s) - body.stiffness * y[0] - body.normal_force * (0.3 + 0.05 * y[1] + y[2])
-        return [y[1], net / body.mass, *HEALING.change(y[1], y[2])]
-
-    while now < t[-1]:
-        at_rest, level = (now, z), u
-
-        def held(s: float, at_rest: tuple[float, float] = at_rest, level: float = level) -> float:
-            healed = 0.2 + (at_rest[1] - 0.2) * math.exp(-(s - at_rest[0]) / 0.5)
-            return force(s) - body.stiffness * level - body.normal_force * (0.3 + healed)
-
-        grid = np.linspace(now, t[-1], 4000)
-        over = next((k for k in range(1, len(grid)) if held(grid[k]) > 0.0), None)
-        onset = t[-1] if over is None else float(brentq(held, grid[over - 1], grid[over], xtol=1e-15))
-        inside = (t >= now) & (t <= onset)
-        slip[inside], state[inside] = u, 0.2 + (z - 0.2) * np.exp(-(t[inside] - now) / 0.5)
-        z = 0.2 + (z - 0.2) * math.exp(-(onset - now) / 0.5)
-        if over is None:
-            break
-
-        def stops(s: float, y: Floats, onset: float = onset) -> float:
-            return float(y[1]) if s > onset + 1e-6 else 1.0
-
-        stops.terminal, stops.direction = True, -1.0  # type: ignore[attr-defined]
-        found = solve_ivp(slips, (onset, t[-1]), [u, 0.0, z], events=stops, **exact)
-        now = float(found.t[-1])
-        inside = (t >= onset) & (t <= now)
-        slip[inside], state[inside] = found.sol(t[inside])[0], found.sol(t[inside])[2]
-        u, z = float(found.y[0, -1]), float(found.y[2, -1])
-    return slip, state
-
-
-@BOTH_WAYS
-def test_a_typed_law_that_heals_at_rest_gives_stick_slip(way: float) -> None:
-    problem = ss.Problem(LIGHT, HEALING.law, pull_rate=way * 2e-3, initial_load=0.0)
-    run, t = ss.simulate(problem, 4.0), np.linspace(0.0, 4.0, 401)
-    slip, state = stick_slip(lambda s: 4.0 * s, 0.2, t)
-    assert len(run.catalogue(0.0)) >= 3
-    assert largest_difference(run, t, way * slip, [state]) < CLOSE
 
 
 # ---- slab ----------------------------------------------------------------------------------------------------------------------

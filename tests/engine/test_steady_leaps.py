@@ -155,15 +155,6 @@ def test_a_catalogue_says_that_it_slides_steadily() -> None:
     assert "slides steadily and stably at the driver's rate: no event will come" in table.attrs["creep"]
 
 
-def test_a_sweep_leaps_as_a_run_does() -> None:
-    scenario = ss.scenarios["fig6-slab"].with_values({"run.duration": 1e7})
-    scenario = replace(scenario, problem=replace(scenario.problem, friction=SMOOTH))
-    found = ss.sweep(scenario, {"initial.excess": [0.0, 1e3]}, quantities=["slip", "end_time"], out=None)
-    for excess, slip in zip((0.0, 1e3), found.slip.to_numpy().tolist(), strict=True):
-        run = ss.simulate(replace(scenario.problem, initial_excess=excess), 1e7)
-        assert slip == float(run.slip(1e7))
-
-
 def test_an_examination_says_that_no_event_will_come_where_the_run_finds_none() -> None:
     words = "slides steadily and stably at the driver's rate: no event will come"
     assert words in ss.studies.steady(CASES["fades"]).lines()

@@ -16,13 +16,10 @@ from tests.problems import (
     IMPEDANCE,
     MODULUS,
     NORMAL,
-    PULL,
-    RATE_LAW,
     ROUND,
     SLAB,
     THICKNESS,
     rate_law_slab,
-    slip_law_block,
     slip_law_slab,
 )
 
@@ -89,16 +86,6 @@ def peak_times(run: ss.Solution) -> list[float]:
     return [time for time, _ in tops]
 
 
-def test_slab_slip_law_far_beyond_the_peak_without_pulling() -> None:
-    """One pulse at cot(0.025) Z / (a omega S)."""
-    run = ss.simulate(slip_law_slab(5.0, 1e-2, pull=0.0), 20.0)
-    event = run.events.iloc[0]
-    assert close(event.peak_time, "1.567673320")
-    assert event.peak_time == pytest.approx(IMPEDANCE / (0.5 * 5.0 * NORMAL) / math.tan(0.025), rel=1e-9, abs=0.0)
-    assert close(event.slip, "1.2428558")
-    assert event.pulses == 1
-
-
 def test_slab_rate_law_at_alpha_one() -> None:
     run = ss.simulate(rate_law_slab(), 480 * ss.YEAR)
     first, second = run.shocks.iloc[0], run.shocks.iloc[1]
@@ -126,42 +113,6 @@ def test_slab_rate_law_just_above_critical() -> None:
     assert round(after_arrest / ROUND) == 16_429
     assert close(after_arrest, "93880.000")
     assert run.history.store.phase_from[run.history.store.cause > 0][2] == 0.0
-
-
-@pytest.mark.parametrize(
-    ("wavenumber", "stiffness", "start", "peak", "peak_time", "stop", "slip"),
-    [
-        (5.0, MODULUS * 1e3, "0.3416860906", "5.538637", "2.579243", "3.029102456", "2.721335481"),
-        (50.0, MODULUS * 1e4, "0.0341686091", "1.757632", "0.442580", "0.586014899", "0.273505101"),
-    ],
-)
-def test_block_slip_law(wavenumber: float, stiffness: float, start: str, peak: str, peak_time: str, stop: str, slip: str) -> None:
-    problem = slip_law_block(wavenumber, stiffness)
-    run = ss.simulate(problem, 20.0)
-    event = run.events.iloc[0]
-    assert close(problem.initial_slip, start)
-    assert close(event.peak_rate, peak)
-    assert close(event.peak_time, peak_time)
-    assert close(event.end, stop)
-    assert close(event.slip, slip)
-    assert len(run.shocks) == 0
-    assert len(run.catalogue(0.0)) == 1
-
-
-def test_block_rate_law() -> None:
-    block = ss.SpringBlock(DENSITY * 1e9, MODULUS * 1e3, 1e14)
-    run = ss.simulate(ss.Problem(block, RATE_LAW, pull_rate=PULL, initial_excess=0.0), 20.0)
-    event = run.events.iloc[0]
-    assert close(event.peak_rate, "3.511221")
-    assert close(event.peak_time, "1.839772")
-    assert close(event.end, "2.226453818")
-    assert close(event.slip, "2.061159848")
-
-
-@pytest.mark.parametrize(("rule", "years"), [("perfect-delay", "468.80"), ("minimal", "468.80"), ("maxwell", "394.26")])
-def test_second_event_by_rule(rule: str, years: str) -> None:
-    run = ss.simulate(rate_law_slab(selection=rule), 480 * ss.YEAR)
-    assert abs(run.events.start.iloc[1] / ss.YEAR - float(years)) < 0.005 + 1e-9
 
 
 def test_coulomb_slab_in_the_limit_of_no_pull() -> None:

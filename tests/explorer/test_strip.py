@@ -23,11 +23,7 @@ SLAB = Setting.bundled("fig6-slab")
 
 CASES = {
     "fig6-slab": ALPHA,
-    "fig5-slab-reconstructed": strip_range("friction.wavenumber", 5.0, 60.0),
-    "fig6-block-reconstructed": ALPHA,
-    "fig7-slab-critical": strip_range("friction.alpha", 0.19, 0.21),
     "cycles-block": strip_range("friction.distance", 0.01, 0.02),  # friction that heals is not for the batch
-    "fig4-loop": strip_range("loading.pull_rate", 1.0, 3.0),
 }
 
 

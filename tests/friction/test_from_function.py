@@ -188,19 +188,6 @@ def test_every_form_of_a_function_makes_a_law_in_a_problem(form: str) -> None:
     assert problem.strength == pytest.approx(static * 1e8, rel=1e-15, abs=0)
 
 
-def test_a_function_a_text_and_the_built_in_law_give_one_run() -> None:
-    """The slab of Fig. 6 with its law in four forms: the first event is the same to rounding, and known in closed form."""
-
-    def mu(v: Any, mu_s: float = 0.8, mu_d: float = 0.3) -> Any:
-        return mu_d + (mu_s - mu_d) / (1.0 + v)
-
-    slab = ss.ElasticSlab(2800.0, 3500.0, 1e4, 1e8)
-    for law in (HyperbolicRate(0.8, 0.3, 1.0), mu, "0.3 + 0.5/(1 + v)", FromFunction(mu)):
-        events = ss.simulate(ss.Problem(slab, law, pull_rate=1e-9, initial_excess=0.0), 7.0).events
-        assert events.peak_rate[0] == pytest.approx(0.402 / 0.098, rel=1e-8, abs=0)  # (alpha / alpha_c - 1) / alpha
-        assert events.end[0] == pytest.approx(2e4 / 3500.0, rel=1e-12, abs=0)
-
-
 @pytest.mark.parametrize(
     ("formula", "said"),
     [

@@ -72,10 +72,8 @@ REFUSED: list[tuple[Any, dict[str, Any], str]] = [
 @pytest.mark.parametrize(("data", "options", "message"), REFUSED, ids=[message[:50] for _, _, message in REFUSED])
 def test_what_cannot_be_used_is_refused_in_one_line_with_the_cure(data: Any, options: dict[str, Any], message: str) -> None:
     options = {"starts": 1} | options
-    with pytest.raises(ss.InputError) as caught:
+    with refused(begins=message):
         ss.studies.infer(GUESS, data, options.pop("free", ["a"]), **options)
-    assert str(caught.value).startswith(message), caught.value
-    assert "\n" not in str(caught.value)
 
 
 def test_force_on_a_slab_and_its_sensor_are_refused() -> None:

@@ -14,7 +14,8 @@ import stickslip as ss
 from stickslip.foundation.errors import InputError
 from stickslip.inference.certainty.certainty import _covariance
 from stickslip.inference.fit import search
-from stickslip.inference.fit.free import DELAY, SERVO, TREND
+from stickslip.inference.fit.by_features import _with_gap
+from stickslip.inference.fit.free import DELAY, SERVO, TREND, Free
 from stickslip.inference.fit.memory import (
     ACTIVE,
     WHITE,
@@ -210,3 +211,16 @@ def test_the_error_of_samples_left_out_leaves_fitted_and_missing_ones_out() -> N
     record = SimpleNamespace(curves=curves)
     assert FittedRecord.errors(record, {"slip": 2.0}, fitted=True) == pytest.approx(np.sqrt(5.0) / 2.0)  # type: ignore[arg-type]
     assert FittedRecord.errors(record, {"slip": 2.0}, fitted=False) == pytest.approx(2.0)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("log", [True, False])
+def test_the_width_of_a_value_is_what_a_small_step_of_the_searched_number_makes(log: bool) -> None:
+    free = Free("friction.a", None, 0.02, 1e-3, 1.0, log, scale=7.0)  # type: ignore[arg-type]
+    assert free.width(0.02, 1e-6) == pytest.approx(free.natural(free.searched(0.02) + 1e-6) - 0.02, rel=1e-5)
+
+
+def test_events_behind_a_gap_within_one_recurrence_are_those_that_it_may_hide_one_of() -> None:
+    """Samples each 0.1 s without those from 14 s to 16 s; events each 10 s."""
+    time = np.arange(0.0, 60.0, 0.1)
+    time = time[(time < 14.0) | (time > 16.0)]
+    assert _with_gap(time, np.array([10.0, 20.0, 25.0, 30.0]), np.full(4, 10.0)).tolist() == [False, True, True, False]

@@ -68,6 +68,12 @@ def test_uniqueness_is_looked_at_up_to_four_times_the_rate(fastest: float) -> No
     assert values.is_unique(0.02 * problem.normal, 0.0, 0.0)
 
 
+def test_a_contact_reaches_twice_as_far_as_the_largest_load_would_take_it() -> None:
+    slab = patch(nodes=32, length=2e4)
+    assert slab.reach == pytest.approx(2.0 * np.abs(slab.values.load).max() * 1e4 / SLAB.shear_modulus, rel=1e-12)
+    assert SLAB.thickness == 1e4
+
+
 def test_a_contact_that_has_no_reach_has_no_process_zone() -> None:
     assert math.isnan(patch(nodes=32, length=2e4).nodes_per_process_zone(0.0))
     assert patch(nodes=32, length=2e4).nodes_per_process_zone(1e-3) > 0.0

@@ -18,7 +18,9 @@ YEAR = 31_557_600.0
 def first_event(name: str) -> pd.Series:
     solution = ss.simulate(name)
     assert solution.status.ok
-    return solution.catalogue(event_rate=0.0).iloc[0]
+    events = solution.catalogue(event_rate=0.0)
+    assert solution.problem.body.has_waves or len(solution.shocks) == 0 < 1 == len(events)
+    return events.iloc[0]
 
 
 @pytest.mark.parametrize(
@@ -37,7 +39,7 @@ def first_event(name: str) -> pd.Series:
 def test_the_first_event_has_its_verified_numbers(
     name: str, end: float, slip: float, peak_rate: float | None, peak_time: float | None, pulses: int | None
 ) -> None:
-    """Each number to the digits that are given: half a unit of its last place."""
+    """Each number to the digits that are given: half a unit of its last place. Nothing but waves makes the slip rate jump."""
     event = first_event(name)
     assert event.start == 0.0
     for value, expected in ((event.end, end), (event.slip, slip), (event.peak_rate, peak_rate), (event.peak_time, peak_time)):
@@ -52,14 +54,6 @@ def test_the_printed_slab_under_constant_load_peaks_at_the_closed_form() -> None
     still = replace(scenario, problem=replace(scenario.problem, pull_rate=0.0))
     expected = 9.8e6 / (2.5e8 * math.tan(0.025))
     assert ss.simulate(still).events.peak_time[0] == pytest.approx(expected, rel=1e-9, abs=0)
-
-
-def test_the_shocks_of_figure_6_have_their_closed_form() -> None:
-    start, end = ss.simulate("fig6-slab").shocks.itertuples()
-    assert start.rate_after == pytest.approx(0.402 / 0.098, rel=1e-9, abs=0)  # (alpha / alpha_c - 1) / alpha, pulled a little
-    assert start.traction_after == pytest.approx(39_800_000, rel=1e-9, abs=0)
-    assert end.time == pytest.approx(R, rel=1e-15, abs=0)
-    assert end.traction_after == pytest.approx(-399_999.969, rel=0, abs=6e-4)
 
 
 def test_the_cycles_of_the_block_are_all_alike() -> None:
@@ -177,13 +171,3 @@ def test_the_loop_of_figure_4_jumps_at_its_folds() -> None:
     assert solution.load(down.time) == pytest.approx(64_471_887.242, rel=0, abs=1e-3)
     assert (up.time, down.time) == pytest.approx((2.243, 5.213), rel=0, abs=5e-4)
     assert down.rate_after == 0.0
-
-
-@pytest.mark.parametrize(
-    ("rule", "years"), [("perfect-delay", 468.80466), ("minimal", 468.80466), ("maxwell", 394.26), ("maximal", 378.26)]
-)
-def test_the_second_event_tells_the_rules_apart(rule: str, years: float) -> None:
-    events = ss.simulate(f"second-event-{rule}").events
-    place = 5e-6 if years == 468.80466 else 5e-3
-    assert (events.start[1] - events.end[0]) / YEAR == pytest.approx(years, rel=0, abs=1.1 * place)
-    assert math.isclose(events.slip[0], 23.4402332474, rel_tol=1e-11)

@@ -14,6 +14,7 @@ from stickslip.scenarios import Scenario, library, load_scenario, read_scenario
 from stickslip.scenarios.contact import Contact
 from stickslip.scenarios.parameter_paths import parameter_paths
 from stickslip.studies.compare import compare
+from tests.messages import refused
 
 NODE = """\
 [body]
@@ -257,12 +258,8 @@ CLUMSY = [
 def test_a_mistake_is_one_line_that_says_where_and_what_is_allowed(old: str, new: str, message: str) -> None:
     text = LINE + "[contact.along]\n" + new if old == "PATCH" else (LINE + PATCH).replace(old, new, 1)
     assert old == "PATCH" or old in LINE + PATCH
-    with pytest.raises(ss.InputError) as caught:
+    with refused(message, begins="my.toml: "):
         read_scenario(text, "my.toml")
-    said = str(caught.value)
-    assert "\n" not in said
-    assert said.startswith("my.toml: ")
-    assert message in said
 
 
 def test_rows_of_a_plane_must_have_one_value_for_each_node() -> None:

@@ -78,9 +78,8 @@ def test_pressing_changes_all_loads_along_a_contact_too() -> None:
     ],
 )
 def test_values_that_do_not_go_together_are_refused(values: dict[str, Any], said: str) -> None:
-    with pytest.raises(ss.InputError) as error:
+    with refused(said):
         ss.scenarios["fig6-slab"].with_values(values)
-    assert said in str(error.value)
 
 
 def test_the_title_tells_what_was_changed_and_what_was_described_is_left_out() -> None:

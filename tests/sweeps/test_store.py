@@ -219,9 +219,8 @@ def test_a_full_disk_gives_one_line_and_leaves_a_store_that_continues(
         return rename(self, target)
 
     monkeypatch.setattr(Path, "replace", replace)
-    with pytest.raises(ss.InputError) as told:
+    with refused(begins=f"{path}: cannot be written: No space left on device; the members so far are kept, and"):
         sweep(path)
-    assert str(told.value).startswith(f"{path}: cannot be written: No space left on device; the members so far are kept, and")
     with xr.open_zarr(path) as found:
         assert 0 < int((found.status != NOT_RUN).sum()) < MEMBERS
     monkeypatch.undo()
@@ -250,9 +249,8 @@ OTHERS: list[tuple[dict[str, Any], str]] = [
 
 @pytest.mark.parametrize(("asked", "said"), OTHERS)
 def test_another_sweep_is_refused(store: Path, whole: dict[str, bytes], asked: dict[str, Any], said: str) -> None:
-    with pytest.raises(ss.InputError) as told:
+    with refused(begins=f"{store}: {said}"):
         sweep(store, **asked)
-    assert str(told.value).startswith(f"{store}: {said}")
     assert files(store) == whole
 
 
