@@ -133,6 +133,11 @@ class LoadingHistory(Declared, ABC):
         return max(*(one.value for one in self.segments), *ends) + abs(self.tone.amplitude)
 
     @property
+    def is_stepped(self) -> bool:
+        """True if the value changes by jumps only."""
+        return self.tone.amplitude == 0.0 and all(one.slope == 0.0 for one in self.segments)
+
+    @property
     def _ends(self) -> list[float]:
         """The times (s) at which the straight parts end; for ever counts only if the value changes."""
         return [*(one.start for one in self.segments[1:]), math.inf if self.segments[-1].slope else self.segments[-1].start]

@@ -19,8 +19,8 @@ from stickslip.problem.problem import Problem
 from stickslip.resistance import Branch, Resistance
 
 
-def resistance(problem: Problem, law_slip: float | None = None) -> Resistance:
-    """Return the resistance of a slab's contact at a law slip (m; default: the initial one).
+def resistance(problem: Problem, law_slip: float | None = None, normal: float | None = None) -> Resistance:
+    """Return the resistance of a slab's contact at a law slip (m) and under a normal load (Pa); default: the initial ones.
 
     A contact mass does not enter: a contact with mass settles to g. Raises InputError for a block, whose slip rate is a state and
     solves no contact equation.
@@ -28,7 +28,8 @@ def resistance(problem: Problem, law_slip: float | None = None) -> Resistance:
     if not problem.body.has_waves:
         raise InputError("contact equation: a block has none, its slip rate follows from its inertia")
     slip = problem.law_slip if law_slip is None else float(law_slip)
-    return Resistance(problem.friction, problem.body.damping, problem.normal, slip, problem.load_unit)
+    stress = problem.normal if normal is None else normal
+    return Resistance(problem.friction, problem.body.damping, stress, slip, problem.load_unit)
 
 
 def branches(problem: Problem, law_slip: float | None = None) -> tuple[Branch, ...]:

@@ -28,7 +28,7 @@ from stickslip.foundation.show import brief, html_table
 from stickslip.friction.law import rises_with_rate
 from stickslip.problem.parameters import normal_name
 from stickslip.problem.problem import Problem
-from stickslip.problem.selection_rule import SELECTION_RULES
+from stickslip.problem.selection_rule import PERFECT_DELAY, SELECTION_RULES
 from stickslip.resistance import Branch, Plateau, Resistance
 
 if TYPE_CHECKING:
@@ -232,6 +232,30 @@ def regime_at(g: Resistance) -> Regime:
     return _regime(g, _window(branches_of(g, _proof(g))))
 
 
+@lru_cache(maxsize=16)
+def regime_when_pressed(problem: Problem) -> Regime:
+    """Return the regime of a contact without mass, at the first slip of its law, under the largest normal load that it ever bears.
+
+    A contact that is regular then is regular under every smaller normal load, because Z + S dmu/dv grows as S falls.
+    """
+    most = None if problem.normal_load is None else problem.normal_load.highest
+    return regime_at(resistance(problem, normal=most))
+
+
+def folds_not_followed(problem: Problem) -> str:
+    """Return why a problem whose folds move with its normal load cannot be run under its selection rule; empty if it can."""
+    law, history = problem.friction, problem.normal_load
+    if history is None or history.is_stepped or problem.rule == PERFECT_DELAY:
+        return ""
+    if problem.body.has_inertia or law.states or not law.depends_on_rate or regime_when_pressed(problem) == "regular":
+        return ""
+    most = brief(history.highest, problem.load_unit)
+    return (
+        f"selection {problem.rule!a}: under {most} several slip rates solve the contact equation, and the folds between them move "
+        f"with the normal load: only {PERFECT_DELAY} is followed there; where the normal load changes by steps alone every rule is"
+    )
+
+
 def _regime(g: Resistance, window: tuple[float, float] | None) -> Regime:
     return "continuum" if g.plateaus else "irregular" if window else "regular"
 
@@ -259,7 +283,7 @@ def _determined(problem: Problem, slip: float | None) -> Uniqueness:
     return Uniqueness(
         regime=_regime(g, window),
         rule=problem.rule,
-        summary=_summary(problem, g, critical, window, jumps) + sentence(g, proof, folds),
+        summary=_summary(problem, g, critical, window, jumps) + sentence(g, proof, folds) + _pressed(problem, g),
         critical_parameter=critical[0] if critical else None,
         critical_value=critical[1] if critical else None,
         critical_unit=problem.parameters[critical[0]].unit if critical else "",
@@ -363,5 +387,20 @@ def _summary(
 def _named(problem: Problem, g: Resistance) -> str:
     law = problem.friction
     moving = law.depends_on_slip and law.depends_on_rate
-    slip = f"{g.law_slip:.6g} {problem.unit_of('slip')}"
-    return f"{type(law).__name__} at a slip of {slip}" if moving else type(law).__name__
+    slip = f" at a slip of {g.law_slip:.6g} {problem.unit_of('slip')}" if moving else ""
+    return f"{type(law).__name__}{slip}{' under the first normal load' if problem.normal_varies else ''}"
+
+
+def _pressed(problem: Problem, g: Resistance) -> str:
+    """Return a sentence on the regimes under a normal load that varies; empty if it is constant, or friction is not of the rate."""
+    history, unit = problem.normal_load, problem.load_unit
+    if history is None or not problem.friction.depends_on_rate:
+        return ""
+    stress = critical_normal_stress(g)
+    low, high = brief(history.lowest, unit), brief(history.highest, unit)
+    ranges = f" The normal load varies from {low} to {high}: "
+    if stress is None or history.highest <= stress:
+        return f"{ranges}the contact is regular under all of it."
+    if history.lowest >= stress:
+        return f"{ranges}the contact is irregular under all of it, and the folds move with it."
+    return f"{ranges}the contact is regular up to {brief(stress, unit, 9)} and irregular above, where the folds move with it."

@@ -32,8 +32,9 @@ The loop knows its state by these fields:
     slip          counts.ready is Incoming.MET and counts.mode is +1 or -1
     near a fold   counts.at_fold is not NearFold.NONE (`folds.fold`)
 
-If folds move with slip, a branch may have ended (counts.branch_ended is 1). The loop then returns NEED_BRANCHES, unless the table
-of branches already holds at this slip, and continues on another branch or at rest.
+If folds move with slip or with the normal load, a branch may have ended (counts.branch_ended is 1). The loop then returns
+NEED_BRANCHES, unless the table of branches already holds there, and continues on another branch or at rest. It does the same where
+slip begins, or the load or the normal load jumps, under a normal load that varies.
 """
 
 from __future__ import annotations
@@ -43,6 +44,7 @@ import math
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import needs_branches
 from stickslip.engine.contact.pieces import xi_at
+from stickslip.engine.contact.pressing import before_turn
 from stickslip.engine.contact.stiffness import is_implicit
 from stickslip.engine.contact_step.implicit_step import evolves_at_rest, slip_implicitly, stick_with_state
 from stickslip.engine.contact_step.stick_or_slip import arrive, stick
@@ -71,7 +73,7 @@ def run_until(table: Integers, last_trip: int, last_phase: float, passes: int) -
     something of the caller before the next call:
 
     - FULL: lend a larger history.
-    - NEED_BRANCHES: put the branches at the present law slip into the setup.
+    - NEED_BRANCHES: put the branches at the present law slip and normal load into the setup.
     - NEED_PART: lend the part of the engine that `missing` names.
     - END_AHEAD: set `to_the_end`. What comes next depends on where the run ends; up to here a longer run is the same.
     - PAUSED: look at the run. Round trip `pause_at`, or a later one, comes next.
@@ -102,7 +104,7 @@ def make_pass(run: Run, last_trip: int, last_phase: float) -> int:
         leave_moving_branch(run)
     if run.counts.ready == Incoming.NONE:
         code = bring_load(run, last_trip)
-        if run.counts.ready == Incoming.NONE or run.counts.folds_move == 1:
+        if run.counts.ready == Incoming.NONE or run.counts.folds_move == 1 or run.counts.given > 0:
             return code  # where folds move, the answer to the piece of load may need branches first
     if run.counts.ready == Incoming.BROUGHT:
         if not math.isfinite(total(run.load)):
@@ -119,7 +121,7 @@ def obstacle(run: Run) -> int:
         return Stop.FULL
     if run.counts.stalled > LARGEST_STALL or run.counts.unresolved_slips > LARGEST_STORM:
         return Stop.STORM
-    return Stop.NEED_BRANCHES if run.counts.folds_move == 1 and needs_branches(run) else Stop.NONE
+    return Stop.NEED_BRANCHES if needs_branches(run) else Stop.NONE
 
 
 @kernel
@@ -137,7 +139,7 @@ def missing_part(run: Run) -> int:
         return EnginePart.DRIVER
     if run.ladder == 0 and run.counts.cells > 0:
         return EnginePart.LADDER
-    if run.moving_folds == 0 and run.counts.folds_move == 1:
+    if run.moving_folds == 0 and (run.counts.folds_move == 1 or (run.counts.given > 0 and run.counts.is_algebraic == 1)):
         return EnginePart.MOVING_FOLDS
     return EnginePart.ECHO_QUEUE if run.echo_queue == 0 and run.counts.sparse == 1 else EnginePart.NONE
 
@@ -183,14 +185,14 @@ def take_step(run: Run, xi_to: float) -> int:
         if evolves_at_rest(run):
             stick_with_state(run, xi_to)
         else:
-            stick(run, xi_to)
+            stick(run, before_turn(run, xi_to))
     elif is_implicit(run):
         slip_implicitly(run, xi_to)
     elif run.counts.waits == 1:
         run.state.target = xi_to
         return Stop.SLIPS
     else:
-        slip(run, xi_to)
+        slip(run, before_turn(run, xi_to))
     if run.counts.breach == 0 and math.isfinite(state.rate_now + state.slip_now + state.state_now[0] + state.state_now[1]):
         return Stop.NONE
     take_back(run, length, xi)

@@ -1,8 +1,9 @@
 """Table of the branches of a massless contact for the engine.
 
-A law of slip rate alone needs it once. If friction depends on both slip and slip rate, the folds move with slip, and the table is
-needed again and again. The slip rate itself follows from its series; the branches at a slip are computed only where a branch has
-ended. That is where the rule of perfect delay chooses, and it is the only rule that such a law may have (`Problem`).
+A law of slip rate alone needs it once. If friction depends on both slip and slip rate, the folds move with slip, and so they do
+with a normal load that varies: the table is needed again and again. The slip rate itself follows from its series; the branches are
+computed only where a branch has ended, slip begins, or load or normal load jump. That is where the rule of perfect delay chooses,
+and it is the only rule that may be followed there (`Problem`, `contact.uniqueness`).
 """
 
 from __future__ import annotations
@@ -11,29 +12,47 @@ import math
 
 import numpy as np
 
-from stickslip.contact.rules.selection import selection_table
+from stickslip.contact.branches import resistance
+from stickslip.contact.rules.selection import Branches, selection_table, table_of
+from stickslip.contact.uniqueness import regime_when_pressed
 from stickslip.engine.state.layout import BranchRow, Counts, Floats, Params, Setup, State
 from stickslip.friction.formula.differences import difference
 from stickslip.problem.problem import Problem
+from stickslip.problem.selection_rule import SelectionTable
+from stickslip.resistance import Branch
 
 
 def is_algebraic(problem: Problem) -> bool:
     """Return True if the slip rate is a root of the contact equation, on one of its branches.
 
-    This holds for a massless contact under a law of slip rate without a state variable.
+    This holds for a massless contact under a law of slip rate without a state variable of its own.
     """
-    return not problem.body.has_inertia and problem.friction.depends_on_rate and not problem.contact_law.states
+    return not problem.body.has_inertia and problem.friction.depends_on_rate and not problem.friction.states
 
 
-def table_of_branches(problem: Problem, law_slip: float) -> tuple[Floats, float]:
+def _selected(problem: Problem, law_slip: float, pressing: float) -> tuple[Branches, SelectionTable]:
+    """Return the branches and the table of the rule at a law slip (m) and a growth of the normal load (1)."""
+    normal = problem.normal * (1.0 + pressing)
+    is_known = problem.normal_varies and not problem.friction.depends_on_slip
+    if is_known and regime_when_pressed(problem) == "regular":  # no proof of folds again at every event
+        g = resistance(problem, law_slip, normal)
+        only = (Branch(0.0, math.inf, g.start, math.inf),)
+        return only, table_of(problem, g, only)
+    return selection_table(problem, law_slip, normal)
+
+
+def table_of_branches(problem: Problem, law_slip: float, pressing: float = 0.0) -> tuple[Floats, float]:
     """Return the table of branches at a law slip (m, minus the initial one), and the load that ends stick.
 
-    That load is in Pa, minus the strength. Where the solution is unique there is one branch, which is never left.
+    `pressing` is the growth of the normal load (1, as a share of it). That load is in Pa, minus the strength. Where the solution is
+    unique there is one branch, which is never left.
     """
     if not is_algebraic(problem):
         return np.array([[0.0, math.inf, -math.inf, math.inf, -math.inf, math.inf]]), 0.0
-    branches, levels = selection_table(problem, problem.law_slip + law_slip)
+    branches, levels = _selected(problem, problem.law_slip + law_slip, pressing)
     table, change = BranchRow.table(len(branches)), strength_change(problem, law_slip)
+    if pressing != 0.0:
+        change += pressing * problem.normal * float(problem.friction.static_coefficient(problem.law_slip + law_slip))
     found = BranchRow.of(table)
     found.rate_from, found.rate_to = [one.rate_from for one in branches], [one.rate_to for one in branches]
     found.keep_from, found.keep_to = np.array(levels.keep_from) + change, np.array(levels.keep_to) + change
@@ -63,8 +82,10 @@ def branch_of(branches: BranchRow, rate: float) -> int:
 
 
 def renewed(problem: Problem, setup: Setup, params: Params, state: State, count: Counts) -> Setup:
-    """Return the setup with the branches at the present law slip, and update `params`, `state` and `count` to match."""
-    table, params.stick_to = table_of_branches(problem, float(state.law_slip))
+    """Return the setup with the branches at the present slip and normal load, and make `params`, `state` and `count` match."""
+    if count.given:
+        state.table_pressing = state.state_now[count.states - count.given]
+    table, params.stick_to = table_of_branches(problem, float(state.law_slip), float(state.table_pressing))
     count.branch = branch_of(BranchRow.of(table), abs(float(state.rate_now)))
     state.table_slip = state.law_slip
     return setup._replace(branches=table)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from functools import lru_cache
 from types import SimpleNamespace
 from typing import Any
@@ -12,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from stickslip.contact.rules.selection import rule_of
-from stickslip.contact.uniqueness import regime_of
+from stickslip.contact.uniqueness import folds_not_followed
 from stickslip.engine.compiled_formula import CompiledFormula, compile_formula, keep_with
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Counts, FirstLoad, Integers, LawPiece, LoadingSegment, Params, Setup, State
@@ -33,9 +32,7 @@ from stickslip.engine_input.limits import set_length, set_lumping
 from stickslip.engine_input.shaking import force_steps, shaking_of, tone_of
 from stickslip.foundation.constants import RIGID
 from stickslip.foundation.errors import InputError
-from stickslip.foundation.show import brief
 from stickslip.loading import LoadingHistory
-from stickslip.problem.parameters import pressed
 from stickslip.problem.problem import Problem
 from stickslip.problem.selection_rule import SelectionRule
 
@@ -70,7 +67,8 @@ def _prepared(problem: Problem, rule: SelectionRule, rtol: float, shortest: floa
 
 @lru_cache(maxsize=32)
 def _of_problem(problem: Problem, _: SelectionRule) -> tuple[Setup, State, Counts]:  # keyed by the rule: its name may be reused
-    check_unique(problem)
+    if why := folds_not_followed(problem):
+        raise InputError(why)
     check_machine(problem)
     params = parameters_of(problem)
     branches, params.stick_to = table_of_branches(problem, 0.0)
@@ -82,17 +80,6 @@ def _of_problem(problem: Problem, _: SelectionRule) -> tuple[Setup, State, Count
     if counts.is_algebraic and counts.mode != 0:
         counts.branch = branch_of(at.BranchRow.of(branches), abs(problem.rate))
     return setup, state, counts
-
-
-def check_unique(problem: Problem) -> None:
-    """Raise InputError if the normal load varies, and a contact without mass may have several slip rates under the largest one."""
-    if problem.normal_load is None or problem.body.has_inertia or problem.friction.states:
-        return
-    most = pressed(replace(problem, normal_load=None), problem.normal_load.highest)
-    if problem.friction.depends_on_rate and regime_of(most) != "regular":
-        at = f"under {brief(most.normal, problem.load_unit)}"
-        why = f"{at} several slip rates solve the contact equation, and the folds between them would move"
-        raise InputError(f"normal_load: {why}: give the contact a mass ({problem.body.mass_field}), or a constant normal load")
 
 
 def check_machine(problem: Problem) -> None:
@@ -317,7 +304,7 @@ def set_references(table: at.Integers, numbers: at.Floats) -> None:
 def functions_of(formulas: Sequence[CompiledFormula], problem: Problem) -> at.Integers:
     """Return a table of `LawPiece` with only the functions set, those that the engine needs.
 
-    A law with a state is always stepped implicitly.
+    A law with a state of its own is always stepped implicitly.
     """
     table = LawPiece.table(len(formulas))
     keep_with(table, formulas)
@@ -328,8 +315,9 @@ def functions_of(formulas: Sequence[CompiledFormula], problem: Problem) -> at.In
         if problem.contact_law.states:
             piece.state_at = formula.address("state_value")
         else:
-            piece.radii_at = formula.address("radii")
             piece.value_at = formula.address("value")
+        if not problem.friction.states:
+            piece.radii_at = formula.address("radii")
             piece.jet_at = formula.address("motion_jet" if problem.body.has_inertia else "rate_jet")
     return table
 
@@ -359,7 +347,7 @@ def start_of(problem: Problem) -> tuple[State, Counts]:
     for n, value in enumerate(problem.contact_states):
         state.state_now[n] = -value if count.mode < 0 and n in problem.friction.reverses else value
     count.pause_at = count.lumped_since = count.lump_above = at.NEVER
-    count.folds_move = problem.folds_move
+    count.folds_move = count.folds_follow_slip = problem.folds_move
     count.disc = FIRST_DISC
     count.knots_in_rate = len(problem.friction.pieces) > 1 and problem.friction.knot_variable == "rate"
     return state, count

@@ -33,11 +33,11 @@ LAST_CAUSE = Cause.HEALING
 FINITE = ("phase_from", "phase_to", "speed", "bend", "slip", "law_slip", "load", "rate")
 """Fields of a piece of the history that must be finite."""
 SAME = (
-    *("is_block", "has_inertia", "is_algebraic", "states", "given", "reverses", "sticks", "folds_move", "knots_in_rate"),
-    *("varies", "driven", "one_way", "cells", "first_side", "joined"),
+    *("is_block", "has_inertia", "is_algebraic", "states", "given", "reverses", "sticks", "knots_in_rate", "varies"),
+    *("driven", "one_way", "cells", "first_side", "joined", "folds_follow_slip"),
 )
 """Counts that follow from the problem alone, so that those in a file must be the same."""
-FLAGS = ("moved", "jump", "stiff", "branch_ended", "is_locked", "to_the_end", "sparse", "lumped", "lumps")
+FLAGS = ("moved", "jump", "stiff", "folds_move", "branch_ended", "is_locked", "to_the_end", "sparse", "lumped", "lumps")
 """Counts that are 0 or 1."""
 SIGNS = ("mode", "leaving_rest")
 """Counts that are a direction: -1, 0 or 1."""
@@ -237,14 +237,15 @@ def _faults_of_state(checkpoint: Checkpoint, history: History) -> Iterator[Fault
 
 
 def _faults_of_branch(checkpoint: Checkpoint, setup: Setup, solution: Solution) -> Iterator[Fault]:
-    """Yield checks of the branches, which follow from the problem and, if folds move, from their slip."""
+    """Yield checks of the branches, which follow from the problem and, if folds move, from slip and normal load."""
     problem, branch, stick_to = solution.problem, checkpoint.branch, float(checkpoint.stick_to[0])
     yield "engine_count branch", not 0 <= Counts(checkpoint.count).branch < len(branch)
     yield "engine_branch: no number", np.isnan(branch).any() or math.isnan(stick_to)
-    if not problem.folds_move:
+    if not (problem.folds_move or problem.normal_varies):
         yield "engine_branch or engine_stick_to", not np.array_equal(branch, setup.branches) or stick_to != setup.params.stick_to
         return
-    known, level = table_of_branches(problem, float(State(checkpoint.state).table_slip))
+    state = State(checkpoint.state)
+    known, level = table_of_branches(problem, float(state.table_slip), float(state.table_pressing))
     yield "engine_branch or engine_stick_to", not np.array_equal(branch, known) or stick_to != level
 
 

@@ -13,8 +13,8 @@ from typing import ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip.contact.branches import branches
-from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
+from stickslip.contact.branches import branches_of, resistance
+from stickslip.contact.uniqueness import Uniqueness, regime_when_pressed, uniqueness_of
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.constants import YEAR
 from stickslip.foundation.show import brief_repr
@@ -40,7 +40,7 @@ class RuleInfluence:
 
     `shocks` says for each row of `solution.shocks` whether the rule decided it: the load was between the folds before or after the
     shock, or the load reached a fold by itself (cause "fold"). `since` is the first time (s) with the load between the folds, or
-    None. `folds_move` is True for a law whose folds move with slip; then `shocks` is empty and `since` is None.
+    None. `folds_move` is True if folds move with slip or normal load; then `shocks` is empty and `since` is None.
     """
 
     rule: str
@@ -78,7 +78,7 @@ def rule_influence(history: History, load_curve: Callable[[], tuple[Floats, Floa
     contact = uniqueness_of(problem)
     if contact.resistance is None or not problem.friction.depends_on_rate:
         return RuleInfluence(problem.rule, contact.regime, np.zeros(0, bool))
-    if problem.friction.depends_on_slip:
+    if problem.friction.depends_on_slip or problem.normal_varies:
         return RuleInfluence(problem.rule, _regime_on_the_way(history, contact), np.zeros(0, bool), folds_move=True)
     shocks = shock_columns(history)
     time, cause = shocks["time"], np.array(shocks["cause"], object)
@@ -132,15 +132,17 @@ def _refined(history: History, contact: Uniqueness, low: float, high: float) -> 
 
 
 def _regime_on_the_way(history: History, contact: Uniqueness) -> Regime:
-    """Return "irregular" if the contact is irregular at any of the slips that the run passes."""
-    if contact.regime != "regular":
-        return contact.regime
+    """Return "irregular" if the contact is irregular at any of the slips that the run passes, or under any of its normal loads."""
     problem = history.problem
+    if contact.regime != "regular" or not problem.friction.depends_on_slip:
+        return regime_when_pressed(problem) if contact.regime == "regular" else contact.regime
     slips = problem.initial_slip + history.slipped(history.find(history.breaks, "right"))
     if problem.friction.counts == "path":
         slips = problem.law_slip + np.append(0.0, np.cumsum(np.abs(np.diff(slips))))
     on_the_way = np.linspace(slips.min(), slips.max(), _SLIPS).tolist()
-    return "irregular" if any(_several(branches(problem, slip)) for slip in on_the_way) else "regular"
+    most = problem.normal if problem.normal_load is None else problem.normal_load.highest
+    contacts = (resistance(problem, slip, most) for slip in on_the_way)
+    return "irregular" if any(_several(branches_of(g)) for g in contacts) else "regular"
 
 
 def _several(stable: tuple[Branch, ...]) -> bool:

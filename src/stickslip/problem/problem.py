@@ -97,8 +97,8 @@ class Problem(ProblemFields):
     is the same everywhere.
 
     `normal_load` may vary beside one of them: steps, straight lines or a sinusoid. Friction is S(t) mu(u, v, state), and the
-    strength at rest S(t) mu_static; `body.normal_stress` or `body.normal_force` is S(0). A contact without mass then needs a slip
-    rate that is unique under every normal load: a run under a law whose friction falls faster with the slip rate is refused.
+    strength at rest S(t) mu_static; `body.normal_stress` or `body.normal_force` is S(0). Where several slip rates solve the contact
+    equation, its folds move with S: perfect delay follows them, and any other rule needs a normal load that changes by steps only.
 
     Where the ground moves, slip and slip rate are relative to it. A block's spring hangs on the ground, and its load gains -m a(t);
     `initial_load` is the load before the ground moves. The driver and the far stress of a slab do not move with the ground: the
@@ -223,8 +223,7 @@ class Problem(ProblemFields):
     def folds_move(self) -> bool:
         """True if the folds of the contact equation move with slip: no mass, and a law of slip and slip rate without a state."""
         law = self.friction
-        free = law.states or self.body.has_inertia or self.normal_varies
-        return law.depends_on_slip and law.depends_on_rate and not free
+        return law.depends_on_slip and law.depends_on_rate and not (law.states or self.body.has_inertia)
 
     @property
     def rules(self) -> tuple[str, ...]:

@@ -14,7 +14,7 @@ from stickslip.contact.critical import critical_normal_stress
 from stickslip.contact.regime_map import regimes_along_slip
 from stickslip.contact.sliding import SteadySlidings
 from stickslip.contact.steady import proven_slidings
-from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
+from stickslip.contact.uniqueness import Uniqueness, folds_not_followed, regime_when_pressed, uniqueness_of
 from stickslip.engine_input.limits import MOST_PIECES, PATIENCE, automatic_length, creep_tolerance, leaps_over, lumps_by_itself
 from stickslip.foundation.names import own_units
 from stickslip.foundation.quantities import Choice, LawField, NamedNumbers, NumberSeries, Quantity, Text, fields_of, in_units
@@ -252,9 +252,10 @@ def warnings_of(scenario: Scenario, contact: Uniqueness) -> list[str]:
     if problem.body.has_waves:
         found += _slab_warnings(scenario, contact)
     rule = problem.rule
-    if problem.why_not_run:
-        found.append(f"it cannot be run: {problem.why_not_run}")
+    if why := problem.why_not_run or folds_not_followed(problem):
+        found.append(f"it cannot be run: {why}")
     moving = problem.friction.depends_on_slip and problem.friction.depends_on_rate
+    moving = moving or (contact.resistance is not None and regime_when_pressed(problem) != "regular")
     if contact.regime == "regular" and rule != "perfect-delay" and not (moving and contact.resistance):
         found.append(f"the selection rule {rule} has no effect: the slip rate is unique")
     return found

@@ -8,7 +8,7 @@ import numpy as np
 
 from stickslip.contact.sliding import driven_at, slides_on
 from stickslip.contact.steady import steady_slidings
-from stickslip.contact.uniqueness import uniqueness_of
+from stickslip.contact.uniqueness import regime_when_pressed
 from stickslip.engine_input.branch_table import is_algebraic
 from stickslip.engine_input.limits import leaps_over
 from stickslip.problem.problem import Problem
@@ -109,8 +109,8 @@ def _lasts(problem: Problem) -> str:
 
 
 def rule_in_force(problem: Problem) -> str:
-    """Return the selection rule if the contact equation has several solutions at some load (and slip), else an empty string."""
+    """Return the selection rule if the contact equation has several solutions at some load, slip or normal load, else ""."""
     if not is_algebraic(problem):
         return ""
-    several = problem.folds_move or uniqueness_of(problem).regime != "regular"
+    several = problem.folds_move or regime_when_pressed(problem) != "regular"
     return problem.rule if several else ""

@@ -149,13 +149,15 @@ def rule_of(problem: Problem) -> SelectionRule:
     return known[problem.selection]
 
 
-def selection_table(problem: Problem, law_slip: float | None = None) -> tuple[Branches, SelectionTable]:
-    """Return the branches of the problem's contact at a law slip (m; default: the initial one), and the table of its rule.
+def selection_table(
+    problem: Problem, law_slip: float | None = None, normal: float | None = None
+) -> tuple[Branches, SelectionTable]:
+    """Return the branches of the problem's contact at a law slip (m) and a normal load (Pa), and the table of its rule.
 
-    Raises InputError for a block, which has no contact equation, for a rule whose table cannot be followed, and if the load may
-    reach values where not all branches are known.
+    By default these are the initial ones. Raises InputError for a block, which has no contact equation, for a rule whose table
+    cannot be followed, and if the load may reach values where not all branches are known.
     """
-    g = resistance(problem, law_slip)
+    g = resistance(problem, law_slip, normal)
     stable = branches_of(g)
     if g.law.depends_on_rate and certificate(g).reach < FASTEST and not load_bound(problem, g) <= g.largest_load:
         raise InputError(

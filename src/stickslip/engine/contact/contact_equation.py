@@ -6,6 +6,7 @@ import math
 
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.pieces import note_jump
+from stickslip.engine.contact.pressing import is_pressing, own_states
 from stickslip.engine.memory.addresses import ahead, call_state_value, call_value
 from stickslip.engine.memory.pointers import numbers_of
 from stickslip.engine.series.polynomial import NONE, evaluate, first_descent, restrict, restrict_low
@@ -55,11 +56,17 @@ def law_at(run: Run, piece: int, law_slip: float, rate: float, states: Floats) -
 
     `law_slip` is the slip as the law counts it (m), and `rate` the magnitude of the slip rate (m/s).
     """
+    formula_at(run, piece, law_slip + run.law[piece].slip_shift, rate, states)
+
+
+@kernel
+def formula_at(run: Run, piece: int, slip: float, rate: float, states: Floats) -> None:
+    """Do the same as `law_at` at a slip (m) that is counted from the reference slip of the piece."""
     law, constants, value = run.law[piece], constants_of(run, piece), numbers_of(run.value)
     if run.counts.states > 0:
-        call_state_value(law.state_at, constants, law_slip + law.slip_shift, rate, states, value)
+        call_state_value(law.state_at, constants, slip, rate, states, value)
     else:
-        call_value(law.value_at, constants, law_slip + law.slip_shift, rate, value)
+        call_value(law.value_at, constants, slip, rate, value)
 
 
 @kernel
@@ -83,7 +90,7 @@ def friction_of(run: Run, piece: int, law_slip: float, rate: float) -> None:
 def static_step(run: Run, states: Floats) -> float:
     """Return the step from sliding to static friction (1, as a share of the normal load at t = 0) under the present normal load."""
     step = run.params.static_excess
-    return step * (1.0 + states[run.counts.states - run.counts.given]) if run.counts.given > 0 else step
+    return step * (1.0 + states[own_states(run)]) if run.counts.given > 0 else step
 
 
 @kernel
@@ -201,11 +208,26 @@ def rate_from_here(run: Run, load: float, guess: float) -> float:
 
 
 @kernel
+def is_outdated(run: Run) -> bool:
+    """Return True if the table of branches was made for another slip or another normal load."""
+    if run.counts.is_algebraic == 0:
+        return False
+    if run.counts.given > 0 and run.state.table_pressing != run.state.state_now[own_states(run)]:
+        return True
+    return run.counts.folds_follow_slip == 1 and run.state.table_slip != run.state.law_slip
+
+
+@kernel
 def needs_branches(run: Run) -> bool:
-    """Return True if a choice among branches is due while the table of branches was made for another slip."""
+    """Return True if a choice among branches is due while the table of branches is outdated.
+
+    A rest under a normal load that changes needs no branches before it ends.
+    """
+    if not is_outdated(run):
+        return False
     meets_jump = run.counts.ready == Incoming.BROUGHT and run.counts.arriving != Cause.NO_CAUSE
-    due = run.counts.branch_ended == 1 or run.counts.mode == 0 or meets_jump
-    return due and run.state.table_slip != run.state.law_slip
+    rests = run.counts.mode == 0 and (run.counts.leaving_rest != 0 or not is_pressing(run))
+    return run.counts.branch_ended == 1 or rests or meets_jump or run.counts.folds_move == 0
 
 
 @kernel
@@ -222,6 +244,27 @@ def choose_branch(run: Run, load: float) -> None:
         if is_taken(run.branch_table[n], load):
             run.counts.branch = n
             return
+
+
+@kernel
+def settle_branch(run: Run, load: float) -> None:
+    """Set the branch from which a contact in slip meets a jump of the normal load, to `load` (Pa, minus the reference).
+
+    The slip rate moves towards the load. If the new branches leave out the present one, it comes to the nearest branch on its way.
+    """
+    rate, table = abs(run.state.rate_now), run.branch_table
+    if table[run.counts.branch].rate_from <= rate <= table[run.counts.branch].rate_to:
+        return
+    friction_at(run, run.state.law_slip, rate)
+    rises = load > run.params.damping * rate + run.friction.stress
+    for n in range(run.branches):
+        if rises and table[n].rate_from > rate:
+            run.counts.branch = n
+            return
+        if not rises and table[run.branches - 1 - n].rate_to < rate:
+            run.counts.branch = run.branches - 1 - n
+            return
+    run.counts.mode = 0  # it falls, and there is no slower branch
 
 
 @kernel

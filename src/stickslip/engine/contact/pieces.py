@@ -6,9 +6,9 @@ import math
 
 from stickslip.engine.compile.kernels import inlined, kernel
 from stickslip.engine.contact.far_end import gain_of_echo
-from stickslip.engine.memory.addresses import call_part
-from stickslip.engine.series.polynomial import degree, fill
-from stickslip.engine.state.layout import Task
+from stickslip.engine.memory.addresses import ahead, call_part
+from stickslip.engine.series.polynomial import copy, degree, fill, scale_low, total, turn_over
+from stickslip.engine.state.layout import TERMS, Task
 from stickslip.engine.state.workspace import Run
 
 RESOLVED = 1e-12
@@ -39,6 +39,19 @@ def note_degree(run: Run) -> None:
     run.counts.degree = degree(run.load)
     fill(run.local, 0.0)
     fill(run.load_along_slip, 0.0)
+
+
+@kernel
+def keep_state(run: Run, length: float) -> None:
+    """Store the states' series in run.state_jet, up to `length` (in their unit), in the history, and move the states to its end."""
+    for n in range(run.counts.states):
+        kept = ahead(run.history_state, TERMS * (run.counts.states * run.counts.length + n))
+        copy(ahead(run.state_jet, TERMS * n), kept, TERMS)
+        if length != 1.0:
+            scale_low(kept, TERMS - 1, length)
+        run.state.state_now[n] = total(kept)
+        if run.counts.mode < 0 and (run.counts.reverses >> n) % 2 == 1:
+            turn_over(kept)
 
 
 @inlined

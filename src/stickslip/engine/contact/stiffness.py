@@ -6,6 +6,7 @@ import math
 
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import law_at
+from stickslip.engine.contact.pressing import own_states
 from stickslip.engine.memory.addresses import ahead
 from stickslip.engine.series.polynomial import copy, evaluate, fill
 from stickslip.engine.state.layout import STATES, TERMS, Floats
@@ -59,8 +60,8 @@ def contact_at(run: Run, law_slip: float, rate: float, states: Floats) -> None:
 
     `mu` is then the difference from the static friction coefficient at the start of the run.
     """
-    # An iteration may try rates below 0, where a law without states need not hold: continue it linearly.
-    below = min(rate, 0.0) if run.counts.states == 0 else 0.0
+    # An iteration may try rates below 0, where a law without states of its own need not hold: continue it linearly.
+    below = min(rate, 0.0) if own_states(run) == 0 else 0.0
     law_at(run, run.counts.piece, law_slip, rate - below, states)
     if below < 0.0:
         run.value.mu += run.value.by_rate * below
@@ -70,7 +71,7 @@ def contact_at(run: Run, law_slip: float, rate: float, states: Floats) -> None:
 @kernel
 def is_implicit(run: Run) -> bool:
     """Return True if the next step must be implicit."""
-    return run.counts.states > 0 or run.counts.stiff == 1
+    return own_states(run) > 0 or run.counts.stiff == 1
 
 
 @kernel
@@ -136,7 +137,7 @@ def forgotten(run: Run) -> bool:
     States that do not stay at zero at rest are never forgotten: they heal to other values. Those that follow from time stay.
     """
     contact_at(run, run.state.law_slip, 0.0, run.state.state_now)
-    own = run.counts.states - run.counts.given
+    own = own_states(run)
     for n in range(own):
         if abs(run.value.by_state[n] * run.state.state_now[n]) > FORGOTTEN:
             return False

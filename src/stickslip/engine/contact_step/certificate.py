@@ -23,8 +23,8 @@ import math
 import numpy as np
 
 from stickslip.engine.compile.kernels import inlined, kernel
-from stickslip.engine.contact.contact_equation import constants_of
-from stickslip.engine.memory.addresses import call_radii, call_value
+from stickslip.engine.contact.contact_equation import constants_of, formula_at
+from stickslip.engine.memory.addresses import ahead, call_radii
 from stickslip.engine.memory.pointers import numbers_of
 from stickslip.engine.series.polynomial import RECIPROCAL, powers_of, size_on_disc, slope_on_disc
 from stickslip.engine.series.step_size import quick_exp2, quick_log2
@@ -177,6 +177,7 @@ def share_on_disc(run: Run, length: float, disc: int) -> float:
     powers_of(RATIOS[disc] * length, powers)
     piece = run.counts.piece
     put_discs(run.k, run.jet, powers, run.ball)
+    put_states(run, powers)
     call_radii(run.law[piece].radii_at, constants_of(run, piece), run.jet, numbers_of(run.ball))
     load = load_on_disc(run.load_along_slip, powers, run.counts.degree)
     force = force_on_disc(run.k, run.ball, load)
@@ -186,6 +187,14 @@ def share_on_disc(run: Run, length: float, disc: int) -> float:
         missed = force / resistance(run) * SHRUNK[disc]
     share = missed / max(run.params.tolerance * size_of_rate(run.jet, length), SMALLEST)
     return min(HOPELESS, share)  # also if it is not a number
+
+
+@inlined
+def put_states(run: Run, powers: Floats) -> None:
+    """Put radii and centres of the states on a disc into `ball`, from the powers of its radius (in units)."""
+    for n in range(run.counts.states):
+        series = ahead(run.state_jet, TERMS * n)
+        run.ball.state[n], run.ball.at_state[n] = size_on_disc(series, powers), series[0]
 
 
 @inlined
@@ -273,6 +282,7 @@ def bound_straight_bit(run: Run, length: float, grown: float, rate_end: float) -
     for _ in range(STRAIGHT_DISCS):
         powers_of(ratio * length, powers)
         put_discs(run.k, run.jet, powers, run.ball)
+        put_states(run, powers)
         call_radii(run.law[piece].radii_at, constants_of(run, piece), run.jet, numbers_of(run.ball))
         force = force_on_disc(run.k, run.ball, load_on_disc(run.load_along_slip, powers, run.counts.degree))
         bound = force / (4.0 * (ratio * ratio - 1.0))
@@ -295,7 +305,7 @@ def begin_step(run: Run) -> None:
     if run.k.free != 0.0 or run.counts.is_algebraic == 1:  # An algebraic contact solves its equation at the start too.
         return
     piece = run.counts.piece
-    call_value(run.law[piece].value_at, constants_of(run, piece), run.k.slip, 0.0, numbers_of(run.value))
+    formula_at(run, piece, run.k.slip, 0.0, run.state.state_now)
     balance = run.load_along_slip[0] - run.params.normal * (run.value.mu + run.law[piece].offset)
     run.state.unbalanced = balance - run.k.force
     if run.counts.has_inertia == 0 and abs(run.state.unbalanced) > (LOST + ROUGH * run.params.tolerance) * run.params.normal:
@@ -309,9 +319,11 @@ def missing_at_end(run: Run, grown: float, rate_end: float) -> float:
     `grown` is the slip (m) in the step and `rate_end` the slip rate (m/s) at its end; run.powers must hold the powers of its
     length. Friction at the end is left in run.value.
     """
-    piece, value = run.counts.piece, run.value
-    call_value(run.law[piece].value_at, constants_of(run, piece), run.k.slip + run.k.chi * grown, rate_end, numbers_of(value))
-    return imbalance(run.k, load_at_end(run.load_along_slip, run.powers, run.counts.degree), value, rate_end, run.state.unbalanced)
+    for n in range(run.counts.states):
+        run.some_state[n] = load_at_end(ahead(run.state_jet, TERMS * n), run.powers, TERMS - 1)
+    formula_at(run, run.counts.piece, run.k.slip + run.k.chi * grown, rate_end, run.some_state)
+    load = load_at_end(run.load_along_slip, run.powers, run.counts.degree)
+    return imbalance(run.k, load, run.value, rate_end, run.state.unbalanced)
 
 
 @inlined

@@ -10,8 +10,8 @@ import math
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import onset_of_slip
 from stickslip.engine.contact.law_knots import settle_piece
-from stickslip.engine.contact.pieces import record
-from stickslip.engine.contact.pressing import is_pressing
+from stickslip.engine.contact.pieces import keep_state, record
+from stickslip.engine.contact.pressing import is_pressing, own_states
 from stickslip.engine.contact.stiffness import contact_at, forgotten, is_no_longer_stiff, states_at_point
 from stickslip.engine.contact_step.certificate import NEGLIGIBLE
 from stickslip.engine.contact_step.keep_step import keep_step
@@ -19,7 +19,7 @@ from stickslip.engine.contact_step.negative_friction import last_place_above_zer
 from stickslip.engine.contact_step.step_events import Cut, cut_at_first_event, resolve, stretch
 from stickslip.engine.contact_step.taylor_step import note_shock
 from stickslip.engine.memory.addresses import ahead, call_part
-from stickslip.engine.series.polynomial import NONE, copy, fill, scale_low, total, turn_over
+from stickslip.engine.series.polynomial import NONE, copy, fill, scale_low
 from stickslip.engine.series.radau_nodes import POINTS
 from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import Floats, StepEvent, Stop, Task
@@ -42,7 +42,7 @@ def slip_implicitly(run: Run, xi_to: float) -> None:
     rate = run.history[run.counts.length].rate
     stretch(run, 1.0, rate)
     reached = length >= xi_to - run.state.xi
-    if run.counts.states == 0 and is_no_longer_stiff(run):
+    if own_states(run) == 0 and is_no_longer_stiff(run):
         run.counts.stiff = 0
     cut = Cut(StepEvent.NONE, 0, 1.0) if hanging else cut_at_first_event(run, rate, 1.0)
     cut = end_above_zero(run, rate, cut)
@@ -89,19 +89,6 @@ def end_above_zero(run: Run, rate: Floats, cut: Cut) -> Cut:
 
 
 @kernel
-def keep_state(run: Run, length: float) -> None:
-    """Store the states' polynomials, up to the share `length` of the step, in the history, and move the states to its end."""
-    for n in range(run.counts.states):
-        kept = ahead(run.history_state, at.TERMS * (run.counts.states * run.counts.length + n))
-        copy(ahead(run.state_jet, at.TERMS * n), kept, at.TERMS)
-        if length != 1.0:
-            scale_low(kept, at.TERMS - 1, length)
-        run.state.state_now[n] = total(kept)
-        if run.counts.mode < 0 and (run.counts.reverses >> n) % 2 == 1:
-            turn_over(kept)
-
-
-@kernel
 def note_negative_friction(run: Run) -> None:
     """Note a breach if friction is below zero at the end of the step, or at its start if no solution begins there."""
     rate, states = run.state.rate_now, run.state.state_now
@@ -116,8 +103,8 @@ def note_negative_friction(run: Run) -> None:
 
 @kernel
 def evolves_at_rest(run: Run) -> bool:
-    """Return True if the law has states that still change the strength of a contact at rest."""
-    return run.counts.states > 0 and (is_pressing(run) or not forgotten(run))
+    """Return True if the law has states of its own that still change the strength of a contact at rest, or join in its change."""
+    return own_states(run) > 0 and (is_pressing(run) or not forgotten(run))
 
 
 @kernel

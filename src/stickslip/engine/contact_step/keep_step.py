@@ -50,9 +50,10 @@ def note_gain(run: Run, rate: Floats) -> None:
     """Note the factor |2 Z / g'(v) - 1| by which slip multiplies an error of the load.
 
     It follows from Z v + S mu(v) = load, and from the wave 2 Z v - load that goes back to the driver. The gain is NaN if friction
-    or motion also depends on slip, inertia or a state, because the fate of an error then depends on more than its phase.
+    or motion also depends on slip, inertia or a state, or the normal load varies, because the fate of an error then depends on more
+    than its phase.
     """
-    if run.counts.is_algebraic == 1 and run.counts.folds_move == 0:
+    if run.counts.is_algebraic == 1 and run.counts.folds_move == 0 and run.counts.given == 0:
         friction_at(run, run.state.law_slip, abs(evaluate(rate, 0.5)))
         run.state.gain = abs(2.0 * run.params.impedance / (run.params.damping + run.friction.by_rate) - 1.0)
     else:

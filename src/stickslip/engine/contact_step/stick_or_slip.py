@@ -10,16 +10,18 @@ from stickslip.engine.contact.contact_equation import (
     TIE,
     choose_branch,
     friction_at,
+    is_outdated,
     leave_branch,
+    needs_branches,
     onset_of_slip,
     rest_limit,
+    settle_branch,
     towards,
 )
-from stickslip.engine.contact.pieces import note_jump, record
+from stickslip.engine.contact.pieces import keep_state, note_jump, record
+from stickslip.engine.contact.pressing import is_pressing, own_states, states_ahead
 from stickslip.engine.contact.stiffness import turn_states
-from stickslip.engine.memory.addresses import ahead
 from stickslip.engine.series.polynomial import evaluate, fill, restrict, scale_low
-from stickslip.engine.state import layout as at
 from stickslip.engine.state.layout import TERMS, Cause, Floats
 from stickslip.engine.state.workspace import Run
 
@@ -40,8 +42,11 @@ def arrive(run: Run) -> None:
     if mode != 0 and run.counts.folds_move == 1 and run.counts.arriving == Cause.NO_CAUSE:
         pass  # The load continues without a jump, and so does the slip rate.
     elif mode != 0 and run.counts.is_algebraic == 1:
-        seen, branch = towards(run, load, mode), run.counts.branch
-        if not run.branch_table[branch].keep_from <= seen <= run.branch_table[branch].keep_to:
+        seen = towards(run, load, mode)
+        if run.counts.given > 0 and run.counts.arriving == Cause.LOADING:
+            settle_branch(run, seen)
+        branch = run.counts.branch
+        if run.counts.mode != 0 and not run.branch_table[branch].keep_from <= seen <= run.branch_table[branch].keep_to:
             leave_branch(run, seen)
     elif mode != 0 and run.counts.has_inertia == 0:
         friction_at(run, run.state.law_slip, 0.0)
@@ -50,19 +55,41 @@ def arrive(run: Run) -> None:
     if run.counts.mode == 0 and run.counts.leaving_rest == 0:
         for direction in (1, -1):
             if towards(run, load, direction) > limit:
-                run.counts.mode = direction
-                choose_branch(run, towards(run, load, direction))
+                start_slip(run, direction, towards(run, load, direction))
     if run.counts.mode == 0:
         note_jump(run, 0.0, run.counts.arriving)
         run.state.rate_now = 0.0
 
 
 @kernel
-def end_of_rest(run: Run, load: Floats) -> tuple[float, int]:
-    """Return the place on [0, 1] of an interval of load where rest ends, or NONE if rest lasts, and the direction of slip."""
+def start_slip(run: Run, direction: int, load: float) -> None:
+    """Leave rest in a direction, at a load that is seen that way (Pa or N, minus the reference).
+
+    If the branches at this normal load are not known yet, the end of rest is only noted: it follows at once when they are.
+    """
+    if is_outdated(run):
+        run.counts.leaving_rest = direction
+        return
+    run.counts.mode = direction
+    choose_branch(run, load)
+
+
+@kernel
+def end_of_rest(run: Run, load: Floats, width: float) -> tuple[float, int]:
+    """Return the place on [0, 1] of an interval of load where rest ends, or NONE if rest lasts, and the direction of slip.
+
+    The interval is `width` (in xi) long. The strength is that of the present states, and goes with the normal load.
+    """
     strength = run.jet
     fill(strength, 0.0)
     strength[0] = rest_limit(run)
+    if run.counts.states > 0:
+        states_ahead(run, width)
+    if is_pressing(run):
+        first = own_states(run)
+        by_pressing = run.params.normal * (run.value.by_state[first] + run.params.static_excess)
+        for k in range(1, TERMS):
+            strength[k] = by_pressing * run.state_jet[TERMS * first + k]
     return onset_of_slip(run, load, strength)
 
 
@@ -105,28 +132,23 @@ def stick(run: Run, xi_to: float) -> None:
     """Stay at rest up to the place xi_to, or until the load exceeds the strength."""
     width, load = xi_to - run.state.xi, run.history[run.counts.length].load
     restrict(run.load, run.state.xi, width, load)
-    onset, direction = end_of_rest(run, load)
+    onset, direction = end_of_rest(run, load, width)
     if run.params.healed_piece >= 0.0 and is_arrest(run, min(onset, 1.0) * width * run.state.speed):
         heal(run, load[0])
-        stale = run.counts.folds_move == 1 and run.state.table_slip != run.state.law_slip
-        if run.counts.mode != 0 or stale:
+        if run.counts.mode != 0 or needs_branches(run):
             return
-        onset, direction = end_of_rest(run, load)
+        onset, direction = end_of_rest(run, load, width)
     slips = onset <= 1.0 - TIE
     if slips:
         scale_low(load, TERMS - 1, onset)
     fill(run.history[run.counts.length].rate, 0.0)
-    for n in range(run.counts.states):
-        kept = ahead(run.history_state, at.TERMS * (run.counts.states * run.counts.length + n))
-        fill(kept, 0.0)
-        if n >= run.counts.states - run.counts.given:
-            kept[0] = run.state.state_now[n]
+    keep_state(run, onset if slips else 1.0)
     record(run, run.state.xi + onset * width if slips else xi_to)
     run.counts.leaving_rest = 0
     if slips:
-        run.counts.mode, run.counts.leaving_rest = direction, direction
+        run.counts.leaving_rest = direction
         run.counts.stiff = run.counts.steps = 0
-        choose_branch(run, rest_limit(run))
+        start_slip(run, direction, rest_limit(run))
 
 
 @kernel

@@ -9,9 +9,18 @@ from __future__ import annotations
 import math
 
 from stickslip.engine.compile.kernels import inlined, kernel
-from stickslip.engine.contact.contact_equation import TIE, constants_of, load_ahead, rate_from_here, rate_on_branch
+from stickslip.engine.contact.contact_equation import (
+    TIE,
+    constants_of,
+    is_outdated,
+    load_ahead,
+    rate_from_here,
+    rate_on_branch,
+    static_step,
+)
 from stickslip.engine.contact.law_knots import settle_piece
-from stickslip.engine.contact.pieces import note_jump
+from stickslip.engine.contact.pieces import keep_state, note_jump
+from stickslip.engine.contact.pressing import states_ahead
 from stickslip.engine.contact.stiffness import judge_stiffness
 from stickslip.engine.contact_step.certificate import begin_step, bound_straight_bit, is_negative, measure_end, proven_length
 from stickslip.engine.contact_step.keep_step import move
@@ -54,12 +63,12 @@ def unit_from(left: float, speed: float, last_step: float) -> float:
 
 @kernel
 def prepare_series(run: Run, unit: float) -> None:
-    """Prepare the input of the series: run.load_along_slip, in units of `unit` (in xi), and the numbers in run.k."""
+    """Prepare the input of the series: the numbers in run.k, and load and states ahead, in units of `unit` (in xi)."""
     direction, params, k = run.counts.mode, run.params, run.k
     load_ahead(run, unit)
     k.rate = abs(run.state.rate_now)
     if run.counts.is_algebraic == 1:
-        if run.counts.folds_move == 0 or run.state.table_slip == run.state.law_slip:
+        if run.counts.folds_move == 0 or not is_outdated(run):
             k.rate = rate_on_branch(run, run.load_along_slip[0], k.rate)
         else:
             k.rate = rate_from_here(run, run.load_along_slip[0], k.rate)
@@ -72,7 +81,9 @@ def prepare_series(run: Run, unit: float) -> None:
     k.bend = 2.0 * run.state.bend * unit * unit
     k.slip, k.offset = run.state.law_slip + run.law[piece].slip_shift, run.law[piece].offset
     k.free = 0.0 if edge else 1.0
-    k.force = params.normal * params.static_excess if edge else 0.0
+    k.force = params.normal * static_step(run, run.state.state_now) if edge else 0.0
+    if run.counts.states > 0:
+        states_ahead(run, unit)
 
 
 @kernel
@@ -152,6 +163,8 @@ def take_planned_step(run: Run, plan: StepPlan, unit: float) -> None:
         reached, run.state.last_step = False, min(run.state.last_step, duration_of(run.k, length))
     multiply(run.local, run.powers, kept.load)
     to = plan.target if reached and cut.end == 1.0 else run.state.xi + cut.end * length * unit
+    if run.counts.states > 0:
+        keep_state(run, cut.end * length)
     move(run, cut.end * length, grown, rate_end, to)
     resolve(run, cut)
     if cut.event == StepEvent.NONE and plan.ends_branch and (reached or plan.target - run.state.xi < TIE):

@@ -7,6 +7,7 @@ import math
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import end_branch, friction_at, is_knot, rate_on_branch, towards
 from stickslip.engine.contact.pieces import note_degree, phase_at
+from stickslip.engine.contact.pressing import own_states, press
 from stickslip.engine.memory.addresses import call_part
 from stickslip.engine.memory.pointers import numbers_of
 from stickslip.engine.series.polynomial import copy, evaluate, fill, restrict, total
@@ -120,13 +121,24 @@ def starts_at_fold(run: Run) -> bool:
 
 
 @kernel
+def hardening(run: Run, rate: float) -> float:
+    """Return how fast friction at a slip rate (m/s) grows (Pa/s), because slip goes on and the normal load changes."""
+    friction_at(run, run.state.law_slip, rate)
+    sense = run.counts.mode if run.params.counts_net == 1.0 else 1
+    grows = run.friction.by_slip * sense * rate
+    if run.counts.given > 0:
+        first = own_states(run)
+        grows += run.params.normal * run.value.by_state[first] * run.state.state_now[first + 1]
+    return grows
+
+
+@kernel
 def load_outruns_fold(run: Run) -> bool:
     """Return True if the load grows faster than friction does at the moving fold."""
     fold, xi, direction = run.branch_table[run.counts.branch].rate_from, run.state.xi, run.counts.mode
-    friction_at(run, run.state.law_slip, fold)
+    grows = hardening(run, fold)
     restrict(run.load, xi, 1.0, run.trial)
-    sense = direction if run.params.counts_net == 1.0 else 1
-    return direction * run.trial[1] > run.friction.by_slip * sense * fold * (run.state.speed + 2.0 * run.state.bend * xi)
+    return direction * run.trial[1] > grows * (run.state.speed + 2.0 * run.state.bend * xi)
 
 
 @kernel
@@ -185,8 +197,7 @@ def straight_to_fold(run: Run) -> None:
 def straight_from_fold(run: Run) -> None:
     """Write the first bit of the way from a fold as a straight line in the root of time: at the fold itself no series exists."""
     fold = run.branch_table[run.counts.branch].rate_from
-    friction_at(run, run.state.law_slip, fold)
-    weakened = run.friction.by_slip * run.k.chi * fold * (run.state.speed + run.state.bend)
+    weakened = hardening(run, fold) * (run.state.speed + run.state.bend)
     reached = rate_on_branch(run, towards(run, total(run.load), run.counts.mode) - weakened, fold)
     fill(run.jet, 0.0)
     run.jet[0], run.jet[1] = fold, reached - fold
@@ -207,6 +218,8 @@ def leave_fold_piece(run: Run) -> None:
     if run.counts.cells > 0:
         call_part(run.ladder, run, Task.WAVES_GO_ON, 0.0)
     note_degree(run)
+    if run.counts.given > 0:
+        press(run, phase_at(run, state.xi))
     reached = run.counts.at_fold == NearFold.APPROACHING
     run.counts.at_fold = NearFold.NONE
     if reached:

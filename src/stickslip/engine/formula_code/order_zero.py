@@ -2,8 +2,8 @@
 
 The text uses these names for node number i: c[i] is its value at the reference point, e{i} its difference from that value, and
 n{i}_{k} its k-th Taylor coefficient (`recurrences` writes the orders from 1 on). The k-th coefficients of slip and slip rate are
-x_{k} and s_{k}. The difference of the slip is dx, that of the rate is s_0, and w and w2 are the states. Where an exp of an exp is
-so large that it counts as constant, o{i} is 0, elsewhere 1.
+x_{k} and s_{k}. The difference of the slip is dx, that of the rate is s_0, and w and w2 are the states, with the coefficients
+w_of_{k} and w2_of_{k}. Where an exp of an exp is so large that it counts as constant, o{i} is 0, elsewhere 1.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ class OrderZero:
         if not self.varies[node]:
             return self.reference(node) if k == 0 else None
         if node in STATES:
-            return node.name
+            return f"{node.name}_of_{k}" if k else node.name
         if node == RATE:
             return f"s_{k}"
         return f"x_{k}" if node == SLIP else f"n{self.index[node]}_{k}"

@@ -15,10 +15,11 @@ A jet writes the values of the nodes that `radii` needs right after the ORDER + 
 
 Friction is computed as a *difference* from the reference, node by node (sin(r+e) - sin(r), expm1, log1p ...), so that a contact
 released at the very edge of equilibrium keeps its digits. Here s >= 0 is the magnitude of the slip rate, q its integral, and
-x = x_start + chi q the slip that the law counts. Time inside a piece is t = t0 + A eta + B eta^2 / 2, so dt/d eta = A + B eta. B is
-zero except next to a fold, where s goes as a square root of time and eta is that root. A contact that leaves rest exactly at its
-strength has no net force by definition, not by subtraction: the caller sets k[10] = 0, and k[11] to the step from static to sliding
-friction (times the normal stress or force).
+x = x_start + chi q the slip that the law counts. The caller writes the series of states that follow from time alone behind that of
+the load L. Time inside a piece is t = t0 + A eta + B eta^2 / 2, so dt/d eta = A + B eta. B is zero except next to a fold, where s
+goes as a square root of time and eta is that root. A contact that leaves rest exactly at its strength has no net force by
+definition, not by subtraction: the caller sets k[10] = 0, and k[11] to the step from static to sliding friction (times the normal
+stress or force).
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ from collections.abc import Callable
 
 from stickslip.engine.formula_code.balls import Balls
 from stickslip.engine.formula_code.recurrences import Recurrences
-from stickslip.friction.formula.expression import RATE, SLIP, STATES, Expression
+from stickslip.friction.formula.expression import RATE, SLIP, STATES, Expression, depends_on
 
 ORDER = 18
 """Order of the Taylor series, and therefore degree of the polynomials in the history."""
@@ -128,6 +129,11 @@ class FormulaWriter(Recurrences):
         radii = [f"r_{state.name} = k[{2 + n}]" for n, state in enumerate(self.states)]
         return ["r_slip = k[0]", "r_rate = k[1]", *radii, *self.balls.lines, *results]
 
+    def given_states(self, k: int) -> list[str]:
+        """Write the k-th coefficients of the states in the formula, which a jet finds behind the series of the load."""
+        used = [(n, state) for n, state in enumerate(self.states) if depends_on(self.formula, state)]
+        return [f"{self.coefficient(state, k)} = L[{(n + 1) * (self.limit + 1) + k}]" for n, state in used]
+
     def shares(self, unit: str) -> list[str]:
         """Write the factors with which the parts of friction enter the contact equation, which is divided to give `unit` to mu."""
         return [f"f{n} = -({factor} * {unit})" for n, factor in enumerate(self.parts(self.formula).values())]
@@ -143,11 +149,12 @@ class FormulaWriter(Recurrences):
     def rate_jet(self) -> list[str]:
         """Write the body of `rate_jet(c, k, L, s)`, for a massless contact.
 
-        k holds the numbers of `engine.state.layout.Series`, L the series of the load; s receives the series of the rate. A and B
-        of the text include the factor chi, so that the integral of s is that of the law's slip. If friction depends on the rate,
-        k[9] must already solve the contact equation.
+        k holds the numbers of `engine.state.layout.SeriesInput`, L the series of the load and those of the states that follow from
+        time; s receives the series of the rate. A and B of the text include the factor chi, so that the integral of s is that of
+        the law's slip. If friction depends on the rate, k[9] must already solve the contact equation.
         """
         body = ["Z = k[0]", "S = k[1]", "A = k[2] * k[3]", "B = k[2] * k[4]", "dx = k[5]", "offset = k[6]"]
+        body += self.given_states(0)
         implicit = self.rate_dependent[self.formula]
         if implicit:
             body += ["s_0 = k[9]", *self.order_zero(), *self.slopes(RATE, "d")]
@@ -157,7 +164,7 @@ class FormulaWriter(Recurrences):
             body += [f"s_0 = k[10] * (L[0] - S * ({self.difference(self.formula) or '0.0'} + offset)) * resistance"]
         body += ["s[0] = s_0", *self.before_orders("A", "B"), *self.shares("S * resistance"), *self.centres()]
         for k in range(1, self.limit + 1):
-            body.append(f"x_{k} = {_integral('s', k)}")
+            body += [f"x_{k} = {_integral('s', k)}", *self.given_states(k)]
             self.pending_rate = k
             body += self.order(k)
             body.append(f"s_{k} = {self.less_friction(f'L[{k}] * resistance', k)}")
@@ -174,7 +181,7 @@ class FormulaWriter(Recurrences):
         The arguments are those of `rate_jet`.
         """
         body = ["Z = k[0]", "S = k[1]", "chi = k[2]", "A = k[3]", "B = k[4]", "dx = k[5]", "offset = k[6]", "inertia = 1.0 / k[7]"]
-        body += ["K = k[8]", "s_0 = k[9]", *self.order_zero(), "s[0] = s_0"]
+        body += ["K = k[8]", "s_0 = k[9]", *self.given_states(0), *self.order_zero(), "s[0] = s_0"]
         force = f"L[0] - Z * s_0 - S * ({self.difference(self.formula) or '0.0'} + offset)"
         body += [f"a_0 = (k[10] * ({force}) + k[11]) * inertia", *self.before_orders("chi * A", "chi * B")]
         body += [*self.shares("S * inertia"), *self.centres()]
@@ -183,7 +190,7 @@ class FormulaWriter(Recurrences):
             body.append(f"s[{k}] = s_{k}")
             if k == self.limit:
                 break
-            body += [f"x_{k} = chi * q_{k}", *self.order(k), *self.weights(k)]
+            body += [f"x_{k} = chi * q_{k}", *self.given_states(k), *self.order(k), *self.weights(k)]
             body.append(f"a_{k} = {self.less_friction(f'(L[{k}] - K * q_{k} - Z * s_{k}) * inertia', k)}")
         return body
 

@@ -19,10 +19,11 @@ from numpy.typing import NDArray
 
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import constants_of, static_step
+from stickslip.engine.contact.pressing import own_states
 from stickslip.engine.contact.stiffness import contact_at
 from stickslip.engine.memory.addresses import ahead, call_radii
 from stickslip.engine.memory.pointers import numbers_of
-from stickslip.engine.radau.stages import WIDTH, own_states, yielding, yielding_of_state
+from stickslip.engine.radau.stages import WIDTH, yielding, yielding_of_state
 from stickslip.engine.series.polynomial import ONES, RECIPROCAL, integral, restrict
 from stickslip.engine.series.radau_nodes import POINT, STAGES
 from stickslip.engine.state.layout import TERMS, Floats

@@ -13,7 +13,7 @@ import math
 from typing import Any
 
 from stickslip.engine.compile.kernels import kernel
-from stickslip.engine.contact.pressing import press_stages
+from stickslip.engine.contact.pressing import own_states, press_stages
 from stickslip.engine.contact.stiffness import contact_at, states_at_point
 from stickslip.engine.memory.addresses import ahead
 from stickslip.engine.memory.pointers import record_at
@@ -42,12 +42,6 @@ WIDTH = (1 + STATES) * STAGES + 1
 """Length of a row of Newton's equations (1), with the right-hand side."""
 between_at: Any = record_at(Between)
 """Function for compiled code that returns the `Between` at a pointer."""
-
-
-@kernel
-def own_states(run: Run) -> int:
-    """Return the number of states that the stages must be solved for: the others follow from time alone."""
-    return run.counts.states - run.counts.given
 
 
 @kernel

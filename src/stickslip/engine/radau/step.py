@@ -9,13 +9,13 @@ import math
 
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import TIE, load_ahead, static_step
+from stickslip.engine.contact.pressing import own_states
 from stickslip.engine.contact.stiffness import contact_at, hanging_rate, states_at_point, states_in_step, turn_states
 from stickslip.engine.memory.addresses import ahead
 from stickslip.engine.radau.proof import passes_zero, prove_step
 from stickslip.engine.radau.stages import (
     defects,
     larger,
-    own_states,
     rate_at_load,
     rounding_of_law,
     rounding_of_slip,

@@ -100,6 +100,7 @@ class State(MemoryRecord):
     driver_rate: float  # m/s: rate of a driver that is a machine, h/c before its wave reaches the end of the present piece of load
     driver_push: float  # Pa: force of its integral gain then
     driver_swing: float  # m/s: bound on how far its rate has been from that of a long rest, in this round trip
+    table_pressing: float  # 1: growth of the normal load (`contact.pressing`) of the present table of branches
 
 
 SAVED = State.places["taken"].first
@@ -129,14 +130,14 @@ class Counts(MemoryRecord):
     at_fold: int  # kind of side piece next to a fold, as a code of `NearFold`
     is_block: int  # 1 for a block, 0 for a slab
     has_inertia: int  # 1 if the contact has mass, so that its slip rate cannot jump
-    is_algebraic: int  # 1 if the slip rate is a root of the contact equation: no mass, a law of slip rate, no state
+    is_algebraic: int  # 1 if the slip rate is a root of the contact equation: no mass, a law of slip rate, no state of its own
     arriving: int  # cause of a jump at the start of the present piece of load, as a code of `Cause`; 0 without a jump
     states: int  # number of state variables of the law
     reverses: int  # sum of 2^n over the numbers n of the states that change their sign where slip reverses
     sticks: int  # 1 if the law knows rest
     stiff: int  # 1 while a contact with mass is stiff and takes implicit steps
     steps: int  # number of explicit steps since slip last began from rest
-    folds_move: int  # 1 if the branches change with slip
+    folds_move: int  # 1 if the branches change with slip, or at present with the normal load
     knots_in_rate: int  # 1 if the knots of the law are slip rates, 0 if they are slips
     branch_ended: int  # 1 if a moving branch has ended and the next one has not been chosen yet
     is_locked: int  # 1 if no load to come can move the contact
@@ -172,6 +173,7 @@ class Counts(MemoryRecord):
     first_side: int  # number of those on the first side of the contact
     joined: int  # 1 if both sides move with the contact, as the two parts of a bowed string; 0 if slip is between them
     wave_shift: int  # row of waves of piece n: n + wave_shift, modulo their number
+    folds_follow_slip: int  # 1 if the branches change with slip
 
 
 class SeriesInput(MemoryRecord):
@@ -345,9 +347,9 @@ class LawPiece(MemoryRecord):
     """Hold one piece of the friction law: the functions of its formula, its reference slip, and the knot at its end."""
 
     value_at: int  # address of `value`; 0 for a law with a state, which has the next but one instead
-    jet_at: int  # address of `rate_jet` or `motion_jet`; 0 for a law with a state
+    jet_at: int  # address of `rate_jet` or `motion_jet`; 0 for a law with a state of its own
     state_at: int  # address of `state_value`; 0 for a law without a state
-    radii_at: int  # address of `radii`, for explicit steps; 0 for a law with a state
+    radii_at: int  # address of `radii`, for explicit steps; 0 for a law with a state of its own
     balls_at: int  # address of `balls`, for implicit steps; 0 if they are not needed
     slip_shift: float  # m: initial slip of the law minus the reference slip of the piece
     offset: float  # 1: sliding friction coefficient at that reference, minus the static coefficient at the start of the run

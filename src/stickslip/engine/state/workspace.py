@@ -81,6 +81,7 @@ class Run(MemoryRecord):
     load_along_slip: Floats = floats_inside(
         TERMS
     )  # Pa or N: the same as seen in the direction of slip, minus the reference strength
+    state_jet: Floats = floats_inside(STATES * TERMS)  # behind it, series of the states over an explicit step, or an implicit one
     jet: Floats = floats_inside(TERMS)  # m/s: series of the magnitude of the slip rate, in units of the series
     centres: Floats = floats_inside(TERMS)  # values that the series writes right after itself, for `radii`
     powers: Floats = floats_inside(TERMS)  # powers of the length of the step, in units of the series
@@ -96,7 +97,6 @@ class Run(MemoryRecord):
     machine_pull: Floats = floats_inside(TERMS)  # m/s: of its pull rate
     machine_rate: Floats = floats_inside(TERMS)  # m/s: of its rate
     machine_push: Floats = floats_inside(TERMS)  # Pa: of the force of its integral gain
-    state_jet: Floats = floats_inside(STATES * TERMS)  # polynomials of the law's states over an implicit step
     stage_rate: Floats = floats_inside(TERMS)  # m/s: slip rate at Radau's points of an implicit step
     stage_state: Floats = floats_inside(STATES * TERMS)  # states of the law at these points
     some_state: Floats = floats_inside(TERMS)  # states of the law at one place

@@ -66,8 +66,11 @@ def enter_segment(run: Run) -> bool:
         run.counts.segment += 1
         run.counts.trips_at_rest = -1  # the last round trip at rest does not predict the next one
         jumps = jumps or run.loading[run.counts.segment].jump == 1.0
-    if jumps and run.counts.given > 0:
-        couple(run, before, pressing_at(run, phase, 0.0)[0])
+    if run.counts.given > 0:
+        if jumps:
+            couple(run, before, pressing_at(run, phase, 0.0)[0])
+        follows = run.counts.folds_follow_slip == 1 or (run.counts.is_algebraic == 1 and is_pressing(run))
+        run.counts.folds_move = 1 if follows else 0
     return jumps
 
 

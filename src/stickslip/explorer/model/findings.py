@@ -224,7 +224,7 @@ def _rule(influence: RuleInfluence) -> str:
     if influence.regime == "regular":
         return ""
     if influence.folds_move:
-        return f"the folds move as it slips, and the run rests on {rule}"
+        return f"the folds move, and the run rests on {rule}"
     decided, shocks = int(influence.shocks.sum()), len(influence.shocks)
     if influence.since is None and not decided:
         return f"nothing rests on {rule}: the load was never between the folds"
