@@ -148,3 +148,9 @@ def test_two_equal_slabs_are_one_of_half_or_twice_the_impedance(name: str, sides
 def test_two_slabs_refuse_a_mass_between_them() -> None:
     with refused('TwoSlabs: contact_mass needs sides = "joined"'):
         ss.TwoSlabs(*ONE, *ONE, NORMAL, contact_mass=1.0)
+
+
+def test_a_run_of_layers_is_shown() -> None:
+    run = ss.simulate("low-velocity-zone")
+    assert "LayeredSlab" in repr(run)
+    assert len(run.catalogue()) == 2

@@ -126,13 +126,15 @@ def _with_body(setting: Setting, kind: str) -> Setting:
         known = {one.name for one in fields(own)}
         whole = replace(own, **{name: value for name, value in RIGID_DRIVER.items() if name in known})
         body = to_table(cast(BodyWithWaves, whole).equivalent_block())
-        loading = {key: value for key, value in (setting.value("loading") or {}).items() if not key.startswith("far_stress")}
-        setting = setting.with_value("loading", loading)
     else:
         slab_name = STARTERS["string"] if own.load_unit == TURNS else slab_of_figure(setting.name) or STARTERS["slab"]
         slab_name = OF_LAYERS.get(kind, slab_name)
         body = dict(tomllib.loads(library.text(slab_name))["body"])
     made = {"kind": kind} | _began(setting, "body", kind, body)
+    # a far stress acts on a driver that gives way, and ground that moves is not followed under layers
+    missing = ("far_stress",) * ("driver_impedance" not in made) + ("ground_",) * (not BODIES[kind].is_uniform)
+    loading = {key: value for key, value in (setting.value("loading") or {}).items() if not key.startswith(missing)}
+    setting = setting.with_value("loading", loading)
     run = {key: value for key, value in setting.value("run").items() if key not in ("creep_rtol", "shortest_event")}
     return _started(setting.with_value("body", made).with_value("run", run))
 
