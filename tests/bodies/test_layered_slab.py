@@ -154,3 +154,11 @@ def test_a_run_of_layers_is_shown() -> None:
     run = ss.simulate("low-velocity-zone")
     assert "LayeredSlab" in repr(run)
     assert len(run.catalogue()) == 2
+
+
+@pytest.mark.parametrize("body", [layered(0.2, 0.8), ss.TwoSlabs(*ONE, *ONE, NORMAL), ss.LayeredSlab(**SOFT, normal_stress=NORMAL)])
+def test_a_contact_at_its_strength_slips_only_if_it_is_pulled(body: Any) -> None:
+    assert ss.simulate(ss.Problem(body, RATE_LAW, 0.0, initial_excess=0.0), 40.0).slip(40.0) == 0.0
+    pulled = ss.simulate(ss.Problem(body, RATE_LAW, 1e-12, initial_excess=0.0), 1.0)
+    assert list(pulled.shocks.cause[:1]) == ["start"]
+    assert pulled.events.start[0] == 0.0

@@ -125,12 +125,17 @@ def set_counts(counts: Counts, problem: Problem) -> None:
 
 
 def first_pieces(problem: Problem) -> at.Floats:
-    """Return the pieces of the first round trip, whose load follows from the waves in the layers.
+    """Return the pieces of the first round trip: the load of the start, or NaN where a driver is heard already.
 
-    A driver behind an odd number of cells joins in after the time of one cell.
+    A driver behind an odd number of cells joins in after the time of one cell, which is where a single cell hears it.
     """
-    delay, end = problem.body.inflow_delay, problem.round_trip_time
-    phases = [0.0, delay, end] if 0.0 < delay < end else [0.0, end]
+    body = problem.body
+    assert isinstance(body, OfLayers)
+    delay, end = body.inflow_delay, problem.round_trip_time
+    phases = np.array([0.0, delay, end] if 0.0 < delay < end else [0.0, end])
     table = FirstLoad.table(len(phases))
-    FirstLoad.of(table).phase = phases
+    pieces = FirstLoad.of(table)
+    slope = body.stiffness * problem.initial_shear
+    heard = (phases >= delay) & (min(sum(one.counts) for one in body.stacks) == 1) & (problem.varies or not body.is_driven_rigidly)
+    pieces.phase, pieces.slope, pieces.load = phases, slope, np.where(heard, np.nan, problem.excess + slope * phases)
     return table

@@ -16,6 +16,8 @@ stress, or the sides are joined, slip alike, and share the stress.
 
 from __future__ import annotations
 
+import math
+
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.folds.fold import share_described, square_variable
 from stickslip.engine.memory.addresses import ahead
@@ -79,7 +81,11 @@ def side_of(run: Run, side: int) -> tuple[int, int]:
 
 @kernel
 def cross_cells(run: Run) -> bool:
-    """Let the waves of one round trip ago cross two cells, and bring what arrives; return True if the load jumps to it."""
+    """Let the waves of one round trip ago cross two cells, and bring what arrives; return True if the load jumps to it.
+
+    Until a driver is heard the load of the first round trip is that of the start, which is known without rounding.
+    """
+    load, slope = run.load[0], run.load[1]
     if run.counts.trip == 0:
         for cell in range(run.counts.cells):
             one, wave = run.ladder_cells[cell], wave_in(run, AIR, cell)
@@ -98,6 +104,11 @@ def cross_cells(run: Run) -> bool:
         meet(run, first, past, 0)
         meet(run, first, past, 1)
     arrive_at_contact(run)
+    if run.counts.trip == 0 and math.isfinite(load):
+        fill(run.load, 0.0)
+        run.load[0], run.load[1] = load, slope
+        if run.counts.first_side == run.counts.cells:
+            copy(run.load, wave_in(run, AIR, 0), TERMS)
     return jumps_here(run)
 
 

@@ -112,9 +112,9 @@ def _block_events(history: History, first: Positions, last: Positions) -> dict[s
 
 
 def trapped_note(history: History) -> str:
-    """Return one line on the waves that travel in the slab or string at the end of a run; empty for a block, which has none."""
+    """Return one line on the waves that travel in the slab or string at the end of a run; empty for a block, and for layers."""
     body = history.problem.body
-    if not body.has_waves:
+    if not (body.has_waves and body.is_uniform):
         return ""
     end = epochs(history, Positions.inside(len(history) - 1, 1.0))[0]
     energy = Waves(history, as_waves(body)).trapped(end)
