@@ -11,8 +11,9 @@ from typing import Any
 import matplotlib as mpl
 from matplotlib import pyplot
 from matplotlib.figure import Figure
-from pictures import in_words  # site/pictures.py
 from sphinx.application import Sphinx
+
+from pictures import in_words  # site/pictures.py
 
 LESSONS = {
     "../examples/lessons/stick-slip-lesson.ipynb": "gallery/lesson.md",
