@@ -83,7 +83,8 @@ ROOMS = {
     ),
     "observables": (
         ("planar", "predictability", "severity", "proof", "quadrature", "rule_influence"),
-        ("waves",),
+        ("layers", "waves"),
+        ("inside_layers",),
         ("energy", "field"),
         ("event_table",),
         ("energetics", "event_stream"),

@@ -21,10 +21,11 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip.bodies import BodyWithWaves, as_waves
+from stickslip.bodies import BodyWithWaves, OfLayers, as_waves
 from stickslip.engine.state.layout import TERMS
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
+from stickslip.observables.inside_layers import field_of_layers
 from stickslip.observables.waves import Waves
 from stickslip.problem.problem import Problem
 from stickslip.trajectory.history import History, Positions, Side
@@ -58,12 +59,16 @@ def field(history: History, slip: Callable[[ArrayLike], Floats], x: ArrayLike, t
     passes, "right" the limit after it; a point within rounding of a front lies on it. Raises InputError for a block, for places
     outside the slab, for times outside the run, and if the waves in the slab left the contact in a leap over creep.
     """
-    body = slab_of(history.problem)
     place, time = np.broadcast_arrays(np.asarray(x, float), np.asarray(t, float))
+    if isinstance(layers := history.problem.body, OfLayers):
+        at_contact = np.broadcast_to(slip(t), time.shape)
+        check_side(side)
+        inside = field_of_layers(history, layers, at_contact.ravel(), x=place.ravel(), t=time.ravel(), side=side)
+        return Field(*(np.reshape(values, place.shape) for values in inside))
+    body = slab_of(history.problem)
     if not np.all((place >= 0.0) & (place <= body.distance)):
         raise InputError(f"field: x must lie between 0 (the contact) and {body.distance:g} m (the driver)")
-    if side not in get_args(Side):
-        raise InputError(f"side must be 'left' or 'right', got {side!r}")
+    check_side(side)
     at_contact = np.broadcast_to(slip(t), time.shape)  # raises InputError for times outside the run
     waves, away, moment = Waves(history, body), place.ravel() / body.wave_speed, time.ravel()
     rise, velocity, stress = np.empty((3, moment.size))
@@ -78,8 +83,18 @@ def field(history: History, slip: Callable[[ArrayLike], Floats], x: ArrayLike, t
     return Field(*(np.reshape(values, place.shape) for values in (displacement, velocity, stress)))
 
 
+def check_side(side: str) -> None:
+    """Raise InputError for what is no side of a front."""
+    if side not in get_args(Side):
+        raise InputError(f"side must be 'left' or 'right', got {side!r}")
+
+
 def slab_of(problem: Problem) -> BodyWithWaves:
-    """Return the slab or the string of a problem. Raises InputError for a rigid body."""
+    """Return the slab or the string of a problem. Raises InputError for a rigid body, and for one of layers."""
+    if isinstance(problem.body, OfLayers):
+        raise InputError(
+            f"figure: needs a uniform slab or a string: of a {type(problem.body).__name__} only `field` shows the inside"
+        )
     return as_waves(problem.body, "field: a block is rigid and has no interior field: only a slab or a string has one")
 
 

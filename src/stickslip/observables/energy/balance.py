@@ -17,10 +17,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stickslip.bodies import as_waves
+from stickslip.bodies import OfLayers, as_waves
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.names import in_files
 from stickslip.observables.energy.ground import pushing, shaken, shaking, speed, spring_force
+from stickslip.observables.energy.layers import LayerEnergy
 from stickslip.observables.quadrature import FULL, NODES, WEIGHTS, Integrand, between, up_to
 from stickslip.observables.waves import Radiation, Waves
 from stickslip.trajectory.history import Epoch, History, Positions
@@ -75,7 +76,11 @@ def event_energies(history: History, first: Positions, last: Positions) -> dict[
     The keys are the columns of `observables.event_table.ENERGY_COLUMNS`. The energies are integrated over each event alone, so
     their digits do not depend on the run before it.
     """
-    parts = (_slab_events if history.problem.body.has_waves else _block_events)(history, first, last)
+    body = history.problem.body
+    if isinstance(body, OfLayers):
+        parts = _events_of_layers(history, body, first, last)
+    else:
+        parts = (_slab_events if body.has_waves else _block_events)(history, first, last)
     parts["heat"] = between(history, first, last, _heating(history))
     parts["balance"] = parts["released"] + parts["work"] - parts["heat"] - parts["damped"]
     return parts
@@ -94,6 +99,18 @@ def _slab_events(history: History, first: Positions, last: Positions) -> dict[st
         "work": work,
         "damped": np.zeros(len(spans)),
         "trapped": np.array([waves.trapped(end) for _, end in spans]),
+    }
+
+
+def _events_of_layers(history: History, body: OfLayers, first: Positions, last: Positions) -> dict[str, Floats]:
+    if not len(first.piece):
+        return {name: np.zeros(0) for name in ("released", "work", "damped", "trapped")}
+    before, after = (energies_of_layers(history, body, at) for at in (first, last))
+    return {
+        "released": before["stored"] - after["stored"],
+        "work": after["work"] - before["work"],
+        "damped": np.zeros(len(first.piece)),
+        "trapped": after["trapped"],
     }
 
 
@@ -136,7 +153,27 @@ def energies(history: History, at: Positions, nodes: int = FULL) -> dict[str, Fl
     are absolute. All are taken at exactly the same positions, so that their differences balance late in a run too. The work, heat
     and damping of a block are integrated with `nodes` nodes on each piece.
     """
-    return _slab(history, at) if history.problem.body.has_waves else _block(history, at, nodes)
+    body = history.problem.body
+    if isinstance(body, OfLayers):
+        return energies_of_layers(history, body, at) | {"heat": heat(history, at, nodes)}
+    return _slab(history, at) if body.has_waves else _block(history, at, nodes)
+
+
+def energies_of_layers(history: History, body: OfLayers, at: Positions) -> dict[str, Floats]:
+    """Return the energies of a body of layers at positions, without heat; see `energies`."""
+    energy, now = LayerEnergy(history, body), epochs(history, at)
+    contact = 0.5 * body.inertia * history.rate(at) ** 2
+    stored, moving, trapped = np.array([energy.inside(epoch) for epoch in now]).reshape(-1, 3).T
+    work, radiated = energy.driven(now)
+    return {
+        "work": work,
+        "stored": stored + contact,
+        "elastic": stored - moving,
+        "kinetic": moving + contact,
+        "damped": np.zeros(len(now)),
+        "radiated": radiated,
+        "trapped": trapped,
+    }
 
 
 def _slab(history: History, at: Positions) -> dict[str, Floats]:

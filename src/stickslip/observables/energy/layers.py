@@ -1,0 +1,123 @@
+"""Energy of a body of layers, from its replayed waves (`observables.layers`).
+
+In a cell of impedance Z the waves f and g store (f^2 + g^2) / (4 Z) for each second of travel time. Those that are in the cells at
+a moment left the two ends within the time T of a cell before it, so that all cells have their fronts at the same places. The power
+of the drivers is summed over round trips at each phase, and then integrated over phases.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from stickslip.bodies import OfLayers
+from stickslip.engine.state.layout import Floats
+from stickslip.observables.layers import MOST, RADIATED, VALUE, WORK, LayerWaves
+from stickslip.observables.quadrature import NODES, WEIGHTS
+from stickslip.trajectory.history import Epoch, History
+
+CURVED = NODES**2 * (3.0 - 2.0 * NODES), 6.0 * NODES * (1.0 - NODES) * WEIGHTS
+"""Places and weights in an interval of length 1 at whose ends a wave may be a square root, next to folds: see `balance`."""
+
+
+class InsideLayers(NamedTuple):
+    """Energies of the waves in the layers at a moment (J/m^2)."""
+
+    stored: float
+    """Up to a constant."""
+    kinetic: float
+    trapped: float
+
+
+class LayerEnergy:
+    """Energies of a body of layers."""
+
+    def __init__(self, history: History, body: OfLayers) -> None:
+        self.history, self.body, self.waves = history, body, LayerWaves(history, body)
+        self.rule = CURVED if history.store.bend.any() else (NODES, WEIGHTS)
+
+    # ---- what the waves store -----------------------------------------------------------------------------------------------
+
+    def inside(self, now: Epoch) -> InsideLayers:
+        """Return the energies of the waves at a moment.
+
+        The trapped energy is that beyond a state of even stress: on each side, if the sides are joined. Under rigid drivers it is
+        sheared at their rates, and the velocity changes with the compliance passed; else it is at rest.
+        """
+        waves = self.waves
+        ago, weight = self._cells_at(now)
+        even, odd = self._left(now, ago)
+        f, g = np.where(waves.is_away, even, odd), np.where(waves.is_away, odd, even)[::-1]  # the places are symmetric
+        impedance, doubled = waves.ladder.impedance, 2.0 * waves.reference
+        stored = weight @ ((f * (f - doubled) + g * (g + doubled)) / (4.0 * impedance))
+        moving = weight @ ((f + g) ** 2 / (8.0 * impedance))
+        even_rates = impedance * self._sheared(now, ago)
+        mean = self._mean(weight @ (0.5 * (g - f) / impedance))
+        trapped = weight @ (((f - even_rates + mean) ** 2 + (g - even_rates - mean) ** 2) / (4.0 * impedance))
+        return InsideLayers(float(stored.sum()), float(moving.sum()), float(trapped.sum()))
+
+    def _cells_at(self, now: Epoch) -> tuple[Floats, Floats]:
+        """Return travel times (s) from the near side of a cell, symmetric about its middle, and the weights of an integral (s)."""
+        time = self.waves.time
+        standing = [self.history.standing(trip)[1:] for trip in range(max(now.trip - 1, 0), now.trip + 1)]
+        fronts = np.mod(now.offset - np.concatenate([phase for pair in standing for phase in pair]), time)
+        near = np.unique(np.concatenate([[0.0, 0.5 * time], np.minimum(fronts, time - fronts)]))
+        return self._places(np.concatenate([near, time - near[-2::-1]]))
+
+    def _places(self, edges: Floats) -> tuple[Floats, Floats]:
+        places, weights = self.rule
+        widths = np.diff(edges)[:, None]
+        return (edges[:-1, None] + widths * places).ravel(), (widths * weights).ravel()
+
+    def _left(self, now: Epoch, ago: Floats) -> tuple[Floats, Floats]:
+        """Return the waves E and O (Pa) that left their places some times (s) before a moment, shape (times, cells)."""
+        waves, phase = self.waves, now.offset - ago
+        early = phase < 0.0
+        at = waves.clipped(np.where(early, now.trip - 1, now.trip), np.where(early, phase + waves.round, phase))
+        before = waves.earlier(*at)
+        return waves.rows(*at)[:, VALUE], waves.odd(waves.rows(*before), *before)[:, VALUE]
+
+    def _sheared(self, now: Epoch, ago: Floats) -> Floats:
+        """Return the velocities (m/s) at travel times (s) in the cells when the contact rests and the layers follow the drivers."""
+        body, waves = self.body, self.waves
+        pulled = self.history.problem.pull_rate_at(now.trip * waves.round + now.offset)
+        rate = float(pulled) if body.is_driven_rigidly else 0.0
+        found = []
+        for n, layers in enumerate(body.stacks):
+            driver = rate if n == 0 or body.is_joined else 0.0
+            contact = 0.0 if len(body.stacks) == 1 or body.is_joined else driver - rate * body.stiffness / layers.stiffness
+            passed = layers.passed[:-1] + np.diff(layers.passed) * (ago / waves.time)[:, None]
+            found.append(contact + (driver - contact) * passed)
+        return np.concatenate(found, axis=1)
+
+    def _mean(self, strain: Floats) -> Floats:
+        """Return the mean stress minus the reference (Pa) in each cell, from integrals of that stress over Z (m)."""
+        starts = self.waves.starts if self.body.is_joined else self.waves.starts[[0, -1]]
+        compliance = np.add.reduceat(self.waves.time / self.waves.ladder.impedance, starts[:-1])
+        return np.repeat(np.add.reduceat(strain, starts[:-1]) / compliance, np.diff(starts))
+
+    # ---- what the drivers do ------------------------------------------------------------------------------------------------
+
+    def driven(self, moments: list[Epoch]) -> tuple[Floats, Floats]:
+        """Return the work of the drivers, and the energy radiated through them, since the start until each moment (J/m^2)."""
+        waves, store = self.waves, self.history.store
+        ends = [self._joined(now) for now in moments]
+        trip, phase = np.array([end.trip for end in ends]), np.array([end.offset for end in ends])
+        known = int(np.searchsorted(store.trip, trip.max(), side="right"))
+        fronts = np.mod(np.concatenate([store.phase_from[:known], store.phase_to[:known]]), waves.time)
+        edges = np.unique(np.concatenate([[0.0, waves.time, waves.round], fronts, fronts + waves.time, phase]))
+        places, weights = self._places(edges)
+        sums = np.zeros((len(moments), 4))
+        together = max(MOST // (4 * len(moments)), 1)
+        for low in range(0, len(places), together):
+            here = places[low : low + together]
+            trips = trip[:, None] - (here > phase[:, None])
+            found = waves.sums(np.maximum(trips, -1).ravel(), np.tile(here, len(moments))).reshape(*trips.shape, 4)
+            sums += np.einsum("mpk,p->mk", found, weights[low : low + together])
+        return sums[:, WORK], sums[:, RADIATED]
+
+    def _joined(self, now: Epoch) -> Epoch:
+        """Return when a wave that is at a driver at a moment is where waves are followed."""
+        offset = now.offset + self.waves.ladder.delay
+        return Epoch(now.trip, offset) if offset < self.waves.round else Epoch(now.trip + 1, offset - self.waves.round)
