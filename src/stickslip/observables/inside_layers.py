@@ -89,9 +89,13 @@ def _field(waves: LayerWaves, slip: Floats, t: Floats, side: Side, *, cell: Inte
 
 
 def _beside(waves: LayerWaves, time: Floats, known: Floats, side: Side) -> Floats:
-    """Return times (s) moved to one side of the fronts on which they lie, by the rounding of known ones, but not to the end."""
+    """Return times (s) moved to one side of the fronts on which they lie, by the rounding of the times `known` that are asked for.
+
+    The end of the run has one side only, the left one.
+    """
     slack = 4.0 * np.spacing(np.maximum(np.abs(known), waves.round))
-    return np.asarray(np.minimum(time + (slack if side == "right" else -slack), waves.history.span[1] - slack))
+    ahead = (side == "right") & (known + slack < waves.history.span[1])
+    return np.asarray(time + np.where(ahead, slack, -slack))
 
 
 def _strain(waves: LayerWaves, total: Floats, lasting: float) -> Floats:

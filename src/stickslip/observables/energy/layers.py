@@ -13,6 +13,7 @@ import numpy as np
 
 from stickslip.bodies import OfLayers
 from stickslip.engine.state.layout import Floats
+from stickslip.engine_input.forcing import inflow_of
 from stickslip.observables.layers import MOST, RADIATED, VALUE, WORK, LayerWaves
 from stickslip.observables.quadrature import NODES, WEIGHTS
 from stickslip.trajectory.history import Epoch, History
@@ -61,9 +62,13 @@ class LayerEnergy:
         """Return travel times (s) from the near side of a cell, symmetric about its middle, and the weights of an integral (s)."""
         time = self.waves.time
         standing = [self.history.standing(trip)[1:] for trip in range(max(now.trip - 1, 0), now.trip + 1)]
-        fronts = np.mod(now.offset - np.concatenate([phase for pair in standing for phase in pair]), time)
+        fronts = np.mod(now.offset - np.concatenate([self._breaks(), *(phase for pair in standing for phase in pair)]), time)
         near = np.unique(np.concatenate([[0.0, 0.5 * time], np.minimum(fronts, time - fronts)]))
         return self._places(np.concatenate([near, time - near[-2::-1]]))
+
+    def _breaks(self) -> Floats:
+        """Return the times (s) at which a loading that varies breaks; it has not come to the contact at once."""
+        return inflow_of(self.history.problem).start if self.history.problem.varies else np.zeros(1)
 
     def _places(self, edges: Floats) -> tuple[Floats, Floats]:
         places, weights = self.rule
@@ -105,7 +110,7 @@ class LayerEnergy:
         ends = [self._joined(now) for now in moments]
         trip, phase = np.array([end.trip for end in ends]), np.array([end.offset for end in ends])
         known = int(np.searchsorted(store.trip, trip.max(), side="right"))
-        fronts = np.mod(np.concatenate([store.phase_from[:known], store.phase_to[:known]]), waves.time)
+        fronts = np.mod(np.concatenate([self._breaks(), store.phase_from[:known], store.phase_to[:known]]), waves.time)
         edges = np.unique(np.concatenate([[0.0, waves.time, waves.round], fronts, fronts + waves.time, phase]))
         places, weights = self._places(edges)
         sums = np.zeros((len(moments), 4))
