@@ -74,5 +74,11 @@ ONE = ([THICKNESS], [DENSITY], [SPEED])
 TWO: dict[str, dict[str, Any]] = {
     "rate law": {"friction": RATE_LAW, "pull_rate": 0.1, "initial_excess": 0.0},
     "Coulomb": {"friction": COULOMB, "pull_rate": ss.loading.Steps([0.0, 3.0, 20.0], [0.5, 0.1, 0.7]), "initial_excess": 0.0},
+    "normal load": {
+        "friction": COULOMB,
+        "pull_rate": 0.3,
+        "normal_load": ss.loading.Steps([0.0, 10.0, 23.0], [NORMAL, 0.9 * NORMAL, 1.1 * NORMAL]),
+        "initial_excess": 0.0,
+    },
     "lossy": {"friction": COULOMB, "far_stress": 85e6, "initial_load": 70e6},
 }

@@ -48,7 +48,7 @@ def ladder_of(problem: Problem) -> at.Floats:
     for table, pulled in zip(tables, _pulled(problem, body), strict=True):
         cells = LadderCell.of(table)
         cells.pulled[-1] = pulled
-        if problem.varies:
+        if problem.loading_varies:
             cells.inflow[-1] = cells.inflow_rate[-1] = 0.0
     return np.concatenate(tables)
 
@@ -74,8 +74,10 @@ def sides_of(problem: Problem, body: OfLayers) -> Iterator[StartingSide]:
 
 def _pulled(problem: Problem, body: OfLayers) -> list[float]:
     """Return the share in a varying inflow, that of the first driver, of each driver. Raises InputError if it is unclear."""
-    if len(body.stacks) == 1 or not problem.loading_varies:
-        return [1.0] * len(body.stacks)
+    if not problem.loading_varies:
+        return [0.0] * len(body.stacks)
+    if len(body.stacks) == 1:
+        return [1.0]
     far = isinstance(problem.far_stress, LoadingHistory)
     if not body.is_driven_rigidly:
         what = "far_stress" if far else "pull_rate"

@@ -261,7 +261,7 @@ class LayerWaves:
         )  # and not time - low, which is rounded to the digits of the time
         found = np.empty((*time.shape, len(self._before), 3))
         for side, last in enumerate(self.last):
-            if self.problem.varies:
+            if self.problem.loading_varies:
                 inflow, weight = inflow_of(self.problem), self._pulled[side]
                 value = weight * inflow.at(time)
                 whole = weight * inflow.total(low, time) + value * (lasting - (time - low))
