@@ -71,8 +71,8 @@ NAMED = (
     Named(
         "fold-outrun-backwards",
         "engine/folds/fold.py",
-        "return direction * run.trial[1] > run.friction.by_slip",
-        "return direction * run.trial[1] < run.friction.by_slip",
+        "return direction * run.trial[1] > grows * (",
+        "return direction * run.trial[1] < grows * (",
     ),
     Named("tolerance-times-1000", "engine_input/prepare.py", "= rtol * SAFETY,", "= 1000.0 * rtol * SAFETY,"),
     Named(

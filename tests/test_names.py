@@ -161,4 +161,4 @@ def test_plain_text_takes_prefixes_for_large_numbers_only(unit: str, value: floa
 
 def test_every_unit_is_one_that_is_understood() -> None:
     for name, one in QUANTITIES.items():
-        assert si_unit(name, "Pa") in ("m", "m/s", "Pa", "N", "J/m^2", "1", "s"), one
+        assert si_unit(name, "Pa") in ("m", "m/s", "Pa", "N", "N m", "J/m^2", "1", "s"), one

@@ -177,13 +177,6 @@ def kolsky_bar(names: Names) -> None:
 
 
 @check
-def low_velocity_zone(names: Names) -> None:
-    """Beside the uniform slab, the soft layer whose two slips Goupillaud's recursion gave outside the package."""
-    close([names["total"][0, -1], names["total"][3, 2]], [23.4402332474, 26.479553652])
-    assert (names["slips"][0, -1], names["slips"][3, 2]) == (1, 2)
-
-
-@check
 def reversing_axis(names: Names) -> None:
     """The run, and the work of friction in a cycle, are those of an integrator that knows the equations only (1e-7)."""
     from scipy.integrate import solve_ivp
@@ -309,6 +302,13 @@ def drill_string(names: Names) -> None:
     assert names["severities"][apart < 0.97].min() > 1.0
     assert names["severities"][apart > 1.03].max() < 0.4
     assert (np.diff(names["edges"]) < 0.0).all()
+
+
+@check
+def low_velocity_zone(names: Names) -> None:
+    """Beside the uniform slab, the soft layer whose two slips Goupillaud's recursion gave outside the package."""
+    close([names["total"][0, -1], names["total"][3, 2]], [23.4402332474, 26.479553652])
+    assert (names["slips"][0, -1], names["slips"][3, 2]) == (1, 2)
 
 
 def name_of(path: Path) -> str:

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from stickslip import ElasticSlab, InputError, Problem, SpringBlock, TorsionalString
 from stickslip.bodies import BODIES
-from stickslip.foundation.quantities import LawField, quantities_of, quantity
+from stickslip.foundation.quantities import LawField, NumberSeries, fields_of, quantities_of, quantity
 from stickslip.friction import LAWS, FrictionLaw
 from stickslip.friction.contract import STATE_NAMES
 from stickslip.scenarios import templates
@@ -22,7 +22,12 @@ from stickslip.scenarios.schema import entries_in, quantities_in
 
 def values(kind: type) -> str:
     more = "polar_moment = 1.5\nnormal_torque = 1.5\n" if kind is TorsionalString else ""
-    return more + "".join(f"{name} = 1.5\n" for name, (_, default) in quantities_in("body", kind).items() if default is MISSING)
+    lists = {name for name, (declared, _) in fields_of(kind).items() if isinstance(declared, NumberSeries)}
+    return more + "".join(
+        f"{name} = {'[1.5]' if name in lists else '1.5'}\n"
+        for name, (_, default) in {**dict.fromkeys(lists, (None, MISSING)), **quantities_in("body", kind)}.items()
+        if default is MISSING
+    )
 
 
 def document(body: type, law: type) -> str:
