@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import string
 import textwrap
 from collections.abc import Mapping
@@ -63,6 +64,8 @@ THREE, TWO = 5.4, 3.0
 """Widths (inches) of a figure from which three, or two, panels and their labels stand side by side."""
 ROW, KEY = 1.1, 0.75
 """Heights (inches) of the lowest row of panels with its labels, and of title and key together."""
+HELD = "\0"
+"""Stands for a space at which no line may end."""
 LINE = 17
 """Number of letters in a line of a title or a label of a panel in a narrow figure."""
 
@@ -172,12 +175,18 @@ def _rows(zooms: str, distributions: str, **place: Unpack[Place]) -> tuple[list[
 
 def _make_small(axes: Axes, line: int) -> None:
     """Give a panel of a narrow figure smaller letters, and titles and labels in lines of so many letters."""
-    axes.set_title(textwrap.fill(axes.get_title(loc="left"), line), loc="left", fontsize=8.5, pad=4)
-    axes.set_xlabel(textwrap.fill(axes.get_xlabel(), line), fontsize=8)
-    axes.set_ylabel(textwrap.fill(axes.get_ylabel(), LINE - 2), fontsize=8)
+    axes.set_title(_in_lines(axes.get_title(loc="left"), line - 3), loc="left", fontsize=8.5, pad=4)
+    axes.set_xlabel(_in_lines(axes.get_xlabel(), line), fontsize=8)
+    axes.set_ylabel(_in_lines(axes.get_ylabel(), LINE - 2), fontsize=8)
     axes.tick_params(labelsize=7.5)
     for text in axes.texts:
         text.set_fontsize(7)
+
+
+def _in_lines(text: str, length: int) -> str:
+    """Return a text in lines of so many letters, none of which begins inside a formula."""
+    joined = re.sub(r"\$[^$]*\$", lambda found: found[0].replace(" ", HELD), text)
+    return textwrap.fill(joined, length, break_long_words=False).replace(HELD, " ")
 
 
 def _marks(dataset: xr.Dataset, letters: Mapping[str, str]) -> list[Artist]:
