@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -92,3 +93,16 @@ def test_a_contact_at_its_strength_slips_only_if_it_is_pulled(body: Any) -> None
     pulled = ss.simulate(ss.Problem(body, RATE_LAW, 1e-12, initial_excess=0.0), 1.0)
     assert list(pulled.shocks.cause[:1]) == ["start"]
     assert pulled.events.start[0] == 0.0
+
+
+@pytest.mark.parametrize("sides", ["apart", "joined"])
+def test_a_normal_load_that_varies_leaves_alone_what_unlike_drivers_send(sides: str) -> None:
+    """One driver is rigid, the other gives way. Nothing changes before a step of the normal load, nor by one to the same load."""
+    two = ss.TwoSlabs(*ONE, *ONE, NORMAL, other_driver_impedance=4e6, sides=sides)
+    plain = ss.Problem(two, COULOMB, pull_rate=0.3, initial_excess=0.0)
+    pressed = replace(plain, normal_load=ss.loading.Steps([0.0, 10.0], [NORMAL, NORMAL]))
+    times = np.linspace(0.0, 40.0, 801)
+    slip, under_steps = (ss.simulate(one, 40.0).slip(times) for one in (plain, pressed))
+    np.testing.assert_allclose(under_steps, slip, rtol=1e-10, atol=1e-12 * slip.max())
+    with refused("got other_driver_impedance = 4e+06 Pa s/m"):
+        two.equivalent_block()

@@ -1,4 +1,4 @@
-"""The bodies: a rigid block on a spring and an elastic slab that slide, and a disc on a spring and a string that turn."""
+"""The bodies: a block on a spring and slabs, of one layer or several, that slide; a disc on a spring and a string that turn."""
 
 from stickslip.bodies.contract import MACHINE, Body, BodyOnCharacteristics, BodyWithWaves, as_waves, has_dashpot
 from stickslip.bodies.layered import LayeredSlab, OfLayers, TwoSlabs

@@ -11,6 +11,8 @@ from stickslip.foundation.errors import InputError
 
 MOST_CELLS = 4096
 """Largest number of cells (1) that layers are cut into."""
+ROUNDING = 1e-13
+"""Errors (1) up to this size are those of the division, and count as none."""
 
 
 class CellCut(NamedTuple):
@@ -44,7 +46,3 @@ def cut_into_cells(times: ArrayLike, allowed: float) -> CellCut:
         f"travel times of the layers from {given.min():.3g} to {given.max():.3g} s: {MOST_CELLS} cells of equal time give them to "
         f"{found}, and {allowed:g} is asked for: allow a larger travel_time_error, or join thin layers"
     )
-
-
-ROUNDING = 1e-13
-"""Errors (1) up to this size are those of the division, and count as none."""

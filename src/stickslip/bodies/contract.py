@@ -117,7 +117,7 @@ class BodyOnCharacteristics(Body, Protocol):
 
     @property
     def inflow_delay(self) -> float:
-        """How much later (s) than it is prescribed a loading acts on what the engine follows: h/c of a slab, 0 of a block."""
+        """The time (s) that a loading takes from the driver to where the engine adds it: h/c of a slab, 0 of a block."""
         ...
 
     @property
@@ -183,9 +183,11 @@ class BodyWithWaves(BodyOnCharacteristics, Protocol):
 
 
 def as_waves(body: BodyOnCharacteristics, refusal: str = "needs a body with waves") -> BodyWithWaves:
-    """Return a body that must carry waves. Raises InputError with the text `refusal` for a rigid one."""
-    if not body.has_waves or not body.is_uniform:
-        raise InputError(refusal if not body.has_waves else f"{refusal}: a {type(body).__name__} has layers")
+    """Return a uniform body that must carry waves. Raises InputError, with the text `refusal` for a rigid one."""
+    if not body.has_waves:
+        raise InputError(refusal)
+    if not body.is_uniform:
+        raise InputError(f"needs a uniform body with waves: a {type(body).__name__} has layers")
     return cast(BodyWithWaves, body)
 
 
@@ -289,13 +291,16 @@ def check_driver(body: BodyOnCharacteristics) -> None:
         )
 
 
-def check_equivalent(body: BodyOnCharacteristics) -> None:
-    """Raise InputError unless the driver of a body is rigid: otherwise no spring is left in slow motion."""
+def check_equivalent(body: BodyOnCharacteristics, driver: str = "driver_impedance") -> None:
+    """Raise InputError unless the drivers of a body are rigid: otherwise no spring is left in slow motion.
+
+    `driver` is the field of one that gives way, if any does.
+    """
     if not body.is_driven_rigidly:
         raise InputError(
             f"{type(body).__name__}: equivalent_block needs a rigid driver: behind one of finite impedance nothing holds the "
             f"{body.noun} in the slow limit, so there is no spring; got "
-            f"driver_impedance = {body.driver_impedance:g} {si_unit('impedance', body.load_unit)}"
+            f"{driver} = {getattr(body, driver):g} {si_unit('impedance', body.load_unit)}"
         )
 
 

@@ -29,6 +29,8 @@ def _driver(side: str) -> Quantity:
 class OfLayers(WithWaves, ABC):
     """What follows from the stacks of layers of a body, one or two: a base for such bodies."""
 
+    load_unit: ClassVar[str] = "Pa"
+    mass_field: ClassVar[str] = "contact_mass"
     noun: ClassVar[str] = "slab"
     is_uniform: ClassVar[bool] = False
     driver_inertia: ClassVar[float] = 0.0
@@ -84,7 +86,7 @@ class OfLayers(WithWaves, ABC):
 
     @property
     def inflow_delay(self) -> float:
-        """How much later (s) than the driver sends it a load joins the waves where they are followed: see `engine.waves.ladder`."""
+        """The time (s) that a loading takes from the driver to where the engine adds it: see `engine.waves.ladder`."""
         return self.stacks[0].inflow_delay
 
     @property
@@ -114,7 +116,8 @@ class OfLayers(WithWaves, ABC):
         the kinetic energy of the layers, in which the velocity falls from the contact to a driver in proportion to the compliance
         passed. Raises InputError if a driver is not rigid.
         """
-        check_equivalent(cast(BodyOnCharacteristics, self))
+        soft = "other_driver_impedance" if math.isinf(self.stacks[0].driver_impedance) else "driver_impedance"
+        check_equivalent(cast(BodyOnCharacteristics, self), soft)
         whole = self.stiffness
         shares = [1.0 if self.is_joined else whole / one.stiffness for one in self.stacks]
         mass = sum(share * share * one.slow_mass for share, one in zip(shares, self.stacks, strict=True))
@@ -133,8 +136,6 @@ class LayeredSlab(Declared, OfLayers):
 
     kind: ClassVar[str] = "layered-slab"
     source: ClassVar[str] = "Goupillaud 1961, Geophysics 26, 754, for the layers; Campillo et al. 1996, eqs (7)-(13)"
-    load_unit: ClassVar[str] = "Pa"
-    mass_field: ClassVar[str] = "contact_mass"
 
     thickness: Numbers = declare(of_layers("m", "thickness h"))
     density: Numbers = declare(of_layers("kg/m^3", "density rho"))
@@ -173,8 +174,6 @@ class TwoSlabs(Declared, OfLayers):
 
     kind: ClassVar[str] = "two-slabs"
     source: ClassVar[str] = "Goupillaud 1961, Geophysics 26, 754, for the layers; Campillo et al. 1996, eqs (7)-(13)"
-    load_unit: ClassVar[str] = "Pa"
-    mass_field: ClassVar[str] = "contact_mass"
 
     thickness: Numbers = declare(of_layers("m", "thickness h"))
     density: Numbers = declare(of_layers("kg/m^3", "density rho"))

@@ -153,8 +153,10 @@ def steady_inflow(problem: Problem) -> tuple[float, float]:
     body = problem.body
     if not body.has_waves:
         return body.stiffness * problem.first_pull_rate, 0.0
+    if not body.is_uniform:
+        return 0.0, 0.0  # each driver behind layers has its own, in `ladder`
     if body.is_driven_rigidly:
-        return 2.0 * body.last_impedance * problem.first_pull_rate, 0.0
+        return 2.0 * body.impedance * problem.first_pull_rate, 0.0
     gain, far = gain_of(body), problem.far_stress
     assert not isinstance(far, LoadingHistory)
     excess = far_excess(problem) if far is None else far - problem.strength

@@ -105,7 +105,8 @@ class PlanarSlab(CheckedArguments):
     def _check_problem(self) -> None:
         problem, law = self.problem, self.problem.friction
         if not isinstance(problem.body, ElasticSlab):
-            why = "a string is a line" if problem.body.has_waves else "a block has no waves"
+            of_layers = "layers are followed in 1D only" if not problem.body.is_uniform else "a string is a line"
+            why = of_layers if problem.body.has_waves else "a block has no waves"
             raise InputError(f"PlanarSlab: body must be an ElasticSlab, got {shown(problem.body)}: {why}")
         if problem.body.contact_mass != 0.0:
             raise InputError("PlanarSlab: contact_mass must be 0: the contact equation is solved without inertia")

@@ -153,6 +153,7 @@ class Session:
     def grow(self) -> bool:
         """Make room for more pieces. Returns False if there are as many as the options allow, or if memory is short."""
         max_pieces = self.options.most_pieces
+        # as `engine.loop.lacks_rows`, which only compiled code can call
         if self.count.cells > 0 and self.length - self.count.previous_from + ROOM > len(self.waves) - FIRST_ROW:
             return self._more_rows()
         if self.length >= max_pieces:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from stickslip.bodies import BodyOnCharacteristics, BodyWithWaves, ElasticSlab, as_waves
+from stickslip.bodies import BodyOnCharacteristics, BodyWithWaves, as_waves
 from stickslip.contact.critical import critical_normal_stress
 from stickslip.contact.regime_map import regimes_along_slip
 from stickslip.contact.sliding import SteadySlidings
@@ -272,9 +272,7 @@ def _noise(law: FrictionLaw, contact: Uniqueness) -> list[str]:
 def _slab_warnings(scenario: Scenario, contact: Uniqueness) -> list[str]:
     found, problem, body = [], scenario.problem, scenario.problem.body
     modulus, echo = _modulus_and_echo(body)
-    strain = (
-        abs(problem.load) / modulus if isinstance(body, ElasticSlab) or not body.is_uniform else 0.0
-    )  # a string may have an unknown radius
+    strain = abs(problem.load) / modulus if body.load_unit == "Pa" else 0.0  # the radius of a string may not be known
     if strain > LARGE_STRAIN:
         found.append(f"the shear strain at the start is {strain:.3g}: linear elasticity is doubtful beyond {LARGE_STRAIN:g}")
     if problem.friction.memory == "since-arrest" and body.inertia == 0.0 and body.is_driven_rigidly:

@@ -97,8 +97,8 @@ def approach_fold(run: Run, width: float) -> float:
     set_aside(run, width)
     if run.counts.cells > 0:
         call_part(run.ladder, run, Task.WAVES_TO_FOLD, width)
+        restrict(run.load, run.state.xi + width, -width, backwards)  # the waves have used its place
     phase_from, phase_to = phase_at(run, run.state.xi), phase_at(run, run.state.xi + width)
-    restrict(run.load, run.state.xi + width, -width, backwards)  # the waves have used its place
     square_variable(backwards, squared)
     restrict(squared, 1.0, -1.0, run.load)
     run.state.phase_from, run.state.phase_to = phase_from, phase_to

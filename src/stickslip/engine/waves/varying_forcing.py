@@ -88,7 +88,7 @@ def cut(run: Run, begin: float, end: float, phase: float, phase_to: float) -> No
     """Restrict the piece of load to xi from `begin` to `end`, whose phases (s) are `phase` and `phase_to`."""
     width = end - begin
     if run.counts.cells > 0:
-        run.state.xi = begin
+        run.state.xi = begin  # a part takes one number only; the place is set anew before the contact meets the piece
         call_part(run.ladder, run, Task.CUT_WAVES, end)
     restrict(run.load, begin, width, run.spare)
     copy(run.spare, run.load, TERMS)
