@@ -129,3 +129,9 @@ def test_what_bodies_of_layers_do_not_have_is_refused_in_one_line(door: str, nam
     scenario = ss.load_scenario(name)
     with refused(begins=begins.format(type(scenario.problem.body).__name__)):
         attempt(scenario)
+
+
+@pytest.mark.parametrize("name", ["body.thickness", "thickness"])
+def test_a_list_without_an_index_is_told_how_to_name_an_entry(name: str) -> None:
+    with refused("it is a list: name one of its entries, such as body.thickness[0]"):
+        ss.load_scenario("low-velocity-zone").with_values({name: 2e3})

@@ -41,8 +41,9 @@ def cut_into_cells(times: ArrayLike, allowed: float) -> CellCut:
             best = CellCut(tuple(counts.astype(int).tolist()), time, error if error > ROUNDING else 0.0)
         if best.error <= allowed:
             return best
-    found = f"{best.error:.2g}" if np.isfinite(best.error) else "no cut at all"
+    if len(given) > MOST_CELLS:
+        raise InputError(f"{len(given)} layers are more than the {MOST_CELLS} cells that there may be: join thin layers")
     raise InputError(
-        f"travel times of the layers from {given.min():.3g} to {given.max():.3g} s: {MOST_CELLS} cells of equal time give them to "
-        f"{found}, and {allowed:g} is asked for: allow a larger travel_time_error, or join thin layers"
+        f"travel times of the layers from {given.min():.3g} to {given.max():.3g} s: {MOST_CELLS} cells of equal time give them with"
+        f" a relative error of {best.error:.2g}, and {allowed:g} is asked for: allow more (travel_time_error), or join thin layers"
     )

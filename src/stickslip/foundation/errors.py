@@ -99,6 +99,9 @@ def full_name(name: str, known: Collection[str], before: str, unknown: str) -> s
     if len(fitting) > 1:
         raise InputError(f"{before}'{name}' is ambiguous: give one of {', '.join(fitting)}")
     if not fitting:
+        entries = [full for full in known if full.partition("[")[0].endswith(f".{name.rpartition('.')[2]}") and "[" in full]
+        if entries:
+            raise InputError(f"{before}{ascii(name)[:60]} {unknown}; it is a list: name one of its entries, such as {entries[0]}")
         single = [full for full in known if "[" not in full]
         hint = nearest(name, [full.rpartition(".")[2] for full in single])
         hint = hint if hint.startswith("did") and "." not in name else nearest(name, single)

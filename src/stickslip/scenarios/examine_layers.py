@@ -25,7 +25,8 @@ def given_layers(body: BodyOnCharacteristics) -> list[Fact]:
     for name, (declared, _) in fields_of(type(body)).items():
         value = getattr(body, name)
         if isinstance(declared, NumberSeries):
-            facts.append(Fact(name, ", ".join(f"{one:.6g}" for one in value), declared.item.unit, declared.item.meaning))
+            numbers = ", ".join(f"{one:.6g}" for one in value)
+            facts.append(Fact(name, f"{numbers} {declared.item.unit}", "", declared.item.meaning))
         elif isinstance(declared, Choice):
             facts.append(Fact(name, value, "", declared.meaning))
     return facts
