@@ -87,11 +87,9 @@ def test_other_readers_of_netcdf_do_not_mind_the_checksum(run: ss.Solution, tmp_
 COUNTS = {
     "length": 10**6,
     "piece": 7,
-    "branch": -3,
     "mode": 2,
     "echo_of": 10**9,
     "trip_from": -1,
-    "segment": 99,
     "sparse": 1,
 }
 

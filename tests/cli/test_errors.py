@@ -58,28 +58,28 @@ def test_results_of_an_earlier_run_are_replaced(command):
     assert [command("export", "fig6-slab", "d.txt").code for _ in range(2)] == [0, 0]
 
 
-def test_a_folder_that_cannot_be_written_is_refused_before_the_run(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("stickslip.cli.output.files.os.access", lambda *_: False)
+def refuses(**_: object) -> None:
+    raise OSError(30, "Read-only file system")
+
+
+@pytest.mark.parametrize(
+    ("name", "put", "said"),
+    [
+        ("os.access", lambda *_: False, "the folder . is not writable"),
+        (
+            "os.access",
+            lambda path, mode: Path(path).is_dir() or mode != os.W_OK,
+            "exists and is write-protected: choose another name",
+        ),
+        ("TemporaryFile", refuses, "nothing can be written in the folder .: Read-only file system"),
+    ],
+)
+def test_what_cannot_be_written_is_refused_before_the_run(command, monkeypatch: pytest.MonkeyPatch, name: str, put, said: str):
+    if "exists" in said:
+        Path("a.nc").touch()
+    monkeypatch.setattr(f"stickslip.cli.output.files.{name}", put)
     monkeypatch.setattr("stickslip.run.simulate.simulate", lambda *_, **__: pytest.fail("ran"))
-    assert command("run", "fig6-slab", "--out", "a.nc").refusal == "--out a.nc: the folder . is not writable\n"
-
-
-def test_a_write_protected_file_is_refused_before_the_run(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    (tmp_path / "a.nc").touch()
-    monkeypatch.setattr("stickslip.cli.output.files.os.access", lambda path, mode: Path(path).is_dir() or mode != os.W_OK)
-    monkeypatch.setattr("stickslip.run.simulate.simulate", lambda *_, **__: pytest.fail("ran"))
-    said = command("run", "fig6-slab", "--out", "a.nc").refusal
-    assert said == "--out a.nc: exists and is write-protected: choose another name\n"
-
-
-def test_a_folder_that_refuses_files_is_found_before_the_run(command, monkeypatch: pytest.MonkeyPatch):
-    def refuses(**_: object) -> None:
-        raise OSError(30, "Read-only file system")
-
-    monkeypatch.setattr("stickslip.cli.output.files.TemporaryFile", refuses)
-    monkeypatch.setattr("stickslip.run.simulate.simulate", lambda *_, **__: pytest.fail("ran"))
-    said = command("run", "fig6-slab", "--figure", "a.png").refusal
-    assert said == "--figure a.png: nothing can be written in the folder .: Read-only file system\n"
+    assert command("run", "fig6-slab", "--out", "a.nc").refusal == f"--out a.nc: {said}\n"
 
 
 def test_ctrl_c_gives_one_line(command, monkeypatch: pytest.MonkeyPatch):

@@ -58,13 +58,9 @@ def test_infer_compares_scenarios_by_what_they_predict(command):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (["--free", "a", "--compare", "b.toml", "--held-out", "0.3"], "b.toml: no such file"),
         (["--free", "a", "--compare", "fig6-slab"], "infer: --compare needs --held-out"),
-        (["--free", "a", "--parts", "rests", "--by", "features"], "infer: --by features and --parts rests are two ways"),
         (["--free", "a", "--weight", "-1"], "infer: weight must be at least 0"),
-        (["--free", "alpha"], "infer: free: 'alpha' is no number of this problem"),
         (["--free", "a", "--bound", "a=1"], "infer: --bound must be NAME=LOW..HIGH"),
-        (["--free", "a", "--bound", "a=1..2:log"], "infer: --bound must be NAME=LOW..HIGH"),
         (["--free", "a", "--prior", "a"], "infer: --prior must be NAME=VALUE"),
         (["--free", "a", "--out", "a.txt"], "--out a.txt: the name must end in .nc or .csv"),
         (["--free", "a", "--parts", "events"], "infer: parts must be 'rests' or left out, got 'events'"),

@@ -63,7 +63,6 @@ def test_a_run_stops_after_the_requested_events(command, tmp_path: Path):
 REFUSED = [
     (["run", "cycles-block", "--events", "0"], "run: --events must be a whole number above 0, got 0"),
     (["run", "cycles-block", "--catalogue", "events.txt"], "--catalogue events.txt: the name must end in .csv or .parquet or .nc"),
-    (["run", "cycles-block", "--catalogue", "no/events.csv"], "--catalogue no/events.csv: there is no folder no"),
     (
         ["run", "cycles-block", "--catalogue", "a.csv", "--out", "a.nc"],
         "run: a catalogue keeps slip events only, no history: leave",
@@ -101,30 +100,6 @@ def test_leaps_over_creep_are_told(command):
     assert "automatic: leaps over creep after 200" in re.sub(r"\s+", " ", command("check", "fig5-slab-printed").out)
 
 
-@pytest.mark.slow
-def test_creep_is_leapt_over(command, tmp_path: Path):
-    """By default, by the option and by the scenario's key; the summary says so, and check does; a run and a catalogue go on."""
-    shown = command("run", "fig5-slab-printed", "--duration", "30 minutes", "--creep-rtol", "1e-5", "--out", "run.nc")
-    assert shown.code == 0
-    assert re.search(r"creep_rtol 1e-05: 1 leap over \d\d\d round trips, error at most \S+ m of slip, 0\.\d+ s of time", shown.out)
-    text = command("new", "fig5-slab-printed").out.replace("[run]\n", "[run]\ncreep_rtol = 1e-5\n")
-    (tmp_path / "mine.toml").write_text(text)
-    assert "creep_rtol" in command("check", "mine.toml").out
-    scenario = ss.load_scenario(tmp_path / "mine.toml")
-    assert "creep_rtol 1e-05: no leaps over creep" in command("run", "mine.toml").out
-    assert command("run", "mine.toml", "--duration", "30 minutes", "--catalogue", "events.csv").code == 0
-    whole = ss.simulate(scenario.problem, 2100.0, creep_rtol=1e-5)
-    for file in ("run.nc", "events.checkpoint.nc"):
-        assert re.search(r"creep_rtol 1e-05: \d leaps? over", command("run", "--resume", file, "--duration", "35 minutes").out)
-    assert differences(ss.open_solution(tmp_path / "run.nc"), whole) == []
-    pd.testing.assert_frame_equal(read_table(Path("events.csv")), whole.events, check_exact=True)
-    by_default = command("run", "fig5-slab-printed", "--duration", "25 minutes", "--out", "default.nc").out
-    assert re.search(r"creep_rtol 1e-06 \(automatic; 0 runs every round trip\): 1 leap over", by_default)
-    assert ss.open_solution(tmp_path / "default.nc").creep_rtol is None
-    assert "automatic: leaps over creep after 200" in re.sub(r"\s+", " ", command("check", "fig5-slab-printed").out)
-    assert "automatic: events shorter than this are lumped" in re.sub(r"\s+", " ", command("check", "fig6-slab").out)
-
-
 @pytest.mark.parametrize("options", [{}, {"creep_rtol": 1e-5}, {"creep_rtol": 0.0, "shortest_event": 0.0}])
 def test_tolerances_of_leaps_stay_what_they_are_when_a_scenario_is_written(tmp_path: Path, options: dict[str, float]):
     """0 is another scenario than none."""
@@ -134,12 +109,6 @@ def test_tolerances_of_leaps_stay_what_they_are_when_a_scenario_is_written(tmp_p
     assert scenario.creep_rtol == options.get("creep_rtol")
 
 
-@pytest.mark.parametrize("events", ['"5"', "0", "2.5", "true"])
-def test_a_scenario_with_a_bad_number_of_events_is_refused(command, tmp_path: Path, events: str):
-    (tmp_path / "mine.toml").write_text(command("new", "cycles-block").out.replace("[run]\n", f"[run]\nevents = {events}\n"))
-    assert command("run", "mine.toml").refusal.startswith("mine.toml: [run] events must be a whole number above 0, got ")
-
-
 @pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("option", [["--out", "run.nc"], ["--catalogue", "run.csv"]])
 def test_ctrl_c_leaves_a_file_that_continues(command, monkeypatch: pytest.MonkeyPatch, option: list[str]):
@@ -147,14 +116,14 @@ def test_ctrl_c_leaves_a_file_that_continues(command, monkeypatch: pytest.Monkey
     def interrupting(_: str) -> Iterator[Progress]:
         yield lambda report: signal.raise_signal(signal.SIGINT) if report.events >= 2 else None
 
-    monkeypatch.setattr("stickslip.run.run_loop.LARGEST_BUDGET", 1000)  # so that it does not end before anybody can interrupt
-    monkeypatch.setattr("stickslip.run.run_loop.FIRST_BUDGET", 1000)
+    monkeypatch.setattr("stickslip.run.run_loop.LARGEST_BUDGET", 100)  # so that it does not end before anybody can interrupt
+    monkeypatch.setattr("stickslip.run.run_loop.FIRST_BUDGET", 100)
     with monkeypatch.context() as patch:
         patch.setattr("stickslip.cli.long_run.progress_line", interrupting)
-        shown = command("run", "rate-and-state-block", "--duration", "30 years", *option)
+        shown = command("run", "cycles-block", *option)
     assert (shown.code, shown.err) == (130, "stickslip: interrupted\n")
     assert "interrupted: stopped by the user" in shown.out
-    whole = ss.simulate(ss.load_scenario("rate-and-state-block"), 30 * ss.YEAR)
+    whole = ss.simulate("cycles-block")
     if option[0] == "--out":
         assert 2 <= len(ss.open_solution("run.nc").events) < len(whole.events)
         assert command("run", "--resume", "run.nc").code == 0

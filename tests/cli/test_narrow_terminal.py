@@ -13,14 +13,11 @@ from tests.cli.conftest import Outcome
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?")
 COMMANDS = [
     ["run", "fig6-slab"],
-    ["run", "cycles-block"],
     ["run", "fig5-slab-printed", "--duration", "5 minutes"],
     ["check", "fig6-slab"],
-    ["check", "fig6-block-printed"],
     ["sweep", "fig6-slab", "-v", "alpha=0.1..1:4", "-v", "thickness=5km,10km"],
     ["compare", "fig6-block-reconstructed", "fig6-slab"],
     ["analogy", "block-or-slab", "--map", "wavelength=5..41.6:2:log", "--map", "alpha=0.00392..1:2:log"],
-    ["ensemble", "cycles-block", "--members", "2"],
 ]
 
 

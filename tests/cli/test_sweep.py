@@ -1,7 +1,5 @@
 """`stickslip sweep` says what it did, what it would do, and what it cannot do."""
 
-import errno
-import os
 import re
 from pathlib import Path
 
@@ -118,24 +116,3 @@ def test_keys_quantities_and_designs_are_completed():
     assert complete_series("slip,") == ["slip,slip_rate", "slip,traction", "slip,load"]
     assert complete_quantity("recu") == ["recurrence", "recurrence_cv"]
     assert complete_design("") == ["grid", "random", "lhs"]
-
-
-def test_a_chunk_whose_checksum_does_not_fit_is_one_line(command, tmp_path: Path):
-    asked = "sweep", "fig6-slab", "-v", "alpha=0.5,1", "-q", "slip", "--out", "m.zarr"
-    assert command(*asked).code == 0
-    chunk = tmp_path / "m.zarr" / "slip" / "c.0"
-    chunk.write_bytes(chunk.read_bytes()[:-4] + bytes(4))
-    for arguments in (asked, ("show", "m.zarr")):
-        shown = command(*arguments)
-        assert (shown.code, shown.err.count("\n")) == (2, 1)
-        assert "m.zarr: damaged: slip/c.0 is not as it was written: remove " in shown.err
-
-
-def test_a_disk_that_is_full_at_once_is_promised_nothing(command, monkeypatch: pytest.MonkeyPatch):
-    def full(*_: object, **__: object) -> None:
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-
-    monkeypatch.setattr("stickslip.sweeps.results.store.lay_out", full)
-    shown = command("sweep", "fig6-slab", "-v", "alpha=0.5,1", "--out", "m.zarr")
-    assert shown.code == 2
-    assert shown.err == "stickslip: m.zarr: cannot be written: No space left on device; nothing was kept\n"

@@ -16,7 +16,6 @@ from PIL import Image
 
 import stickslip as ss
 from stickslip.figures.runs import animation, inside
-from stickslip.figures.style import image
 from tests.figures.legible import BLOCK_PROBLEM, SIZES, SLAB, SLAB_PROBLEM, labels
 
 ROUND = SLAB.two_way_time
@@ -126,12 +125,6 @@ def test_space_time_has_units_and_all_of_the_slab(name: str, run: ss.Solution) -
     assert all(axes.get_ylabel().endswith(f"$x$ {height}") for axes in figure.axes[:2])
     assert [axes.get_ylim()[0] for axes in figure.axes[:2]] == [0.0, 0.0]  # the contact is below
     assert figure.axes[0].get_ylim()[1] == pytest.approx(100.0 if name == "laboratory" else 10.0, rel=1e-12)
-
-
-@pytest.mark.usefixtures("coarse")
-def test_the_same_data_draw_the_same(run: ss.Solution) -> None:
-    dataset = inside.space_time_data(run, 0.0, 8.0)
-    assert image(inside.draw_space_time(dataset), "png", 50.0) == image(inside.draw_space_time(dataset), "png", 50.0)
 
 
 # ---- snapshots -----------------------------------------------------------------------------------------------------------------

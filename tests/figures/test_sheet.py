@@ -12,7 +12,6 @@ from typing import Any
 import matplotlib as mpl
 import pytest
 from matplotlib import pyplot
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import stickslip as ss
@@ -237,9 +236,3 @@ def test_a_window_shows_its_figure_itself(monkeypatch: pytest.MonkeyPatch) -> No
 def test_backends_with_windows_are_known(backend: str, windows: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sheet.mpl, "get_backend", lambda: backend)
     assert sheet._has_windows() is windows
-
-
-def test_axes_come_back_as_axes_for_further_drawing() -> None:
-    axes = plot("slip", ax=pyplot.subplots()[1])
-    assert isinstance(axes, Axes)
-    axes.axhline(1.0)

@@ -316,11 +316,6 @@ def test_a_sweep_without_numbers_can_be_drawn(status: int) -> None:
     )[1:]
 
 
-def test_the_figure_can_be_saved(swept: xr.Dataset, tmp_path: Path) -> None:
-    ss.figures.plot_sweep(swept, path=tmp_path / "map.png")
-    assert (tmp_path / "map.png").stat().st_size > 10_000
-
-
 def test_sweeps_that_cannot_be_drawn_are_refused() -> None:
     dataset = grid(np.ones((9, 13)), ALPHA, THICKNESS)
     with pytest.raises(ss.InputError, match="this sweep has no quantity 'anser'; did you mean 'answer'"):

@@ -48,6 +48,7 @@ CASES = [
     ('"12 s"', '"12 s"\nrtol = 0.0', "[run] rtol must be at least 1e-15 (a pure number), got 0"),
     ('"12 s"', '"12 s"\ncreep_rtol = -1e-6', "[run] creep_rtol must be at least 0 (a pure number), got -1e-06"),
     ('"12 s"', '"12 s"\ncreep_rtol = 0.5', f"[run] creep_rtol {CREEP}, got 0.5"),
+    ('"12 s"', '"12 s"\nevents = 2.5', "[run] events must be a whole number above 0, got 2.5"),
     ('"12 s"', '"12 s"\nselection = "maxwel"', "[run] selection 'maxwel' is unknown; did you mean 'maxwell'?"),
     (
         '"12 s"',
@@ -110,12 +111,7 @@ def test_bad_files_are_refused_in_one_line(tmp_path: Path) -> None:
         load_scenario("fig6-slap")
     with pytest.raises(InputError, match=r"lost.toml: no such file, .*; `stickslip new --list` lists them$"):
         load_scenario(tmp_path / "lost.toml")
-    with pytest.raises(InputError, match=r"is a folder, not a scenario; it holds no TOML file$"):
-        load_scenario(tmp_path)
     file = tmp_path / "a.toml"
-    file.write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(InputError, match=r"a.toml: not a text file, so not a scenario; `stickslip new slab > mine.toml` writes"):
-        load_scenario(file)
     file.write_bytes(b"#" * 1_000_001)
     with pytest.raises(InputError, match=r"a.toml: larger than 1000000 bytes: not a scenario$"):
         load_scenario(file)

@@ -51,16 +51,6 @@ def test_the_pulse_period_is_the_time_between_the_pulses_of_the_reconstructed_sl
     assert "pulse period" not in {fact.name for fact in examine(load_scenario("fig5-slab-printed")).derived}
 
 
-@pytest.mark.parametrize("kind", LAWS)
-def test_slopes_are_the_derivatives_of_the_formula(kind: str) -> None:
-    friction = read_scenario(template("slab", kind), "new").problem.friction
-    for slip, rate in ((0.31, 0.2), (1.1, 2.0), (7.0, 0.5)):
-        step = 1e-6
-        by_slip = (friction.coefficient(slip + step, rate) - friction.coefficient(slip - step, rate)) / (2 * step)
-        by_rate = (friction.coefficient(slip, rate + step) - friction.coefficient(slip, rate - step)) / (2 * step)
-        np.testing.assert_allclose(friction.slopes(slip, rate)[:2], (by_slip, by_rate), rtol=1e-8, atol=1e-9)
-
-
 @pytest.mark.parametrize(("beyond", "stable"), [(2.744086e-3 - 1e-8, True), (2.744086e-3 + 1e-8, False)])
 def test_the_slab_is_stable_up_to_where_weakening_meets_its_stiffness(beyond: float, stable: bool) -> None:
     problem = Problem(SLAB, LAW, initial_slip=math.pi / 10 + beyond, initial_excess=0.0)

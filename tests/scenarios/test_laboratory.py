@@ -25,18 +25,11 @@ def test_gabbro_slips_as_a_block_under_coulomb_friction() -> None:
     slip = pull * angle / frequency + drop / body.stiffness * (1.0 - math.cos(angle)) - pull / frequency * math.sin(angle)
     events = ss.simulate(GABBRO).events
     assert len(events) == 4
+    assert events.duration[0] == pytest.approx(17.7e-3, abs=0.05e-3)  # measured: 16 to 18 ms, whatever the size
+    assert events.static_drop[0] == pytest.approx(0.4e6, rel=0.01)
     assert events.duration.to_numpy() == pytest.approx(angle / frequency, rel=1e-6, abs=0)
     assert events.slip.to_numpy() == pytest.approx(slip, rel=1e-9, abs=0)
     assert events.start.diff().iloc[1:].to_numpy() == pytest.approx(slip / pull, rel=1e-8, abs=0)
-
-
-def test_gabbro_slips_as_long_and_as_far_as_was_measured() -> None:
-    """Measured: 16 to 18 ms whatever the size, a force drop of the slip times the stiffness, and at most 0.8 MN."""
-    event = ss.simulate(GABBRO).events.iloc[0]
-    assert 16e-3 < event.duration < 18e-3
-    assert event.duration == pytest.approx(17.7e-3, rel=0, abs=0.05e-3)
-    assert event.slip == pytest.approx(3.5e-3, rel=0, abs=0.05e-3)
-    assert event.static_drop == pytest.approx(0.4e6, rel=0.01, abs=0)
 
 
 def test_the_plate_slips_for_a_round_trip_again_and_again() -> None:
@@ -77,6 +70,7 @@ def test_the_tube_slips_as_its_waves_say() -> None:
     body, run = TUBE.problem.body, ss.simulate(TUBE)
     event = run.events.iloc[0]
     step = body.two_way_time / steps
+    assert (event.slip, event.peak_rate) == (pytest.approx(1.93e-3, abs=0.005e-3), pytest.approx(4.94, abs=0.005))
     assert event.slip == pytest.approx(rate.sum() * step, rel=5e-4, abs=0)
     assert event.start == pytest.approx(np.argmax(rate > 0.0) * step, rel=0, abs=step)
     assert event.end == pytest.approx(np.flatnonzero(rate > 0.0)[-1] * step, rel=0, abs=2.0 * step)
@@ -114,14 +108,6 @@ def bowed(force: float, rate: float = 0.5) -> ss.Solution:
         far_stress=friction,
     )
     return ss.simulate(other, 0.2, max_pieces=20_000)
-
-
-def test_the_tube_has_the_numbers_of_its_description() -> None:
-    event = ss.simulate(TUBE).events.iloc[0]
-    assert event.start == pytest.approx(10.7e-6, rel=0, abs=0.05e-6)
-    assert event.slip == pytest.approx(1.93e-3, rel=0, abs=0.005e-3)
-    assert event.peak_rate == pytest.approx(4.94, rel=0, abs=0.005)
-    assert TUBE.problem.body.two_way_time == pytest.approx(6.25e-6, rel=1e-12, abs=0)
 
 
 def test_the_string_moves_as_helmholtz_found() -> None:

@@ -68,20 +68,6 @@ def test_pressing_changes_all_loads_along_a_contact_too() -> None:
     assert len(set(after.values.load)) > 1
 
 
-@pytest.mark.parametrize(
-    ("values", "said"),
-    [
-        ({"pressing": 1e7, "normal_stress": 1e7}, "pressing and body.normal_stress exclude each other"),
-        ({"initial.load": 1e7, "initial.excess": 0.0}, "initial.load and initial.excess exclude each other"),
-        ({"pressing": -1.0}, "pressing must be greater than 0 Pa"),
-        ({"loading.pull_rate.values[1]": 1.0}, "'loading.pull_rate.values[1]' is not a parameter of this scenario"),
-    ],
-)
-def test_values_that_do_not_go_together_are_refused(values: dict[str, Any], said: str) -> None:
-    with refused(said):
-        ss.scenarios["fig6-slab"].with_values(values)
-
-
 def test_the_title_tells_what_was_changed_and_what_was_described_is_left_out() -> None:
     found = ss.scenarios["fig6-slab"].with_values({"friction.alpha": 0.1, "body.thickness": "5 km"})
     assert found.title == "Fig. 6, slab, rate law, alpha = 1: friction.alpha = 0.1, body.thickness = 5 km"
@@ -92,6 +78,10 @@ def test_the_title_tells_what_was_changed_and_what_was_described_is_left_out() -
 @pytest.mark.parametrize(
     ("values", "message"),
     [
+        ({"pressing": 1e7, "normal_stress": 1e7}, "pressing and body.normal_stress exclude each other"),
+        ({"initial.load": 1e7, "initial.excess": 0.0}, "initial.load and initial.excess exclude each other"),
+        ({"pressing": -1.0}, "pressing must be greater than 0 Pa"),
+        ({"loading.pull_rate.values[1]": 1.0}, "'loading.pull_rate.values[1]' is not a parameter of this scenario"),
         ({"friction.alpa": 1}, "fig6-slab: 'friction.alpa' is not a parameter of this scenario; did you mean 'friction.alpha'?"),
         ({"friction.alpha": -1.0}, "fig6-slab: friction.alpha must be at least 0 s/m, got -1"),
         ({"friction.alpha": "2 m"}, "fig6-slab: friction.alpha must be a number in s/m or a text with a unit"),
@@ -101,5 +91,5 @@ def test_the_title_tells_what_was_changed_and_what_was_described_is_left_out() -
     ],
 )
 def test_what_cannot_be_is_refused_in_one_line(values: dict[str, Any], message: str) -> None:
-    with refused(begins=message):
+    with refused(message):
         ss.scenarios["fig6-slab"].with_values(values)

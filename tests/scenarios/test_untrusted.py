@@ -12,32 +12,10 @@ import stickslip as ss
 from stickslip.cli.main import main
 from stickslip.scenarios.scenario import load_scenario, read_scenario
 from tests.limits import processor_time
+from tests.scenarios.texts import GOOD
 
-SLAB = """
-[body]
-kind = "elastic-slab"
-density = 2800
-wave_speed = 3500
-thickness = "10 km"
-normal_stress = "100 MPa"
-
-[friction]
-kind = "hyperbolic-rate"
-static = 0.8
-dynamic = 0.3
-alpha = 1.0
-
-[loading]
-pull_rate = 1e-9
-
-[initial]
-excess = 0.0
-
-[run]
-duration = 12
-"""
-TABLE = SLAB.replace(
-    SLAB[SLAB.index("[friction]") : SLAB.index("[loading]")],
+TABLE = GOOD.replace(
+    GOOD[GOOD.index("[friction]") : GOOD.index("[loading]")],
     '[friction]\nkind = "table"\nfile = "FILE"\n\n',
 )
 QUOTED = '"a" . '
@@ -77,9 +55,9 @@ def test_an_expression_without_a_value_is_refused_with_its_part(
     [
         ('"10 km"', "1e300", "my.toml: [body] thickness must lie within 1e+50 m, got 1e+300"),
         ('"10 km"', "1e-300", "my.toml: [body] thickness must be at least 1e-50 m, got 1e-300"),
-        ("= 12", "= 1e300", "my.toml: [run] duration must lie within 1e+50 s, got 1e+300"),
+        ('"12 s"', "1e300", "my.toml: [run] duration must lie within 1e+50 s, got 1e+300"),
         ("alpha = 1.0", "alpha = 1e200", "my.toml: [friction] alpha must lie within 1e+50 s/m, got 1e+200"),
-        ("= 12", f"= 12\n{'a.' * 20_000}b = 1", "my.toml: a key has more than 20 parts: not a scenario"),
+        ('"12 s"', f'"12 s"\n{"a." * 20_000}b = 1', "my.toml: a key has more than 20 parts: not a scenario"),
         ("[run]", f"[{'a.' * 20_000}b]\n[run]", "my.toml: a key has more than 20 parts: not a scenario"),
         ("[run]", f"[{QUOTED * 20_000}b]\n[run]", "my.toml: a key has more than 20 parts: not a scenario"),
         ("[run]", f"x = {'[' * 20_000}\n[run]", "my.toml: not a scenario: nested too deeply"),
@@ -88,17 +66,17 @@ def test_an_expression_without_a_value_is_refused_with_its_part(
     ],
 )
 def test_a_scenario_beyond_all_measure_is_refused_at_once(old: str, new: str, message: str) -> None:
-    assert refusal(SLAB.replace(old, new)) == message
+    assert refusal(GOOD.replace(old, new)) == message
 
 
 def test_a_long_text_without_dots_is_no_long_key() -> None:
-    text = f'description = """{"word " * 50_000}{"a" * 300_000} ..... """\n{SLAB}'
+    text = f'description = """{"word " * 50_000}{"a" * 300_000} ..... """\n{GOOD}'
     with processor_time(5.0):
         read_scenario(text, "my.toml")
 
 
 def test_a_whole_number_beyond_all_floats_is_refused() -> None:
-    problem = read_scenario(SLAB, "my.toml").problem
+    problem = read_scenario(GOOD, "my.toml").problem
     with pytest.raises(ss.InputError, match=r"thickness must be a number in m .*, got a whole number beyond 1e300"):
         ss.ElasticSlab(2800, 3500, 10**400, 1e8)
     with pytest.raises(ss.InputError, match=r"duration must be a number in s .*, got a whole number beyond 1e300"):
@@ -116,11 +94,11 @@ def test_a_dataset_larger_than_memory_is_refused() -> None:
 
 
 def test_a_run_of_too_many_round_trips_is_refused() -> None:
-    scenario = read_scenario(SLAB.replace('"10 km"', "4e-24"), "my.toml")
+    scenario = read_scenario(GOOD.replace('"10 km"', "4e-24"), "my.toml")
     with pytest.raises(ss.InputError, match=r"duration must be at most 2.06e-11 s, 2\^53 round trips of 2.29e-27 s, got 12 s"):
         ss.simulate(scenario)
     with pytest.raises(ss.InputError, match=r"duration must be at most 5.15e\+16 s"):
-        ss.simulate(read_scenario(SLAB, "my.toml").problem, 1e30)
+        ss.simulate(read_scenario(GOOD, "my.toml").problem, 1e30)
 
 
 @pytest.fixture

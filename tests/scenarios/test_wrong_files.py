@@ -32,16 +32,12 @@ FORM = 'write a number as 1.5 or 1e3, and a word or a number with a unit in quot
 SLIPS = [
     ("alpha = 1,5", FORM),
     ("alpha = .5", FORM),
-    ("alpha = 5.", FORM),
-    ("alpha = 05", FORM),
     ("alpha = 1 s/m", FORM),
     ("alpha = word", FORM),
     ('alpha = "1 s/m', FORM),
     ("alpha = \u201c1 s/m\u201d", FORM),
-    ("alpha = 10^3", FORM),
     ("alpha =", "Invalid value"),
     ("alpha : 1", "Expected '=' after a key in a key/value pair"),
-    ("alpha 1", "Expected '=' after a key in a key/value pair"),
     ("[friction", "Expected ']' at the end of a table declaration"),
 ]
 

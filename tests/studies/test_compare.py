@@ -87,12 +87,6 @@ def test_compare_accepts_files_scenarios_and_solutions(tmp_path: Path) -> None:
     assert [(run.duration, run.rtol) for run in longer.runs.values()] == [(7.0, 1e-6)] * 2
 
 
-def test_progress_names_each_run() -> None:
-    told: list[str] = []
-    compare("fig6-slab", "fig6-slab", progress=told.append)
-    assert told == ["fig6-slab", "fig6-slab (2)"]
-
-
 def test_equal_names_are_numbered() -> None:
     assert distinct(["a", "b", "a", "a"]) == ["a", "b", "a (2)", "a (3)"]
 

@@ -189,22 +189,16 @@ def test_an_ambiguous_name_is_refused_with_its_candidates() -> None:
 
 BAD = {
     "friction.alpa=1..2:3": "'friction.alpa' is not a parameter of this scenario; did you mean 'friction.alpha'?",
-    "thicknes=1..2:3": "'thicknes' is not a parameter of this scenario; did you mean 'thickness'?",
     "friction.alpha": 'must be "KEY=LOW..HIGH:POINTS"',
-    "friction.alpha=": 'must be "KEY=LOW..HIGH:POINTS"',
-    "=1..2:3": 'must be "KEY=LOW..HIGH:POINTS"',
     "friction.alpha=1..2": "needs a number of points",
     "friction.alpha=1..2:1": "needs at least 2 points",
     "friction.alpha=1..2:99999999": "at most 10000000 are allowed",
     "friction.alpha=2..1:5": "must go from a smaller to a larger number, got 2 to 1 s/m",
     "friction.alpha=0..1:5:log": "must begin above 0",
-    "friction.alpha=1..2:x": "friction.alpha must be a number in s/m",
     "friction.alpha=1..2 km:5": "'2 km': 'km' does not convert to s/m",
     "friction.alpha=1,1": "has the value 1.0 twice",
     "friction.alpha=-1..1:5": "friction.alpha must be",
     "friction.alpha=nan,1": "must be finite",
-    "body.thickness=rigid,1": "body.thickness must be a number in m",
-    "body.driver_impedance=1..rigid:5": "must go from a smaller to a larger number",
     "run.selection=maxwel": "run.selection 'maxwel' is unknown; did you mean 'maxwell'?",
     "run.selection=a..b:3": "takes words, not a range",
     "friction.alpha=1,,2": "friction.alpha must be a number",
@@ -221,22 +215,15 @@ def test_bad_axes_are_refused_in_one_line(text: str) -> None:
 
 
 BAD_DESIGNS: list[tuple[dict[str, Any], str]] = [
-    ({"vary": []}, "name at least one parameter to vary"),
     ({"vary": {}}, "name at least one parameter to vary"),
     ({"vary": {"alpha": [1, 2], "friction.alpha": [3]}}, "friction.alpha is varied twice"),
     ({"vary": {"initial.load": [1], "initial.excess": [1]}}, "exclude each other"),
     ({"vary": {"alpha": [1, 2]}, "kind": "lh"}, "design 'lh' is unknown"),
     ({"vary": {"alpha": [1, 2]}, "members": 5}, "members belongs to"),
     ({"vary": {"alpha": (1, 2)}, "kind": "lhs"}, "the design lhs: members must be a whole number from 1 to 10000000, got None"),
-    (
-        {"vary": {"alpha": (1, 2)}, "kind": "lhs", "members": 0},
-        "the design lhs: members must be a whole number from 1 to 10000000, got 0",
-    ),
     ({"vary": {"alpha": (1, 2)}, "kind": "lhs", "members": 5, "seed": -1}, "seed must be a whole number"),
     ({"vary": typed("alpha=1..2:5"), "kind": "random", "members": 5}, "takes no number of points"),
     ({"vary": {"alpha": (2, 1)}, "kind": "lhs", "members": 5}, "must go from a smaller to a larger number, got 2 to 1 s/m"),
-    ({"vary": {"alpha": (0, 1, "log")}, "kind": "lhs", "members": 5}, "must begin above 0"),
-    ({"vary": {"run.selection": ("minimal", "maxwell")}, "kind": "lhs", "members": 5}, "takes words, not a range"),
     (
         {"vary": {"alpha": (1, 2, 3)}, "kind": "lhs", "members": 5},
         'must be an array or a list: a tuple (LOW, HIGH) or (LOW, HIGH, "log")',
@@ -246,14 +233,10 @@ BAD_DESIGNS: list[tuple[dict[str, Any], str]] = [
         {"vary": "alpha=1,2"},
         "sweep: vary must be a mapping from parameters to arrays, a DataFrame or the Path of a CSV file, got 'alpha=1,2'",
     ),
-    ({"vary": ["alpha=1,2"]}, "must be a mapping from parameters to arrays"),
-    ({"vary": np.ones((3, 3, 90))}, "must be a mapping from parameters to arrays"),
     ({"vary": Path("no.csv")}, "no such file"),
     ({"vary": pd.DataFrame({"alpha": []})}, "has no members"),
     ({"vary": pd.DataFrame({"alpha": ["1 km"]})}, "does not convert to s/m"),
     ({"vary": {"alpha": []}}, "friction.alpha needs at least one value"),
-    ({"vary": {"alpha": np.array([])}}, "friction.alpha needs at least one value"),
-    ({"vary": {"alpha": np.array([]) * UREG.s / UREG.m}}, "friction.alpha needs at least one value"),
     *(
         ({"vary": {"alpha": one}}, "sweep: vary: friction.alpha must be a one-dimensional array or a list of values, got ")
         for one in (5, 5.0, None, np.array(5.0), np.float64(5.0), 5 * UREG.s / UREG.m, "1,2", "1..2:5", {"a": 1}, np.ones((2, 99)))
@@ -262,17 +245,14 @@ BAD_DESIGNS: list[tuple[dict[str, Any], str]] = [
     ({"vary": {"alpha": np.array([1.0, np.nan])}}, "sweep: vary: friction.alpha must be finite, got nan"),
     ({"vary": {"alpha": np.array([1.0, "2.0"])}}, "got '1.0': write a number without quotes"),
     ({"vary": {"alpha": np.array([True, False])}}, "friction.alpha must be a number in s/m"),
-    ({"vary": {"alpha": np.array([1.0 + 2.0j])}}, "friction.alpha must be a number in s/m"),
     ({"vary": {"alpha": [[1.0, 2.0], [3.0, 4.0]]}}, "friction.alpha must be a number in s/m"),
     ({"vary": {"alpha": np.array([-1.0, 1.0])}}, "friction.alpha must be at least 0 s/m, got -1"),
-    ({"vary": {"alpha": np.array([1.0, 1.0])}}, "friction.alpha has the value 1.0 twice"),
     ({"vary": {"alpha": [3.0, 1.0, 2.0, 3.0]}}, "friction.alpha has the value 3.0 twice"),
     ({"vary": {"alpha": [1.0, 2.0] * UREG.km}}, "sweep: vary: friction.alpha: 'kilometer' does not convert to s/m"),
     ({"vary": {"alpha": [1.0, 2.0 * UREG.km]}}, "friction.alpha: 'kilometer' does not convert to s/m"),
     ({"vary": {"run.selection": [1.0] * UREG.km}}, "run.selection takes words, got a quantity in kilometer"),
     ({"vary": {"run.selection": [1.0, 2.0]}}, "run.selection 1.0 is unknown"),
     ({"vary": {"run.selection": ["minimal", "maximum"]}}, "run.selection 'maximum' is unknown; did you mean 'maximal'?"),
-    ({"vary": {"friction.alpa": [1.0]}}, "'friction.alpa' is not a parameter of this scenario; did you mean 'friction.alpha'?"),
     ({"vary": {7: [1.0]}}, "'7' is not a parameter of this scenario"),
 ]
 

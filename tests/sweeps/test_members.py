@@ -229,15 +229,6 @@ def test_work_goes_to_other_processes() -> None:
         assert here.results[name].tobytes() == copied.results[name].tobytes(), name
 
 
-@pytest.mark.parametrize("error", [ss.InputError("no"), OSError("no"), MemoryError("no")])
-def test_a_quantity_may_fail_in_any_way(error: Exception) -> None:
-    def fails(solution: ss.Solution) -> float:
-        raise error
-
-    dataset = ss.sweep(RATE, {"alpha": [1]}, quantities=[("mine", "1", fails)])
-    assert (dataset.status.item(), dataset.reason.item()) == (ERROR, f"{type(error).__name__}: no")
-
-
 @pytest.mark.parametrize(
     ("wanted", "said"),
     [
