@@ -16,7 +16,7 @@ from stickslip.batch.kernels.workspace import apart
 from stickslip.engine.compiled_formula import compile_formula
 from stickslip.engine.memory.simd import WIDTH
 from stickslip.engine.series import ball_radii
-from stickslip.engine.series.polynomial import MOST_CROSSINGS, NONE, crossings, evaluate, first_descent, maximum, restrict
+from stickslip.engine.series.polynomial import MOST_CROSSINGS, NONE, crossings, evaluate, extremes, first_descent, restrict
 from stickslip.engine.state.layout import TERMS, Ball
 from stickslip.friction.formula import expression as e
 from stickslip.friction.formula import functions as elementary
@@ -82,11 +82,12 @@ def test_restrict_is_a_change_of_variable(coefficients: list[float], start: floa
 
 @given(st.lists(st.floats(-3, 3), min_size=2, max_size=9))
 @settings(max_examples=examples(100))
-def test_the_maximum_agrees_with_a_dense_scan(coefficients: list[float]) -> None:
+def test_the_extremes_agree_with_a_dense_scan(coefficients: list[float]) -> None:
     c = padded(np.array(coefficients))
     scan = Polynomial(c)(np.linspace(0, 1, 20001))
-    assert maximum(c) >= scan.max() - 1e-12
-    assert maximum(c) <= scan.max() + 1e-6
+    least, largest = extremes(c)
+    assert least - 1e-12 <= scan.min() <= least + 1e-6
+    assert largest - 1e-6 <= scan.max() <= largest + 1e-12
 
 
 @given(st.lists(inside, min_size=1, max_size=6, unique=True))

@@ -7,7 +7,7 @@ import math
 from stickslip.engine.compile.kernels import inlined, kernel
 from stickslip.engine.contact.far_end import gain_of_echo
 from stickslip.engine.memory.addresses import ahead, call_part
-from stickslip.engine.series.polynomial import copy, degree, fill, scale_low, total, turn_over
+from stickslip.engine.series.polynomial import copy, degree, extremes, fill, scale_low, total, turn_over
 from stickslip.engine.state.layout import TERMS, Task
 from stickslip.engine.state.workspace import Run
 
@@ -112,3 +112,13 @@ def note_jump(run: Run, rate: float, cause: int) -> None:
     if size > run.params.smallest_jump and size > run.params.relative_jump * max(abs(rate), abs(before)):
         run.counts.cause = cause
         run.counts.jump = 1
+
+
+@kernel
+def span_of_load(run: Run) -> tuple[float, float]:
+    """Return the least and the largest load (Pa or N, minus the reference strength) in the round trip just past."""
+    least, largest = math.inf, -math.inf
+    for n in range(run.counts.trip_from, run.counts.length):
+        low, high = extremes(run.history[n].load)
+        least, largest = min(least, low), max(largest, high)
+    return least, largest

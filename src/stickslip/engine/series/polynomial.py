@@ -323,20 +323,26 @@ def _next_interval(start: float, width: float) -> tuple[float, float]:
 
 
 @kernel
-def maximum(c: Floats, sign: float = 1.0) -> float:
-    """Return the largest value of sign * p on [0, 1], to rounding, from those at both ends and where the slope changes its sign.
+def extremes(c: Floats) -> tuple[float, float]:
+    """Return the least and the largest value of p on [0, 1], to rounding, from both ends and where the slope changes its sign.
 
-    If p is not finite, or its slope changes its sign too often, it is the sum of the coefficients' magnitudes, which bounds p.
+    If p is not finite, or its slope changes its sign too often, the sum of the coefficients' magnitudes bounds p on both sides.
     """
-    best, bound = max(sign * c[0], sign * total(c)), abs(c[0]) + magnitude(c)
-    if degree(c) <= 1:
-        return best
-    slope, places, spare = np.empty(TERMS), np.empty(MOST_CROSSINGS), np.empty(TERMS)
-    differentiate(c, 1.0, slope)
+    end, bound, slope = total(c), abs(c[0]) + magnitude(c), np.empty(TERMS)
+    if not bound < math.inf:
+        return -bound, bound
+    least, largest = min(c[0], end), max(c[0], end)
+    differentiate(c, -1.0 if c[1] < 0.0 else 1.0, slope)
+    if degree(c) <= 1 or (slope[0] > 0.0 and bound_below(slope) > SIGN_ROUNDING * slope[0]):
+        return least, largest
+    places, spare = np.empty(MOST_CROSSINGS), np.empty(TERMS)
     found = crossings(slope, places, spare)
+    if found >= MOST_CROSSINGS:
+        return -bound, bound
     for n in range(found):
-        best = max(best, sign * evaluate(c, places[n]))
-    return best if bound < math.inf and found < MOST_CROSSINGS else bound
+        value = evaluate(c, places[n])
+        least, largest = min(least, value), max(largest, value)
+    return least, largest
 
 
 @kernel

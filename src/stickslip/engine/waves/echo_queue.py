@@ -18,7 +18,7 @@ from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import rest_limit
 from stickslip.engine.contact.far_end import is_rigid
 from stickslip.engine.memory.addresses import bits_of
-from stickslip.engine.series.polynomial import copy, fill, maximum, mean_of, restrict
+from stickslip.engine.series.polynomial import copy, extremes, fill, mean_of, restrict
 from stickslip.engine.state.layout import NEVER, TERMS, EchoNode, HistoryPiece, Integers
 from stickslip.engine.state.workspace import Run, borrow
 
@@ -215,7 +215,8 @@ def add(run: Run, n: int) -> None:
     for k in range(TERMS):
         run.trial[k] = load[k] - 2.0 * run.params.impedance * rate[k]
     leave_out_ends(run, piece)
-    node.phase, node.high, node.low = piece.phase_from, maximum(run.trial), maximum(run.trial, -1.0)
+    lowest, node.high = extremes(run.trial)
+    node.phase, node.low = piece.phase_from, -lowest
     node.left = node.right = NOTHING
     node.first_up = node.first_down = n
     node.trip = piece.trip

@@ -19,9 +19,10 @@ from __future__ import annotations
 import math
 
 from stickslip.engine.compile.kernels import kernel
+from stickslip.engine.contact.pieces import span_of_load
 from stickslip.engine.folds.fold import share_described, square_variable
 from stickslip.engine.memory.addresses import ahead
-from stickslip.engine.series.polynomial import copy, fill, maximum, restrict, total
+from stickslip.engine.series.polynomial import copy, fill, restrict, total
 from stickslip.engine.state.layout import TERMS, Floats, Task
 from stickslip.engine.state.workspace import FIRST_ROW, Run
 from stickslip.foundation.constants import RIGID
@@ -272,9 +273,8 @@ def is_settled(run: Run) -> bool:
     """Return True if all waves of the round trip at rest just past are those of the one before it, but for the ramp."""
     if run.counts.trips_at_rest < 2:
         return False
-    largest = abs(run.params.reference)
-    for n in range(run.counts.trip_from, run.counts.length):
-        largest = max(largest, maximum(run.history[n].load), maximum(run.history[n].load, -1.0))
+    least, most = span_of_load(run)
+    largest = max(abs(run.params.reference), most, -least)
     for n in range(run.counts.trip_from, run.counts.length):
         source = run.history[n].echo_of
         if source < run.counts.previous_from or run.history[source].phase_from != run.history[n].phase_from:

@@ -7,8 +7,9 @@ import math
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.contact_equation import rest_limit
 from stickslip.engine.contact.far_end import has_faded, is_dead_load, is_rigid
+from stickslip.engine.contact.pieces import span_of_load
 from stickslip.engine.memory.addresses import call_part
-from stickslip.engine.series.polynomial import maximum, total
+from stickslip.engine.series.polynomial import total
 from stickslip.engine.state.layout import NEVER, EnginePart, Stop, Task
 from stickslip.engine.state.workspace import Run
 from stickslip.engine.waves.echo_queue import NOTHING, start_of_slide, worth_building
@@ -28,14 +29,10 @@ def trips_certain_at_rest(run: Run, limit: float) -> int:
         return 0
     if run.counts.one_way == 1 and ramp < 0.0:
         return NEVER
-    top, bottom = -math.inf, -math.inf
-    for n in range(run.counts.trip_from, run.counts.length):
-        load = run.history[n].load
-        top = max(top, maximum(load))
-        bottom = max(bottom, maximum(load, -1.0))
     if ramp == 0.0:
         return NEVER
-    room = limit - top if ramp > 0.0 else limit - (bottom - 2.0 * params.reference)
+    least, largest = span_of_load(run)
+    room = limit - largest if ramp > 0.0 else limit - (-least - 2.0 * params.reference)
     trips = math.floor(room / abs(ramp)) - 1.0
     return min(max(int(trips), 0), NEVER) if trips < 9e18 else NEVER
 

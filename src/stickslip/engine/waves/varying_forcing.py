@@ -12,10 +12,10 @@ import math
 
 from stickslip.engine.compile.kernels import kernel
 from stickslip.engine.contact.far_end import has_faded, is_rigid
-from stickslip.engine.contact.pieces import xi_at
+from stickslip.engine.contact.pieces import span_of_load, xi_at
 from stickslip.engine.contact.pressing import couple, is_pressing, press, pressing_at
 from stickslip.engine.memory.addresses import call_part
-from stickslip.engine.series.polynomial import RECIPROCAL, copy, fill, maximum, restrict, total
+from stickslip.engine.series.polynomial import RECIPROCAL, copy, fill, restrict, total
 from stickslip.engine.state.layout import NEVER, TERMS, Task
 from stickslip.engine.state.workspace import Run
 from stickslip.engine.waves.driver_at_rest import trips_of_machine
@@ -218,14 +218,16 @@ def trips_withstood(run: Run, limit: float) -> int:
     if run.loading[segment].shakes == 1.0:
         return 0  # the work of moving ground is added up over recorded pieces, so that no round trip may be left out
     if run.counts.driven == 1:
-        return trips_of_machine(run, limit, room, tops(run, 1.0), tops(run, -1.0))
+        least, largest = span_of_load(run)
+        return trips_of_machine(run, limit, room, largest, -least)
     is_dead = run.loading[segment].slope == 0.0 and run.loading[segment].tone == 0.0
     if run.counts.is_block == 0 and not is_rigid(run):
         return int(max(room, 0.0)) if is_dead and has_faded(run) else 0
     if is_dead and run.loading[segment].value == 0.0:
         return int(max(room, 0.0))
-    top, bottom = limit - tops(run, 1.0), limit + 2.0 * run.params.reference - tops(run, -1.0)
-    bottom = math.inf if run.counts.one_way == 1 else bottom
+    least, largest = span_of_load(run)
+    top = limit - largest
+    bottom = math.inf if run.counts.one_way == 1 else limit + 2.0 * run.params.reference + least
     low, high = 0.0, max(room, 0.0)
     if withstands(run, high, top, bottom):
         return int(high)
@@ -238,15 +240,6 @@ def trips_withstood(run: Run, limit: float) -> int:
         else:
             high = middle
     return int(low)
-
-
-@kernel
-def tops(run: Run, sign: float) -> float:
-    """Return the largest value of sign * load (Pa or N, minus the reference strength) in the round trip just past."""
-    top = -math.inf
-    for n in range(run.counts.trip_from, run.counts.length):
-        top = max(top, maximum(run.history[n].load, sign))
-    return top
 
 
 @kernel

@@ -1,9 +1,12 @@
-"""The results of a sweep in a zarr store that is written chunk by chunk, and can be read by `xarray.open_zarr` at any time.
+"""The results of a sweep: in memory as a dataset, or in a zarr store that is written chunk by chunk and can be read at any time.
 
-The store is laid out before the first member is run. After that, only chunks are added, each file under a temporary name that is
-changed when the file is complete. The status of a chunk is written after its results: a chunk without a status is not done, and is
-run again. A chunk that is done has all its files, and each file ends in its checksum. Nothing in the store depends on when, in
-which order or by which process chunks were done.
+The dataset in memory is what a store holds that has just been laid out; its arrays are filled in place, because calls of zarr for
+each variable of each chunk take longer than the members themselves.
+
+In a folder, the store is laid out before the first member is run. After that, only chunks are added, each file under a temporary
+name that is changed when the file is complete. The status of a chunk is written after its results: a chunk without a status is not
+done, and is run again. A chunk that is done has all its files, and each file ends in its checksum. Nothing in the store depends on
+when, in which order or by which process chunks were done.
 """
 
 from __future__ import annotations
@@ -43,7 +46,15 @@ class ResultStore:
 
     def __init__(self, plan: Plan, place: Path | MemoryStore) -> None:
         self.plan, self.place, self._lock = plan, place, ExitStack()
-        self.group = zarr_folder.opened(place, "r+") if isinstance(place, Path) else zarr.open_group(place, mode="r+")
+        self.names = (*plan.work.names, STATUS, REASON)
+        self.loaded: xr.Dataset | None = None
+        self.arrays: dict[str, Any]
+        if isinstance(place, Path):
+            group = zarr_folder.opened(place, "r+")
+            self.arrays = {name: array_of(group, name) for name in self.names}
+        else:
+            self.loaded = self._opened().load()
+            self.arrays = {name: self.loaded[name].values for name in self.names}
 
     @classmethod
     def in_memory(cls, plan: Plan) -> Self:
@@ -86,7 +97,7 @@ class ResultStore:
     def status(self) -> np.ndarray[Any, np.dtype[np.int8]]:
         """The status codes of all members (`outcome.MEANINGS`), in the shape of the design."""
         with FORMAT.reading(self.place):
-            return np.asarray(array_of(self.group, STATUS)[...])
+            return np.array(self.arrays[STATUS][...])
 
     def write(self, chunk: int, result: ChunkResult) -> None:
         """Store the results of a chunk, in place of earlier ones if there are any. Raises InputError if they cannot be written."""
@@ -97,17 +108,19 @@ class ResultStore:
             reasons[place] = reason
         with writing(self.place), zarr.config.set({"array.write_empty_chunks": True}):  # a file that is missing is noticed
             for name, values in result.results.items():
-                array_of(self.group, name)[region] = values.reshape(shape + values.shape[1:])
-            array_of(self.group, REASON)[region] = reasons.reshape(shape)
-            array_of(self.group, STATUS)[region] = result.status.reshape(shape)
+                self.arrays[name][region] = values.reshape(shape + values.shape[1:])
+            self.arrays[REASON][region] = reasons.reshape(shape)
+            self.arrays[STATUS][region] = result.status.reshape(shape)
 
     def dataset(self) -> xr.Dataset:
         """Return the contents as a dataset, read lazily from a folder, or as arrays from a store in memory."""
+        return self._opened() if self.loaded is None else self.loaded
+
+    def _opened(self) -> xr.Dataset:
         with FORMAT.reading(self.place):
             place = zarr_folder.Folder(self.place) if isinstance(self.place, Path) else self.place
             found: xr.Dataset = xr.open_zarr(place, chunks=None, consolidated=isinstance(self.place, Path))
-            ordered = found[[*self.plan.work.names, STATUS, REASON]]
-            return ordered if isinstance(self.place, Path) else ordered.load()
+            return found[list(self.names)]
 
 
 def writing(place: Path | MemoryStore) -> AbstractContextManager[None]:
