@@ -115,6 +115,7 @@ ROOMS = {
     "trajectory": (("machine_motion", "phase_index", "status", "turning_points"), ("history",), ("slip_events", "tables")),
     "contact": (
         ("roots", "sliding", "wave_modes", "wave_proof"),
+        ("layer_modes",),
         ("disturbance", "slopes", "steady_proof"),
         ("areas", "lowest_slope", "turns"),
         ("folds",),

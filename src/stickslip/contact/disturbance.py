@@ -4,6 +4,7 @@ A disturbance exp(s t) of the slip rate meets the contact mass, the body, and th
 
     block   m s + D + K/s + S Phi(s) = 0
     slab    A(s) + Z (1 - r E) / (1 + r E) = 0,   E = exp(-s R),   A(s) = m_c s + D - Z + S Phi(s)
+    layers  A(s) + W(s) = 0,                      W in `bodies.layer_response`
 
 D is the damping of the body, which is Z for a slab. Phi is the slope of friction by the slip rate and, under a law with states, a
 quotient of polynomials. With a rigid driver (r = -1) the slab's term is Z coth(s h/c).
@@ -21,7 +22,8 @@ import numpy as np
 from numpy.polynomial import polynomial as poly
 from numpy.typing import NDArray
 
-from stickslip.bodies import BodyOnCharacteristics
+from stickslip.bodies import BodyOnCharacteristics, OfLayers
+from stickslip.contact.layer_modes import LayerModes
 from stickslip.contact.wave_modes import MOST_STEPS, Growth, Polynomial, WaveModes, first_of
 from stickslip.foundation.constants import RIGID
 
@@ -58,10 +60,12 @@ class Disturbed:
         return self._waves.growth() if self.body.has_waves else self._growth_of_block()
 
     @cached_property
-    def _waves(self) -> WaveModes:
+    def _waves(self) -> WaveModes | LayerModes:
         body, (above, below) = self.body, self.response
         own = poly.polymul([body.damping - body.impedance, body.inertia], below)
         a, z = poly.polytrim(poly.polyadd(own, self.normal * above)), body.impedance * below
+        if isinstance(body, OfLayers):
+            return LayerModes(a, np.asarray(below, float), body)
         if not body.has_machine:
             return WaveModes(a, z, float(body.reflection), body.round_trip_time)
         # The machine resists with x = M s + kp + ki/s, so that r = -(x - Z) / (x + Z): both sides times x + Z.

@@ -24,6 +24,8 @@ from typing import Any
 
 import numpy as np
 
+from stickslip.bodies import OfLayers
+from stickslip.bodies.layer_response import driver_together, response_of, taken_by_layers
 from stickslip.contact.disturbance import Disturbed, Response
 from stickslip.contact.folds import Certificate, certificate
 from stickslip.contact.roots import sign_change
@@ -76,7 +78,15 @@ class _Steady:
     @cached_property
     def is_soft(self) -> bool:
         """True if the driver gives way in the long run: an integral gain does not."""
-        return not self.problem.body.is_driven_rigidly and self.problem.body.driver_integral_gain == 0.0
+        return (
+            math.isfinite(self.driver) and not self.problem.body.is_driven_rigidly and self.problem.body.driver_integral_gain == 0.0
+        )
+
+    @cached_property
+    def driver(self) -> float:
+        """The impedance Zd of the driver, or of both drivers of two slabs together (Pa s/m)."""
+        body = self.problem.body
+        return driver_together(body) if isinstance(body, OfLayers) else body.driver_impedance
 
     @property
     def varies(self) -> bool:
@@ -101,13 +111,13 @@ class _Steady:
     def drive(self) -> float:
         """The load that steady sliding balances, with its sign: s + Zd V (Pa), or V (m/s) if the contact slides at that rate."""
         pull = self.problem.first_pull_rate
-        return pull if self.far_stress is None else self.far_stress + self.problem.body.driver_impedance * pull
+        return pull if self.far_stress is None else self.far_stress + self.driver * pull
 
     @cached_property
     def gives_way(self) -> float:
         """The growth of the driver's resistance with the slip rate (Pa s/m)."""
         body = self.problem.body
-        return body.driver_impedance + body.damping - body.impedance
+        return self.driver + body.damping - body.impedance
 
     def found(self) -> SteadySlidings:
         problem, why = self.problem, self.why_none()
@@ -285,12 +295,18 @@ class _Steady:
         for k, rate in enumerate(rates):
             beyond = 0.5 * (rate + rates[k + 1]) if k + 1 < len(rates) else 2.0 * rate
             found.append(self._change(rate, bool(g.slope(beyond) > 0.0), proof.enclosure(rate)))
-        return tuple(found), proof.verdict == "proven" and not self.problem.body.has_machine
+        return tuple(found), proof.verdict == "proven" and not self._is_searched
+
+    @property
+    def _is_searched(self) -> bool:
+        """True if what the waves take away is not known in closed form."""
+        body = self.problem.body
+        return body.has_machine or not (body.is_uniform or body.is_driven_rigidly)
 
     def _changes_under_states(self) -> tuple[tuple[StabilityChange, ...], bool]:
         problem = self.problem
         ends = (float(RATES[0]), float(RATES[-1]))
-        proves = self.proves and not problem.body.has_machine
+        proves = self.proves and problem.body.is_uniform and not problem.body.has_machine
         found = proven_changes(problem.body, problem.normal, problem.friction, self.slip, ends) if proves else None
         if found is None:
             return tuple(self._change(rate, above, None) for rate, above in self._searched()), False
@@ -306,8 +322,11 @@ class _Steady:
             return body.damping - body.impedance  # a mass sends sharp fronts back whole
         if body.has_machine:
             return _largest(lambda fall: self._withstands(fall), self._surely_falls())
-        if not self.is_soft:
+        if body.is_driven_rigidly or not (self.is_soft or isinstance(body, OfLayers)):
             return body.damping - body.impedance
+        if isinstance(body, OfLayers):
+            heavy = body.inertia > 0.0
+            return _largest(self._withstands, self._surely_falls_on_layers(body)) if heavy else taken_by_layers(body)
         driver, own = body.driver_impedance, body.impedance
         if not body.has_inertia:
             return body.damping - own + min(driver, own * own / driver if driver else 0.0)
@@ -322,6 +341,12 @@ class _Steady:
         machine = body.driver_inertia * s + body.driver_impedance + body.driver_integral_gain / s
         echo = math.exp(-1.0) * (body.impedance - machine) / (body.impedance + machine)
         return body.impedance * (1.0 - echo) / (1.0 + echo) + body.inertia * s + body.damping - body.impedance
+
+    def _surely_falls_on_layers(self, body: OfLayers) -> float:
+        """Return the same for layers and a mass at the contact."""
+        s = 1.0 / body.two_way_time
+        above, below = response_of(body, np.array([s], complex))
+        return float((above[0] / below[0]).real) + body.inertia * s
 
     def _withstands(self, fall: float) -> bool:
         """Return True if sliding is stable where friction falls with the slip rate by `fall` (Pa s/m)."""
@@ -352,7 +377,7 @@ class _Steady:
         """Return the pull rate (m/s) that makes the contact slide steadily at a slip rate, None if there is none."""
         if self.far_stress is None:
             return rate
-        driver = self.problem.body.driver_impedance
+        driver = self.driver
         if driver == 0.0:
             return None
         sign = math.copysign(1.0, self.drive)

@@ -80,16 +80,16 @@ class WaveModes:
     @property
     def is_neutral(self) -> bool:
         """True if the contact and a driver that reflects everything give no energy and take none, at any frequency."""
-        return not (self.is_matched or self._ring(0.0).any())
+        return not (self.is_matched or self.ring(0.0).any())
 
     @property
     def is_matched(self) -> bool:
         """True if no echo comes back, or friction and waves cancel in it."""
         return self.reflection == 0.0 or not poly.polysub(self.a, self.z).any()
 
-    def _ring(self, line: float) -> Polynomial:
+    def ring(self, line: float) -> Polynomial:
         """Return the polynomial in y = frequency^2 that is negative where abs(L) > 1 on the line Re s = `line` (1/s)."""
-        (ar, ai), (zr, zi) = (_parts(_shifted(one, line)) for one in (self.a, self.z))
+        (ar, ai), (zr, zi) = (parts_on_axis(shifted(one, line)) for one in (self.a, self.z))
         # log of the share of a wave that comes back, which may be exactly 1
         share = 2.0 * (math.log(abs(self.reflection)) - line * self.round_trip)
         less, more = -math.expm1(share), 1.0 + math.exp(share)
@@ -103,8 +103,8 @@ class WaveModes:
         count = int(np.sum(roots_of(p).real > line))
         if self.is_matched:
             return count
-        ring = self._ring(line)
-        edges = self._edges(ring)
+        ring = self.ring(line)
+        edges = self.edges(ring)
         bounds = [-math.inf, *(-edges[::-1]), *edges, math.inf] if len(edges) else [-math.inf, math.inf]
         phase = _Phase(self, p, q, line)
         for low, high in pairwise(bounds):
@@ -116,7 +116,7 @@ class WaveModes:
         return count
 
     @staticmethod
-    def _edges(ring: Polynomial) -> Polynomial:
+    def edges(ring: Polynomial) -> Polynomial:
         """Return the frequencies (rad/s, > 0) with abs(L) = 1, ascending."""
         trimmed = np.trim_zeros(ring, "b")
         if len(trimmed) < 2:
@@ -173,7 +173,7 @@ class WaveModes:
         """Return frequencies (rad/s) that may be close to a root, on a line that bounds all roots."""
         p: Polynomial = poly.polyadd(self.a, self.z)
         q: Polynomial = poly.polysub(self.a, self.z)
-        found = [0.0, *self._edges(self._ring(line)), *np.abs(roots_of(poly.polytrim(p)).imag)]
+        found = [0.0, *self.edges(self.ring(line)), *np.abs(roots_of(poly.polytrim(p)).imag)]
         ratio = float(p[-1] * q[-1] * self.reflection)
         first = (0.0 if ratio < 0.0 else math.pi) / self.round_trip
         return [*found, first, first + 2.0 * math.pi / self.round_trip]
@@ -233,7 +233,7 @@ def _between(low: float, high: float) -> float:
     return 2.0 * low + 1.0 if math.isinf(high) else 0.5 * (low + high)
 
 
-def _shifted(p: Polynomial, by: float) -> Polynomial:
+def shifted(p: Polynomial, by: float) -> Polynomial:
     """Return the polynomial p(by + x) in x."""
     found: Polynomial = np.zeros(len(p))
     for coefficient in p[::-1]:
@@ -242,7 +242,7 @@ def _shifted(p: Polynomial, by: float) -> Polynomial:
     return found
 
 
-def _parts(p: Polynomial) -> tuple[Polynomial, Polynomial]:
+def parts_on_axis(p: Polynomial) -> tuple[Polynomial, Polynomial]:
     """Return the polynomials in y with p(i w) = even(w^2) + i w odd(w^2)."""
     signs = (-1.0) ** (np.arange(len(p)) // 2)
     signed = p * signs

@@ -5,7 +5,8 @@ from __future__ import annotations
 import cmath
 import math
 
-from stickslip.bodies import BodyOnCharacteristics, as_waves
+from stickslip.bodies import BodyOnCharacteristics, OfLayers, as_waves
+from stickslip.bodies.layer_response import growth_on_layers
 from stickslip.contact.rules.loop import first_rate, resolved
 from stickslip.foundation.names import si_unit
 from stickslip.friction import RateAndState
@@ -111,9 +112,10 @@ def stability_of(problem: Problem) -> str:
         return (
             f"statically stable: alpha_w h = {number:.6g} < 1, friction weakens more slowly than the {body.noun} unloads: it creeps"
         )
-    if not body.is_uniform:
-        return f"statically unstable: alpha_w h = {number:.6g} > 1"
-    rate = growth_rate(as_waves(body), -by_slip)
+    if isinstance(body, OfLayers):
+        rate = growth_on_layers(body, -problem.normal * by_slip)
+    else:
+        rate = growth_rate(as_waves(body), -by_slip)
     return f"statically unstable: alpha_w h = {number:.6g} > 1; a small disturbance grows at {rate:.6g} /s"
 
 

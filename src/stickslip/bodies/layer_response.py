@@ -1,0 +1,108 @@
+"""The response of layers to slip that grows or swings as exp(s t): the stress per slip rate W(s) that they resist with.
+
+A cell of impedance Z is crossed in the time T. From behind it, where the stress per velocity is W, to its nearer side this becomes
+
+    Z (W + Z tanh(s T)) / (Z + W tanh(s T))
+
+and at the driver W is the driver's impedance. W is kept as a quotient of two functions of s without poles, so that a rigid driver
+needs no exception and slow disturbances, which meet springs in series, lose no digits. Cells of one layer are crossed at once.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip.bodies.layered import OfLayers
+from stickslip.bodies.layers import Layers
+from stickslip.foundation.arrays import Floats
+
+Complex = NDArray[np.complex128]
+SAMPLES = 32
+"""Number of samples of a frequency for each cell, in half of the period with which layers repeat their response."""
+
+
+class Quotient(NamedTuple):
+    """Stress (Pa s/m times a common factor) over velocity (that factor): W = above / below."""
+
+    above: Complex
+    below: Complex
+
+
+def response_of(body: OfLayers, s: NDArray[Any]) -> Quotient:
+    """Return how all layers of a body resist disturbances with growth rates s (1/s), as one quotient."""
+    sides = [_of_side(one, np.asarray(s, complex)) for one in body.stacks]
+    if len(sides) == 1:
+        return sides[0]
+    one, other = sides
+    crossed = one.above * other.below + other.above * one.below
+    if body.is_joined:
+        return Quotient(crossed, one.below * other.below)
+    return Quotient(one.above * other.above, crossed)
+
+
+def _of_side(layers: Layers, s: Complex) -> Quotient:
+    rigid = math.isinf(layers.driver_impedance)
+    above = np.full(s.shape, 1.0 if rigid else layers.driver_impedance / layers.impedances[-1], complex)
+    below = np.full(s.shape, 0.0 if rigid else 1.0, complex)
+    last = layers.impedances[-1]
+    for z, count in zip(reversed(layers.impedances), reversed(layers.counts), strict=True):
+        above *= last / z  # above / below is W over the impedance of the present layer
+        fades = np.expm1(-2.0 * s * (count * layers.time))
+        with_it, against = 1.0 + 0.5 * fades, -0.5 * fades  # cosh and sinh, times exp(-s T)
+        above, below = above * with_it + below * against, below * with_it + above * against
+        size = np.maximum(np.abs(above), np.abs(below))
+        above, below, last = np.asarray(above / size), np.asarray(below / size), z
+    return Quotient(np.asarray(above * last), np.asarray(below))
+
+
+def driver_together(body: OfLayers) -> float:
+    """Return the impedance of the drivers together (Pa s/m), as sliding at a steady rate meets it: inf if they hold that rate."""
+    drivers = [one.driver_impedance for one in body.stacks]
+    if body.is_joined or len(drivers) == 1:
+        return sum(drivers)
+    return 0.0 if min(drivers) == 0.0 else 1.0 / sum(1.0 / one for one in drivers) if math.isfinite(min(drivers)) else math.inf
+
+
+def taken_by_layers(body: OfLayers) -> float:
+    """Return the steepest fall of friction with the slip rate (Pa s/m) that layers without a mass at the contact withstand.
+
+    It is the smallest W = Z (1 - R) / (1 + R) at frequencies at which it is real: there a disturbance keeps its size.
+    """
+    period, number = math.pi / body.cells.time, SAMPLES * sum(body.cells.counts)
+
+    def share(frequency: Floats) -> Complex:
+        above, below = response_of(body, 1j * frequency)
+        return np.asarray((body.impedance * below - above) / (body.impedance * below + above))
+
+    at = np.linspace(0.0, 0.5 * period, number + 1)
+    at[0] = 1e-12 * period
+    back = share(at)
+    crosses = np.flatnonzero(np.signbit(back.imag[:-1]) != np.signbit(back.imag[1:]))
+    low, high, sign = at[crosses], at[crosses + 1], np.signbit(back.imag[crosses])
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        same = np.signbit(share(middle).imag) == sign
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    real = np.concatenate([share(low).real, back.real[[0, -1]]])
+    return float(max(body.impedance * (1.0 - real.max()) / (1.0 + real.max()), 0.0))
+
+
+def growth_on_layers(body: OfLayers, weakening: float) -> float:
+    """Return the growth rate (1/s) of a perturbation of layers that rest under friction falling with slip, by -S mu'(u) (Pa/m).
+
+    It is the root of s W(s) + m_c s^2 = -S mu'(u), which grows with s from the stiffness on; 0 if the layers are stiffer.
+    """
+    from scipy.optimize import brentq  # here, because it takes a quarter of a second to import
+
+    def miss(s: float) -> float:
+        above, below = response_of(body, np.array([s], complex))
+        return s * float((above[0] / below[0]).real) + body.inertia * s * s - weakening
+
+    slow, fast = 1e-9 / body.two_way_time, 2.0 * weakening / body.impedance
+    while miss(fast) < 0.0:
+        fast *= 2.0
+    return 0.0 if miss(slow) >= 0.0 else float(brentq(miss, slow, fast, xtol=1e-300, rtol=1e-14))
