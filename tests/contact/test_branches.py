@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 
 import stickslip as ss
 from stickslip.contact.branches import branches, branches_of, rate_on, rates_at, resistance
-from stickslip.contact.critical import critical_normal_stress
 from stickslip.contact.rules.selection import selection_table
 from stickslip.friction import LAWS
 from stickslip.problem.selection_rule import SELECTION_RULES
@@ -94,20 +93,7 @@ def test_every_rule_can_be_followed_and_only_delay_has_a_loop(law, slip):
     assert (areas["perfect-delay"] > 1e-9 * size) <= (found.regime != "regular")
 
 
-@settings(max_examples=examples(20))
-@given(law=st.sampled_from(["hyperbolic-rate", "exponential-stribeck", "power-stribeck"]).flatmap(laws))
-def test_closed_forms_agree_with_the_critical_normal_stress(law):
-    """At a critical value of its own number, the law's critical normal stress is the present one."""
-    problem = problem_of(law)
-    found = ss.uniqueness(problem)
-    assume(found.critical_parameter not in (None, "normal_stress"))
-    one = problem.parameters[found.critical_parameter]
-    assume(1e-9 < found.critical_value < 1e9)
-    critical = critical_normal_stress(resistance(one.put(found.critical_value)))
-    assert critical == pytest.approx(S, rel=1e-11, abs=0)
-
-
-EVERY_ALPHA = [0.2, 1.0, 37.0, 1e3, 1e6, 1e9]
+EVERY_ALPHA = [0.2, 37.0, 1e9]
 
 
 @pytest.mark.parametrize("alpha", EVERY_ALPHA)
@@ -162,13 +148,6 @@ def test_laws_that_do_not_weaken_with_rate_have_one_branch_from_rest(law, start)
     assert branch.excess_from == pytest.approx(start, rel=1e-15, abs=0)
 
 
-def test_rate_on_a_branch_without_rate_dependence_is_linear():
-    problem = slab_problem(ss.friction.Coulomb(0.8, 0.3))
-    (branch,) = branches(problem)
-    for excess in (-4.9e7, 0.0, 1e3, 1e12):
-        assert rate_on(resistance(problem), branch, excess) == pytest.approx((excess + 0.5 * S) / Z, rel=1e-14, abs=0)
-
-
 def test_a_branch_has_no_rate_below_its_loads():
     problem = slab_problem(hyperbolic(1.0))
     (branch,) = branches(problem)
@@ -195,21 +174,6 @@ def test_friction_that_never_stops_falling_is_refused():
     problem = ss.Problem(ss.ElasticSlab(1e-25, 1e-25, 1.0, 1e8), Endless(), pull_rate=1e-9, initial_excess=0.0)
     with pytest.raises(ss.InputError, match=r"Endless: friction still falls at least as fast as Z v rises at 1e\+30 m/s"):
         branches(problem)
-
-
-@pytest.mark.parametrize("slip", [0.0, 0.7, 3.1])
-def test_folds_move_with_slip(slip):
-    law = Wavy(mean=0.7, amplitude=0.25, beat=2.0, fade=5.0, turn=1.3)
-    found = branches(slab_problem(law), slip)
-    assert len(found) >= 2
-    for branch in found:
-        for rate in (branch.rate_from, branch.rate_to):
-            if 0.0 < rate < math.inf:
-                slope = S * law.amplitude * np.exp(-rate / law.fade)
-                slope *= (
-                    -law.beat * np.sin(law.beat * rate + law.turn * slip) - np.cos(law.beat * rate + law.turn * slip) / law.fade
-                )
-                assert abs(Z + slope) < 1e-12 * Z * 10
 
 
 def test_friction_without_a_scale_is_searched_at_one_metre_per_second():

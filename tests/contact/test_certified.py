@@ -27,7 +27,7 @@ from .laws import ALPHA_C, SLAB, S, Z, closed_critical_value, hyperbolic, slab_p
 
 mpmath = pytest.importorskip("mpmath")
 
-WIDTHS = [1e-2, 1e-3, 3e-4, 1e-4, 1e-5]
+WIDTHS = [1e-2, 3e-4, 1e-5]
 HEIGHT = 0.05
 RATE_LAWS = sorted(kind for kind, law in LAWS.items() if law.state is None)
 

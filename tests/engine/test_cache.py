@@ -219,16 +219,6 @@ def test_the_cache_keeps_the_files_that_were_used_last(tmp_path: Path, monkeypat
     assert (folder / "own.txt").exists()
 
 
-@pytest.mark.slow
-def test_what_another_process_removed_is_compiled_again(script: Path, tmp_path: Path, sound: dict[str, Path]) -> None:
-    shutil.copytree(sound["0"], tmp_path / "root")
-    (folder,) = (tmp_path / "root").glob("compiled-*")
-    for code in folder.iterdir():
-        code.unlink()
-    assert kept(script, tmp_path / "root") == (0, folder, "")
-    assert kept(script, tmp_path / "root") == (4, folder, "")
-
-
 def test_a_private_folder_is_closed_to_others(tmp_path: Path) -> None:
     folder = private_folder(tmp_path / "a" / "b")
     assert folder.stat().st_mode & 0o777 == 0o700

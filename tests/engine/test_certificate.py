@@ -60,19 +60,10 @@ def off_the_law(solution: ss.Solution, times: Floats) -> float:
     return float(np.max(np.where(rate != 0.0, miss, 0.0)))
 
 
-@pytest.mark.parametrize("power", [4, 6, 8, 20])
-def test_a_series_with_gaps_is_not_taken_for_a_polynomial(power: int) -> None:
-    """Under u^n from u = 0 only every n-th coefficient is not zero: the last two may vanish. Law met to 1e-10."""
-    law = F.FromExpression(f"0.6 + 0.05*u**{power}")
-    solution = ss.simulate(ss.Problem(SLAB, law, initial_excess=1e7), 4.0)
-    assert len(solution.history) > 2
-    assert off_the_law(solution, np.linspace(0.0, 4.0, 4001)) < 1e-10
-
-
-@pytest.mark.parametrize("power", [4, 8, 12, 16])
-@pytest.mark.parametrize("start", [1e-6, 1e-4, 1e-3, 1e-2])
+@pytest.mark.parametrize("power", [4, 8, 20])
+@pytest.mark.parametrize("start", [0.0, 1e-6, 1e-3])
 def test_the_contact_equation_is_met_where_the_last_coefficients_are_next_to_nothing(power: int, start: float) -> None:
-    """Under u^n from a small slip on the last two coefficients are tiny, and those before them are not: a step far too long.
+    """Under u^n the last two coefficients vanish, or are tiny from a small slip on, and those before are not: a step far too long.
 
     Law met to 1e-10; by the last coefficients alone it is missed by up to 6e-2, and slip grows beyond all measure for n = 8.
     """

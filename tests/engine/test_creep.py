@@ -15,17 +15,12 @@ import stickslip as ss
 from stickslip.creep.pattern import Pattern, monotone_parts
 from stickslip.engine.state.layout import TERMS
 from stickslip.trajectory.history import Epoch, horner
-from tests.engine.creep_truth import GROWN, ROUND, printed
+from tests.engine.creep_truth import ROUND, printed
 
 F = ss.friction
 SLAB = ss.ElasticSlab(density=2800, wave_speed=3500, thickness=10e3, normal_stress=100e6)
 PULSE = {10: 23541.221458096228, 100: 2384.99286528735}
 """faster -> time (s) at which slip has grown by GROWN: `tests.engine.creep_truth`."""
-
-
-def pulse(solution: ss.Solution, near: float) -> float:
-    """Time (s) at which slip has grown by GROWN."""
-    return float(brentq(lambda t: float(solution.slip(t)) - solution.problem.initial_slip - GROWN, near - 20, near + 20, xtol=1e-9))
 
 
 @cache
@@ -62,15 +57,6 @@ def test_slip_stays_within_the_bound_of_each_leap(tolerance: float) -> None:
         assert error <= 1.001 * tolerance * means(exact, behind[:1])[0]
         assert np.abs(means(solution, behind) - means(exact, behind)).max() <= error
         assert (np.abs(means(solution, inside) - means(exact, inside)) <= tolerance * means(exact, inside)).all()
-
-
-@pytest.mark.parametrize(("tolerance", "error"), [(1e-3, 0.2), (1e-5, 2e-4)])
-def test_the_error_of_the_pulse_time_falls_with_the_tolerance(tolerance: float, error: float) -> None:
-    """Ten times faster, 134 million pieces by brute force: the error of the pulse's time (s) falls with the tolerance."""
-    near = PULSE[10]
-    solution = ss.simulate(printed(10), near + 30, creep_rtol=tolerance)
-    assert pulse(solution, near) == pytest.approx(near, rel=0.0, abs=error)
-    assert error < float(solution.creep.time_error.iloc[0]) < 0.01 * near
 
 
 def test_leaps_end_before_anything_dynamic() -> None:

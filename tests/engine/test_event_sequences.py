@@ -15,12 +15,10 @@ makes it 24 000 of 1e11. Those of micro-events, whose loads start at a level, mu
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pandas as pd
-import pytest
 
 import stickslip as ss
 from tests.truth.slab_events import ALPHA_ONE, COLUMNS, JUST_ABOVE_CRITICAL, Slab, Table
@@ -141,13 +139,3 @@ def test_two_generations_of_micro_events_agree_with_50_digits() -> None:
     assert all(error <= 1.0 for error in worst.values()), worst
     for size in ("duration", "slip"):
         np.testing.assert_allclose(found[size][2:], exact[size][2:], rtol=1e-6, atol=0.0)
-
-
-@pytest.mark.parametrize("table", [ALPHA_ONE, JUST_ABOVE_CRITICAL], ids=["alpha-1", "just-above-critical"])
-def test_the_allowed_errors_exclude_a_slightly_different_slab(table: Table) -> None:
-    """Another alpha, by 1e-12 of itself, is another sequence: it is off by 10 times what is allowed and more."""
-    exact = truth(table)[:20]
-    other = replace(table.slab, alpha=table.slab.alpha * (1.0 + 1e-12))
-    found = simulated(other, 20)
-    worst = time_errors(found, exact, table.slab) | size_errors(found[2:], exact[2:], apart=0.0)
-    assert min(worst["start"], worst["end"], worst["slip"]) > 10.0

@@ -12,9 +12,6 @@ from numba import njit
 import stickslip as ss
 from stickslip.engine.formula_code.taylor_series import ORDER
 from stickslip.engine.series.sine import sine, versine
-from stickslip.friction.formula.expression import RATE, SLIP
-from stickslip.friction.formula.functions import COMPOSED, expm1, log1p
-from stickslip.friction.formula.text import parse
 from tests.engine.formulas import enclose, series
 
 ROUNDINGS = 5
@@ -59,11 +56,6 @@ def test_digits_of_small_arguments_are_kept(text: str) -> None:
     (value, value_high), (slope, slope_high), _ = (one[:, 0] for one in enclose(law.tree, {}, 0.0, [1.0], [1.0]))
     assert value <= 0.51 <= value_high <= value * (1.0 + 1e-14)
     assert slope <= 0.01 <= slope_high <= slope * (1.0 + 1e-12)
-
-
-def test_the_two_functions_are_read_from_text_as_what_they_are() -> None:
-    assert parse("expm1(v) + log1p(u)", ()) == expm1(RATE) + log1p(SLIP)
-    assert parse("sinh(v)", ()) == COMPOSED["sinh"](RATE)
 
 
 def test_a_quotient_over_expm1_has_its_limit_where_expm1_overflows() -> None:

@@ -179,7 +179,7 @@ def test_rate_and_state_slides_through_a_load_of_zero() -> None:
     assert (run.slip_rate(np.array([5.0, 5.6])) > 0.0).all()
 
 
-@pytest.mark.parametrize(("thickness", "normal"), [(1e4, 1e8), (3e3, 1e8), (1e4, 3e7), (5e4, 2e8)])
+@pytest.mark.parametrize(("thickness", "normal"), [(3e3, 1e8), (5e4, 2e8)])
 def test_a_load_that_passes_through_zero_turns_the_slip(thickness: float, normal: float) -> None:
     """The slip rate has the sign of the load at all times: what rounding makes of a rate near zero turns nothing."""
     slab = ss.ElasticSlab(2800, 3500, thickness, normal)

@@ -226,7 +226,8 @@ def test_what_cannot_start_is_refused_in_one_line(name: str) -> None:
         ss.Problem(**({"body": BLOCK, "friction": LAW} | given))
 
 
-@pytest.mark.parametrize("name", BODIES)
+@pytest.mark.sampled(every=3)
+@EACH_BODY
 @pytest.mark.parametrize("mass", [0.0, 2e3])
 @BOTH_WAYS
 def test_a_contact_that_can_stick_may_start_in_steady_sliding(name: str, mass: float, way: int) -> None:

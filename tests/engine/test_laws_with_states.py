@@ -17,18 +17,6 @@ from tests.engine.states_truth import AXIS, FAULT, HEALING, LIGHT, LUGRE, SLAB, 
 from tests.messages import refused
 
 
-def test_equal_states_are_one_state_of_the_sum() -> None:
-    """Two states with one distance are one with b + second_b: relative 1e-9."""
-    two = TwoStateRateAndState(0.6, 0.01, 0.009, 1e-3, 0.006, 1e-3)
-    one = ss.friction.RateAndState(0.6, 0.01, 0.015, 1e-3)
-    start: dict[str, Any] = {"pull_rate": 1e-5, "initial_load": 6.2e6, "initial_state": 1e4}
-    problems = ss.Problem(FAULT, two, **start, initial_second_state=1e4), ss.Problem(FAULT, one, **start)
-    runs = [ss.simulate(problem, 100.0) for problem in problems]
-    t = np.linspace(1.0, 100.0, 50)
-    assert runs[0].slip(t) == pytest.approx(runs[1].slip(t), rel=1e-9)
-    assert runs[0].second_state(t) == pytest.approx(runs[1].state(t), rel=1e-8)
-
-
 def test_a_typed_and_a_traced_law_give_the_numbers_of_that_of_the_package() -> None:
     """With states that are the logarithms themselves: relative 1e-8."""
     numbers: dict[str, Any] = {"mu_0": 0.6, "a": 0.01, "b": 0.01, "c": 0.006, "r": "1 um/s", "near": "1 mm", "far": "20 mm"}

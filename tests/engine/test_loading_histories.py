@@ -241,32 +241,6 @@ def test_a_pull_that_stops_locks_the_contact() -> None:
     assert len(run.history) < 100
 
 
-def test_longer_runs_begin_with_the_shorter_ones() -> None:
-    """Whatever the end cuts; to 2 ulp, for the piece that is cut is summed anew."""
-    for history in (HISTORIES["fast tone"], HISTORIES["steps"], HISTORIES["piecewise linear"]):
-        for body in (SLAB, BLOCK):
-            problem = ss.Problem(body, LAWS["linear"], pull_rate=history, initial_load=0.79 * (1e8 if body is SLAB else 1e14))
-            whole = ss.simulate(problem, 20.0)
-            times = np.linspace(0.0, 12.9, 200)
-            for end in (7.9, 12.9):
-                part = ss.simulate(problem, end)
-                inside = times[times < end]
-                assert (np.abs(part.slip(inside) - whole.slip(inside)) <= 2.0 * np.spacing(whole.slip(inside))).all()
-
-
-def test_a_constant_history_is_a_number() -> None:
-    """Slip to 1e-13 of all of it: the same sums in another order."""
-    for body, law in ((SLAB, LAWS["sinusoidal"]), (BLOCK, LAWS["hyperbolic"])):
-        strength = 0.8 * (1e8 if body is SLAB else 1e14)
-        runs = [
-            ss.simulate(ss.Problem(body, law, pull_rate=rate, initial_excess=-1e-4 * strength), 20.0)
-            for rate in (0.3, Steps((0.0, 5.0), (0.3, 0.3)), PiecewiseLinear((0.0, 5.0), (0.3, 0.3)), Sinusoidal(0.3, 0.0, 7.0))
-        ]
-        times = np.linspace(0.0, 20.0, 100)
-        for run in runs[1:]:
-            assert np.abs(run.slip(times) - runs[0].slip(times)).max() < 1e-12 * runs[0].slip(20.0)
-
-
 # ---- the laboratory's tests ---------------------------------------------------------------------------------
 
 RATE_AND_STATE = ss.friction.RateAndState(0.6, 0.01, 0.015, 1e-5, 1e-6)
@@ -289,13 +263,3 @@ def test_a_velocity_step_shows_direct_effect_and_evolution() -> None:
     assert (after - before) / 1e8 == pytest.approx((law.a - law.b) * math.log(10.0), rel=1e-6)
     assert (peak - before) / 1e8 == pytest.approx(law.a * math.log(10.0), rel=0.2)
     assert (peak - before) / 1e8 < law.a * math.log(10.0)
-
-
-def test_holds_heal_with_the_logarithm_of_their_length() -> None:
-    """The peak behind a hold grows by about b ln 10 for one ten times as long (ageing law; the machine relaxes): to 10 %."""
-    run = sheared(HoldAndSlide(1e-6, 200.0, (1e3, 1e4, 1e5)), 1.2e5)
-    peaks, time = [], 0.0
-    for hold in (1e3, 1e4, 1e5):
-        time += 200.0 + hold
-        peaks.append(float(run.traction(np.linspace(time, time + 100.0, 20_000)).max()))
-    assert np.diff(peaks) / 1e8 == pytest.approx(RATE_AND_STATE.b * math.log(10.0), rel=0.1)

@@ -39,18 +39,6 @@ def test_the_dead_load_loop_jumps_at_its_folds() -> None:
     assert run.shocks.rate_before.iloc[1] == pytest.approx(q - 1.0, rel=1e-9, abs=0.0)
 
 
-def test_slip_rate_ends_as_a_square_root_at_a_fold() -> None:
-    """v - v1 goes as sqrt(tf - t): from the engine's curve down to a nanosecond before the fold."""
-    slab = replace(SLAB, driver_impedance=0.0)
-    run = ss.simulate(ss.Problem(slab, RATE_LAW, pull_rate=2.6, initial_load=60e6), 6.0)
-    fold, last = run.shocks.time.iloc[1], run.shocks.rate_before.iloc[1]
-    left = 10.0 ** np.arange(-9, -3)
-    rates = run.slip_rate(fold - left) - last
-    assert np.diff(np.log10(rates)) == pytest.approx(np.full(5, 0.5), rel=0, abs=2e-3)
-    by_law = IMPEDANCE * run.slip_rate(fold - left) + NORMAL * RATE_LAW.coefficient(0.0, run.slip_rate(fold - left))
-    assert by_law == pytest.approx(run.load(fold - left), rel=1e-13, abs=0.0)
-
-
 def test_a_knot_of_a_law_is_passed_at_its_slip() -> None:
     """Linear weakening over D on a slab without pull: the knot is passed exactly at slip D, and v then stays constant."""
     law = F.LinearSlipWeakening(0.8, 0.3, 2.0)

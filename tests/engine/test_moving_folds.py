@@ -45,14 +45,6 @@ def test_fold_is_reached_at_the_slip_of_the_closed_form(sense: int, rtol: float)
     assert abs(float(energy.balance[0] / energy.heat[0])) < 10 * rtol * 1e-2
 
 
-def test_rate_ends_as_the_square_root_of_time_at_a_moving_fold() -> None:
-    run = ss.simulate(ss.Problem(MATCHED, hardening(), initial_excess=1e5), 5.0, rtol=1e-13)
-    shock = run.shocks.iloc[1]
-    left = 10.0 ** np.arange(-8, -3)
-    rates = run.slip_rate(shock.time - left) - shock.rate_before
-    assert np.diff(np.log10(rates)) == pytest.approx(np.full(4, 0.5), rel=0.0, abs=5e-3)
-
-
 @pytest.mark.parametrize(("distance", "jumps"), [(0.5, True), (0.02, False)])
 def test_slip_weakening_lifts_slow_slip_over_its_upper_fold(distance: float, jumps: bool) -> None:
     """mu = 0.3 (1 - u / 3D), to its knot at D, + 0.3 + v exp(-v/0.3): slow slip ends at v_f, if that comes before the knot."""
@@ -138,6 +130,7 @@ def test_perfect_delay_keeps_a_stable_root_until_it_ends(law: ss.friction.Fricti
     for law_slip, rate, load in sampled(run, 120):
         assert min(abs(rate - root) for root in stable_roots(law, law_slip, load)) < 1e-9
     folds = run.shocks[run.shocks.cause == "fold"]
+    assert len(folds) >= 2 or law is not WAVY
     for shock in folds.itertuples():
         sense = math.copysign(1.0, shock.rate_before or shock.rate_after)
         before, after = abs(shock.rate_before), abs(shock.rate_after)
@@ -151,11 +144,6 @@ def test_perfect_delay_keeps_a_stable_root_until_it_ends(law: ss.friction.Fricti
         assert after == pytest.approx(min(nearest, key=lambda root: abs(root - before)), rel=0.0, abs=1e-9)
     energy = run.energy(12.0)
     assert abs(float(energy.balance[0] / energy.heat[0])) < 1e-10
-
-
-def test_a_run_under_the_wavy_law_jumps_at_folds_repeatedly() -> None:
-    run = ss.simulate(ss.Problem(SLAB, WAVY, pull_rate=0.1, initial_excess=1e6), 12.0)
-    assert (run.shocks.cause == "fold").sum() >= 2
 
 
 def test_contact_mass_tends_to_perfect_delay() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -17,7 +16,6 @@ LAW = ss.friction.RateAndState(0.6, 0.01, 0.015, 1e-5, 1e-6)
 SLIDING = SteadySliding(NORMAL, LAW.a, LAW.b, LAW.distance, SPEED)
 CRITICAL = NORMAL * (LAW.b - LAW.a) / LAW.distance
 """Stiffness (Pa/m) below which quasi-static sliding is unstable."""
-EVOLUTIONS = pytest.mark.parametrize("evolution", ["ageing", "slip", "prz"])
 
 
 def law_of(evolution: str) -> ss.friction.RateAndState:
@@ -30,12 +28,9 @@ def steady(body: Any, law: ss.friction.RateAndState, off: float = 1.0) -> ss.Pro
     return ss.Problem(body, law, pull_rate=SPEED, initial_load=load, initial_state=off * float(law.steady_state(SPEED)))
 
 
-def growth(solution: ss.Solution, start: float, every: float | None = None) -> float:
-    """Rate (1/s) at which the swings of the slip rate about SPEED grow, from its maxima after `start`.
-
-    A slab is looked at once `every` round trip: what bounces in it is the same each time.
-    """
-    time = np.arange(start, solution.duration, every or (solution.duration - start) / 40_000)
+def growth(solution: ss.Solution, start: float) -> float:
+    """Rate (1/s) at which the swings of the slip rate about SPEED grow, from its maxima after `start`."""
+    time = np.linspace(start, solution.duration, 40_001)
     rate = solution.slip_rate(time) / SPEED - 1.0
     top = argrelmax(rate, order=100)[0]
     assert len(top) >= 4
@@ -46,9 +41,7 @@ def slowest_root(mass: float, stiffness: float, damping: float) -> complex:
     return SLIDING.block_growth(stiffness, mass, damping)
 
 
-@pytest.mark.parametrize("share", [0.98, 1.02])
-@pytest.mark.parametrize("damping", [0.0, 2e9])
-@pytest.mark.parametrize("evolution", ["ageing", "slip"])
+@pytest.mark.parametrize(("damping", "evolution", "share"), [(0.0, "ageing", 0.98), (2e9, "slip", 1.02)])
 def test_a_block_grows_at_the_rate_of_the_linearised_system(damping: float, evolution: str, share: float) -> None:
     """k_c = S (b - a) / Dc - damping V / Dc, for hardly any mass.
 
@@ -63,39 +56,6 @@ def test_a_block_grows_at_the_rate_of_the_linearised_system(damping: float, evol
     block = ss.SpringBlock(1.0, share * critical, NORMAL, damping)
     run = ss.simulate(steady(block, law_of(evolution), 1.0001), 12.0 * period)
     assert growth(run, 3.0 * period) == pytest.approx(root.real, rel=0.0, abs=2e-6 * abs(root.imag))
-
-
-@pytest.mark.parametrize("evolution", ["ageing", "slip"])
-def test_inertia_raises_the_critical_stiffness(evolution: str) -> None:
-    """k_c = S (b - a) / Dc (1 + m V^2 / (S a Dc)), here twice that without mass.
-
-    A heavy block starts from rest, far from steady sliding. Above k_c its swings fade, and when they are small they fade as the
-    linearised system says, to 1e-5 of their frequency; at 0.9 k_c, where a block without mass would be stable, they stay large.
-    """
-    mass = NORMAL * LAW.a * LAW.distance / SPEED**2
-    assert SLIDING.critical_stiffness(mass) == pytest.approx(2.0 * CRITICAL, rel=1e-14)
-    runs = {}
-    for share in (0.9, 1.2):
-        stiffness = share * 2.0 * CRITICAL
-        root = slowest_root(mass, stiffness, 0.0)
-        period = 2.0 * np.pi / abs(root.imag)
-        assert abs(slowest_root(mass, 2.0 * CRITICAL, 0.0).real) < 1e-6 * abs(root.imag)
-        at_rest = replace(steady(ss.SpringBlock(mass, stiffness, NORMAL), law_of(evolution)), initial_rate=0.0)
-        runs[share] = ss.simulate(at_rest, 60.0 * period, rtol=1e-8)
-    swings = {share: np.ptp(run.slip_rate(np.linspace(50.0, 60.0, 1000) * period)) / SPEED for share, run in runs.items()}
-    assert swings[1.2] < 1e-3 < 0.2 < swings[0.9]
-    assert growth(runs[1.2], 45.0 * period) == pytest.approx(root.real, rel=0.0, abs=1e-5 * abs(root.imag))
-
-
-@pytest.mark.parametrize("share", [0.9, 1.1])
-def test_a_slab_grows_at_the_rate_of_its_dispersion_relation(share: float) -> None:
-    """S (a - b / (1 + s Dc/V)) / V + Z coth(s h/c) = 0: the slab's own equation, waves and all. Tolerance 2e-4 of the frequency."""
-    slab = ss.ElasticSlab(2800, 3500, 3.43e10 / (share * CRITICAL), NORMAL)
-    root = SLIDING.slab_growth(slab.impedance, 0.5 * slab.two_way_time)
-    assert (root.real > 0.0) == (share < 1.0)
-    period = 2.0 * np.pi / abs(root.imag)
-    run = ss.simulate(steady(slab, LAW, 1.001), 8.0 * period, rtol=1e-8)
-    assert growth(run, period, slab.two_way_time) == pytest.approx(root.real, rel=0.0, abs=2e-4 * abs(root.imag))
 
 
 def test_steady_sliding_has_the_coefficient_of_the_closed_form() -> None:

@@ -114,17 +114,6 @@ def test_slip_in_an_event_keeps_its_digits_after_much_slip() -> None:
     assert np.abs((moved.slip(local) - 1e9) - run.slip(local)).max() > 1e-9
 
 
-def test_cycles_of_a_healing_block_are_all_alike() -> None:
-    run = ss.simulate("cycles-block")
-    events = run.events
-    assert len(events) > 5
-    assert np.ptp(events.slip[1:]) <= 1e-12 * events.slip[1]
-    assert np.ptp(events.recurrence[1:]) <= 1e-12 * events.recurrence[1]
-    window = run.window(-1)
-    assert float(window.event_slip(events.duration.iloc[-1])) == pytest.approx(events.slip.iloc[-1], rel=1e-15, abs=0.0)
-    assert float(window.event_slip(window.history.span[0])) == pytest.approx(-events.slip[:-1].sum(), rel=1e-6, abs=0.0)
-
-
 # ---- the catalogue ------------------------------------------------------------------------------------------------------------
 
 

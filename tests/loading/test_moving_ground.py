@@ -68,44 +68,6 @@ def test_velocity_and_acceleration_of_one_motion_give_one_run() -> None:
     assert slips[0][-1] < -0.1
 
 
-@pytest.mark.parametrize(("size", "period", "phase"), [(9.0, 0.5, 0.0), (14.0, 0.31, 1.0)])
-def test_a_block_under_a_sinusoid_follows_an_integrator_with_events(size: float, period: float, phase: float) -> None:
-    """To 1e-9 of the slip, with a spring, whose force is that of the slip relative to the ground."""
-    stiffness, pull, omega, end = 40.0, 0.3, 2.0 * math.pi / period, 3.0
-    body = ss.SpringBlock(MASS, stiffness, FORCE)
-    ground = Sinusoidal(0.0, size, period, phase)
-    run = ss.simulate(ss.Problem(body, LAW, pull_rate=pull, initial_load=1.0, ground_acceleration=ground), end)
-
-    def load(t: float, u: float) -> float:
-        return 1.0 + stiffness * (pull * t - u) - MASS * size * math.sin(omega * t + phase)
-
-    t, u, v, way = 0.0, 0.0, 0.0, 0
-    while t < end:
-        if v == 0.0:
-            here = load(t, u)
-            way = int(math.copysign(1.0, here)) if abs(here) > 6.0 else 0
-            if way == 0:
-                grid = np.linspace(t, end, 20000)
-                past = np.flatnonzero([abs(load(s, u)) > 6.0 for s in grid])
-                if not len(past):
-                    break
-                low, high = grid[past[0] - 1], grid[past[0]]
-                t = brentq(lambda s, u=u: abs(load(s, u)) - 6.0, low, high, xtol=1e-15)
-                way = int(math.copysign(1.0, load(t, u)))
-
-        def motion(s: float, y: list[float], sign: int = way) -> list[float]:
-            return [y[1], (load(s, y[0]) - sign * 5.0) / MASS]
-
-        def stops(s: float, y: list[float], begun: float = t, sign: int = way) -> float:
-            return float(y[1]) if s > begun + 1e-9 else float(sign)
-
-        stops.terminal = True  # type: ignore[attr-defined] # read by scipy
-        found = solve_ivp(motion, (t, end), [u, v], "DOP853", rtol=1e-13, atol=1e-15, events=stops, max_step=0.01)
-        t, u, v = found.t[-1], found.y[0, -1], 0.0 if found.status == 1 else found.y[1, -1]
-    assert [float(run.slip(end)), float(run.slip_rate(end))] == pytest.approx([u, v], rel=1e-9, abs=1e-9)
-    assert run.energy([1.0, end]).balance.to_numpy() == pytest.approx(0.0, abs=1e-9)
-
-
 GROUNDS: dict[str, dict[str, LoadingHistory]] = {
     "sinusoid of velocity": {"ground_velocity": Sinusoidal(0.01, 0.3, 0.37, 0.3)},
     "sinusoid of acceleration": {"ground_acceleration": Sinusoidal(0.0, 9.0, 0.37, 0.3)},
@@ -216,17 +178,6 @@ def test_rate_and_state_on_shaken_ground_follows_an_own_integrator(ground: Loadi
     for begin, end in pairwise(edges):
         y = solve_ivp(change, (begin, np.nextafter(end, 0.0)), y, "Radau", rtol=1e-10, atol=1e-12).y[:, -1].tolist()
     assert [float(run.slip(1.0)), float(run.slip_rate(1.0))] == pytest.approx(y[:2], rel=1e-7)
-
-
-def test_before_slip_the_free_top_moves_by_the_ground_over_the_cosine() -> None:
-    """V [sin(w t) - (-1)^N sin(w (t - 2 N T))] / cos(w T) after N waves, with T = h/c: each echo of the free top, summed."""
-    omega, size, half = 2.0 * math.pi / 0.37, 0.1, 0.5 * TRIP
-    run = ss.simulate(ss.Problem(slab(), LAW, initial_load=1e5, ground_velocity=Sinusoidal(0.0, size, 0.37)), 2.0)
-    times = np.linspace(0.06, 1.98, 77)
-    waves = np.floor((times - half) / TRIP) + 1.0
-    swings = np.sin(omega * times) - (-1.0) ** waves * np.sin(omega * (times - waves * TRIP))
-    assert len(run.events) == 0
-    assert run.field(THICKNESS, times).velocity == pytest.approx(size * swings / math.cos(omega * half), abs=1e-12)
 
 
 def test_a_slab_whose_top_lets_waves_out_moves_by_its_transfer_function() -> None:

@@ -27,7 +27,7 @@ from stickslip.run.options import RunOptions
 from stickslip.run.progress import Report
 from stickslip.run.resume import PausedCatalogue
 from stickslip.run.run_loop import Interrupts, Monitor, run_loop
-from tests.long_runs.problems import RUNS, bundled, differences, killed
+from tests.long_runs.problems import RUNS, bundled, killed
 
 NEEDS_PYARROW = pytest.mark.skipif(importlib.util.find_spec("pyarrow") is None, reason="needs pyarrow")
 SUFFIXES = ["csv", "nc", pytest.param("parquet", marks=NEEDS_PYARROW)]
@@ -228,14 +228,6 @@ def test_solution_and_checkpoint_are_not_taken_for_each_other(tmp_path: Path) ->
         PausedCatalogue.read(tmp_path / "run.nc")
     with pytest.raises(ss.InputError, match=r"events\.checkpoint\.nc: a catalogue is resumed in its own file"):
         ss.resume(tmp_path / "events.checkpoint.nc", checkpoint=tmp_path / "other.nc")
-
-
-def test_resume_recognises_catalogues_and_runs(tmp_path: Path) -> None:
-    problem, duration = RUNS["slab that heals"]
-    table = ss.catalogue(problem, duration, tmp_path / "events.csv")
-    run = ss.simulate(problem, duration, checkpoint=tmp_path / "run.nc")
-    same(ss.resume(tmp_path / "events.checkpoint.nc"), table)
-    assert differences(ss.resume(tmp_path / "run.nc"), run) == []
 
 
 def test_bad_arguments_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

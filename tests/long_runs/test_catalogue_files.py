@@ -39,7 +39,7 @@ def changed(path: Path, **attributes: object) -> None:
     write(read(path, CATALOGUE).assign_attrs(attributes), path)
 
 
-@pytest.mark.parametrize("name", ["../victim.csv", "/tmp/victim.csv", "folder/victim.csv", "..", ".", "", "a\\b.csv"])
+@pytest.mark.parametrize("name", ["../victim.csv", "/tmp/victim.csv", "..", "", "a\\b.csv"])
 def test_a_path_in_a_checkpoint_is_not_followed(tmp_path: Path, name: str) -> None:
     (tmp_path / "victim.csv").write_text("precious\n")
     folder = tmp_path / "folder"
@@ -62,11 +62,6 @@ def test_a_link_is_not_followed(tmp_path: Path) -> None:
     with pytest.raises(ss.InputError, match=r"events\.csv: is a link"):
         ss.resume(checkpoint, DURATION)
     assert (tmp_path / "victim.csv").read_text() == "precious\n"
-
-
-def test_another_suffix_is_refused_with_all_that_there_are(tmp_path: Path) -> None:
-    with pytest.raises(ss.InputError, match=r"events\.txt: the name must end in \.csv, \.parquet or \.nc$"):
-        ss.catalogue(PROBLEM, DURATION, tmp_path / "events.txt")
 
 
 def test_a_run_stopped_before_its_first_event_continues_without_a_file(tmp_path: Path) -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import signal
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -13,7 +11,7 @@ import pandas as pd
 import pytest
 
 import stickslip as ss
-from stickslip.engine.state.layout import Counts, Stop
+from stickslip.engine.state.layout import Stop
 from stickslip.io.netcdf import save_checkpoint
 from stickslip.run import catalogue as module
 from stickslip.run.exact_run import ExactRun
@@ -22,7 +20,7 @@ from stickslip.run.progress import Report
 from stickslip.solution.window import Window
 from stickslip.trajectory.status import UNDER_WAY
 from tests.engine.creep_truth import ROUND, printed
-from tests.long_runs.problems import continued, killed
+from tests.long_runs.problems import continued
 from tests.long_runs.problems import differences as differences_of_runs
 from tests.problems import SLAB
 
@@ -101,19 +99,6 @@ def test_a_run_that_ended_within_a_leap_continues_as_if_it_had_not(name: str, tm
         assert differences(continued(path, duration), whole) == [], f"from {end}"
 
 
-def test_a_leap_that_is_not_restored_is_noticed(tmp_path: Path) -> None:
-    """The comparison fails where the table of leaps, or when to look for the next one, is not what it was."""
-    problem, duration, rtol = RUNS["several leaps"]
-    whole, path = whole_run("several leaps"), tmp_path / "run.nc"
-    half = ss.simulate(problem, 0.9 * duration, creep_rtol=rtol)
-    for place, change in (("creep_leaps", -1), ("pause_for", 3)):
-        assert half.checkpoint is not None
-        count = half.checkpoint.count.copy()
-        count[Counts.places[place].first] += change
-        save_checkpoint(replace(half, checkpoint=replace(half.checkpoint, count=count)), path)
-        assert differences(continued(path, duration), whole) != []
-
-
 @pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("events", [1, 2])
 def test_a_number_of_events_stops_a_creeping_run(events: int, tmp_path: Path) -> None:
@@ -144,27 +129,6 @@ def test_a_catalogue_is_the_table_of_the_whole_run(name: str, tmp_path: Path, mo
     resumed = ss.resume(tmp_path / "events.checkpoint.nc", duration)
     pd.testing.assert_frame_equal(resumed, whole_run(name).catalogue(), check_exact=True)
     assert resumed.attrs["creep"] == whole_run(name).creep_note
-
-
-CREEPING = """
-problem = ss.load_scenario("fig5-slab-printed").problem
-ss.simulate(problem, 200 * ss.YEAR, creep_rtol=1e-5, checkpoint="run.nc", checkpoint_every=0.0, progress=lambda _: time.sleep(0.01))
-"""
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(os.name != "posix", reason="needs SIGKILL")
-def test_a_killed_run_continues_bit_for_bit(tmp_path: Path) -> None:
-    """Killed after a few checkpoints, or after more if there was no leap before these."""
-    for times in (4, 8, 16):
-        killed(CREEPING, tmp_path, "run.nc", signal.SIGKILL, times=times)
-        stopped = ss.open_solution(tmp_path / "run.nc")
-        if len(stopped.creep) > 0:
-            break
-    assert stopped.status.name == "under way"
-    assert len(stopped.creep) > 0
-    end = stopped.history.duration * 1.01
-    assert differences(ss.resume(tmp_path / "run.nc", end), ss.simulate(stopped.problem, end, creep_rtol=1e-5)) == []
 
 
 def test_the_pulse_after_creep_is_that_of_the_run_without_leaps() -> None:
