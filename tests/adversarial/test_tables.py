@@ -142,16 +142,6 @@ def test_members_of_a_batch_stop_where_single_runs_do(name: str) -> None:
         assert float(members.results["slip"][n]) == pytest.approx(first_balance(barrier, load), rel=CLAIM, abs=0.0)
 
 
-@pytest.mark.parametrize("name", ["difference of logarithms", "tanh over 1e-05 m"])
-def test_members_of_a_sweep_stop_where_single_runs_do(name: str) -> None:
-    """Slip to 1e-7; a formula in text runs member by member."""
-    barrier = (BARRIERS | STEEP)[name]
-    loads = [1.1e7, 1.2e7]
-    found = ss.sweep(Scenario(problem(barrier), DURATION), {"initial.excess": loads}, quantities=["slip"])
-    expected = [first_balance(barrier, load) for load in loads]
-    assert found["slip"].to_numpy() == pytest.approx(expected, rel=CLAIM, abs=0.0)
-
-
 NEEDLES = "0.3+0.3*(sin(3*pi*v)**16)**4"
 
 
@@ -170,11 +160,3 @@ def test_a_block_meets_needles_of_the_slip_rate() -> None:
     run = ss.simulate(ss.Problem(block, ss.friction.FromExpression(NEEDLES), initial_excess=8.0), 2.0)
     assert float(run.catalogue(0.0).end[0]) == pytest.approx(path.end, rel=CLAIM, abs=0.0)
     assert float(run.slip(path.end)) == pytest.approx(peak, rel=CLAIM, abs=0.0)
-
-
-def test_an_exponential_that_overflows_inside_another_ends_no_run_and_never_hangs() -> None:
-    """Friction of 0.6 that rises to 0.9 within 5 mm; exp(1210) at the start is infinite, and friction there is 0.6 all the same."""
-    barrier = Barrier("0.6 + 0.3*exp(-exp((1.21-u)/1e-3))", (1.21,), 1.21)
-    run = ss.simulate(problem(barrier), DURATION)
-    assert run.status.name == "finished"
-    assert float(run.slip(DURATION)) == pytest.approx(first_balance(barrier, EXCESS), rel=CLAIM, abs=0.0)

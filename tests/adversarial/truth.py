@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 import stickslip as ss
-from tests.adversarial.branch_walk import RateTruth, fine_grid, follow
 from tests.adversarial.cases import Case
 from tests.adversarial.walk import Floats, Path, Place, walk
 
@@ -47,8 +46,6 @@ def truth_of(case: Case) -> Truth:
     """The truth of a case."""
     body = case.problem.body
     massless = isinstance(body, ss.ElasticSlab) and body.contact_mass == 0.0
-    if massless and case.recipe.sees("v") and case.lag == 0.0:
-        return _algebraic(case)
     if massless:
         return _sampled(case, *(_lagged_slab(case) if case.lag else _slip_slab(case)))
     return _sampled(case, *_with_mass(case))
@@ -166,27 +163,3 @@ def _through_breaks(
             break
         start, state = end, part(end).tolist()
     return whole
-
-
-def _algebraic(case: Case) -> Truth:
-    """Z v + S mu(v) = load, along its branches."""
-    found = _followed(case)
-    end = found.arrest
-    last = case.duration if end is None else min(end, case.duration)
-    times = np.linspace(0.0, last, SAMPLES + 1)[1:]
-    slips, rates = found.slip_and_rate(times.tolist())
-    return Truth(times, slips, rates, end if end is not None and end < case.duration else None)
-
-
-def _followed(case: Case) -> RateTruth:
-    problem, body, mu = case.problem, case.problem.body, case.mu
-    assert isinstance(body, ss.ElasticSlab)
-    rest, normal, impedance = mu(0.0, 0.0), problem.normal, body.impedance
-    load = load_of(case)
-    flat = 0.5 * body.two_way_time if math.isfinite(body.driver_impedance) else math.inf
-    swing = sum(abs(f.amplitude) * (case.rate * 4 if f.shape == "corner" else 1.0) for f in case.recipe.features)
-    top = (max(load(0.0), load(case.duration)) + 2.5 * normal * swing) / impedance
-    centres = [0.0 if f.shape == "tail" else f.centre for f in case.recipe.features]
-    grid = fine_grid(top, centres, [f.detail for f in case.recipe.features])
-    ramp = body.stiffness * float(problem.first_pull_rate)
-    return follow(lambda v: impedance * v + normal * (mu(0.0, v) - rest), problem.excess, ramp, case.duration, flat, grid)

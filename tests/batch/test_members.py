@@ -8,17 +8,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import stickslip as ss
 from stickslip.batch import QUANTITIES, long_member, run, run_members
 from stickslip.batch.kernels.workspace import Workspace, new_workspace
-from stickslip.engine.state.layout import Floats, Stop
+from stickslip.engine.state.layout import Stop
 from stickslip.foundation.errors import InputError
 from stickslip.run.simulate import simulate
-from stickslip.scenarios.scenario import Scenario, load_scenario
-from stickslip.trajectory.slip_events import default_event_rate
+from stickslip.scenarios.scenario import load_scenario
 from stickslip.trajectory.status import BAD_PARAMETERS, FULL_HISTORY, INTERRUPTED, STATUSES
 
-from .cases import BLOCK, CASES, SLAB, Case, by_solution, one
+from .cases import CASES, SLAB, Case, by_solution, one
 
 ROUNDING = {"rel": 2e-14, "abs": 1e-300}
 """Of numbers that a history is folded into in another order, or with fused products; the history itself is the same bit for bit."""
@@ -79,41 +77,6 @@ def test_results_do_not_depend_on_what_a_workspace_held_before(name: str, monkey
     assert found.status.tolist() == expected.status.tolist()
     for quantity in QUANTITIES:
         assert found.results[quantity].tobytes() == expected.results[quantity].tobytes(), quantity
-
-
-@pytest.mark.parametrize("body", [SLAB, replace(SLAB, driver_impedance=3e6), replace(SLAB, contact_mass=1e6), BLOCK])
-def test_peaks_and_pulses_under_laws_drawn_at_random_equal_those_of_a_dense_search(body: ss.ElasticSlab | ss.SpringBlock) -> None:
-    random, members, normal = np.random.default_rng(11), 12, 1e14 if body is BLOCK else 1e8
-    law = ss.friction.SinusoidalSlip(0.6, 0.1, 40.0)
-    start = Scenario(ss.Problem(body, law, initial_slip=random.uniform(0.0, 1.0), initial_excess=0.0), 9.0)
-    values = {
-        "friction.wavenumber": random.uniform(1.0, 20.0, members) * (0.05 if body is BLOCK else 1.0),
-        "friction.amplitude": random.uniform(0.05, 0.3, members),
-        "initial.excess": normal * random.uniform(0.01, 0.3, members),
-    }
-    found = run_members(start, values, ("events", "pulses", "peak_rate")).results
-    assert found["pulses"].max() > 1 or body is BLOCK
-    for n in range(members):
-        solution = simulate(one(Case(start, {}), values, n))
-        dense = dense_rates(solution)
-        above, pulses, peak, low = dense > default_event_rate(solution.problem), 0, 0.0, 0.0
-        begins = above & ~np.append(False, above[:-1])
-        for rate, begin in zip(dense[above], begins[above], strict=True):
-            if begin or low < 0.5 * min(peak, rate):
-                pulses, peak, low = pulses + 1, rate, rate
-            elif rate > peak:
-                peak = low = rate
-            low = min(low, rate)
-        assert found["events"][n] == begins.sum()
-        assert found["pulses"][n] == pulses
-        assert found["peak_rate"][n] == pytest.approx(dense.max(initial=0.0) or math.nan, rel=1e-4, nan_ok=True)
-
-
-def dense_rates(solution: ss.Solution) -> Floats:
-    """|Slip rate| at 201 places of each piece of a history, in order of time."""
-    powers = np.linspace(0.0, 1.0, 201)[:, None] ** np.arange(solution.history.store.rate.shape[1])
-    rates: Floats = np.abs(solution.history.store.rate @ powers.T).ravel()
-    return rates
 
 
 def test_each_quantity_comes_out_the_same_when_it_is_asked_for_alone() -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-import numpy as np
 import pytest
 from mpmath import cot, mp, mpf
 
@@ -27,14 +26,6 @@ def test_the_block_is_the_slow_limit_of_the_slabs_dynamic_stiffness() -> None:
         assert block.mass == pytest.approx(float(mass), rel=float(angle) ** 2 / 14, abs=0.0)
     assert block.stiffness == float(stiffness)
     assert (block.normal_force, block.damping) == (1e8, 0.0)
-
-
-def test_the_block_has_the_kinetic_energy_of_an_evenly_sheared_slab() -> None:
-    """Integral of rho (1 - x/h)^2 / 2 over the thickness, by Gauss's rule: exact."""
-    nodes, weights = np.polynomial.legendre.leggauss(4)
-    x = 0.5 * (nodes + 1.0)
-    energy = SLAB.density * SLAB.thickness * float(weights @ (1.0 - x) ** 2) / 4.0
-    assert 0.5 * SLAB.equivalent_block().mass == pytest.approx(energy, rel=1e-14, abs=0.0)
 
 
 def test_the_block_swings_faster_than_the_slab() -> None:

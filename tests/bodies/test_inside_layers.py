@@ -28,13 +28,12 @@ def assert_same_inside(run: Any, slab: Any, x: Any, of_slab: Any) -> None:
         np.testing.assert_allclose(ours[name], known[name], rtol=1e-8, atol=share * size, err_msg=name)
 
 
-@pytest.mark.parametrize("shares", [(0.2, 0.8), (0.3, 0.4, 0.3)])
 @pytest.mark.parametrize("name", SHORT)
-def test_the_inside_of_layers_of_equal_impedance_is_that_of_one_slab(name: str, shares: tuple[float, ...]) -> None:
+def test_the_inside_of_layers_of_equal_impedance_is_that_of_one_slab(name: str) -> None:
     body, problem, duration = CASES[name]
     slab, run = (
         ss.simulate(ss.Problem(one, **problem), duration)
-        for one in (ss.ElasticSlab(DENSITY, SPEED, THICKNESS, NORMAL, **body), layered(*shares, **body))
+        for one in (ss.ElasticSlab(DENSITY, SPEED, THICKNESS, NORMAL, **body), layered(0.3, 0.4, 0.3, **body))
     )
     x = np.linspace(0.0, THICKNESS, 12)
     assert_same_inside(run, slab, x, x)
@@ -73,7 +72,7 @@ def test_the_inside_of_two_equal_slabs_is_that_of_one(name: str, sides: str) -> 
 @pytest.mark.parametrize("driver", [np.inf, 4e6, 0.0])
 def test_velocity_and_stress_are_continuous_and_energies_balance(driver: float, law: Any) -> None:
     rng = np.random.default_rng(7)
-    for count in (2, 3, 4):
+    for count in (2, 4):
         speed, thick = rng.uniform(1500.0, 4000.0, count), rng.uniform(500.0, 4000.0, count)
         body = ss.LayeredSlab(thick, rng.uniform(2000.0, 3000.0, count), speed, NORMAL, driver, travel_time_error=0.05)
         loading = {"pull_rate": 0.2} if driver == np.inf else {"far_stress": 78e6, "pull_rate": 0.0}

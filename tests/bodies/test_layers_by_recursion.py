@@ -167,9 +167,10 @@ def slip_on_grid(
         arriving = [float(chain.cross()[0]) for chain in chains]
         load = sum((1.0 if joined else impedance / z) * one for z, one in zip(firsts, arriving, strict=True))
         before, moved = rate, slip + step * rate
-        for _ in range(60):  # a contraction: S mu' step / Z is small
+        last = math.inf
+        while abs(moved - last) > 1e-15 * abs(moved):  # a contraction: S mu' step / Z is small
             rate = (load - normal * float(law.coefficient(moved, 0.0))) / impedance
-            moved = slip + 0.5 * step * (before + rate)
+            last, moved = moved, slip + 0.5 * step * (before + rate)
         slip = moved
         for chain, one in zip(chains, arriving, strict=True):
             chain.away[0] = 2.0 * chain.impedances[0] * rate - one if joined else one - 2.0 * (load - impedance * rate)

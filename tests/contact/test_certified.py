@@ -258,11 +258,3 @@ def test_a_critical_value_is_enclosed(law, name):
     ((low, high),) = found.enclosures
     assert low < closed < high
     assert high - low <= 1e-10 * closed
-
-
-def test_a_narrow_bump_has_a_critical_width():
-    """The law is regular beyond the width S height sqrt(2/e) / Z, and proven to be irregular below."""
-    found = critical_value(bump(1e-4), "w")
-    assert found.value == pytest.approx(S * HEIGHT * math.sqrt(2.0 / math.e) / Z, rel=1e-12, abs=0)
-    assert found.certificate == "proven"
-    assert found.regimes == ("irregular", "regular")

@@ -7,16 +7,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 import stickslip as ss
 from stickslip.contact.branches import resistance
-from stickslip.contact.critical import critical_normal_stress, margin, steepest_fall
+from stickslip.contact.critical import critical_normal_stress, margin
 from stickslip.contact.roots import sign_change
 from stickslip.foundation.quantities import quantity
 from stickslip.friction.formula.functions import exp
-from tests.limits import examples
 
 from .laws import S, Z, closed_critical_value, hyperbolic, slab_problem
 
@@ -181,20 +178,6 @@ def test_parameters_that_are_unknown_or_whole_are_refused(name, message):
     law = hyperbolic(1.0) if name == "alpa" else F.PowerStribeck(0.6, 0.4, 0.1, 2)
     with pytest.raises(ss.InputError, match=message.replace("?", r"\?")):
         ss.studies.critical_value(slab_problem(law), name)
-
-
-@settings(max_examples=examples(25))
-@given(fall=st.floats(0.01, 0.5), rate=st.floats(1e-6, 1e3), exponent=st.integers(1, 6), viscosity=st.floats(0.0, 1.0))
-def test_steepest_fall_is_found_over_all_scales(fall, rate, exponent, viscosity):
-    for law in (
-        F.ExponentialStribeck(0.3 + fall, 0.3, rate, exponent, viscosity),
-        F.PowerStribeck(0.3 + fall, 0.3, rate, exponent, viscosity),
-    ):
-        place, critical = closed_critical_value(law)
-        at_rate, slope = steepest_fall(resistance(slab_problem(replace(law, rate=critical))))
-        assert place == "rate"
-        assert abs(slope) < 1e-13 * (Z + S * viscosity) * 4
-        assert (at_rate == 0.0) == (exponent == 1)
 
 
 def test_friction_that_no_rate_changes_has_margin_one():

@@ -59,15 +59,6 @@ def test_bad_axes_are_refused(x, y, message):
         regime_map(slab_problem(hyperbolic(1.0)), Axis(*x), Axis(*y))
 
 
-def test_along_slip_a_product_leaves_the_irregular_regime():
-    law = F.SlipTimesRate(F.LinearSlipWeakening(0.7, 0.05, 0.4), F.HyperbolicRate(1.0, 0.5, 1.0))
-    first, second = regimes_along_slip(slab_problem(law))
-    edge = (0.7 - 0.196) * 0.4 / 0.65
-    assert (first.regime, second.regime) == ("irregular", "regular")
-    assert first.slip_to == second.slip_from == pytest.approx(edge, rel=1e-13, abs=0)
-    assert (first.slip_from, second.slip_to) == (0.0, 0.8)
-
-
 def test_along_slip_an_oscillating_factor_comes_and_goes():
     """S (1 + sin(5 u) / 2) 0.15 = Z: twice a period."""
     law = F.SlipTimesRate(F.SinusoidalSlip(1.0, 0.5, 5.0), F.HyperbolicRate(0.6, 0.52, 1.0))

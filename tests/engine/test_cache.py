@@ -121,8 +121,8 @@ DAMAGE: dict[str, Callable[[Path, bytes], object]] = {
     "unreadable": lambda path, _: (path.unlink(), path.symlink_to(path)),
 }
 KINDS = {
-    "key": ("0", "keys/*", 4, 1),
     "kernels": ("0", "compiled-*/__main__.*", 2, 1),
+    "key": ("0", "keys/*", 4, 1),
     "formulas": ("0", "compiled-*/formula-*", 2, 1),
     "numba's own": ("1", "compiled-*/plain/*/*", 2, 0),
     "numba's own checksums": ("1", "compiled-*/plain.*", 2, 1),
@@ -139,7 +139,7 @@ def sound(script: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, P
     return roots
 
 
-@pytest.mark.sampled(every=18)
+@pytest.mark.sampled(every=len(DAMAGE) * len(KINDS))
 @pytest.mark.parametrize("damage", DAMAGE)
 @pytest.mark.parametrize("kind", KINDS)
 def test_what_is_damaged_is_compiled_again(kind: str, damage: str, tmp_path: Path, script: Path, sound: dict[str, Path]) -> None:
@@ -171,7 +171,7 @@ def test_without_a_cache_folder_each_process_compiles_for_itself(plain: str, scr
     assert (tmp_path / "file").read_text() == ""
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize(
     ("names", "plain", "loaded"), [("keys", "0", 4), ("compiled-*", "0", 0), ("*/plain", "1", 2), ("*/plain/*", "1", 2)]
 )

@@ -71,16 +71,6 @@ def test_a_stiff_contact_agrees_with_scipy(mass: float) -> None:
     assert len(run.history) < 400
 
 
-def test_a_vanishing_contact_mass_changes_nothing() -> None:
-    """Friction that strengthens: the slip with a contact mass differs from that without by O(mass), order 1 to 0.02."""
-    exact = ss.simulate(ss.Problem(SLAB, STRENGTHENING, pull_rate=1e-3, initial_excess=3e7), 20.0)
-    masses = np.array([1e4, 1e3, 1e2])
-    problems = [replace(exact.problem, body=replace(SLAB, contact_mass=float(mass))) for mass in masses]
-    errors = [abs(float(ss.simulate(problem, 20.0, rtol=1e-12).slip(2.0) - exact.slip(2.0))) for problem in problems]
-    orders = np.diff(np.log(errors)) / np.diff(np.log(masses))
-    assert orders == pytest.approx([1.0, 1.0], abs=0.02)
-
-
 # ---- lagged friction -----------------------------------------------------------------------------------------------------------
 
 

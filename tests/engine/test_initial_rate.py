@@ -37,17 +37,17 @@ EACH_BODY = pytest.mark.parametrize("name", BODIES)
 BOTH_WAYS = pytest.mark.parametrize("way", [1, -1])
 
 
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=4)
 @EACH_BODY
 @BOTH_WAYS
 @pytest.mark.parametrize("evolution", ["ageing", "slip", "prz"])
 def test_without_load_and_state_it_starts_in_steady_sliding_and_stays_there(name: str, way: int, evolution: str) -> None:
-    """Slip rate within 1e-10 of the pull rate for ten Dc, although it is unstable; the kinetic energy of the body stays, too."""
+    """Slip rate within 1e-10 of the pull rate for four Dc, although it is unstable; the kinetic energy of the body stays, too."""
     law, body = replace(LAW, evolution=evolution), BODIES[name]
     problem = ss.Problem(body, law, pull_rate=way * SPEED)
     friction = NORMAL * float(law.steady_coefficient(SPEED))
     assert problem.load == pytest.approx(way * (friction + body.damping * SPEED), rel=1e-15)
-    run = ss.simulate(problem, 10.0 * law.distance / SPEED)
+    run = ss.simulate(problem, 4.0 * law.distance / SPEED)
     times = np.linspace(0.0, run.duration, 300)
     assert run.slip_rate(times) == pytest.approx(way * SPEED, rel=1e-10)
     assert float(run.slip_rate(0.0, side="left")) == way * SPEED
@@ -61,14 +61,6 @@ def test_without_load_and_state_it_starts_in_steady_sliding_and_stays_there(name
         field = run.field(np.linspace(0.0, body.thickness, 7), times[:, None])
         assert field.velocity == pytest.approx(way * SPEED, rel=1e-10)
         assert field.stress == pytest.approx(way * friction, rel=1e-12)
-
-
-@BOTH_WAYS
-def test_the_initial_rate_replaces_the_pull_rate_in_steady_sliding(way: int) -> None:
-    problem = ss.Problem(BLOCK, LAW, pull_rate=SPEED, initial_rate=f"{3 * way} mm/s")
-    assert problem.rate == 3e-3 * way
-    assert problem.load == pytest.approx(way * (NORMAL * float(LAW.steady_coefficient(3e-3)) + 3e-3 * BLOCK.damping), rel=1e-15)
-    assert problem.states[0] == pytest.approx(LAW.inner_state(float(LAW.steady_state(3e-3))), rel=1e-15)
 
 
 @BOTH_WAYS
@@ -186,7 +178,6 @@ def test_with_initial_rate_0_a_small_mass_starts_as_none_does() -> None:
 STEADY = "the pull rate is 0 at first, so nothing slides steadily"
 REFUSED: dict[str, tuple[dict[str, Any], str]] = {
     "no pull": ({}, STEADY),
-    "no pull of a slab": ({"body": BODIES["slab, dead load"]}, STEADY),
     "no rate": ({"initial_rate": 0.0, "pull_rate": SPEED}, "initial_rate is 0, so nothing slides steadily"),
     "state without load": ({"initial_state": 1.0, "pull_rate": SPEED}, "needs either initial_load or initial_excess"),
     "load without state": ({"initial_load": 6e7, "pull_rate": SPEED}, "needs initial_state, the state theta"),
@@ -281,11 +272,9 @@ duration = "0.2 s"
 """
 
 
-@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize(
     ("initial", "rate"),
     [
-        ("", None),
         ('rate = "1 mm/s"', 1e-3),
         ('rate = "1 mm/s"\nload = "60 MN"\nstate = "0.2 s"', 1e-3),
         ('rate = "steady"', "steady"),

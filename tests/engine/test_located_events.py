@@ -26,19 +26,6 @@ def test_the_onset_of_a_slowly_loaded_slab_has_its_closed_form() -> None:
     assert slips_from(run) == pytest.approx(-excess * THICKNESS / (MODULUS * pull), rel=1e-12, abs=0.0)
 
 
-def test_the_dead_load_loop_jumps_at_its_folds() -> None:
-    """The load rises and falls linearly in time: it passes S muS on its way up and the lower fold on its way down."""
-    pull, slope = 2.6, IMPEDANCE * 2.6 / (ROUND / 2)
-    slab = replace(SLAB, driver_impedance=0.0)
-    run = ss.simulate(ss.Problem(slab, RATE_LAW, pull_rate=pull, initial_load=60e6), 6.0)
-    up = 20e6 / slope
-    q = math.sqrt(1.0 / (IMPEDANCE / (NORMAL * 0.5)))
-    lower = 30e6 + IMPEDANCE * (2 * q - 1)
-    down = ROUND / 2 + (60e6 + slope * ROUND / 2 - lower) / slope
-    assert run.shocks.time.to_numpy()[:2] == pytest.approx([up, down], rel=1e-12, abs=0.0)
-    assert run.shocks.rate_before.iloc[1] == pytest.approx(q - 1.0, rel=1e-9, abs=0.0)
-
-
 def test_a_knot_of_a_law_is_passed_at_its_slip() -> None:
     """Linear weakening over D on a slab without pull: the knot is passed exactly at slip D, and v then stays constant."""
     law = F.LinearSlipWeakening(0.8, 0.3, 2.0)

@@ -16,7 +16,6 @@ from tests.engine.moving_folds import (
     KINKED,
     MATCHED,
     PRODUCT,
-    ROUND,
     SLAB,
     WAVY,
     WEAKENING,
@@ -66,18 +65,6 @@ def test_slip_weakening_lifts_slow_slip_over_its_upper_fold(distance: float, jum
     else:
         rate = float(run.slip_rate(run.history.end[-1]))
         assert Z * rate + S * rate * math.exp(-rate / 0.3) == pytest.approx(excess + 0.1 * S, rel=1e-12, abs=0.0)
-
-
-def test_slow_slip_comes_to_rest_under_a_falling_load() -> None:
-    """(Z + S c) v + S k u = load is linear: v relaxes towards load' / (S k) < 0, and passes zero after a logarithm of time."""
-    law = F.SlipPlusRate(slip=F.PiecewiseLinearSlip((0.0, 100.0), (0.3, 10.3)), rate=F.FromExpression("0.3 + 0.05*v"))
-    excess, fall, half = 5e6, -2e6, ROUND / 2
-    run = ss.simulate(ss.Problem(MATCHED, law, initial_excess=excess, far_stress_rate=fall), 20.0)
-    pace = 0.1 * S / (Z + 0.05 * S)
-    rate = excess / (Z + 0.05 * S) * math.exp(-pace * half)
-    stop = half + math.log1p(-rate * 0.1 * S / fall) / pace
-    assert run.catalogue(0.0).end.iloc[0] == pytest.approx(stop, rel=1e-11, abs=0.0)
-    assert float(run.slip(20.0)) == pytest.approx((excess + fall * (stop - half)) / (0.1 * S), rel=1e-11, abs=0.0)
 
 
 # ---- against every root ---------------------------------------------------------------------------------------------------------
@@ -144,18 +131,6 @@ def test_perfect_delay_keeps_a_stable_root_until_it_ends(law: ss.friction.Fricti
         assert after == pytest.approx(min(nearest, key=lambda root: abs(root - before)), rel=0.0, abs=1e-9)
     energy = run.energy(12.0)
     assert abs(float(energy.balance[0] / energy.heat[0])) < 1e-10
-
-
-def test_contact_mass_tends_to_perfect_delay() -> None:
-    """Over a fold inertia lags behind by a time that goes as mass^(2/3)."""
-    problem = ss.Problem(MATCHED, hardening(), initial_excess=1e5)
-    exact = float(ss.simulate(problem, 5.0).slip(5.0))
-    errors = []
-    for mass in (8e3, 1e3, 1.25e2):
-        heavy = replace(problem, body=replace(MATCHED, contact_mass=mass))
-        errors.append(abs(float(ss.simulate(heavy, 5.0).slip(5.0)) - exact))
-    orders = np.log(np.divide(errors[:-1], errors[1:])) / math.log(8.0)
-    assert orders == pytest.approx([2 / 3, 2 / 3], rel=0.0, abs=0.1)
 
 
 @pytest.mark.parametrize("selection", ["minimal", "maximal", "maxwell"])

@@ -74,14 +74,3 @@ def test_perfect_delay_leaves_a_branch_only_where_it_ends() -> None:
     assert list(run.shocks.cause) == ["fold"] * 4
     assert run.shocks.time.to_numpy() == pytest.approx(expected, rel=1e-11, abs=0.0)
     assert run.shocks.rate_before.to_numpy() == pytest.approx([0.0, 1.5, 2.0, 0.5], rel=1e-11, abs=0.0)
-
-
-def test_maxwell_jumps_at_equal_areas_of_a_polyline() -> None:
-    """g is a polyline: the trapezium rule on its corners integrates it exactly."""
-    run = ramp_run("maxwell")
-    assert len(run.shocks) >= 2
-    for shock in run.shocks.itertuples():
-        low, high = sorted((shock.rate_before, shock.rate_after))
-        corners = np.array([low, *(v for v in LAW.rates if low < v < high), high])
-        over = Z * corners + S * LAW.coefficient(0.0, corners) - float(run.load(shock.time))
-        assert abs(np.trapezoid(over, corners)) < 1e-10 * np.trapezoid(np.abs(over), corners)

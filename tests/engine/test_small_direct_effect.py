@@ -49,10 +49,9 @@ def test_an_earthquake_agrees_with_radau_on_the_logarithm_of_the_slip_rate(a: fl
     assert float(run.slip_rate(2.0)) < 1e-80
 
 
-@pytest.mark.parametrize("a", [1e-3, 1e-4])
-def test_earthquakes_repeat_and_pay_for_their_slip(a: float) -> None:
+def test_earthquakes_repeat_and_pay_for_their_slip() -> None:
     """Each slips what the driver has moved since the last one, within 2e-3; the energy balance closes to 1e-9 of the heat."""
-    run = ss.simulate(problem_of(replace(LAW, a=a)), "160 years", rtol=1e-8)
+    run = ss.simulate(problem_of(replace(LAW, a=1e-4)), "160 years", rtol=1e-8)
     assert run.status.name == "finished"
     quakes = run.catalogue(event_rate=1e-3)
     assert len(quakes) == 4

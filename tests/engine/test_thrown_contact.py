@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
-from scipy.integrate import quad, solve_ivp
+from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import stickslip as ss
@@ -74,19 +73,6 @@ def test_under_a_law_of_slip_a_thrown_block_stops_where_its_energy_is_spent(name
         return 0.5 * BLOCK.mass * rate**2 + load * slip - 0.5 * BLOCK.stiffness * slip**2 - BLOCK.normal_load * float(work)
 
     assert run.events.slip[0] == pytest.approx(brentq(left, 1e-6, 5.0, xtol=1e-14), rel=1e-9)
-
-
-def test_under_friction_that_falls_with_slip_rate_a_thrown_block_agrees_with_scipy() -> None:
-    law = ss.friction.HyperbolicRate(0.6, 0.3, 2.0)
-    run = ss.simulate(ss.Problem(BLOCK, law, initial_load=5.0, initial_rate=1.0), 0.2)
-
-    def derivative(t: float, y: Any) -> list[float]:
-        friction = BLOCK.normal_load * float(law.coefficient(0.0, y[1]))
-        return [y[1], (5.0 - BLOCK.stiffness * y[0] - friction) / BLOCK.mass]
-
-    theirs = solve_ivp(derivative, (0.0, 0.1), [0.0, 1.0], method="DOP853", rtol=1e-12, atol=1e-14)
-    assert float(run.slip(0.1)) == pytest.approx(theirs.y[0][-1], rel=1e-10)
-    assert float(run.slip_rate(0.1)) == pytest.approx(theirs.y[1][-1], rel=1e-10)
 
 
 @BOTH_WAYS

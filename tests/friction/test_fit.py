@@ -177,13 +177,6 @@ def test_parameters_that_act_as_one_are_not_determined_separately() -> None:
         assert abs(fixed.values[name] - leaves(law)[name].value) < 4.5 * size, name
 
 
-def test_points_beyond_the_weakening_do_not_determine_it() -> None:
-    """The points begin where friction has fallen by all but 1e-4 of its change: static and alpha cannot be told apart."""
-    points = measured(RATE_LAW, None, np.linspace(1e4, 2e4, 60), 0.001)
-    found = fit(points, "hyperbolic-rate")
-    assert any("static" in note or "alpha" in note for note in found.notes)
-
-
 def test_a_parameter_at_its_limit_is_there_exactly() -> None:
     found = fit(measured(replace(RATE_LAW, alpha=0.7), None, RATES, 0.01, 1), "exponential-stribeck", fixed={"exponent": 1})
     rising = fit(points_of(F.VelocityStrengthening(0.6, 0.02, 0.08, 0.0), 0.002, 3), "velocity-strengthening")
@@ -229,11 +222,6 @@ def test_starts_and_fixed_values_have_units_and_order_does_not_matter() -> None:
     assert "alpha" not in held.uncertainty
     assert "1.7" in repr(held)
     assert "(fixed)" in repr(held)
-
-
-def test_the_same_points_give_the_same_bits() -> None:
-    points = points_of(TRUE["power-stribeck"], 0.01)
-    assert fit(points, "power-stribeck").values == fit(points, "power-stribeck").values
 
 
 def test_a_fit_is_shown_as_text_and_html() -> None:

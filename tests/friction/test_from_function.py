@@ -68,10 +68,6 @@ def branches(u: Any, v: Any) -> Any:
     return 0.6 if v < 0.1 else 0.5
 
 
-def equal(u: Any, v: Any) -> Any:
-    return 0.6 if v == 0 else 0.5
-
-
 def doubling(u: Any, v: Any) -> Any:
     x = 1 + v
     for _ in range(60):
@@ -106,27 +102,21 @@ REFUSED: list[tuple[Any, dict[str, Any], str]] = [
         {},
         f"branches: a branch on the value of u, v or a parameter cannot be traced; {KINK_IN_RATE}; for a smooth step np",
     ),
-    (equal, {}, "a branch on the value"),
     (doubling, {}, "longer than 10000 operations"),
     (lambda u, v: max(v, 0.1), {}, KINK_IN_RATE),
     (lambda u: 0.5 if u < 1 else 0.3, {}, KINK_IN_SLIP),
     (lambda u, v: np.where(v > 1, 1, 2), {}, KINK_IN_RATE),
     (lambda u, v: np.where(u, 1, 2), {}, f"np.where cannot be traced; {KINK_IN_SLIP}"),
     (lambda u, v: np.maximum(v, 1), {}, f"np.maximum has a kink or a jump and cannot be traced; {KINK_IN_RATE}"),
-    (lambda u: np.minimum(0.5, u), {}, KINK_IN_SLIP),
-    (lambda u: np.fabs(u), {}, KINK_IN_SLIP),
     (lambda v: np.clip(v, 0.1, 0.5), {}, f"np.clip cannot be traced; {KINK_IN_RATE}"),
     (lambda u, v: np.arctan(v), {}, "np.arctan cannot be traced; allowed: np.sin"),
     (lambda u, v: math.exp(-v), {}, "use numpy's: np.exp instead of math.exp"),
     (lambda u, v: abs(u), {}, 'abs has a kink and cannot be traced; counts="path" makes u a length that is never negative'),
     (lambda u, v: abs(v - 1), {}, "abs has a kink and cannot be traced; v is a magnitude already, np.sqrt(x**2 + small) is smooth"),
-    (lambda u, v: np.array([1.0, 2.0]) * v, {}, "an array cannot be traced"),
     (lambda u, v: np.array([1.0, 2.0]), {}, "it must return one number, the friction coefficient, and returns an array"),
     (lambda u, v: np.interp(v, [0, 1], [1, 0]), {}, f"np.interp cannot be traced; {KINK_IN_RATE}"),
     (lambda u, v: v.mean(), {}, "cannot be traced (AttributeError"),
-    (lambda u, v: [v], {}, "it must return one number, the friction coefficient, and returns list"),
     (lambda u, v: "0.5", {}, "and returns '0.5'"),
-    (lambda u, v: True, {}, "and returns True"),
     (lambda u, v: 1j, {}, "and returns complex"),
     (returns_nothing, {}, "it returns nothing: end it with return and the friction coefficient"),
     (lambda u, v: v**u, {}, "the exponent"),
@@ -137,11 +127,9 @@ REFUSED: list[tuple[Any, dict[str, Any], str]] = [
     (lambda: 0.5, {}, NO_VARIABLE + "none"),
     (np.exp, {}, "exp: it "),
     (lambda u, v, *a: 0.5, {}, "it must name each of its arguments: u, v and parameters, without *args and **named"),
-    (lambda u, **a: 0.5, {}, "without *args and **named"),
     (lambda u, v, a: a, {}, "parameter a has no value: give it a default, or FromFunction(..., a=...)"),
     (lambda u, v, width: width, {"widht": 1.0}, "has no parameter widht; did you mean 'width'?"),
     (lambda u, a=0.5: a, {"v": 1.0}, "v is the slip rate, not a parameter: it takes no value"),
-    (lambda u, v, a: a + v, {"a": "1 parsnip"}, "'parsnip' is not a unit"),
     (lambda u, v, a: a + v, {"a": None}, "'a' must be a number"),
     (lambda u, v, a: a + v, {"a": "0.7"}, "'0.7' is not a number with a unit: write a number without quotes"),
     (3, {}, "it is not a Python function"),

@@ -97,7 +97,7 @@ def test_unknown_memories_are_refused() -> None:
 
 KINDS = pytest.mark.parametrize("kind", LAWS)
 quick = settings(
-    max_examples=examples(30), deadline=None, suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow]
+    max_examples=examples(16), deadline=None, suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow]
 )
 SLIPS = np.concatenate(([0.0], np.geomspace(1e-6, 10.0, 60), np.linspace(0.0, 4.0, 41)))
 RATES = np.concatenate(([0.0], np.geomspace(1e-6, 10.0, 60), np.linspace(0.0, 4.0, 41)))

@@ -31,8 +31,8 @@ def drawn(count: int, seed: int) -> tuple[Any, Any]:
     return x, 0.5 + 0.2 * np.sin(4 * x) + 0.02 * rng.standard_normal(len(x))
 
 
-@pytest.mark.parametrize("strength", [1e-9, 1e-6, 1e-3, 1.0])
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("strength", [1e-9, 1e-4, 1.0])
+@pytest.mark.parametrize("seed", range(2))
 def test_the_spline_is_the_smoothing_spline_of_scipy(strength: float, seed: int) -> None:
     """scipy minimises the sum of squares plus lam times the integral: lam = n strength."""
     x, y = drawn(40, seed)
@@ -78,18 +78,6 @@ def test_freedom_is_that_of_scipys_splines(strength: float) -> None:
     assert PenalisedSpline.of(x, y).freedom(strength) == pytest.approx(np.trace(hat(x, strength)), rel=1e-6)
 
 
-def test_the_score_is_that_of_leaving_points_out() -> None:
-    """Points have nearly the same leverage here: generalised and ordinary cross-validation agree to 10 %."""
-    x, y = drawn(40, 3)
-    strength, errors = 1e-5, []
-    for i in range(len(x)):
-        left = np.arange(len(x)) != i
-        weight = strength * len(x) / np.count_nonzero(left)
-        curve = PenalisedSpline.of(x[left], y[left]).curve(weight)
-        errors.append(float(curve(np.clip(x[i], *x[left][[0, -1]]))) - y[i])
-    assert PenalisedSpline.of(x, y).score(strength, inflation=1.0) == pytest.approx(np.mean(np.square(errors[1:-1])), rel=0.1)
-
-
 @pytest.mark.parametrize("seed", range(3))
 def test_means_in_place_of_many_points_lose_little(seed: int) -> None:
     """The spline through all 1000 points lies within 3e-4 of it, a tenth of the standard error in the middle."""
@@ -116,17 +104,8 @@ def test_places_that_all_but_coincide_are_one() -> None:
     np.testing.assert_allclose(spline.curve(1e-14)(x), np.cos(x), rtol=0, atol=1e-9)
 
 
-def test_degrees_of_freedom_end_at_a_line_and_at_interpolation() -> None:
-    x, y = drawn(30, 0)
-    spline = PenalisedSpline.of(x, y)
-    assert spline.freedom(1e6) == pytest.approx(2.0, abs=1e-4)
-    assert spline.freedom(1e-16) == pytest.approx(30.0, abs=1e-2)
-    line = np.polyval(np.polyfit(x, y, 1), x)
-    np.testing.assert_allclose(spline.curve(1e5)(x), line, rtol=0, atol=1e-5)
-
-
 @pytest.mark.parametrize("strength", [1e-10, 1e-7])
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(2))
 def test_a_monotone_curve_lies_no_farther_from_a_falling_truth(strength: float, seed: int) -> None:
     """It is the closest one that only falls, so that this holds exactly, but for 0.01 residual in each law."""
     points = measured(RATE_LAW, None, RATES, 0.01, seed)
@@ -135,6 +114,7 @@ def test_a_monotone_curve_lies_no_farther_from_a_falling_truth(strength: float, 
     truth = RATE_LAW.coefficient(0.0, even)
     before, after = (np.sqrt(np.mean((one.law.coefficient(0.0, even) - truth) ** 2)) for one in (plain, falling))
     assert plain.reversals[1] > 0
+    assert falling.reversals[1] == 0
     assert (np.diff(falling.law.friction) <= 0.0).all()
     assert after < before + 0.02 * plain.residual
 
@@ -196,10 +176,7 @@ def test_points_along_negative_slip_make_a_law_of_net_slip() -> None:
     assert (law.slip or ())[0] == -1.0
 
 
-def test_a_monotone_law_never_turns_and_friction_is_never_negative() -> None:
-    falling = smooth(NOISY, monotone=True)
-    assert falling.reversals[1] == 0
-    assert (np.diff(falling.law.friction) <= 0.0).all()
+def test_smoothed_friction_is_never_negative() -> None:
     low = Points(np.abs(0.02 * np.random.default_rng(0).standard_normal(60)), None, np.linspace(0.0, 1.0, 60))
     assert min(smooth(low).law.friction) >= 0.0
 

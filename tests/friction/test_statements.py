@@ -199,38 +199,6 @@ def test_an_honest_class_is_never_refused(static: float, dynamic: float, rate: f
     ss.Problem(ss.ElasticSlab(2800, 3500, 1e4, 1e8), law, initial_excess=0.0)
 
 
-positive = st.floats(-6.0, 4.0).map(lambda power: 10.0**power)
-level = st.floats(0.0, 2.0)
-viscosity = st.one_of(st.just(0.0), positive)
-KNOWN = st.one_of(
-    st.builds(F.HyperbolicRate, static=level, dynamic=level, alpha=positive),
-    st.builds(
-        F.ExponentialStribeck, static=level, dynamic=level, rate=positive, exponent=st.sampled_from([1, 2, 5]), viscosity=viscosity
-    ),
-    st.builds(
-        F.PowerStribeck, static=level, dynamic=level, rate=positive, exponent=st.sampled_from([1, 2, 5]), viscosity=viscosity
-    ),
-    st.builds(
-        lambda mean, share, wavenumber: F.SinusoidalSlip(mean, share * mean, wavenumber), level, st.floats(0.0, 1.0), positive
-    ),
-    st.builds(F.LinearSlipWeakening, static=level, dynamic=level, distance=positive),
-    st.builds(F.ExponentialSlipWeakening, static=level, dynamic=level, distance=positive),
-    st.builds(
-        lambda places, values, along: F.FromTable(friction=values, **{along: np.cumsum(places).tolist()}),
-        st.lists(positive, min_size=4, max_size=4),
-        st.lists(level, min_size=4, max_size=4),
-        st.sampled_from(["slip", "rate"]),
-    ),
-)
-
-
-@pytest.mark.filterwarnings("ignore::stickslip.foundation.errors.InputWarning")
-@given(law=KNOWN)
-@settings(max_examples=examples(300), deadline=None)
-def test_the_statements_of_the_laws_of_the_package_hold(law: FrictionLaw) -> None:
-    check_statements(law)
-
-
 @pytest.mark.parametrize("name", LAWS)
 @pytest.mark.parametrize("body", ["slab", "block"])
 def test_the_example_of_every_law_is_honest(name: str, body: str) -> None:

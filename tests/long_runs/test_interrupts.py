@@ -19,7 +19,7 @@ from stickslip.run.run_loop import Interrupts
 from stickslip.run.session import Session
 from tests.long_runs.problems import bundled
 
-PHASES = 20
+PHASES = 12
 """Number of moments of a run at which a signal comes."""
 
 

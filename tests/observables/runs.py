@@ -17,7 +17,7 @@ MAXIMAL = (rate_law_slab(selection="maximal"), 380 * ss.YEAR)
 RUNS = {
     "slab, rate law, 468 years": (rate_law_slab(), 480 * ss.YEAR),
     "slab, rate law, maximal": MAXIMAL,
-    "slab, just above critical": (rate_law_slab(alpha=CRITICAL + 1e-6), 94_300.0),
+    "slab, just above critical": (rate_law_slab(alpha=CRITICAL + 1e-6), 93_910.0),
     "slab, slip law": (slip_law_slab(50.0, 1e-3, extra_load=3430.0), 20.0),
     "slab, contact mass": (
         ss.Problem(HEAVY, F.Coulomb(0.8, 0.3), pull_rate=1e-3, initial_excess=0.0),

@@ -83,6 +83,7 @@ def test_the_balance_closes_with_the_grid() -> None:
     assert "the energy balance misses up to 0.2% of that" in str(coarse)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("compiled_anew")
 def test_a_wrong_memory_of_the_half_space_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     """Waves along the contact that are half as strong again: four times the error of the right ones."""
@@ -95,6 +96,7 @@ def test_a_wrong_memory_of_the_half_space_is_seen(monkeypatch: pytest.MonkeyPatc
     assert missed(ss.simulate(patch(nodes=64, length=2e4), 8.0)) > 1e-2
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("compiled_anew")
 def test_a_wrong_echo_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     """Under a dead load: a driver that reflects 0.9 of the waves, and one that reflects all wavenumbers as it does the mean."""
@@ -111,6 +113,7 @@ def test_a_wrong_echo_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
         assert missed(ss.simulate(contact, 9.0)) > 1e-2
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("compiled_anew")
 def test_a_wrong_law_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     """Slip rates under friction that is 1 % higher than that of the law miss the contact equation, which every step checks."""

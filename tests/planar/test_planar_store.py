@@ -132,28 +132,6 @@ def test_a_run_that_died_while_it_wrote_continues_bit_for_bit(tmp_path: Path, wh
     check_same(ss.resume(path), whole)
 
 
-RUN = """
-import os, signal
-import stickslip as ss
-from tests.planar.patches import patch, state_patch
-
-def report(about):
-    if about.time > 9.0:
-        os.kill(os.getpid(), signal.SIGKILL)
-
-ss.simulate(patch(nodes=32, length=2e4), 12.0, frames=10, checkpoint="run.zarr", checkpoint_every=0.0, progress=report)
-"""
-
-
-@pytest.mark.slow
-def test_a_run_that_was_killed_continues_bit_for_bit(tmp_path: Path, whole: Any) -> None:
-    path = os.pathsep.join([str(Path(ss.__file__).parents[1]), str(Path(__file__).parents[2])])
-    done = subprocess.run([sys.executable, "-c", RUN], cwd=tmp_path, env=os.environ | {"PYTHONPATH": path}, check=False)
-    assert done.returncode == -signal.SIGKILL
-    assert ss.open_solution(tmp_path / "run.zarr").status.name == "under way"
-    check_same(ss.resume(tmp_path / "run.zarr"), whole)
-
-
 def test_a_longer_run_is_the_run_that_was_long_from_the_start(tmp_path: Path, whole: Any) -> None:
     """Three round trips are prepared as four; the shorter run ends between two frames."""
     path = tmp_path / "run.zarr"

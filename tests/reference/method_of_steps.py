@@ -15,6 +15,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 from stickslip.foundation.errors import InputError
 from stickslip.friction import HyperbolicRate
@@ -69,28 +71,12 @@ class StepsSolution:
 def method_of_steps(problem: Problem, duration: float, rtol: float = 1e-10) -> StepsSolution:
     """Integrate a problem with the selection rule "perfect-delay" from one breaking point to the next, over a duration (s).
 
-    The integrator shares no code with the engine or with the analysis of the contact: scipy's DOP853 solves the motion between
-    breaking points (shocks, kinks of the law, echoes), and its dense output is the history from which echoes come. The time that it
-    takes grows with the square of the number of round trips: it suits seconds or minutes of sliding, not years.
-
-    Raises InputError if scipy is not installed, if the selection rule is not perfect delay, if the law changes its formula at slip
-    rates, or if the contact has no mass and the law depends on the slip rate but is neither eq. (15) nor Coulomb's; RuntimeError if
-    events accumulate at a point in time.
-
-    Source: Campillo et al. 1996, eqs (4)-(6) for the block, (12)-(13) for the slab.
+    Raises InputError for another rule, for a law with kinks in slip rate, and for a law of slip rate on a contact without mass that
+    is neither eq. (15) nor Coulomb's; RuntimeError if events accumulate at a point in time.
     """
     if problem.selection != "perfect-delay":
         raise InputError(f"method_of_steps: knows perfect-delay only, got '{problem.selection}'")
     return _Stepper(problem, rtol).run(float(duration))
-
-
-def _scipy() -> tuple[Any, Any]:
-    try:
-        from scipy.integrate import solve_ivp
-        from scipy.optimize import brentq
-    except ImportError as error:
-        raise InputError("method_of_steps: needs scipy; install it with: pip install scipy") from error
-    return solve_ivp, brentq
 
 
 @dataclass
@@ -106,7 +92,6 @@ class _Stepper:
     pieces: list[Piece] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        self.solve_ivp, self.brentq = _scipy()
         body, law = self.problem.body, self.problem.friction
         self.mass = body.inertia
         self.normal, self.strength = self.problem.normal, self.problem.strength
@@ -242,7 +227,7 @@ class _Stepper:
             if above[0] and above[1]:
                 end, after = t, sense
             elif onset.size:
-                end, after = float(self.brentq(over, grid[onset[0]], grid[onset[0] + 1], xtol=1e-14, rtol=1e-15)), sense
+                end, after = float(brentq(over, grid[onset[0]], grid[onset[0] + 1], xtol=1e-14, rtol=1e-15)), sense
         self._keep(Piece(t, end, lambda x: slip, lambda x: 0.0, lambda x: load(x, slip)))
         return end, np.array([slip, walked, 0.0]), after
 
@@ -261,7 +246,7 @@ class _Stepper:
         # without a limit, the first steps from rest under an oscillating load would be too long for the error estimate to notice
         longest = (stop - t) / 50.0 if self.problem.varies else math.inf
         accuracy = {"rtol": self.rtol, "atol": 1e-22, "max_step": longest}
-        run = self.solve_ivp(motion[0], (t, stop), state, method="DOP853", events=events, dense_output=True, **accuracy)
+        run = solve_ivp(motion[0], (t, stop), state, method="DOP853", events=events, dense_output=True, **accuracy)
         end, dense, part = float(run.t[-1]), run.sol, self.part
 
         def rate(x: float) -> float:

@@ -1,7 +1,6 @@
 """The slow method against closed forms; the engine, which is compared with it everywhere, has the verified numbers."""
 
 import math
-import sys
 
 import numpy as np
 import pytest
@@ -71,15 +70,3 @@ def test_the_load_of_a_stuck_slab_has_its_closed_form(driver):
     t = np.linspace(0.0, 29.9, 40)
     np.testing.assert_allclose(found.load(t), exact.load(t), rtol=1e-12, atol=0)
     assert np.all(found.slip_rate(t) == 0.0)
-
-
-def test_other_selection_rules_are_refused():
-    law = ss.friction.HyperbolicRate(0.8, 0.3, 1.0)
-    with pytest.raises(ss.InputError, match="perfect-delay"):
-        method_of_steps(ss.Problem(SLAB, law, initial_load=0.0, selection="maxwell"), 1.0)
-
-
-def test_without_scipy_it_says_what_to_install(monkeypatch):
-    monkeypatch.setitem(sys.modules, "scipy.integrate", None)
-    with pytest.raises(ss.InputError, match="pip install scipy"):
-        method_of_steps(ss.Problem(SLAB, ss.friction.Coulomb(0.8, 0.3), initial_load=0.0), 1.0)

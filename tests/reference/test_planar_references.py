@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip.foundation.errors import InputError
 from stickslip.reference.planar import (
     CRITICAL_PATCH,
     SteadyFront,
@@ -35,39 +34,18 @@ METHODS = (volume, convolution)
 Method = Callable[[PlanarCase, float, int], PlanarSeries]
 
 
-@pytest.mark.slow
-def test_uniform_slip_is_that_of_the_engine_in_1d() -> None:
-    """The paper's slab, reconstructed: slip 0.376105283 m, arrest at R. Both methods are of order 2, and equal to rounding."""
-    problem = replace(ss.load_scenario("fig5-slab-reconstructed").problem, pull_rate=0.0)
-    body, R = problem.body, problem.body.two_way_time
-    run = ss.simulate(problem, 1.1 * R)
-    friction = LawAtNodes(problem.friction, np.full(2, body.normal_stress), problem.initial_slip)
-    load = np.full(2, float(run.load(0.0)))
-    case = PlanarCase(body.density, body.wave_speed, body.thickness, (1e4,), load, friction)
-    errors = []
-    for steps in (1200, 900):
-        found = volume(case, 1.1 * R, steps)
-        exact = run.slip(found.times[[steps // 2, steps]]) - problem.initial_slip
-        errors.append(np.abs(found.slip[[steps // 2, steps], 0] - exact).max())
-        assert not found.slip_rate[steps + 1 :].any()
-        assert found.slip[-1] == pytest.approx(np.full(2, 0.376105283), abs=5e-6 * (1200 / steps) ** 2)
-    assert errors[0] < 4.5e-6
-    assert errors[1] / errors[0] == pytest.approx((4 / 3) ** 2, rel=0.2)
-    assert convolution(case, 1.1 * R, 900).slip == pytest.approx(found.slip, abs=1e-10)
-
-
 @pytest.mark.parametrize(("method", "drivers"), [(volume, ((math.inf, 0.05), (0.0, 0.0))), (convolution, ((3e6, 0.0),))])
 def test_uniform_slip_under_a_pull_and_under_other_drivers_is_that_of_the_engine(
     method: Method, drivers: tuple[tuple[float, float], ...]
 ) -> None:
-    """Rate strengthening over three round trips, against `simulate`: within 3e-4 of the largest slip."""
+    """Rate strengthening over one and a half round trips, against `simulate`: within 3e-4 of the largest slip."""
     law = ss.friction.FromExpression("0.5 + 0.2*v/(0.1 + v)")
     for impedance, pull in drivers:
         body = ss.ElasticSlab(2800.0, 3500.0, 1e4, normal_stress=1e8, driver_impedance=impedance)
-        run = ss.simulate(ss.Problem(body, law, initial_load=5.6e7, pull_rate=pull), 17.1)
+        run = ss.simulate(ss.Problem(body, law, initial_load=5.6e7, pull_rate=pull), 9.1)
         friction = LawAtNodes(law, np.full(2, 1e8))
         case = PlanarCase(2800.0, 3500.0, 1e4, (1e4,), np.full(2, 5.6e7), friction, pull_rate=pull, driver_impedance=impedance)
-        found = method(case, 17.0, 100)
+        found = method(case, 9.0, 100)
         exact = run.slip(found.times)
         assert found.slip[:, 1] == pytest.approx(exact, abs=3e-4 * exact.max())
         smooth = np.abs(found.times % (0.5 * body.two_way_time)) > 0.05
@@ -82,53 +60,6 @@ def test_methods_agree_and_the_difference_falls(driver_impedance: float) -> None
     coarse, fine = (slip_difference(volume(case, 6.0, n), convolution(case, 6.0, n)) for n in (64, 128))
     assert fine < 1.5e-3
     assert coarse / fine > 2.4
-
-
-@pytest.mark.slow
-def test_methods_agree_by_order_two_under_a_law_of_slip_and_slip_rate() -> None:
-    """Without onset and arrest: 8e-5 of the largest slip at 64 steps in R, and a quarter of the difference at 32."""
-    law = ss.friction.FromExpression("0.5 + 0.2*v/(0.1 + v)*(1 + 0.3*exp(-u/0.2))")
-    load = 1.0 + 0.3 * np.cos(2.0 * np.pi * np.arange(16) / 16)
-    case = PlanarCase(1.0, 1.0, 1.0, (4.0,), load, LawAtNodes(law, np.ones(16)), driver_impedance=0.5)
-    coarse, fine = (slip_difference(volume(case, 5.0, n), convolution(case, 5.0, n)) for n in (32, 64))
-    assert fine < 8e-5
-    assert coarse / fine == pytest.approx(4.0, rel=0.1)
-
-
-def test_methods_agree_under_a_rate_law_below_the_radiation_limit() -> None:
-    """Friction falls with the slip rate at 0.6 of the critical slope; the contact arrests: 7e-3 of the largest slip."""
-    y = np.arange(32) / 8.0 - 2.0
-    law = ss.friction.HyperbolicRate(0.8, 0.5, 2.0)
-    case = PlanarCase(1.0, 1.0, 1.0, (4.0,), 0.8 + 0.3 * np.exp(-((y / 0.5) ** 2)), LawAtNodes(law, np.ones(32)))
-    found = volume(case, 4.0, 128)
-    assert slip_difference(found, convolution(case, 4.0, 128)) < 7e-3
-    assert not found.slip_rate[-1].any()
-
-
-def test_methods_agree_around_barriers() -> None:
-    """At fixed nodes the difference is of order 2 in the step of time, though slip has the shape of a root at barriers."""
-    y = np.arange(32) / 8.0 - 2.0
-    friction = SlipWeakeningAtNodes((32,), 1.1, 0.5, 0.5)
-    case = PlanarCase(1.0, 1.0, 1.0, (4.0,), np.full(32, 1.2), friction, driver_impedance=0.5, locked=np.abs(y) > 1.0)
-    runs = [(volume(case, 4.0, n), convolution(case, 4.0, n)) for n in (64, 128)]
-    coarse, fine = (slip_difference(*pair) for pair in runs)
-    assert fine < 3e-3
-    assert coarse / fine > 3.0
-    for found in runs[1]:
-        assert not found.slip[:, np.abs(y) > 1.0].any()
-        assert found.slip[-1].max() > 0.5
-
-
-def test_methods_agree_when_slip_reverses() -> None:
-    """After a nearly complete drop the echo drives the contact back: 4e-3 of the largest slip."""
-    y = np.arange(32) / 8.0 - 2.0
-    load = 1.0 + 0.3 * np.exp(-((y / 0.5) ** 2))
-    case = PlanarCase(1.0, 1.0, 1.0, (4.0,), load, SlipWeakeningAtNodes((32,), 1.1, 0.02, 0.3))
-    one, other = volume(case, 6.0, 128), convolution(case, 6.0, 128)
-    assert one.slip_rate.min() < -1.0
-    assert slip_difference(one, other) < 4e-3
-    friction = np.abs(one.traction[one.slip_rate < 0.0])
-    assert one.traction[one.slip_rate < 0.0] == pytest.approx(-friction)
 
 
 def test_methods_agree_in_3d_and_a_plane_without_change_along_z_is_a_line() -> None:
@@ -270,20 +201,3 @@ def test_speed_of_a_front_solves_its_equation_of_motion() -> None:
     assert front.speed(1e9, energy, 2.0) == pytest.approx(7.0)
     assert front.speed(1e9, 1.5 * front.released_energy, 2.0) == 0.0
     assert linear_fracture_energy(0.4, 0.1) == pytest.approx(0.02)
-
-
-def test_what_the_methods_cannot_do_is_refused() -> None:
-    case = weakening_patch(32)
-    with pytest.raises(InputError, match="must be even"):
-        volume(case, 1.0, 7)
-    with pytest.raises(InputError, match="must be at least 26"):
-        convolution(case, 1.0, 25)
-    steep = LawAtNodes(ss.friction.HyperbolicRate(0.8, 0.3, 3.0), np.full(32, 1.0))
-    with pytest.raises(InputError, match="several slip rates may solve"):
-        volume(replace(case, friction=steep), 1.0, 64)
-    with pytest.raises(InputError, match="a number for each axis"):
-        replace(case, length=(1.0, 1.0))
-    with pytest.raises(InputError, match="rigid driver"):
-        replace(case, driver_impedance=1.0, pull_rate=1.0)
-    with pytest.raises(InputError, match="a static excess"):
-        LawAtNodes(ss.friction.Coulomb(0.6, 0.5), np.ones(2))

@@ -19,7 +19,7 @@ from stickslip.schemes.contract import Scheme
 from stickslip.schemes.run import run_scheme
 from stickslip.studies.regularisations import LAB, Regularisation, with_contact_mass, with_lag
 from stickslip.studies.schemes import SETTLES, Schemes, schemes
-from stickslip.studies.verdict import UNTOLD, local_orders
+from stickslip.studies.verdict import local_orders
 
 LOOP = ss.load_scenario("fig4-loop")
 SECOND = ss.load_scenario("second-event-perfect-delay")
@@ -110,22 +110,6 @@ def test_delay_at_a_fold_is_the_zero_of_the_airy_function(kind: str) -> None:
         assert len(run.history) < 400  # stiff runs stay short
     assert abs(left[-1]) * 1e-3 < 0.0035
     assert left[0] - left[1] == pytest.approx(left[1] - left[2], rel=0.01, abs=0.0)
-
-
-@pytest.mark.slow
-def test_on_the_first_event_all_rules_agree() -> None:
-    found = schemes(SECOND.problem, 12.0, "lag", MESHES)
-    assert found.paths.groups() == (("perfect-delay", "maxwell", "minimal", "maximal"),)
-    assert found.verdicts == {"lag": UNTOLD}
-    assert found.table.slip_order.iloc[-1] == pytest.approx(0.95, abs=0.05)
-
-
-@pytest.mark.slow
-def test_a_regular_contact_is_a_check_of_convergence() -> None:
-    regular = replace(SECOND.problem, friction=replace(LAW, alpha=0.1), pull_rate=0.1)
-    found = schemes(regular, 20.0, "contact-mass", MESHES[1:])
-    assert len(found.paths.groups()) == 1
-    assert found.table.slip_order.iloc[-1] == pytest.approx(1.0, abs=0.03)
 
 
 @pytest.mark.slow

@@ -7,7 +7,7 @@ from bisect import bisect_right
 from itertools import islice
 
 import pytest
-from mpmath import inf, mp, mpf, quad
+from mpmath import mp, mpf, quad
 
 from tests.truth.slab_events import ALPHA_ONE, JUST_ABOVE_CRITICAL, Contact, Event, Piece, Ring, Slab, Slips, Table
 
@@ -103,19 +103,3 @@ def march(phases: list[float], rows: int) -> list[list[bool]]:
             rate = (half + math.sqrt(half**2 + z * alpha * e)) / (z * alpha) if slips else 0.0
             loads[i] = e - 2 * z * rate + ramp
     return found
-
-
-def test_growth_is_the_slope_of_the_load() -> None:
-    """Where a disturbance has grown by a factor, the slope of the load along the phase has, too: by finite differences, to 1e-6."""
-    with mp.workdps(50):
-        contact = FAST.contact()
-        ring = Ring(contact)
-        list(islice(ring.events(), 20))
-        piece = max(pieces(ring), key=lambda piece: piece.end - piece.start)
-        theta, step = (piece.start + piece.end) / 2, mpf("1e-12")
-        here = load(contact, piece, piece.row, theta)
-        found, growth = ring.back(piece.slips, piece.row, here)
-        assert abs(found - theta) < mpf("1e-40")
-        slope = (load(contact, piece, piece.row, theta + step) - here) / step * contact.round_trip / contact.ramp
-        assert growth < inf
-        assert abs(abs(slope) / growth - 1) < mpf("1e-6")
