@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,16 +20,21 @@ from tests.figures.legible import BLOCK_PROBLEM, SLAB_PROBLEM, has_unit, labels
 from tests.observables.runs import RUNS, worst_imbalance
 from tests.problems import RATE_LAW, Floats, measured
 
-LINEAR = measured(RATE_LAW, None, np.linspace(0.0, 10.0, 300), 0.01)
-SMALL = measured(ss.friction.ExponentialSlipWeakening(0.6, 0.4, 4e-4), np.linspace(0.0, 2e-3, 90), None, 0.01)
-DECADES = measured(ss.friction.VelocityStrengthening(0.6, 0.01, 1e-5), None, np.append(0.0, np.geomspace(1e-6, 1e-2, 60)), 0.005)
-RESULTS = {
-    "rate": ss.friction.fit(LINEAR, "hyperbolic-rate"),
-    "slip": ss.friction.fit(SMALL, "exponential-slip-weakening"),
-    "smooth": ss.friction.smooth(DECADES),
-    "monotone": ss.friction.smooth(LINEAR, monotone=True),
-}
-FITS = ("rate", "slip")
+RESULTS = ("rate", "slip", "smooth", "monotone")
+FITS = RESULTS[:2]
+
+
+@cache
+def result_of(name: str) -> Any:
+    """Return a fit, or a smoothed law."""
+    if name == "slip":
+        small = measured(ss.friction.ExponentialSlipWeakening(0.6, 0.4, 4e-4), np.linspace(0.0, 2e-3, 90), None, 0.01)
+        return ss.friction.fit(small, "exponential-slip-weakening")
+    if name == "smooth":
+        rates = np.append(0.0, np.geomspace(1e-6, 1e-2, 60))
+        return ss.friction.smooth(measured(ss.friction.VelocityStrengthening(0.6, 0.01, 1e-5), None, rates, 0.005))
+    linear = measured(RATE_LAW, None, np.linspace(0.0, 10.0, 300), 0.01)
+    return ss.friction.fit(linear, "hyperbolic-rate") if name == "rate" else ss.friction.smooth(linear, monotone=True)
 
 
 def line(figure: Figure, panel: int, text: str) -> Floats:
@@ -39,7 +45,7 @@ def line(figure: Figure, panel: int, text: str) -> Floats:
 
 @pytest.mark.parametrize("name", RESULTS)
 def test_points_and_law_are_those_of_the_result_in_the_unit_of_the_axis(name: str) -> None:
-    result, figure = RESULTS[name], plot_fit(RESULTS[name])
+    result, figure = result_of(name), plot_fit(result_of(name))
     size = {"m/s": 1.0, "mm/s": 1e-3, "mm": 1e-3}[figure.axes[1].get_xlabel().rpartition("(")[2][:-1]]
     place, friction = line(figure, 0, "measured")
     np.testing.assert_allclose(place * size, result.points.places, rtol=1e-12)
@@ -53,7 +59,7 @@ def test_points_and_law_are_those_of_the_result_in_the_unit_of_the_axis(name: st
 
 @pytest.mark.parametrize("name", RESULTS)
 def test_the_lower_panel_shows_the_differences_and_the_residual(name: str) -> None:
-    result, figure = RESULTS[name], plot_fit(RESULTS[name])
+    result, figure = result_of(name), plot_fit(result_of(name))
     points, *_ = figure.axes[1].lines
     expected = result.points.friction - result.law.coefficient(*result.points.variables)
     np.testing.assert_allclose(points.get_ydata(), expected, rtol=0, atol=1e-12)
@@ -63,7 +69,7 @@ def test_the_lower_panel_shows_the_differences_and_the_residual(name: str) -> No
 
 @pytest.mark.parametrize("name", FITS)
 def test_bands_are_one_and_two_standard_errors(name: str) -> None:
-    result, dataset = RESULTS[name], figure_of.data(RESULTS[name])
+    result, dataset = result_of(name), figure_of.data(result_of(name))
     along = dataset["along"].values
     mu, error = result.band(*((along, 0.0) if name == "slip" else (0.0, along)))
     figure = figure_of.draw(dataset)
@@ -77,7 +83,7 @@ def test_bands_are_one_and_two_standard_errors(name: str) -> None:
 
 @pytest.mark.parametrize("name", RESULTS)
 def test_the_legend_explains_every_element(name: str) -> None:
-    legend = plot_fit(RESULTS[name]).axes[0].get_legend()
+    legend = plot_fit(result_of(name)).axes[0].get_legend()
     assert legend is not None
     texts = [text.get_text() for text in legend.get_texts()]
     for part in (
@@ -90,10 +96,10 @@ def test_the_legend_explains_every_element(name: str) -> None:
 
 
 def test_decades_are_drawn_by_factors_with_zero_in_view() -> None:
-    axes = plot_fit(RESULTS["smooth"]).axes[1]
+    axes = plot_fit(result_of("smooth")).axes[1]
     assert axes.get_xscale() == "symlog"
     assert -1e-3 < axes.get_xlim()[0] < 0.0
-    assert plot_fit(RESULTS["rate"]).axes[1].get_xscale() == "linear"
+    assert plot_fit(result_of("rate")).axes[1].get_xscale() == "linear"
 
 
 def test_a_law_of_both_is_drawn_against_measured_friction() -> None:
@@ -109,7 +115,7 @@ def test_a_law_of_both_is_drawn_against_measured_friction() -> None:
 
 def test_a_figure_is_saved_whole(tmp_path: Path) -> None:
     for suffix in ("png", "svg", "pdf"):
-        plot_fit(RESULTS["rate"], tmp_path / f"fit.{suffix}")
+        plot_fit(result_of("rate"), tmp_path / f"fit.{suffix}")
         assert (tmp_path / f"fit.{suffix}").stat().st_size > 5000
 
 

@@ -46,7 +46,7 @@ def test_a_list_is_in_si_and_keeps_its_order() -> None:
     assert values("run.selection=maxwell, perfect-delay").tolist() == ["maxwell", "perfect-delay"]
 
 
-UREG = pint.UnitRegistry()
+UREG = pint.get_application_registry()
 GIVEN: dict[str, tuple[str, Any, list[Any]]] = {
     "array": ("friction.alpha", np.array([1.0, 2.0]), [1.0, 2.0]),
     "whole numbers": ("friction.alpha", np.arange(1, 4), [1.0, 2.0, 3.0]),
