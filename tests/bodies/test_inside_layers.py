@@ -106,5 +106,3 @@ def test_what_layers_do_not_have_inside_is_refused_in_one_line() -> None:
     run = ss.simulate(ss.Problem(ss.LayeredSlab(**SOFT, normal_stress=NORMAL), RATE_LAW, 1e-12, initial_excess=0.0), 20 * T)
     with refused("field: x must lie between 0 (the contact) and 9000 m (the driver)"):
         run.field(-1.0, 0.0)
-    with refused("figure: needs a uniform slab or a string: of a LayeredSlab only"):
-        run.plot.field()

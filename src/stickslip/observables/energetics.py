@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stickslip.bodies import as_waves
+from stickslip.bodies import OfLayers, as_waves
 from stickslip.foundation.arrays import Floats
-from stickslip.observables.energy.balance import epochs, event_energies, kinetic
+from stickslip.observables.energy.balance import energies_of_layers, epochs, event_energies, kinetic
 from stickslip.observables.energy.ground import speed
 from stickslip.observables.energy.pulses import Pulses
 from stickslip.observables.event_table import ENERGY_COLUMNS, EVENT_COLUMNS, friction_before
@@ -78,7 +78,9 @@ def energetics_table(history: History, threshold: float) -> pd.DataFrame:
 
 def _energies(history: History, begin: Positions, end: Positions) -> dict[str, Floats]:
     parts = event_energies(history, begin, end)
-    extra = (_of_slab if history.problem.body.has_waves else _of_block)(history, begin, end)
+    body = history.problem.body
+    of = _of_layers if isinstance(body, OfLayers) else _of_slab if body.has_waves else _of_block
+    extra = of(history, begin, end)
     made = extra["radiated"] + parts["damped"] + parts["trapped"] - extra.pop("trapped_before")
     return parts | extra | {"elastic": parts["released"] + extra["kinetic"], "waves": made}
 
@@ -94,6 +96,16 @@ def _of_slab(history: History, begin: Positions, end: Positions) -> dict[str, Fl
         "radiated": np.array([radiation.work_between(*span) for span in zip(first, last, strict=True)]),
         "trapped_before": np.array([waves.trapped(epoch) for epoch in first]),
     }
+
+
+def _of_layers(history: History, begin: Positions, end: Positions) -> dict[str, Floats]:
+    body = history.problem.body
+    assert isinstance(body, OfLayers)
+    if not len(begin.piece):
+        return {name: np.zeros(0) for name in ("kinetic", "radiated", "trapped_before")}
+    before, after = (energies_of_layers(history, body, at) for at in (begin, end))
+    grown = {name: after[name] - before[name] for name in ("kinetic", "radiated")}
+    return grown | {"trapped_before": before["trapped"]}
 
 
 def _of_block(history: History, begin: Positions, end: Positions) -> dict[str, Floats]:

@@ -89,13 +89,36 @@ def check_side(side: str) -> None:
         raise InputError(f"side must be 'left' or 'right', got {side!r}")
 
 
+NO_INSIDE = "field: a block is rigid and has no interior field: only a slab or a string has one"
+
+
 def slab_of(problem: Problem) -> BodyWithWaves:
     """Return the slab or the string of a problem. Raises InputError for a rigid body, and for one of layers."""
-    if isinstance(problem.body, OfLayers):
-        raise InputError(
-            f"figure: needs a uniform slab or a string: of a {type(problem.body).__name__} only `field` shows the inside"
-        )
-    return as_waves(problem.body, "field: a block is rigid and has no interior field: only a slab or a string has one")
+    return as_waves(problem.body, NO_INSIDE)
+
+
+class Extent(NamedTuple):
+    """The places (m) inside a body with waves, from that of one driver to that of the other; the contact is at 0."""
+
+    lowest: float
+    """0 if there is one side."""
+    highest: float
+    boundaries: tuple[float, ...]
+    """Where layers meet."""
+    two_way_time: float
+    """The longest two-way travel time to a driver (s)."""
+
+
+def extent_of(problem: Problem) -> Extent:
+    """Return the places inside the body of a problem. Raises InputError for a rigid body."""
+    body = problem.body
+    if not isinstance(body, OfLayers):
+        slab = slab_of(problem)
+        return Extent(0.0, slab.distance, (), slab.two_way_time)
+    depths = [np.cumsum(one.thickness).tolist() for one in body.stacks]
+    lowest = -depths[1][-1] if len(depths) > 1 else 0.0
+    below = tuple(-one for one in depths[1][:-1]) if len(depths) > 1 else ()
+    return Extent(lowest, depths[0][-1], (*below, *depths[0][:-1]), body.two_way_time)
 
 
 class _InsideOfSlab:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from stickslip.bodies import OfLayers
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError
 from stickslip.observables.field import slab_of
@@ -21,8 +22,10 @@ MOST_FRONTS = 60
 def fronts_of(readings: Readings, start: float, end: float) -> list[Floats]:
     """Return for each front between two times (s) the times when it is at the contact, at the driver, and so on in turn.
 
-    Raises InputError for a block.
+    It is empty for layers, where fronts split. Raises InputError for a block.
     """
+    if isinstance(readings.problem.body, OfLayers):
+        return []
     body = slab_of(readings.problem)
     return [bounces_of(time, end, body.two_way_time, body.front_reflection) for time in origins_of(readings, start, end)]
 
@@ -70,10 +73,11 @@ def choose_interval(readings: Readings, start: float | None, end: float | None) 
     """Return the run or a window on it, and the start and end (s) of the interval to be drawn.
 
     The interval is the one that is asked for. By default it is the whole run, or for a run of more than `LONG` round trips (of a
-    slab; periods of a block) the last event whose slip is at least 99 % of the largest, in local time. Raises InputError if the
-    interval is empty.
+    slab, through all its layers; periods of a block) the last event whose slip is at least 99 % of the largest, in local time.
+    Raises InputError if the interval is empty.
     """
-    round_trip = readings.history.round_trip_time
+    body = readings.problem.body
+    round_trip = body.two_way_time if isinstance(body, OfLayers) else readings.history.round_trip_time
     if isinstance(readings, Solution) and start is None and end is None and readings.duration > LONG * round_trip:
         slips = readings.events.slip.to_numpy(float)
         if len(slips):

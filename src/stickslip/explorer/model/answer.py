@@ -111,6 +111,8 @@ class SlabPicture:
     velocity: Floats
     stress: Floats
     fronts: tuple[Floats, ...]
+    boundaries: tuple[float, ...] = ()
+    """Places (m) where layers meet, and the contact if there is a body on both sides of it: places there are below 0."""
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from stickslip.bodies import OfLayers
 from stickslip.contact.uniqueness import Uniqueness
 from stickslip.explorer.model.answer import BodyCurves, ContactPicture, CurveName, EnergyPicture, LawPicture, SlabPicture
+from stickslip.explorer.model.layered import is_short
 from stickslip.explorer.model.sampled_waves import SampledWaves, ShownInterval
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.names import si_unit
@@ -226,9 +228,10 @@ def energy_picture(shown: ShownInterval, waves: SampledWaves | None) -> EnergyPi
     body = shown.readings.problem.body
     unit = si_unit("energy", body.load_unit)
     time = np.linspace(shown.start, shown.end, SLAB_TIMES if body.has_waves else BLOCK_TIMES)
-    if body.has_waves and waves is None:
+    of_layers = isinstance(body, OfLayers) and is_short(shown)
+    if body.has_waves and waves is None and not of_layers:
         return EnergyPicture(time + shown.begin, {}, unit)
-    found = _of_block(shown, time) if waves is None else _of_slab(waves, time)
+    found = _exactly(shown, time) if waves is None else _of_slab(waves, time)
     elastic = found["stored"] - found["kinetic"]
     parts = {"elastic": elastic - elastic.min(), "kinetic": found["kinetic"]}
     parts |= {name: found[name] - found[name][0] for name in ("heat", "radiated", "damped")}
@@ -237,7 +240,7 @@ def energy_picture(shown: ShownInterval, waves: SampledWaves | None) -> EnergyPi
     return EnergyPicture(time + shown.begin, drawn | {"total": total}, unit)
 
 
-def _of_block(shown: ShownInterval, time: Floats) -> dict[str, Floats]:
+def _exactly(shown: ShownInterval, time: Floats) -> dict[str, Floats]:
     history = shown.readings.history
     return energies(history, history.find(time, "right"), _nodes(history))
 

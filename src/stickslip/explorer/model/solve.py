@@ -8,10 +8,11 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from stickslip.bodies import ElasticSlab
+from stickslip.bodies import ElasticSlab, OfLayers
 from stickslip.contact.uniqueness import Uniqueness, uniqueness_of
 from stickslip.explorer.model.answer import Answer, Backdrop, BodyCurves, StateCurve
 from stickslip.explorer.model.findings import Findings, key_numbers, marks_of, sentence
+from stickslip.explorer.model.layered import picture_of_layers
 from stickslip.explorer.model.pictures import contact_picture, energy_picture, law_picture, slab_picture
 from stickslip.explorer.model.sampled_waves import SampledWaves, ShownInterval
 from stickslip.foundation.errors import InputError
@@ -130,8 +131,8 @@ def answer_of(
     own, influence, shown = motion(solution), solution.rule_influence, ShownInterval.of(solution)
     beside = _beside(companion)
     told("the run is finished; working out the inside of the body")
-    waves = _waves(shown)
-    slab = None if waves is None else slab_picture(waves)
+    waves, of_layers = _waves(shown), isinstance(shown.readings.problem.body, OfLayers)
+    slab = picture_of_layers(shown) if of_layers else None if waves is None else slab_picture(waves)
     told("the run is finished; working out the energy")
     energy = energy_picture(shown, waves)
     told("the run is finished; finding its words")
@@ -153,8 +154,9 @@ def answer_of(
 
 
 def _waves(shown: ShownInterval) -> SampledWaves | None:
-    """Return the waves in the slab; None for a block, and where they are not known because the run leaped over creep."""
-    if not shown.readings.problem.body.has_waves:
+    """Return the waves in a uniform slab; None for other bodies, and where they are not known because of a leap over creep."""
+    body = shown.readings.problem.body
+    if not (body.has_waves and body.is_uniform):
         return None
     try:
         return SampledWaves(shown)

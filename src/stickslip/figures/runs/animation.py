@@ -165,7 +165,7 @@ def _draw_profile(panel: Any, dataset: xr.Dataset, values: np.ndarray, colour: s
     low, high = float(values.min()), float(values.max())
     margin = 0.05 * (high - low) or 1.0
     panel.set_xlim(low - margin, high + margin)
-    scales.set_places(panel, dataset)
+    scales.set_places(panel)
     panel.axhline(0.0, color=INK, linewidth=3.0, clip_on=False, label="contact")
     panel.plot(values[0], places, color=GREY, linewidth=0.8, linestyle=":", label="first frame")
     (line,) = panel.plot(values[0], places, color=colour)

@@ -1,7 +1,7 @@
 """Figures of the inside of the slab: velocity and stress over time, and the field across the slab at given times.
 
 The datasets of the field and the scales of the axes serve the film, too. The slab is drawn as in the paper: the contact below, the
-driver above.
+driver above. Thin lines are where layers meet. A second side of the contact is below it, with its driver at the bottom.
 """
 
 from __future__ import annotations
@@ -17,10 +17,12 @@ from matplotlib.legend_handler import HandlerTuple
 from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike
 
+from stickslip.bodies import OfLayers, as_waves
 from stickslip.figures.panels import add_legend, letter_panels, set_title, zero_line
 from stickslip.figures.sheet import sheet
 from stickslip.figures.style import (
     GREEN,
+    GREY,
     INK,
     VERMILLION,
     clock,
@@ -38,7 +40,7 @@ from stickslip.figures.style import (
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.names import QUANTITIES, name_of, readable_unit, si_unit
 from stickslip.foundation.place import Place
-from stickslip.observables.field import slab_of
+from stickslip.observables.field import extent_of
 from stickslip.solution.interval import choose_interval, fronts_of
 
 if TYPE_CHECKING:
@@ -50,6 +52,8 @@ DISPLACEMENT_ROUNDING = 64.0
 """Bound on the rounding error of a difference of two displacements, in units in their last place."""
 TIMES, CELLS = 900, 300
 """Numbers of cells of the images, in time and across the slab."""
+COARSER = 2
+"""Layers have fewer cells by this factor, because their waves are replayed, which takes longer."""
 COUNT, PLACES = 6, 1500
 """Default number of times, and number of points across the slab, enough for fronts to look sharp."""
 
@@ -61,14 +65,15 @@ def space_time_data(readings: Readings, start: float | None = None, end: float |
     Raises InputError for a block, and for times outside the run.
     """
     readings, start, end = choose_interval(readings, start, end)
-    body = slab_of(readings.problem)
-    contents = means(readings, np.linspace(start, end, TIMES + 1), places(readings, CELLS + 1))
+    highest = extent_of(readings.problem).highest
+    coarser = 1 if readings.problem.body.is_uniform else COARSER
+    contents = means(readings, np.linspace(start, end, TIMES // coarser + 1), places(readings, CELLS // coarser + 1))
     contents |= contact_variables(readings, start, end, ("slip_rate", "traction"))
     lines = fronts_of(readings, start, end)
     points = max((len(line) for line in lines), default=0)
     across = np.array([np.pad(line, (0, points - len(line)), constant_values=np.nan) for line in lines]).reshape(len(lines), points)
     contents["front_time"] = quantity(("front", "corner"), across, "time of a characteristic", "t", "s")
-    corners = np.where(np.arange(points) % 2, body.distance, 0.0)
+    corners = np.where(np.arange(points) % 2, highest, 0.0)
     contents["front_x"] = quantity("corner", corners, "place of a characteristic", "x", "m")
     return xr.Dataset(contents, attrs=about(readings))
 
@@ -102,15 +107,15 @@ def draw_space_time(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
 
 def _draw_image(panel: Any, dataset: xr.Dataset, values: Floats, text: str, **colours: Any) -> None:
     scales, time = Scales(dataset), dataset.time.values
-    half, thickness = 0.5 * (time[1] - time[0]), dataset.attrs["thickness"]
-    edges = (time[0] - half) / scales.time, (time[-1] + half) / scales.time, 0.0, thickness / scales.place
+    half, (lowest, highest) = 0.5 * (time[1] - time[0]), scales.places
+    edges = (time[0] - half) / scales.time, (time[-1] + half) / scales.time, lowest, highest
     image = panel.imshow(values.T, origin="lower", aspect="auto", extent=edges, **colours)
     panel.figure.colorbar(image, ax=panel, label=text, pad=0.01, aspect=12)
     # White dashes on a dark line can be seen on light and on dark parts of the image.
     for times in dataset.front_time.values:
         for look in ({"color": INK}, {"color": "white", "linestyle": (0, (4, 4))}):
             panel.plot(times / scales.time, dataset.front_x.values / scales.place, linewidth=0.6, **look)
-    scales.set_places(panel, dataset)
+    scales.set_places(panel)
 
 
 def snapshots_data(readings: Readings, times: ArrayLike | None = None) -> xr.Dataset:
@@ -124,7 +129,7 @@ def snapshots_data(readings: Readings, times: ArrayLike | None = None) -> xr.Dat
         start = max(start, 0.0) if "event_slip" in readings.curves else start
         # 0.35, and not 0.5: fronts on their way back would else lie where others were on their way out.
         shares = (np.arange(COUNT) + 0.35) / COUNT
-        times = start + shares * min(slab_of(readings.problem).two_way_time, end - start)
+        times = start + shares * min(extent_of(readings.problem).two_way_time, end - start)
     moments = np.atleast_1d(np.asarray(times, float))
     return xr.Dataset(field_variables(readings, moments, places(readings, PLACES)), attrs=about(readings))
 
@@ -148,7 +153,7 @@ def draw_snapshots(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
         for time, line, colour in zip(dataset.time.values, values, colours, strict=True):
             panel.plot(line, dataset.x.values / scales.place, color=colour, linewidth=1.2, label=f"{time / scales.time:.3g}")
         panel.set_xlabel(text)
-        scales.set_places(panel, dataset, named=panel is axes[0])
+        scales.set_places(panel, named=panel is axes[0])
     letter_panels(axes)
     set_title(figure, dataset.attrs["title"])
     add_legend(axes[0], axes[0].get_legend_handles_labels()[0], scales.clock)
@@ -156,13 +161,16 @@ def draw_snapshots(dataset: xr.Dataset, **place: Unpack[Place]) -> Figure:
 
 
 def about(readings: Readings) -> dict[str, Any]:
-    """Return attributes of a dataset: a title, the origin of its times, and the thickness (m) of the slab."""
-    return {"title": title_of(readings), "clock": clock(readings), "thickness": slab_of(readings.problem).distance}
+    """Return attributes of a dataset: a title, the origin of its times, and where drivers are and layers meet (m)."""
+    extent = extent_of(readings.problem)
+    of_layers = {"lowest": extent.lowest, "boundaries": list(extent.boundaries)} if extent.boundaries or extent.lowest else {}
+    return {"title": title_of(readings), "clock": clock(readings), "thickness": extent.highest, **of_layers}
 
 
 def places(readings: Readings, count: int) -> Floats:
-    """Return `count` evenly spaced distances from the contact (m), up to the driver."""
-    return np.linspace(0.0, slab_of(readings.problem).distance, count)
+    """Return `count` evenly spaced distances from the contact (m), up to the driver; below 0 on the other side, if there is one."""
+    extent = extent_of(readings.problem)
+    return np.linspace(extent.lowest, extent.highest, count)
 
 
 def field_variables(readings: Readings, time: Floats, x: Floats) -> dict[str, xr.Variable]:
@@ -190,18 +198,22 @@ def means(readings: Readings, time: Floats, x: Floats) -> dict[str, xr.Variable]
     """Return velocity and stress in the cells between the given times (s) and distances (m), in SI.
 
     Velocity is the exact mean over the cell's time at its middle in x, stress the exact mean over its width at its middle in time.
-    Both come from differences of the displacement, so that no pulse is lost between two times.
+    Both come from differences of the displacement, so that no pulse is lost between two times. The stress in layers is that at the
+    middle, in place and in time.
     """
     when, where = 0.5 * (time[1:] + time[:-1]), 0.5 * (x[1:] + x[:-1])
-    body, middle = slab_of(readings.problem), readings.field(where, when[:, None])
+    body, middle = readings.problem.body, readings.field(where, when[:, None])
     # Displacements are computed as differences from the slab sheared under its strength, and inherit the rounding of that shear.
     sheared = readings.problem.strength / body.stiffness
     velocity = _slope(readings.field(where, time[:, None]).displacement, np.diff(time)[:, None], 0, middle.velocity, sheared)
-    strain = _slope(readings.field(x, when[:, None]).displacement, np.diff(x), 1, middle.stress / body.modulus, sheared)
+    stress, of_stress = middle.stress, ""
+    if not isinstance(body, OfLayers):
+        modulus, of_stress = as_waves(body).modulus, ", mean over a step of x"
+        stress = modulus * _slope(readings.field(x, when[:, None]).displacement, np.diff(x), 1, stress / modulus, sheared)
     unit = readings.problem.load_unit
     return axes_variables(when, where) | {
         "velocity": _inside("velocity", velocity, unit, ", mean over a step of time"),
-        "stress": _inside("stress", body.modulus * strain, unit, ", mean over a step of x"),
+        "stress": _inside("stress", stress, unit, of_stress),
     }
 
 
@@ -236,7 +248,10 @@ class Scales:
     def __init__(self, dataset: xr.Dataset) -> None:
         time, stress, self.load_unit = dataset.time.values, dataset.stress.values, dataset.stress.attrs["units"]
         self.time_unit, self.time = time_unit(float(np.ptp(time)))
-        self.place_unit, self.place = readable_unit("m", dataset.attrs["thickness"])
+        lowest, highest = dataset.attrs.get("lowest", 0.0), dataset.attrs["thickness"]
+        self.place_unit, self.place = readable_unit("m", max(highest, -lowest))
+        self.places = lowest / self.place, highest / self.place
+        self.boundaries = np.array(dataset.attrs.get("boundaries", [])) / self.place
         self.offset = float(stress[0, 0]) if nearly_flat(stress.ravel()) else 0.0
         self.stress_unit, self.stress = readable_unit(self.load_unit, stress - self.offset)
         self.clock = f"{dataset.attrs['clock']} ({self.time_unit})"
@@ -254,8 +269,12 @@ class Scales:
         """Return stresses (Pa) in the unit, and from the origin, in which they are drawn."""
         return np.asarray((np.asarray(values, float) - self.offset) / self.stress)
 
-    def set_places(self, axes: Axes, dataset: xr.Dataset, *, named: bool = True) -> None:
-        """Set limits, and a label if `named`, of the axis across the slab: the contact below, the driver above."""
-        axes.set_ylim(0.0, dataset.attrs["thickness"] / self.place)
+    def set_places(self, axes: Axes, *, named: bool = True) -> None:
+        """Set limits, and a label if `named`, of the axis across the slab, and draw where layers and sides meet."""
+        axes.set_ylim(*self.places)
+        for place in self.boundaries:
+            axes.axhline(place, color=GREY, linewidth=0.7)
+        if self.places[0] < 0.0:
+            axes.axhline(0.0, color=INK, linewidth=1.2)
         if named:
             axes.set_ylabel(f"distance from\nthe contact $x$ ({self.place_unit})")

@@ -41,6 +41,8 @@ LONG_NAMES = {
     "trapped": "energy of the waves inside the body, beyond a state of uniform stress",
 }
 """Long names of the energies in a dataset."""
+MOST_REPLAYED = 300_000
+"""Largest number of pieces times cells through which waves are replayed for a note; that takes a tenth of a second."""
 CURVED_PLACES = NODES**2 * (3.0 - 2.0 * NODES)
 """Places of the quadrature in an interval of length 1: s^2 (3 - 2 s) at the nodes s of the Gauss-Legendre rule."""
 SHARES = 6.0 * NODES * (1.0 - NODES) * WEIGHTS
@@ -129,12 +131,20 @@ def _block_events(history: History, first: Positions, last: Positions) -> dict[s
 
 
 def trapped_note(history: History) -> str:
-    """Return one line on the waves that travel in the slab or string at the end of a run; empty for a block, and for layers."""
+    """Return one line on the waves that travel in the body at the end of a run.
+
+    It is empty for a block, and for layers whose waves would have to be replayed through more than `MOST_REPLAYED` cells.
+    """
     body = history.problem.body
-    if not (body.has_waves and body.is_uniform):
+    if not body.has_waves:
         return ""
     end = epochs(history, Positions.inside(len(history) - 1, 1.0))[0]
-    energy = Waves(history, as_waves(body)).trapped(end)
+    if not isinstance(body, OfLayers):
+        energy = Waves(history, as_waves(body)).trapped(end)
+    elif len(history) * sum(body.cells.counts) > MOST_REPLAYED:
+        return ""
+    else:
+        energy = LayerEnergy(history, body).inside(end).trapped
     holds = history.problem.strength**2 / (2.0 * body.stiffness)
     energy_unit = history.problem.unit_of("energy").replace("^", "")
     share = f", {100.0 * energy / holds:.2g} % of what the {body.noun} holds at its static strength" if holds > 0.0 else ""

@@ -104,12 +104,12 @@ function showProfile(models, t) {
 
 /** The slab, sheared by the displacements at time t: lines that were straight across it, and particles coloured by velocity. */
 function showSlab(models, facts, t) {
-  const { scale, bar, width, height, text } = facts.shape;
+  const { scale, bar, width, height, low, boundaries, text } = facts.shape;
   const found = imagesAt(models, t);
   if (!found) return;
   const { rows, displacement, velocity } = found;
-  const u = [], y = [];
-  for (let row = 0; row < rows; row++) { u.push(scale * displacement(row)); y.push(row / (rows - 1) * height); }
+  const u = [], y = [], size = height - low;
+  for (let row = 0; row < rows; row++) { u.push(scale * displacement(row)); y.push(low + row / (rows - 1) * size); }
   const first = 0.06 * width, step = 0.58 * width / (COLUMNS_DRAWN - 1);
   const lines = { x: [], y: [] }, particles = { x: [], y: [], velocity: [] };
   for (let column = 0; column < COLUMNS_DRAWN; column++) {
@@ -123,13 +123,19 @@ function showSlab(models, facts, t) {
       particles.velocity.push(velocity(row));
     }
   }
+  const end = first + (COLUMNS_DRAWN - 1) * step, top = u[rows - 1], twoSided = low < 0;
+  for (const place of boundaries) {
+    const moved = twoSided && place === 0 ? 0 : u[Math.round((place - low) / size * (rows - 1))];
+    lines.x.push([first + moved, end + moved]);
+    lines.y.push([place, place]);
+  }
   models.put("lines", lines);
   models.put("particles", particles);
   models.put("body", { x: [], y: [] });
-  const end = first + (COLUMNS_DRAWN - 1) * step, top = u[rows - 1];
-  models.put("driver", { x: [[first + top - 0.3, end + top + 0.3], scaleBar(width, bar)], y: [[height, height], [1.08 * height, 1.08 * height]] });
-  models.put("texts", { x: [first + top + 1.5, 0.97 * width - bar], y: [1.04 * height, 1.05 * height], text: ["driver", text] });
-  models.put("ground", { x0: [0], x1: [width], y0: [-0.16 * height], y1: [-0.02 * height] });
+  models.put("driver", { x: [[first + top - 0.3, end + top + 0.3], scaleBar(width, bar)], y: [[height, height], [height + 0.08 * size, height + 0.08 * size]] });
+  models.put("texts", { x: [first + top + 1.5, 0.97 * width - bar], y: [height + 0.04 * size, height + 0.05 * size], text: ["driver", text] });
+  const other = low - 0.02 * size;  // the ground, or the driver of the other side
+  models.put("ground", { x0: [0], x1: [width], y0: [low - (twoSided ? 0.06 : 0.16) * size], y1: [other] });
 }
 
 /** The block at time t, on the ground, and its spring up to the end that is pulled. */

@@ -16,6 +16,7 @@ from stickslip.explorer.page.view import Columns, LegendKey, Units, View, axis_l
 from stickslip.foundation.names import readable_unit, si_unit
 
 TEXT = "Velocity, displacement or stress in the slab: distance from the contact against time, with wave fronts"
+LINES: Columns = {"time": [], "place": []}
 EMPTY: Columns = {"velocity": [], "displacement": [], "stress": [], "x": [], "y": [], "dw": [], "dh": []}
 
 
@@ -24,7 +25,7 @@ def data_of(answer: Answer, units: Units) -> View:
     slab = answer.slab
     if slab is None:
         return View(
-            columns={"field": dict(EMPTY), "fronts": {"time": [], "place": []}}, hidden={"field"}, facts={"fields": {}}
+            columns={"field": dict(EMPTY), "fronts": dict(LINES), "layers": dict(LINES)}, hidden={"field"}, facts={"fields": {}}
         )  # fmt: skip
     load_unit = answer.motions[0].load_unit
     time, place = units.nearby(slab.time), slab.place / units.place[1]
@@ -32,7 +33,12 @@ def data_of(answer: Answer, units: Units) -> View:
     name, size = readable_unit(si_unit("slip_rate", load_unit), slab.velocity)
     velocity = single(slab.velocity.T / size)
     largest = float(np.abs(velocity).max()) or 1.0
-    shape = {"x": [float(time[0]) - 0.5 * step], "y": [-0.5 * height], "dw": [step * time.size], "dh": [height * place.size]}
+    shape = {
+        "x": [float(time[0]) - 0.5 * step],
+        "y": [float(place[0]) - 0.5 * height],
+        "dw": [step * time.size],
+        "dh": [height * place.size],
+    }
     displacement, change = slab.displacement.T, (slab.stress - slab.stress[0]).T
     of_stress, pascal = readable_unit(load_unit, change)
     image = {"velocity": [velocity], "displacement": [single(displacement / units.slip[1])], "stress": [single(change / pascal)]}
@@ -41,6 +47,7 @@ def data_of(answer: Answer, units: Units) -> View:
         "displacement": ends_of(image["displacement"][0], units.slip[0]),
         "stress": ends_of(image["stress"][0], of_stress),
     }
+    keys = [LegendKey("wave front", "front")] if slab.fronts else []
     return View(
         columns={
             "field": image | shape,
@@ -48,11 +55,15 @@ def data_of(answer: Answer, units: Units) -> View:
                 "time": [units.nearby(front[:, 0]) for front in slab.fronts],
                 "place": [front[:, 1] / units.place[1] for front in slab.fronts],
             },
+            "layers": {
+                "time": [[float(time[0]), float(time[-1])] for _ in slab.boundaries],
+                "place": [[one / units.place[1]] * 2 for one in slab.boundaries],
+            },
         },
-        limits={"place": (0.0, float(place[-1]))},
+        limits={"place": (float(place[0]), float(place[-1]))},
         fastest=largest,
         titles={"field": axis_label(f"{answer.motions[0].name.capitalize()}:", "x", units.place[0])},
-        keys={"field": (LegendKey(f"velocity {fields['velocity']['text']}", "signed", "scale"), LegendKey("wave front", "front"))},
+        keys={"field": (LegendKey(f"velocity {fields['velocity']['text']}", "signed", "scale"), *keys)},
         facts={"fields": fields},
     )
 
@@ -71,6 +82,8 @@ def plot(stage: Stage, text: str = TEXT) -> Any:
     picture.tags = [stage.source("field", *EMPTY)]  # what nothing refers to, the browser does not get
     fronts = drawn.multi_line("time", "place", source=stage.source("fronts", "time", "place"), line_width=1)
     paint(fronts.glyph, line_color="front")
+    layers = drawn.multi_line("time", "place", source=stage.source("layers", "time", "place"), line_width=1)
+    paint(layers.glyph, line_color="ink")
     drawn.grid.visible = False
     stage.cursor("field")
     return drawn

@@ -30,16 +30,18 @@ def data_of(answer: Answer, units: Units) -> View:
     unit, size = readable_unit(units.slip_unit, largest)
     scale, bar = REACH * WIDTH / largest * units.slip[1], round_step(largest / size)
     keys = [LegendKey("velocity of particles", "signed", "scale")] if slab is not None else []
-    height = (answer.slab.place[-1] + answer.slab.place[0]) / units.place[1] if answer.slab is not None else 1.0
+    low, height = (answer.slab.place[[0, -1]] / units.place[1]).tolist() if answer.slab is not None else (0.0, 1.0)
+    size = height - low
     return View(
-        limits={"shape_x": (0.0, WIDTH), "shape_y": (-0.16 * height, 1.17 * height)},
+        limits={"shape_x": (0.0, WIDTH), "shape_y": (low - 0.16 * size, height + 0.17 * size)},
         labels={"axis:shape_y@shape": axis_label("distance", "x", units.place[0])},
         keys={"shape": tuple(keys)},
         hidden={"axis:shape_x@shape"} | (set() if slab is not None else {"axis:shape_y@shape"}),
         facts={
             "shape": {
                 "kind": "slab" if slab is not None else "block",
-                "scale": scale, "bar": bar * size / units.slip[1] * scale, "width": WIDTH, "height": height,
+                "scale": scale, "bar": bar * size / units.slip[1] * scale, "width": WIDTH, "height": height, "low": low,
+                "boundaries": [one / units.place[1] for one in slab.boundaries] if slab is not None else [],
                 "text": f"{bar:g} {unit}",
             }
         },
