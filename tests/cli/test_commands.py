@@ -316,7 +316,9 @@ def test_the_shell_completes_laws_pulls_and_rules():
 
 
 def test_run_draws_space_time_and_animation(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("stickslip.figures.runs.animation.FRAMES", 3)
+    monkeypatch.setattr("stickslip.figures.runs.animation.FRAMES", 2)
+    for name, value in (("TIMES", 100), ("CELLS", 30)):
+        monkeypatch.setattr(f"stickslip.figures.runs.inside.{name}", value)
     out = command("run", "fig6-slab", "--space-time", "waves.svg", "--animation", "slab.gif").out
     assert out.endswith("written: waves.svg\nwritten: slab.gif\n")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["slab.gif", "waves.svg"]

@@ -183,12 +183,10 @@ def test_an_engine_that_is_not_compiled_is_a_fault(command: Command, monkeypatch
     assert fault(command("doctor")).endswith("unset it")
 
 
-def test_a_compiler_that_is_switched_off_is_one_line_for_every_command() -> None:
+def test_a_compiler_that_is_switched_off_is_one_line_for_a_run() -> None:
     environment = os.environ | {"NUMBA_DISABLE_JIT": "1"}
     code = "import sys; from stickslip.cli.main import main; main(sys.argv[1:])"
-    for arguments, status, begins in (["doctor"], 1, "stickslip: doctor: "), (["run", "fig6-slab"], 2, "stickslip: "):
-        done = subprocess.run(
-            [sys.executable, "-c", code, *arguments], env=environment, capture_output=True, text=True, check=False
-        )
-        assert (done.returncode, done.stderr.count("\n")) == (status, 1)
-        assert done.stderr.startswith(f"{begins}NUMBA_DISABLE_JIT is set")
+    command = [sys.executable, "-c", code, "run", "fig6-slab"]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    assert done.stderr.startswith("stickslip: NUMBA_DISABLE_JIT is set")

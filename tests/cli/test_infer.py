@@ -15,7 +15,6 @@ from stickslip.cli.output.studies import as_options
 from tests.inference.laboratory import RateAndStateBlock, correlated, load_point
 
 TIMES, RATES = [0.0, 60.0, 100.0], [1e-6, 1e-5, 1e-6]
-FREE = "a,b,distance,stiffness,reference"
 
 
 @pytest.fixture(scope="module")
@@ -37,7 +36,9 @@ def test_infer_reads_what_is_known_and_writes_what_was_asked_for(command, tmp_pa
     known = ["--prior", "a=normal(0.008, 0.0001)", "--bound", "b=0.01..0.02", "--begin-at", "distance=12 um"]
     part = ["--from", "20 s", "--to", "180", "--starts", "1"]
     files = ["--out", "a.nc", "--scenario-out", "best.toml", "--figure", "a.png", "--report", "fitted"]
-    shown = command("infer", "velocity-steps-block", "data.csv", "--free", FREE, *known, *part, *files)
+    shown = command(
+        "infer", "velocity-steps-block", "data.csv", "--free", "a,b,distance,stiffness,reference", *known, *part, *files
+    )
     assert shown.code == 0, shown.err
     assert "5 numbers from 641 samples, noise: friction 0.000" in shown.out
     assert "friction.distance" in shown.out

@@ -31,7 +31,7 @@ def check_fits(narrow: str, wide: str, width: int) -> None:
             assert number in whole | shorter, (number, line)
 
 
-@pytest.mark.sampled(every=3)
+@pytest.mark.sampled(every=2)
 @pytest.mark.parametrize("arguments", COMMANDS, ids=lambda arguments: " ".join(arguments[:2]))
 def test_numbers_do_not_break_and_lines_fit(command: Callable[..., Outcome], monkeypatch: pytest.MonkeyPatch, arguments: list[str]):
     wide = command(*arguments)

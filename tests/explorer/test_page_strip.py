@@ -10,11 +10,11 @@ import pytest
 
 from stickslip.explorer.model.setting import Setting
 from stickslip.explorer.model.solve import solve
-from stickslip.explorer.model.strip import SHOWN, Strip, setting_at, strip_of, strip_range
+from stickslip.explorer.model.strip import SHOWN, Strip, setting_at, strip_range
 from stickslip.explorer.model.tour import TOUR
 from stickslip.explorer.page.explorer import Explorer
 from stickslip.explorer.page.strip import StripView, place_of, view_of_strip
-from stickslip.explorer.page.words import Tour, told_steps
+from stickslip.explorer.page.words import Tour
 from tests.explorer.desk_at_once import DeskAtOnce
 
 SLAB = Setting.bundled("fig6-slab")
@@ -180,16 +180,3 @@ def test_the_tour_goes_to_a_step_and_shows_it(explorer: Explorer, view: StripVie
     assert explorer.tour == 6
     tour.card._handle_msg({"step": 0})
     assert (explorer.tour, tour.card.step, explorer.setting) == (0, 0, TOUR[5].setting)
-
-
-def test_the_strip_of_a_step_is_the_one_of_its_own_setting(explorer: Explorer, view: StripView) -> None:
-    tour = Tour(explorer)
-    for step in (1, 6):
-        tour.show(step)
-        assert view.strip is not None
-        expected = strip_of(TOUR[step - 1].setting.scenario(), TOUR[step - 1].strip)
-        np.testing.assert_array_equal(view.strip.results["slip"], expected.results["slip"])
-
-
-def test_the_card_holds_the_texts_of_all_steps() -> None:
-    assert [step["title"] for step in told_steps()] == [step.title for step in TOUR]

@@ -152,13 +152,6 @@ def test_the_command_says_how_large_the_folder_is(
     assert done.value.code == 0
     said = capsys.readouterr()
     assert re.fullmatch(r"tour: the tour of 8 steps with 200 answers, \d\.\d MB; open index.html in it\n", said.out)
-    for arguments, message in (
-        (["explore", "--static", "tour"], "explore: --static tour: this exists already"),
-        (["explore", "fig6-slab", "--static", "other"], "explore: --static writes the guided tour"),
-    ):
-        with pytest.raises(SystemExit) as stop:
-            main(arguments)
-        assert stop.value.code == 2
-        error = capsys.readouterr().err
-        assert error.startswith(f"stickslip: {message}")
-        assert error.count("\n") == 1
+    with pytest.raises(SystemExit):
+        main(["explore", "--static", "tour"])
+    assert capsys.readouterr().err.startswith("stickslip: explore: --static tour: this exists already")

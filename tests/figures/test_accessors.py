@@ -114,9 +114,8 @@ def test_a_law_of_both_is_drawn_against_measured_friction() -> None:
 
 
 def test_a_figure_is_saved_whole(tmp_path: Path) -> None:
-    for suffix in ("png", "svg", "pdf"):
-        plot_fit(result_of("rate"), tmp_path / f"fit.{suffix}")
-        assert (tmp_path / f"fit.{suffix}").stat().st_size > 5000
+    plot_fit(result_of("rate"), tmp_path / "fit.svg")
+    assert (tmp_path / "fit.svg").stat().st_size > 5000
 
 
 def test_what_is_no_fit_is_refused_in_one_line() -> None:
@@ -142,7 +141,7 @@ def drawn(name: str) -> tuple[ss.Solution, xr.Dataset]:
 
 
 @pytest.mark.usefixtures("coarse")
-@pytest.mark.sampled(every=2)
+@pytest.mark.sampled(every=4)
 @pytest.mark.parametrize("name", DRAWN)
 def test_areas_stack_up_to_the_total(name: str) -> None:
     """What is drawn, to 1e-9 of the total; no part is negative, none is hidden."""

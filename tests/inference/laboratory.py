@@ -185,35 +185,6 @@ class CoulombSlab:
         slip = ((self.static - self.dynamic) * self.normal * lasts + 0.5 * self._rise * lasts**2) / impedance
         return np.where(time <= end, before, after), slip
 
-    def events(self, stress: float, strengths: Sequence[float], steps: int) -> tuple[Floats, Floats, Floats]:
-        """Times (s), shear stress (Pa) and slip rate (m/s) of many events, each with a static friction of its own.
-
-        Characteristics on a grid that divides the two-way travel time: what arrives is what left a trip ago, and Coulomb friction
-        is linear in it.
-        """
-        impedance, kinetic, left = self.density * self.wave_speed, self.dynamic * self.normal, list(strengths)
-        load, slips = stress + self._rise * self.trip * np.arange(steps) / steps, False
-        loads, rates = list[Floats](), list[Floats]()
-        while left:
-            rate, i = np.zeros(steps), 0
-            while i < steps:
-                ends = np.flatnonzero(load[i:] <= kinetic) if slips else np.flatnonzero(load[i:] >= left[0] * self.normal)
-                end = i + int(ends[0]) if len(ends) else steps
-                rate[i:end] = (load[i:end] - kinetic) / impedance if slips else 0.0
-                if end < steps:
-                    slips = not slips
-                    if not slips:
-                        left.pop(0)
-                        if not left:
-                            break
-                i = end
-            loads.append(load)
-            rates.append(rate)
-            load = load - 2.0 * impedance * rate + 2.0 * impedance * self.pull
-        all_loads, all_rates = np.concatenate(loads), np.concatenate(rates)
-        shear = np.where(all_rates > 0.0, kinetic, all_loads)
-        return self.trip / steps * np.arange(len(shear)), shear, all_rates
-
     def stick_slip(self, stress: float, duration: float, scatter: float = 0.0, seed: int = 0) -> tuple[Floats, Floats, Floats]:
         """Times (s), shear stress at the contact (Pa) and slip (m) over many events, along characteristics, 80 steps a round trip.
 

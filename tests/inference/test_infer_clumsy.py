@@ -62,7 +62,6 @@ REFUSED: list[tuple[Any, dict[str, Any], str]] = [
     ({**GOOD, "friction": np.full(len(CLOCK), 0.6)}, {}, "record: friction is the same number in all rows"),
     ({**GOOD, "time (s)": pd.date_range("2026", periods=len(CLOCK))}, {}, "record: time holds dates: write seconds"),
     ({**GOOD, "friction": FRICTION > 0.6}, {}, "record: friction must be a column of numbers, got truth values"),
-    ({**GOOD, "friction": FRICTION + 0j}, {}, "record: friction must be a column of numbers, got complex numbers"),
     ({}, {}, "record: no column 'time'; there are no headings: is it empty?"),
     ("no.csv", {}, "no.csv: no such file"),
     (3.0, {}, "infer: record must be a CSV file"),
@@ -217,7 +216,7 @@ def test_a_run_of_equal_samples_without_noise_is_not_saturated() -> None:
     ).all()
 
 
-@pytest.mark.parametrize("steps", [1, 2, 5, 20])
+@pytest.mark.parametrize("steps", [1, 20])
 def test_a_record_of_two_levels_without_noise_is_not_saturated(steps: int) -> None:
     """Each level is an end of the range, and less than half of the record; both together are nearly all of it."""
     level = np.where(CLOCK < 49.0, 0.6, 0.61)

@@ -65,8 +65,8 @@ KINDS: dict[str, tuple[ss.Problem, dict[str, Any], dict[str, float], dict[str, A
 }
 
 
-LONG = {"event by event", "features"}
-"""Kinds that take several seconds; `test_infer_starts.py` and `test_infer_features.py` fit shorter records with one start."""
+LONG = {"event by event", "features", "slide, hold, slide"}
+"""Kinds that take several seconds; other tests of this folder fit shorter records with one start."""
 
 
 @pytest.mark.parametrize("kind", [pytest.param(one, marks=pytest.mark.slow) if one in LONG else one for one in KINDS])

@@ -162,17 +162,6 @@ def test_covariances_are_the_products_with_whole_matrices() -> None:
         np.testing.assert_allclose(found, influence.T @ weight @ influence, rtol=1e-9, atol=1e-18)
 
 
-def test_intervals_hold_the_truth_under_noise_that_remembers_itself() -> None:
-    """40 draws of four numbers: 95 % with a standard error of 1.7 % (numbers of one draw are not independent: 3 %)."""
-    influence, block = np.linalg.pinv(SLOPES).T, [ResidualBlock(slice(0, 1200), TIME)]
-    held = 0
-    for seed in range(40):
-        noise = drawn(seed)
-        width = np.sqrt(np.diag(spread_by(influence, memory_of(left_of(noise), SLOPES, block), block)))
-        held += int(np.sum(np.abs(influence.T @ noise) < 1.96 * width))
-    assert 0.88 < held / 160.0 < 0.99
-
-
 def test_a_misfit_is_told_from_noise_that_is_larger_somewhere() -> None:
     """A bump where the run changes is a misfit; noise that is larger there, and noise with a memory, are noise."""
     block = [ResidualBlock(slice(0, 1200), TIME)]

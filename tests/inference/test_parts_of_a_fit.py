@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -19,20 +20,20 @@ from stickslip.inference.fit.free import DELAY, SERVO, TREND, Free
 from stickslip.inference.fit.memory import (
     ACTIVE,
     WHITE,
-    Memory,
     ResidualBlock,
     independent_columns,
-    spread_by,
     spreads_of,
     unevenness,
 )
+from stickslip.inference.fit.model import Model
 from stickslip.inference.fit.part import Part
-from stickslip.inference.fit.setup import LATER, LEAST, at_rests, parts_of, scales_of
+from stickslip.inference.fit.setup import LATER, LEAST, at_rests, own_of, parts_of, scales_of
 from stickslip.inference.fitted_record import FittedRecord
 from stickslip.inference.record import loading
 from stickslip.inference.record.features import Samples, features_in
 from stickslip.inference.record.noise import LOSSES, OUTLYING, cost_of, weights
 from stickslip.inference.record.record import Record
+from tests.inference.laboratory import correlated
 
 RANDOM = np.random.default_rng(7)
 
@@ -133,24 +134,6 @@ def blocks_of(*lengths: int) -> list[ResidualBlock]:
     return [ResidualBlock(slice(first, last), np.cumsum(RANDOM.uniform(0.5, 1.5, last - first))) for first, last in pairwise(ends)]
 
 
-def test_the_spread_under_noise_with_a_memory_is_that_of_the_full_matrix() -> None:
-    blocks, memory = blocks_of(30, 20), Memory(2.0, 0.7, 0.3)
-    influence, full = RANDOM.normal(size=(50, 3)), np.zeros((50, 50))
-    for rows, time in blocks:
-        apart = np.abs(time[:, None] - time)
-        full[rows, rows] = memory.size**2 * np.exp(-apart / memory.time) + memory.white**2 * np.eye(len(time))
-    assert np.allclose(spread_by(influence, memory, blocks), influence.T @ full @ influence, rtol=1e-12)
-
-
-def test_the_narrowest_spread_of_the_residuals_is_whites() -> None:
-    influence, residual = RANDOM.normal(size=(64, 2)), RANDOM.normal(size=64)
-    found = spreads_of(influence, residual, blocks_of(64))
-    assert len(found) == 4  # sums over 1, 2, 4 and 8 samples, an eighth of the block
-    assert np.allclose(found[0], (influence * residual[:, None] ** 2).T @ influence * 64 / 62, rtol=1e-12)
-    sums = [(influence * residual[:, None])[max(at, 0) : at + 2].sum(axis=0) for at in range(-1, 64)]
-    assert np.allclose(found[1], sum(np.outer(one, one) for one in sums) / 2.0 * 64 / 62, rtol=1e-12)
-
-
 def test_unevenness_compares_the_samples_that_hold_half_of_the_leverage_with_the_others() -> None:
     slopes = np.where(np.arange(100) < 10, 3.02, 1.0)[:, None]  # the first ten hold 91 of 181
     residual = RANDOM.normal(size=100) * np.where(np.arange(100) < 10, 30.0, 1.0)
@@ -224,3 +207,37 @@ def test_events_behind_a_gap_within_one_recurrence_are_those_that_it_may_hide_on
     time = np.arange(0.0, 60.0, 0.1)
     time = time[(time < 14.0) | (time > 16.0)]
     assert _with_gap(time, np.array([10.0, 20.0, 25.0, 30.0]), np.full(4, 10.0)).tolist() == [False, True, True, False]
+
+
+def test_slip_is_counted_from_its_first_sample_and_friction_is_not() -> None:
+    time = np.arange(200.0)
+    moved = 5.0 + 0.01 * np.maximum(time - 100.0, 0.0)
+    part = Part(Record(time, {"slip": moved, "friction": moved}), None, ("slip", "friction"))
+    model: Any = SimpleNamespace(parts=[part])
+    assert Model.data(model, 0, "slip") == pytest.approx(moved - 5.0, abs=1e-12)
+    assert Model.data(model, 0, "friction") == pytest.approx(moved)
+
+
+def test_the_load_of_each_part_is_free_within_fifty_standard_errors_of_what_was_measured() -> None:
+    problem = ss.Problem(ss.SpringBlock(1.0, 1.0, 10.0), ss.friction.Coulomb(0.7, 0.5), pull_rate=1e-3, initial_load=5.0)
+    parts = at_rests(Part(sawtooth(3), None, ("friction",)))
+    for i, (one, part) in enumerate(zip(own_of(problem, parts, None), parts, strict=True)):
+        load, error = part.first_load(10.0)
+        assert (one.name, one.part, one.start) == ("initial.load", i, load)
+        wide = 50.0 * max(error, 1e-6 * load)
+        assert (load - one.low, one.high - load) == pytest.approx((wide, wide), rel=1e-6)
+
+
+def test_means_of_noise_that_remembers_itself_are_allowed_as_much_as_single_samples() -> None:
+    """White noise: five standard deviations of a mean over 1, 2, 4, ... samples. A memory of 64 samples: all alike up to there."""
+    time = np.arange(8192.0)
+    white, slow = (
+        loading._allowed(
+            time, values, loading._noise_of_means(np.append(0.0, np.cumsum(time)), np.append(0.0, np.cumsum(values)), 1), 0.0
+        )
+        for values in (correlated(8192, 0.0, 1), correlated(8192, 64.0, 1))
+    )
+    assert white[:6] == pytest.approx(5.0 * 2.0 ** (-0.5 * np.arange(6)), rel=0.1)
+    assert slow[:6] == pytest.approx(slow[0], rel=0.06)
+    assert slow[8] > 0.6 * slow[0] > 2.0
+    assert slow[8:] / slow[8] == pytest.approx(2.0 ** (-0.5 * np.arange(6)), rel=1e-12)

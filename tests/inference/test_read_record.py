@@ -22,35 +22,26 @@ FRICTION = 0.6 + 1e-3 * np.tanh(CLOCK - 50.0) + 1e-4 * correlated(len(CLOCK), 0.
 
 HEADINGS = [
     ("SigmaN (MPa)", "normal_stress", 1e6),
-    ("sigN [MPa]", "normal_stress", 1e6),
     ("σ_n (MPa)", "normal_stress", 1e6),
-    ("σₙ (MPa)", "normal_stress", 1e6),
     ("Nor_stress (MPa)", "normal_stress", 1e6),
     ("effns_mpa", None, 1.0),
     ("effns_MPa", "normal_stress", 1e6),
     ("LP disp (micron)", "load_point", 1e-6),
-    ("LP_disp micron", "load_point", 1e-6),
     ("LPD (um)", "load_point", 1e-6),
-    ("loadpoint (mm)", "load_point", 1e-3),
     ("LoadPointDisplacement_um", "load_point", 1e-6),
     ("ram displacement, mm", "load_point", 1e-3),
-    ("Ram position / mm", "load_point", 1e-3),
     ("VLP (um/s)", "load_rate", 1e-6),
     ("pull_rate_m_per_s", "load_rate", 1.0),
     ("mu_app", "friction", 1.0),
-    ("app. friction", "friction", 1.0),
     ("AppFriction", "friction", 1.0),
     ("µ (-)", "friction", 1.0),
     ("μ (.)", "friction", 1.0),
     ("τ (MPa)", "shear_stress", 1e6),
-    ("Shear_stress (MPa)", "shear_stress", 1e6),
     ("ShearStress", "shear_stress", 1.0),
-    ("traction_Pa", "shear_stress", 1.0),
     ("slip_rate_m_per_s", "slip_rate", 1.0),
     ("Time, s", "time", 1.0),
     ("t min", "time", 60.0),
     ("Rotation (rpm)", "rotation_rate", 2.0 * np.pi / 60.0),
-    ("rpm", "rotation_rate", 2.0 * np.pi / 60.0),
     ("Rotation (turn)", "rotation", 2.0 * np.pi),
     ("sign", None, 1.0),
     ("mu s", None, 1.0),
@@ -218,11 +209,11 @@ def test_greek_letters_are_printed_as_they_are_and_errors_name_what_was_not_unde
 
 
 def test_a_text_stops_at_the_most_rows_and_takes_no_more_memory_than_its_numbers() -> None:
-    short = "t,v\n" + "0,1\n" * 60_000
-    with pytest.raises(ss.InputError, match="a, line 20002: more than 20000 rows"):
-        read_text(short, ("time", "slip_rate"), "a", 20_000, raw=True)
+    short = "t,v\n" + "0,1\n" * 20_000
+    with pytest.raises(ss.InputError, match="a, line 10002: more than 10000 rows"):
+        read_text(short, ("time", "slip_rate"), "a", 10_000, raw=True)
     tracemalloc.start()
-    table = read_text(short, ("time", "slip_rate"), "a", 60_000, raw=True)
+    table = read_text(short, ("time", "slip_rate"), "a", 20_000, raw=True)
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     numbers = sum(one.nbytes for one in (*table.columns.values(), table.lines))

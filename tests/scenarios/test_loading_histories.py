@@ -192,6 +192,7 @@ def test_check_does_not_take_the_first_pull_rate_for_all_of_it() -> None:
     assert steps.stability.endswith("of steady sliding at the first pull rate")
     assert steps.steady.lines()[0].startswith("at the first pull rate, 1 um/s, traction 30 kN: stable")
     meanings = {fact.name: fact.meaning for fact in steps.derived}
+    assert {fact.name: fact.value for fact in steps.derived}["steady friction"] == pytest.approx(30e3, rel=1e-9)
     assert meanings["K V"] == "rate of loading while stuck, at first"
     assert meanings["steady friction"].endswith("at the first pull rate")
 

@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 import pytest
 import tomli_w
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from stickslip import ElasticSlab, InputError, Problem, SpringBlock, TorsionalString
@@ -18,6 +18,7 @@ from stickslip.scenarios import templates
 from stickslip.scenarios.entries import describe
 from stickslip.scenarios.scenario import Scenario, load_scenario, read_scenario
 from stickslip.scenarios.schema import entries_in, quantities_in
+from tests.limits import examples
 
 
 def values(kind: type) -> str:
@@ -117,6 +118,7 @@ finite = st.floats(min_value=-1e50, max_value=1e50)
 line = st.text(st.characters(codec="utf-8", exclude_characters="\r"), max_size=30)
 
 
+@settings(max_examples=examples(60))
 @given(
     mass=positive,
     stiffness=positive,
