@@ -448,3 +448,14 @@ def test_difference_of_kinds_is_named_too() -> None:
     found = difference((old, answer), (new, solve(new.scenario())))
     assert "friction.kind: hyperbolic-rate → coulomb" in found.text
     assert any(change.path == "friction.alpha" and change.after == "" for change in found.changes)
+
+
+def test_a_driver_that_changes_has_controls_and_stays_behind_when_the_body_is_exchanged() -> None:
+    let_go = {"kind": "steps", "times": [0, "3 s"], "values": [-1, 1]}
+    setting = Setting.bundled("fig6-slab").with_value("loading.far_stress", 0.0).with_value("loading.driver_reflection", let_go)
+    assert setting.scenario().problem.driver_changes
+    shown = {control.path for group in controls_of(setting) for control in group.controls}
+    assert {"loading.far_stress", "loading.driver_reflection.times", "loading.driver_reflection.values"} <= shown
+    block = with_kind(setting, "body", "spring-block")
+    assert block.value("loading.driver_reflection") is None
+    assert block.scenario().problem.body.kind == "spring-block"

@@ -185,6 +185,8 @@ def _of_run(scenario: Scenario, parameters: Sequence[str]) -> Iterator[str]:
     machine = ("body.driver_inertia", "body.driver_integral_gain")
     if scenario.problem.body.has_machine or any(name in parameters for name in machine):
         yield f"[body] {MACHINE} is followed one run at a time"
+    elif scenario.problem.driver_changes:
+        yield "[loading] driver_reflection: a driver that changes is followed one run at a time"
     elif scenario.problem.varies:
         yield "[loading] a batch needs a pull, far stress and normal load that do not vary in time"
     if scenario.problem.one_way or "loading.one_way" in parameters:

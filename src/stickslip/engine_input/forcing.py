@@ -1,9 +1,9 @@
 """Inflow: what the driver adds to the load at the contact. For tables and observables; the engine has its own `varying_forcing`.
 
 The load of a slab is beta(t) = r w(t - R) + F(t). The inflow is F(t) = 2 Z [Zd V + s] / (Z + Zd) at t - h/c, or 2 Z V(t - h/c)
-for a rigid driver, less (1 + r) times the reference strength, because all loads are differences from it. The load of a block
-grows by K V(t) per second, less the mass times the jerk of the ground. What moving ground adds to the load of a slab is in
-`shaking`.
+for a rigid driver, less (1 + r) times the reference strength, because all loads are differences from it. In terms of r it is
+Z (1 - r) V + (1 + r) (s - reference), with the r of the driver that the wave has met. The load of a block grows by K V(t) per
+second, less the mass times the jerk of the ground. What moving ground adds to the load of a slab is in `shaking`.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from stickslip.bodies import BodyOnCharacteristics
 from stickslip.engine.waves.varying_forcing import dirichlet
 from stickslip.foundation.arrays import Floats
+from stickslip.foundation.constants import RIGID
 from stickslip.loading import SILENT, LoadingHistory, Segment, Tone
 from stickslip.problem.ground import Ground
 from stickslip.problem.problem import Problem
@@ -26,7 +27,10 @@ from stickslip.problem.problem import Problem
 
 @dataclass(frozen=True, eq=False)
 class Inflow:
-    """Straight segments, each with the time (s) of its arrival, plus a tone. Slab: Pa; block: N/s."""
+    """Straight segments, each with the time (s) of its arrival, plus a tone. Slab: Pa; block: N/s.
+
+    A segment has a reflection coefficient of the driver, too, and a factor of the tone.
+    """
 
     start: Floats
     value: Floats
@@ -34,13 +38,21 @@ class Inflow:
     tone: Tone
     round_trip_time: float
     is_block: bool
-    is_rigid: bool
+    reflection: Floats  # 1; 0 of a block
+    gain: Floats  # 1, but for a tone that passes through a driver that changes
 
-    def at(self, time: Floats) -> Floats:
-        """Return F at times (s since the start of the run); at a jump, its right limit."""
-        n = self.segment(time)
+    def at(self, time: Floats, seen: Floats | None = None) -> Floats:
+        """Return F at times (s since the start of the run), in the segments that hold at the times `seen`, by default the same.
+
+        At a jump it is the right limit.
+        """
+        n = self.segment(time if seen is None else seen)
         straight = self.value[n] + self.slope[n] * (time - self.start[n])
-        return straight if self.tone is SILENT else np.asarray(straight + self._swing(time))
+        return straight if self.tone is SILENT else np.asarray(straight + self.gain[n] * self._swing(time))
+
+    def reflection_at(self, time: Floats) -> Floats:
+        """Return the factor (1) of the echo that arrives at times (s since the start of the run); at a jump, the right limit."""
+        return self.reflection[self.segment(time)]
 
     def total(self, low: Floats, high: Floats) -> Floats:
         """Return the integral of F between times (s)."""
@@ -49,8 +61,13 @@ class Inflow:
         straight = np.where(first == last, inside, self._up_to(last, high) - self._up_to(first, low))
         if self.tone is SILENT:
             return straight
-        frequency = self.tone.frequency
-        return np.asarray(straight + 2.0 / frequency * np.sin(0.5 * frequency * (high - low)) * self._swing(middle))
+        swings = self._swung(low, high)
+        if np.ptp(self.gain) == 0.0:
+            return np.asarray(straight + self.gain[0] * swings)
+        starts = self.start[1:]
+        whole = np.append(0.0, np.cumsum(self.gain[:-1] * self._swung(self.start[:-1], starts)))
+        begun, ended = (whole[n] + self.gain[n] * self._swung(self.start[n], t) for n, t in ((first, low), (last, high)))
+        return np.asarray(straight + np.where(first == last, self.gain[first] * swings, ended - begun))
 
     def gathered(self, trip: Floats, offset: Floats, trips: Floats) -> Floats:
         """Return the growth of a load at rest over the given number of whole round trips, while only the tone changes.
@@ -60,14 +77,15 @@ class Inflow:
         time = trip * self.round_trip_time + offset
         if self.is_block:
             return self.total(time, time + trips * self.round_trip_time)
-        if not self.is_rigid:
-            return np.zeros(len(trips))
         n = self.segment((trip + 1.0) * self.round_trip_time)
+        rigid = self.reflection[n] == RIGID
+        if not rigid.any():
+            return np.zeros(len(trips))
         middle = time + 0.5 * (trips + 1.0) * self.round_trip_time
         straight = trips * (self.value[n] + self.slope[n] * (middle - self.start[n]))
-        if self.tone is SILENT:
-            return np.asarray(straight)
-        return np.asarray(straight + self._summed(trips) * self._swing(middle))
+        if self.tone is not SILENT:
+            straight = straight + self.gain[n] * self._summed(trips) * self._swing(middle)
+        return np.where(rigid, straight, 0.0)
 
     def breaks(self) -> list[tuple[int, float]]:
         """Return the round trips and offsets (s) where segments begin; an edge between two round trips is offset 0 of the later."""
@@ -92,6 +110,11 @@ class Inflow:
     def _summed(self, trips: Floats) -> Floats:
         """Return the sum of the tone over the given number of round trips, divided by the tone at their mean time."""
         return np.array([dirichlet(count, self.tone.frequency * self.round_trip_time) for count in trips.tolist()])
+
+    def _swung(self, low: Floats, high: Floats) -> Floats:
+        """Return the integral of the tone between times (s)."""
+        frequency = self.tone.frequency
+        return np.asarray(2.0 / frequency * np.sin(0.5 * frequency * (high - low)) * self._swing(0.5 * (low + high)))
 
     def _swing(self, time: Floats) -> Floats:
         return np.asarray(self.tone.amplitude * np.sin(self.tone.frequency * time + self.tone.phase))
@@ -228,6 +251,8 @@ def inflow_of(problem: Problem) -> Inflow:
     if not body.has_waves:
         return _inflow(*_scaled(problem.pull_rate, body.stiffness), 0.0, problem)
     delay = body.inflow_delay
+    if problem.driver_changes:
+        return _through_changes(problem)
     if body.is_driven_rigidly:
         return _inflow(*_scaled(problem.pull_rate, 2.0 * body.last_impedance), delay, problem)
     return _inflow(*_lossy(problem), delay, problem)
@@ -246,6 +271,35 @@ def _shaken_block(problem: Problem, ground: Ground) -> Inflow:
     if amplitude != 0.0:
         tone = Tone(mass * amplitude * frequency * frequency, frequency, phase)
     return replace(pulled, start=start, value=value, slope=pulled.slope[of_pull], tone=tone)
+
+
+def _through_changes(problem: Problem) -> Inflow:
+    """Return the inflow through a driver that changes."""
+    (pull, pull_tone), (far, far_tone) = (_in_parts(value) for value in (problem.pull_rate, problem.far_stress))
+    body, steps = problem.body, np.array(problem.driver_steps)
+    start = np.unique(np.concatenate([pull[0], far[0], steps[:, 0]]))
+    share = steps[np.searchsorted(steps[:, 0], start, side="right") - 1, 1]
+    of_pull, of_far = body.impedance * (1.0 - share), 1.0 + share
+    pulled, stressed = (_straight(one, start) for one in (pull, far))
+    beyond = far_excess(problem) if problem.far_stress is None else stressed[0] - problem.strength
+    value = of_pull * pulled[0] + of_far * (beyond + problem.far_stress_rate * start)
+    slope = of_pull * pulled[1] + of_far * (stressed[1] + problem.far_stress_rate)
+    tone, gain = (far_tone, of_far) if pull_tone is SILENT else (pull_tone, of_pull)
+    made = _inflow([Segment(*one) for one in zip(start, value, slope, strict=True)], tone, body.inflow_delay, problem)
+    return replace(made, reflection=share, gain=gain)
+
+
+def _in_parts(value: float | LoadingHistory | None) -> tuple[Floats, Tone]:
+    """Return the starts (s), values and slopes (rows) of what may vary in time, and its tone; None stands for 0."""
+    segments, tone = _scaled(value, 1.0) if isinstance(value, LoadingHistory) else ([Segment(0.0, value or 0.0, 0.0)], SILENT)
+    return np.array(segments).T, tone
+
+
+def _straight(parts: Floats, start: Floats) -> tuple[Floats, Floats]:
+    """Return the values and the slopes of straight parts (rows as of `_in_parts`), from times (s) on."""
+    own, value, slope = parts
+    n = np.searchsorted(own, start, side="right") - 1
+    return value[n] + slope[n] * (start - own[n]), slope[n]
 
 
 def _lossy(problem: Problem) -> tuple[list[Segment], Tone]:
@@ -282,4 +336,5 @@ def _inflow(segments: list[Segment], tone: Tone, delay: float, problem: Problem)
     start = start + delay
     value[0], start[0] = value[0] - slope[0] * delay, 0.0
     late = tone if tone is SILENT else Tone(tone.amplitude, tone.frequency, tone.phase - tone.frequency * delay)
-    return Inflow(start, value, slope, late, problem.round_trip_time, not body.has_waves, body.is_driven_rigidly)
+    shares, ones = np.full(len(start), float(body.reflection)), np.ones(len(start))
+    return Inflow(start, value, slope, late, problem.round_trip_time, not body.has_waves, shares, ones)

@@ -102,6 +102,8 @@ def missing_for_creep(problem: Problem) -> str:
         return "a friction law that remembers all slip (no memory of its own)"
     if problem.ground is not None or problem.one_way:
         return "ground at rest, and slip in both directions"
+    if problem.driver_changes:
+        return "a driver that does not change"
     if problem.varies:
         return "a constant pull rate and normal load"
     return ""

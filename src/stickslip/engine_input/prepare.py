@@ -18,6 +18,7 @@ from stickslip.engine.state.layout import Counts, FirstLoad, Integers, LawPiece,
 from stickslip.engine.state.workspace import counts_in, lend_problem, memory_of, params_in
 from stickslip.engine_input.branch_table import branch_of, is_algebraic, table_of_branches
 from stickslip.engine_input.forcing import (
+    Inflow,
     breaks_of,
     inflow_of,
     machine_at_first,
@@ -196,7 +197,23 @@ def first_load_varying(problem: Problem) -> at.Floats:
     else:
         comes = float(inflow_of(problem).at(np.array(half)))
     jump = abs(back + comes - before) > 1e-12 * max(abs(problem.strength), abs(before))
+    if problem.driver_changes:
+        return _parts(problem, _first_through_changes(problem, slope, jump))
     return _parts(problem, _pieces([0.0, half, 2.0 * half], [excess, back], [slope, -r * slope], [0.0, jump]))
+
+
+def _first_through_changes(problem: Problem, slope: float, jump: bool) -> at.Floats:
+    """Return the same pieces where the driver changes, perhaps in the time when it sends the initial state back.
+
+    `slope` (Pa/s) is that of the load until h/c; `jump` says whether the load jumps then. Other jumps are those of the loading.
+    """
+    trip, inflow = problem.round_trip_time, inflow_of(problem)
+    half, start = 0.5 * trip, inflow.start
+    phases = np.append(half, start[(start > half) & (start < trip)])
+    share = inflow.reflection_at(phases)
+    back = share * (slope * (trip - phases) - wave_before(problem))
+    jumps = [0.0, float(jump), *np.zeros(len(phases) - 1)]
+    return _pieces([0.0, *phases, trip], [problem.excess, *back], [slope, *(-share * slope)], jumps)
 
 
 def _parts(problem: Problem, pieces: at.Floats) -> at.Floats:
@@ -238,6 +255,7 @@ def loading_of(problem: Problem) -> at.Floats:
     segments = LoadingSegment.of(table)
     segments.trip, segments.offset = zip(*breaks_of(start, problem.round_trip_time, problem.ground is not None), strict=True)
     segments.tone, segments.tone_phase = inflow.tone.amplitude, inflow.tone.phase
+    _set_driver(segments, inflow, start, problem)
     straight: list[tuple[Any, str, str]] = [(pressing, "pressing", "pressing_rate")]
     if problem.body.has_machine:
         straight.append((pull_of(problem), "pull", "pull_slope"))
@@ -257,6 +275,17 @@ def loading_of(problem: Problem) -> at.Floats:
         setattr(segments, value, begins)
         setattr(segments, slope, grows)
     return table
+
+
+def _set_driver(segments: Any, inflow: Inflow, start: at.Floats, problem: Problem) -> None:
+    """Write what a driver does to waves and to a tone into segments (`LoadingSegment.of` a table) that begin at times (s)."""
+    segments.reflection = RIGID if problem.body.has_machine else problem.body.reflection
+    if not problem.driver_changes:
+        return
+    middle = start + 0.5 * np.diff(np.append(start, start[-1] + problem.round_trip_time))  # whatever the rounding of the starts
+    of = inflow.segment(middle)
+    segments.reflection, segments.tone = inflow.reflection[of], inflow.gain[of] * inflow.tone.amplitude
+    segments.jump[1:] = np.diff(segments.reflection) != 0.0
 
 
 def _pieces(phase: list[Any], load: list[Any], slope: list[Any], jump: list[Any] | None = None) -> at.Floats:

@@ -72,18 +72,20 @@ def shaking_of(problem: Problem) -> Shaking:
     ground, driver, body = problem.ground, inflow_of(problem), problem.body
     assert ground is not None
     delay, trip = 0.5 * body.round_trip_time, body.round_trip_time
-    parts = [(0.0, -body.impedance, -body.inertia), (trip, body.reflection * body.impedance, -body.reflection * body.inertia)]
-    parts = [one for one in parts if one[1] != 0.0]
-    starts = [driver.start[driver.start > delay], np.array([0.0, delay]), *(ground.start + late for late, _, _ in parts)]
+    lates = (0.0, trip) if driver.reflection.any() else (0.0,)
+    starts = [driver.start[driver.start > delay], np.array([0.0, delay]), *(ground.start + late for late in lates)]
     start = _without_doubles(np.concatenate(starts), trip)
     middle = start + 0.5 * np.diff(np.append(start, start[-1] + trip))  # which segment holds, whatever the rounding of its start
     known = _driven(driver, start, middle)  # as if it had come since the start, to tell where the inflow jumps
     all_straight, phasor = known.copy(), np.zeros(len(start), complex)
     all_straight[:, middle < delay] = 0.0
     if driver.tone.amplitude != 0.0:
-        phasor += np.where(middle < delay, 0.0, driver.tone.amplitude * np.exp(1j * driver.tone.phase))
+        gain = driver.gain[driver.segment(middle)]
+        phasor += np.where(middle < delay, 0.0, gain * driver.tone.amplitude * np.exp(1j * driver.tone.phase))
     shakes = np.zeros(len(start))
-    for late, impedance, mass in parts:
+    for late in lates:
+        share = driver.reflection_at(middle) if late > 0.0 else -np.ones(len(start))
+        impedance, mass = share * body.impedance, (-share if late > 0.0 else share) * body.inertia
         velocity, acceleration, swing, moving = _moved(ground, start - late, middle - late)
         known += impedance * velocity + mass * acceleration
         all_straight += impedance * velocity + mass * acceleration

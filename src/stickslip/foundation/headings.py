@@ -86,6 +86,7 @@ COLUMNS: Mapping[str, HeadingColumn] = {
     "slip_rate_deviation": HeadingColumn("m/s", ("slip rate error", "sd slip rate")),
     "pull_rate": HeadingColumn("m/s", signed=True),
     "far_stress": HeadingColumn("Pa", signed=True),
+    "driver_reflection": HeadingColumn("1", signed=True),
     "ground_velocity": HeadingColumn("m/s", signed=True),
     "ground_acceleration": HeadingColumn("m/s^2", ("acceleration", "acc"), signed=True),
 }

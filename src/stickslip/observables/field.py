@@ -12,9 +12,11 @@ the present field follows from the past alone, and does not change when a run is
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property
+from itertools import pairwise
 from typing import NamedTuple, get_args
 
 import numpy as np
@@ -126,7 +128,8 @@ class _InsideOfSlab:
 
     def __init__(self, waves: Waves, time: Floats) -> None:
         self.waves, self.time = waves, time
-        self.interval = WaveInterval(waves, float(time.min()) - waves.round, float(time.max()))
+        beside = 2.0 * float(rounding(time, waves.round).max())  # so that both limits at its ends are inside the interval
+        self.interval = WaveInterval(waves, float(time.min()) - waves.round - beside, float(time.max()) + beside)
 
     def field(self, away: Floats, side: Side) -> tuple[Floats, Floats, Floats]:
         """Return displacement relative to the contact, velocity and stress at travel times `away` (s) from the contact."""
@@ -142,9 +145,9 @@ class _InsideOfSlab:
         """
         waves, half = self.waves, self.waves.half
         since = self.time - self.interval.first + away
-        slack = rounding(since, half) * (1.0 if side == "left" else -1.0)
+        slack = rounding(since, half) * (1.0 if side == "left" else -1.0)  # by which a time is moved to the side that is seen
         left = self.time - (waves.round - away)  # when the wave left the contact
-        sent_back = waves.arriving(self.interval.leaving(left, side), left - self.interval.first)
+        sent_back = waves.arriving(self.interval.leaving(left, side), left - self.interval.first, slack)
         return np.where(since < half + slack, waves.first_load(since), sent_back)
 
     def _load_coming(self, away: Floats) -> Floats:
@@ -155,7 +158,17 @@ class _InsideOfSlab:
         of_start = (until - since) * (waves.excess + 0.5 * waves.slope * (since + until))
         low, high = (np.maximum(time, first + waves.half) - waves.round for time in (self.time, self.time + away))
         inflow = waves.inflow.total(low + waves.round - first, high + waves.round - first)
-        return np.asarray(of_start + waves.share * self._left(low, high) + inflow)
+        return np.asarray(of_start + self._sent_back(low, high) + inflow)
+
+    def _sent_back(self, low: Floats, high: Floats) -> Floats:
+        """Return the integral of what the driver sends back of the waves that leave the contact between times, Pa s."""
+        waves, steps = self.waves, self.waves.history.problem.driver_steps
+        if not waves.changes:
+            return np.asarray(waves.share * self._left(low, high))
+        meets = [self.interval.first + start - waves.half for start, _ in steps[1:]]
+        edges = [-math.inf, *meets, math.inf]
+        within = [(np.clip(low, begin, end), np.clip(high, begin, end)) for begin, end in pairwise(edges)]
+        return np.asarray(sum(share * self._left(*one) for (_, share), one in zip(steps, within, strict=True)))
 
     def _left(self, low: Floats, high: Floats) -> Floats:
         """Return the integral between two times of the wave that leaves the contact plus the reference, Pa s."""

@@ -102,7 +102,8 @@ def predictability(run: PredictedRun) -> Predictability:
         raise InputError(f"predictability: needs a Solution, got {shown(run)}")
     history, problem, body, store = run.history, run.history.problem, run.history.problem.body, run.history.store
     if not is_followed(problem):
-        raise InputError("predictability: needs a slab without masses or an integral gain, under a law of slip rate only")
+        lone = "without masses or an integral gain, whose driver does not change"
+        raise InputError(f"predictability: needs a slab {lone}, under a law of slip rate only")
     waves = 2.0 * body.impedance * float(np.abs(store.rate[:, 0]).max())
     # the load is stored as a difference from the strength, so only this difference is rounded
     rounding = float(np.finfo(float).eps * np.abs(store.load[:, 0]).max())
@@ -125,4 +126,5 @@ def attributes_of(prediction: Predictability | None) -> dict[str, str | float]:
 
 def is_followed(problem: Problem) -> bool:
     """Return True if the growth of a disturbance is known for this problem."""
-    return is_algebraic(problem) and not (problem.folds_move or problem.body.has_machine or not problem.body.is_uniform)
+    lone = problem.body.is_uniform and not (problem.body.has_machine or problem.driver_changes)
+    return is_algebraic(problem) and lone and not problem.folds_move

@@ -59,7 +59,7 @@ class FromMachine:
         self.motion, self.doubled, self.delay = history.machine, 2.0 * problem.body.impedance, 0.5 * problem.round_trip_time
         self.breaks = inflow_of(problem).breaks
 
-    def at(self, time: Floats) -> Floats:
+    def at(self, time: Floats, _: Floats | None = None) -> Floats:
         """Return it at times (s since the start of the run)."""
         return np.asarray(self.doubled * self.motion.at(time - self.delay))
 
@@ -84,6 +84,8 @@ class Waves:
         self.before: float = wave_before(history.problem)
         self.inflow: Inflow | FromMachine = FromMachine(history) if body.has_machine else inflow_of(history.problem)
         self.share = RIGID if body.has_machine else body.reflection
+        self.changes = history.problem.driver_changes
+        self.by_storing = body.is_driven_rigidly or self.changes  # how work over round trips at rest is found: see `_at_rest`
         self._seen: tuple[Epoch, Sampled, Sampled] | None = None  # the waves at the last moment that was asked for
 
     def leaving(self, at: Positions) -> Floats:
@@ -95,12 +97,19 @@ class Waves:
         times = self.history.times_inside(at)
         return leaving + self.body.impedance * ground.velocity_at(*times) - mass * ground.acceleration_at(*times)
 
-    def arriving(self, leaving: Floats, left: Floats) -> Floats:
+    def arriving(self, leaving: Floats, left: Floats, before: Floats | float = 0.0) -> Floats:
         """Return the load minus the reference (Pa) one round trip after a wave left the contact.
 
-        `left` is the time when it left (s since the start of the run).
+        `left` is the time when it left (s since the start of the run). The driver, and what it sends, are those a time `before` (s)
+        earlier, at least as long as rounding if the left limit at a jump is wanted.
         """
-        return np.asarray(self.share * leaving + self.inflow.at(left + self.round))
+        arrival = left + self.round
+        return np.asarray(self.share_of(left - before) * leaving + self.inflow.at(arrival, arrival - before))
+
+    def share_of(self, left: Floats) -> Floats | float:
+        """Return the share (1) that the driver sends back of waves that left the contact at times (s since the start)."""
+        assert isinstance(self.inflow, Inflow) or not self.changes
+        return self.inflow.reflection_at(left + self.round) if self.changes else self.share  # type: ignore[union-attr] # as asserted
 
     def first_load(self, time: Floats) -> Floats:
         """Return the load minus the reference (Pa) that the initial state brings, at times (s) up to h/c after the start."""
@@ -129,11 +138,12 @@ class Waves:
     def trapped(self, now: Epoch) -> float:
         """Return the energy of the waves inside the slab: the stored energy beyond the energy of the same mean stress at rest.
 
-        With a rigid driver the state of comparison is sheared at the pull rate (v = V x / h) instead of at rest.
+        While the driver is rigid, the state of comparison is sheared at the pull rate (v = V x / h) instead of at rest.
         """
         down, up = self._inside(now)
         mean = (float(down.wave @ down.weight) - float(up.wave @ up.weight)) / (2.0 * self.half)
-        rate = float(self.history.problem.pull_rate_at(self.begun(now))) if self.body.is_driven_rigidly else 0.0
+        rigid = self.share_of(np.array(self.begun(now) - self.half)) == RIGID and not self.body.has_machine
+        rate = float(self.history.problem.pull_rate_at(self.begun(now))) if rigid else 0.0
         drift = self.body.impedance * rate / self.half
 
         both = down.integral(lambda load, away: (load - mean - drift * away) ** 2)
@@ -146,11 +156,11 @@ class Waves:
         It is (A + B) / (2 Z), with A the wave that the driver sends and B the one that it receives.
         """
         incoming = self.inflow.at(left + self.round)
-        return np.asarray(((1.0 + self.share) * leaving + incoming) / (2.0 * self.body.impedance))
+        return np.asarray(((1.0 + self.share_of(left)) * leaving + incoming) / (2.0 * self.body.impedance))
 
     def power(self, leaving: Floats, left: Floats) -> Floats:
         """Return sigma v at the driver (W/m^2) h/c after a wave left the contact: (A^2 - B^2) / (4 Z), without cancellation."""
-        drop = 2.0 * self.reference + (self.share - 1.0) * leaving + self.inflow.at(left + self.round)
+        drop = 2.0 * self.reference + (self.share_of(left) - 1.0) * leaving + self.inflow.at(left + self.round)
         return 0.5 * self.driver_rate(leaving, left) * drop
 
     def power_growth(self, leaving: Floats, left: Floats) -> Floats:
@@ -197,7 +207,7 @@ class Waves:
         """
         if past <= first:
             return 0.0
-        if self.body.is_driven_rigidly:
+        if self.by_storing:
             last = self._in_trip(past - 1, self.half, self.round).integral(self.power)
             return self.stored(Epoch(past, 0.0)) - self.stored(Epoch(first, self.half)) + last
         # all these round trips are alike, except that the waves of the last one may meet another loading at the driver
@@ -334,24 +344,36 @@ class Radiation(Waves):
     the latter.
     """
 
+    def __init__(self, history: History, body: BodyWithWaves) -> None:
+        super().__init__(history, body)
+        self.is_none, self.by_storing = history.problem.is_driven_rigidly, False
+
     def power(self, leaving: Floats, left: Floats) -> Floats:
         """Return the power of the wave beyond the driver, h/c after a wave left the contact; it is zero for a rigid driver."""
-        if self.body.is_driven_rigidly:
+        if self.is_none:
             return np.zeros(len(leaving))
         behind = self.driver_rate(leaving, left) - self.history.problem.pull_rate_at(left + self.half)
-        return np.asarray(self.body.driver_impedance * behind**2)
+        return np.asarray(self._impedance(left) * behind**2)
+
+    def _impedance(self, left: Floats) -> Floats | float:
+        """Return that of the driver h/c after waves left the contact (Pa s/m); 0 for one that is rigid for a time."""
+        if not self.changes:
+            return self.body.driver_impedance
+        share = np.asarray(self.share_of(left))
+        lossy = share != RIGID
+        return np.where(lossy, self.body.impedance * (1.0 - share) / np.where(lossy, 1.0 + share, 1.0), 0.0)
 
     def work(self, now: Epoch) -> float:
         """Return the energy radiated since the start of the run; it is zero for a rigid driver."""
         if self.body.has_machine:
             return self.history.machine.dissipated(0.0, self.begun(now))
-        return 0.0 if self.body.is_driven_rigidly else super().work(now)
+        return 0.0 if self.is_none else super().work(now)
 
     def work_between(self, first: Epoch, last: Epoch) -> float:
         """Return the energy radiated between two moments; it is zero for a rigid driver."""
         if self.body.has_machine:
             return self.history.machine.dissipated(self.begun(first), self.begun(last))
-        return 0.0 if self.body.is_driven_rigidly else super().work_between(first, last)
+        return 0.0 if self.is_none else super().work_between(first, last)
 
     def power_growth(self, leaving: Floats, left: Floats) -> Floats:
         """Return zero: all echoes at rest move the driver in the same way."""

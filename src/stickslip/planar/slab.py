@@ -119,6 +119,8 @@ class PlanarSlab(CheckedArguments):
             raise InputError(
                 "PlanarSlab: a normal_load that varies is not followed along a contact: leave it out, or simulate the Problem"
             )
+        if problem.driver_changes:
+            raise InputError("PlanarSlab: a driver that changes is followed in 1D only: leave driver_reflection out")
         if problem.ground is not None or problem.one_way:
             what = "one_way" if problem.one_way else "ground that moves"
             raise InputError(f"PlanarSlab: {what} is followed at one place only: leave it out")

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip.bodies import BODIES, MACHINE, BodyOnCharacteristics
 from stickslip.foundation.arguments import CheckedArguments, check_type, is_number, shown
+from stickslip.foundation.constants import RIGID
 from stickslip.foundation.conversion import Converted, Number, OptionalNumber, WithUnit
 from stickslip.foundation.errors import InputError
 from stickslip.foundation.names import KINDS, own_units, si_unit
@@ -24,7 +25,7 @@ from stickslip.loading import VARYING, LoadingHistory
 from stickslip.problem.ground import Ground
 from stickslip.problem.selection_rule import SelectionRule, checked
 
-HISTORIES_ONLY = ("normal_load", "ground_velocity", "ground_acceleration")
+HISTORIES_ONLY = ("normal_load", "ground_velocity", "ground_acceleration", "driver_reflection")
 """Fields of a problem that are a loading history or nothing."""
 MAY_VARY = ("pull_rate", "far_stress", *HISTORIES_ONLY)
 """Fields of a problem that may be a loading history."""
@@ -32,10 +33,15 @@ A_HISTORY = "; what varies in time is one of stickslip.loading, such as Steps([0
 """Hint for a value that is no number."""
 LOAD = si_unit("load")
 """Unit of a load: Pa on a slab, N on a block, N m on what turns."""
-CONSTANT = {"normal_load": "a constant one is normal_stress or normal_force of the body"}
+CONSTANT = {
+    "normal_load": "a constant one is normal_stress or normal_force of the body",
+    "driver_reflection": "a constant one follows from driver_impedance of the body",
+}
 """Hints for a number in place of what is nothing but a history."""
 SAME = 1e-12
 """Relative difference (1) between two normal loads that is rounding."""
+SAME_DRIVER = 1e-6
+"""Difference (1) between two reflection coefficients that is rounding by people."""
 STEADY = "steady"
 """Initial state, or initial rate, that stands for the one of steady sliding at the pull rate."""
 INITIAL_STATES = tuple(f"initial_{name}" for name in STATE_NAMES)
@@ -80,6 +86,9 @@ class ProblemFields(CheckedArguments):
     )
     one_way: bool = False
     selection: str | SelectionRule = "perfect-delay"
+    driver_reflection: Converted[LoadingHistory | None, LoadingHistory | None] = quantity(
+        "1", "reflection of waves at a driver that changes in steps: -1 rigid, 0 matched, 1 set free", default=None
+    )
 
     def __post_init__(self) -> None:
         bodies = tuple(BODIES.values())
@@ -104,7 +113,8 @@ class ProblemFields(CheckedArguments):
             value, declared = getattr(self, name), in_units(quantities_of(type(self))[name], own_units(self.body.load_unit))
             if isinstance(value, LoadingHistory):
                 if value.unit not in (VARYING, declared.unit):
-                    raise InputError(f"Problem: {name} must be in {declared.unit}, got a history of values in {value.unit}")
+                    unit = "numbers without unit" if declared.unit == "1" else declared.unit
+                    raise InputError(f"Problem: {name} must be in {unit}, got a history of values in {value.unit}")
             elif name in HISTORIES_ONLY and value is not None:
                 hint = f": {CONSTANT[name]}" if name in CONSTANT else A_HISTORY
                 raise InputError(f"Problem: {name} must be a loading history, got {shown(value)}{hint}")
@@ -130,6 +140,8 @@ class ProblemFields(CheckedArguments):
             self._check_normal_load(self.normal_load)
         if self.ground is not None:
             self._check_ground(self.ground)
+        if self.driver_reflection is not None:
+            self._check_driver(self.driver_reflection)
 
     def _check_ground(self, ground: Ground) -> None:
         if not self.body.is_uniform:
@@ -157,6 +169,23 @@ class ProblemFields(CheckedArguments):
             raise InputError(f"Problem: {given}: make them equal")
         if history.tone.amplitude != 0.0 and any(one.slope for one in history.segments):
             raise InputError("Problem: normal_load: a sinusoid beside slopes is not followed: its straight parts must be constant")
+
+    def _check_driver(self, history: LoadingHistory) -> None:
+        body, name = self.body, "Problem: driver_reflection"
+        if not (body.has_waves and body.is_uniform):
+            why = "has layers" if body.has_waves else "sends no waves to its driver"
+            raise InputError(f"{name} is not followed behind a {type(body).__name__}, which {why}: give a uniform slab or string")
+        if body.has_machine:
+            cure = "set driver_inertia and driver_integral_gain to 0, or leave driver_reflection out"
+            raise InputError(f"{name} is not followed for {MACHINE}: {cure}")
+        if not history.is_stepped:
+            raise InputError(f"{name} must change by steps, got {history.kind}: give kind steps")
+        if history.lowest < RIGID or history.highest > 1.0:
+            beyond = history.lowest if history.lowest < RIGID else history.highest
+            raise InputError(f"{name} must lie between -1 (rigid) and 1 (set free), got {beyond:g}")
+        if abs(history.first - body.reflection) > SAME_DRIVER:
+            own = f"but that of the body's driver_impedance is {body.reflection:.9g}: make them equal"
+            raise InputError(f"{name} begins with {history.first:.9g}, {own}")
 
     def _check_load(self) -> None:
         steady = self.has_initial_rate and not self.given_states
@@ -209,7 +238,14 @@ class ProblemFields(CheckedArguments):
             object.__setattr__(self, field_name, declared.check("Problem", field_name, value))
 
     def _check_far_side(self) -> None:
-        if self.body.is_driven_rigidly and (self.far_stress is not None or self.far_stress_rate != 0.0):
+        if not self.body.is_driven_rigidly:
+            return
+        if self.driver_changes and self.far_stress is None:
+            unit = self.unit_of("far_stress")
+            raise InputError(
+                f"Problem: driver_reflection needs far_stress, beyond a driver that is rigid at first: 0 {unit} if it is set free"
+            )
+        if not self.driver_changes and (self.far_stress is not None or self.far_stress_rate != 0.0):
             noun = self.body.noun if self.body.has_waves else "slab"
             raise InputError(f"Problem: far_stress and far_stress_rate need a {noun} with a finite driver_impedance")
 
@@ -228,8 +264,32 @@ class ProblemFields(CheckedArguments):
 
     @property
     def varies(self) -> bool:
-        """True if the load at rest is no ramp: there is a loading history, that of the ground too, or the driver is a machine."""
-        return len(self._varying) > 0 or self.body.has_machine
+        """True if the load at rest is no ramp: a history is given, the ground moves, or the driver changes or is a machine."""
+        return self.driver_changes or any(name != "driver_reflection" for name in self._varying) or self.body.has_machine
+
+    @cached_property
+    def driver_steps(self) -> tuple[tuple[float, float], ...]:
+        """The times (s) from which the driver has a reflection coefficient, the first 0, and these coefficients (1).
+
+        Steps to the same coefficient are left out. The body's own is exact, and that of a history may be rounded.
+        """
+        own = self.body.reflection
+        steps = [(0.0, own)]
+        for one in () if self.driver_reflection is None else self.driver_reflection.segments:
+            share = own if abs(one.value - own) <= SAME_DRIVER else one.value
+            if share != steps[-1][1]:
+                steps.append((one.start, share))
+        return tuple(steps)
+
+    @property
+    def driver_changes(self) -> bool:
+        """True if the driver of a slab changes in time: it is set free, stops, or takes up another share of the waves."""
+        return self.driver_reflection is not None and len(self.driver_steps) > 1
+
+    @property
+    def is_driven_rigidly(self) -> bool:
+        """True if the driver is rigid throughout the run."""
+        return self.body.is_driven_rigidly and not self.driver_changes
 
     def normal_at(self, t: ArrayLike) -> NDArray[np.float64]:
         """Return the normal load S (Pa, N or N m) at times (s since the start of the run) of any shape."""
@@ -242,8 +302,8 @@ class ProblemFields(CheckedArguments):
 
     @property
     def loading_varies(self) -> bool:
-        """True if the pull rate or the far stress is a loading history."""
-        return any(name not in HISTORIES_ONLY for name in self._varying)
+        """True if the pull rate or the far stress is a loading history, or the driver changes."""
+        return self.driver_changes or any(name not in HISTORIES_ONLY for name in self._varying)
 
     @cached_property
     def ground(self) -> Ground | None:

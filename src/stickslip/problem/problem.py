@@ -76,6 +76,8 @@ class Problem(ProblemFields):
         True forbids backward slip, as of a block on a slope that never slips uphill.
     selection
         The rule that selects one slip rate if several solve the contact equation, or its name (`stickslip.selection`).
+    driver_reflection
+        Reflection coefficient of the driver of a slab or string that changes: steps from the body's own on (see Notes).
 
     Raises
     ------
@@ -103,6 +105,11 @@ class Problem(ProblemFields):
     Where the ground moves, slip and slip rate are relative to it. A block's spring hangs on the ground, and its load gains -m a(t);
     `initial_load` is the load before the ground moves. The driver and the far stress of a slab do not move with the ground: the
     load of its contact is beta - Z v_ground - m a_ground, in which beta is the wave that arrives and m the contact mass.
+
+    `driver_reflection` is the share r = (Z - Zd) / (Z + Zd) of a wave that the driver sends back, for its impedance Zd: -1 if it is
+    rigid, 0 if it is matched, 1 if the far end is set free. A wave meets the driver of the moment, and its echo is at the contact
+    h/c later: r w + Z (1 - r) V + (1 + r) far_stress. Where the driver is rigid at first, `far_stress` must be given: 0 if nothing
+    holds the far end that is set free.
 
     See Also
     --------

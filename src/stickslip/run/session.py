@@ -15,7 +15,7 @@ from stickslip.creep.stepper import CreepLeaps
 from stickslip.engine.loop import ROOM, run_until
 from stickslip.engine.on_demand import lend_part, lend_parts_at_hand
 from stickslip.engine.state import layout as at
-from stickslip.engine.state.layout import EchoNode, Floats, Integers, Setup, Stop, Store
+from stickslip.engine.state.layout import EchoNode, Floats, Integers, LoadingSegment, Setup, Stop, Store
 from stickslip.engine.state.workspace import FIRST_ROW, NO_WAVES, counts_in, lend, lend_history, scratch_in, state_in
 from stickslip.engine.waves.echo_queue import rebuild_queue
 from stickslip.engine_input.branch_table import renewed
@@ -235,6 +235,8 @@ class Session:
         self.waves = checkpoint.waves.copy()
         self.setup = self.setup._replace(branches=checkpoint.branch.copy())
         self.params.stick_to = checkpoint.stick_to[0]
+        if self.count.varies == 1:
+            self.params.reflection = LoadingSegment.of(self.setup.loading).reflection[self.count.segment]
         self.end_is_ahead = False
         if self.count.to_the_end == 0:
             self.before_end = None

@@ -16,6 +16,7 @@ from stickslip.contact.sliding import SteadySlidings
 from stickslip.contact.steady import proven_slidings
 from stickslip.contact.uniqueness import Uniqueness, folds_not_followed, regime_when_pressed, uniqueness_of
 from stickslip.engine_input.limits import MOST_PIECES, PATIENCE, automatic_length, creep_tolerance, leaps_over, lumps_by_itself
+from stickslip.foundation.constants import DEAD_LOAD, RIGID
 from stickslip.foundation.names import own_units
 from stickslip.foundation.quantities import Choice, LawField, NamedNumbers, NumberSeries, Quantity, Text, fields_of, in_units
 from stickslip.foundation.show import brief
@@ -39,6 +40,8 @@ OF_SLIP = ("counts", "memory")
 """Options of a law that say which slip it sees; they mean nothing to a law without slip."""
 BARELY_ABOVE = 1.01
 """A growth of a disturbance below this factor (1) is shown as its excess over 1."""
+MOST_DRIVERS = 8
+"""Largest number of changes of a driver that are shown one by one (1)."""
 LARGE_STRAIN = 0.01
 """A larger shear strain (no unit) than this raises a warning: linear elasticity is doubtful."""
 
@@ -88,7 +91,7 @@ def _given(scenario: Scenario) -> dict[str, list[Fact]]:
             if value == STEADY:
                 value = problem.rate if name == "rate" else problem.given_states[STATE_NAMES.index(name)]
             off = owner is scenario and value == 0.0  # an option of a run
-            unfelt = name.startswith("far_stress") and problem.body.is_driven_rigidly
+            unfelt = name.startswith("far_stress") and problem.is_driven_rigidly
             if value is not None and not (off or unfelt):
                 facts[table] += _facts(name, value, declared)
     facts["run"] += _automatic(scenario)
@@ -164,6 +167,7 @@ def _derived(problem: Problem) -> list[Fact]:
     if not body.is_uniform:
         return [*layer_facts(of_layers(body), body.stiffness * problem.first_pull_rate), *start, *_pulses(problem)]
     of = "of sharp fronts" if body.has_machine else "of waves"
+    begins = " at first" if problem.driver_changes else ""
     waves = as_waves(body)
     _, symbol, of_modulus, meaning = waves.modulus_name
     return [
@@ -171,11 +175,22 @@ def _derived(problem: Problem) -> list[Fact]:
         Fact(symbol, waves.modulus, of_modulus, meaning),
         Fact("R", body.round_trip_time, "s", "two-way travel time 2 h/c"),
         Fact(f"{symbol}/h", body.stiffness, stiffness, "load lost by slow slip"),
-        Fact("r", waves.front_reflection, "1", f"reflection {of} at the driver: -1 rigid, 0 matched, +1 dead load"),
+        Fact("r", waves.front_reflection, "1", f"reflection {of} at the driver{begins}: -1 rigid, 0 matched, +1 dead load"),
+        *_later_drivers(problem),
         Fact(f"{symbol} V/h", body.stiffness * problem.first_pull_rate, load_rate, "rate of loading at first"),
         *start,
         *_pulses(problem),
     ]
+
+
+def _later_drivers(problem: Problem) -> list[Fact]:
+    """Return the reflection at a driver that changes, from each change on, and what the driver then is."""
+    facts, unit = [], problem.unit_of("impedance")
+    for start, share in problem.driver_steps[1 : MOST_DRIVERS + 1]:
+        now = "rigid" if share == RIGID else "set free" if share == DEAD_LOAD else ""
+        now = now or f"of impedance {brief(problem.body.impedance * (1.0 - share) / (1.0 + share), unit)}"
+        facts.append(Fact(f"r from {start:g} s", share, "1", f"the driver is then {now}, as the contact feels h/c later"))
+    return facts
 
 
 def _steady(problem: Problem) -> list[Fact]:
@@ -280,6 +295,8 @@ def _slab_warnings(scenario: Scenario, contact: Uniqueness) -> list[str]:
             f"friction heals instantly and the {body.noun} has no {body.mass_field}:"
             " under slow loading it creeps in tiny slips after the first event"
         )
+    if problem.driver_changes and scenario.duration < (felt := problem.driver_steps[1][0] + body.inflow_delay):
+        found.append(f"the run ends before the contact feels that the driver changes, at {felt:.6g} s")
     if scenario.duration < echo:
         found.append(f"the run ends before the first echo returns at R = {echo:.6g} s")
     if not body.is_uniform:

@@ -180,6 +180,8 @@ def check_suitable(problem: Problem) -> None:
         raise InputError(f"schemes: the damping of this {type(slab).__name__} is not its impedance, which the schemes take it for")
     if slab.has_machine:
         raise InputError(f"schemes: {MACHINE} is not in the schemes: set driver_inertia and driver_integral_gain to 0")
+    if problem.driver_changes:
+        raise InputError("schemes: a driver that changes is not in the schemes: leave driver_reflection out")
     if problem.varies:
         raise InputError(
             "schemes: a pull rate, far stress or normal load that varies in time is not in the schemes: give constant ones"

@@ -27,7 +27,9 @@ def fronts_of(readings: Readings, start: float, end: float) -> list[Floats]:
     if isinstance(readings.problem.body, OfLayers):
         return []
     body = slab_of(readings.problem)
-    return [bounces_of(time, end, body.two_way_time, body.front_reflection) for time in origins_of(readings, start, end)]
+    most = max((share for _, share in readings.problem.driver_steps[1:]), key=abs, default=0.0)
+    share = max(most, body.front_reflection, key=abs)
+    return [bounces_of(time, end, body.two_way_time, share) for time in origins_of(readings, start, end)]
 
 
 def origins_of(readings: Readings, start: float, end: float) -> Floats:

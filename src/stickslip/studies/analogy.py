@@ -96,10 +96,12 @@ class Analogy(StudyWithDataset):
 def block_for(problem: Problem) -> Problem:
     """Return the same problem for the slab's equivalent block, which represents 1 m^2 of contact.
 
-    Raises InputError if the body is a block, or if the driver of the slab is not rigid.
+    Raises InputError if the body is a block, or if the driver of the slab is not rigid, or not for ever.
     """
     if not problem.body.has_waves:
         raise InputError("analogy: needs a slab or a string: a block has no other block that stands for it")
+    if problem.driver_changes:
+        raise InputError("analogy: a block has no driver that changes: leave driver_reflection out")
     return replace(problem, body=cast(BodyWithWaves, problem.body).equivalent_block())
 
 

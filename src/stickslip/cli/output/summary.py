@@ -95,7 +95,7 @@ def _print_events(screen: Console, events: Mapping[Any, Any], problem: Problem |
     if problem is not None and _slides_throughout(events, problem):
         say(screen, "the contact slides throughout: there are no separate slip events\n")
         return
-    rigid = problem is None or problem.body.is_driven_rigidly
+    rigid = problem is None or problem.is_driven_rigidly
     names = [name for name in shown_columns() if name in events and (rigid or name != "static_drop")]
     units = [_unit(EVENT_COLUMNS[name].unit, problem) for name in names]
     _print(screen, "slip event", {name: events[name] for name in names}, units)

@@ -1,7 +1,7 @@
 """The far end of a slab, as the contact sees it: the share of a wave that the driver sends back. Kernels ask nowhere else.
 
-Callers first enter the segment of the loading that holds when the wave comes back (`counts.segment`). A block has no far end:
-nothing comes back.
+Callers first enter the segment of the loading that holds when the wave comes back (`counts.segment`), which sets the share of a
+driver that changes. A block has no far end: nothing comes back.
 """
 
 from __future__ import annotations
@@ -34,6 +34,13 @@ def gain_of_echo(run: Run) -> float:
 def is_rigid(run: Run) -> bool:
     """Return True for a slab under a rigid driver: a load at rest comes back whole, plus the same ramp in each round trip."""
     return run.params.reflection == RIGID and not (run.counts.is_block == 1 or run.counts.driven == 1 or run.counts.cells > 0)
+
+
+@kernel
+def was_rigid(run: Run) -> bool:
+    """Return True if a driver of a loading that varies was rigid in the round trips at rest before this one."""
+    rigid = run.loading[run.counts.trip_segment].reflection == RIGID
+    return rigid and not (run.counts.is_block == 1 or run.counts.driven == 1 or run.counts.cells > 0)
 
 
 @kernel

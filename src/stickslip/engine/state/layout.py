@@ -28,7 +28,10 @@ STATES = len(expression.STATES)
 
 
 class Params(MemoryRecord):
-    """Hold the numbers of a problem, in SI. They are constant during a run, except `stick_to` under a law of slip and slip rate."""
+    """Hold the numbers of a problem, in SI.
+
+    They are constant during a run, except `stick_to` under a law of slip and slip rate, and `reflection` of a driver that changes.
+    """
 
     round_trip_time: (
         float  # s: two-way travel time of a slab; length of a round trip of a block (a period, or longer where it never sticks)
@@ -38,7 +41,7 @@ class Params(MemoryRecord):
     normal: float  # Pa: normal stress on a slab; N: normal force on a block
     inertia: float  # kg/m^2: mass of a slab's contact, 0 if it has none; kg: mass of a block
     stiffness: float  # N/m: stiffness of a block's spring; 0 for a slab
-    reflection: float  # 1: share of a wave that a slab's driver sends back, from -1 (rigid) to +1 (dead load)
+    reflection: float  # 1: share of a wave that a slab's driver sends back at present, from -1 (rigid) to +1 (dead load)
     inflow: float  # Pa: load that a slab's steady driver sends, at t = 0; 0 for a loading that varies
     inflow_rate: float  # Pa/s: growth of that inflow
     reference: float  # Pa or N: reference strength (static strength at the start); loads are measured from it
@@ -396,6 +399,7 @@ class LoadingSegment(MemoryRecord):
     tone: float  # Pa (slab) or N/s (block): amplitude of a tone in the inflow, tone sin(tone_frequency t + tone_phase)
     tone_phase: float  # rad: phase of the tone at t = 0
     shakes: float  # 1 while the ground under a slab moves, or its motion is on its way back, else 0
+    reflection: float  # 1: `Params.reflection` while the segment holds
 
 
 class LadderCell(MemoryRecord):

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 
 from stickslip.engine.compile.kernels import kernel
-from stickslip.engine.contact.far_end import has_faded, is_rigid
+from stickslip.engine.contact.far_end import has_faded, is_rigid, sent_back, was_rigid
 from stickslip.engine.contact.pieces import span_of_load, xi_at
 from stickslip.engine.contact.pressing import couple, is_pressing, press, pressing_at
 from stickslip.engine.memory.addresses import call_part
@@ -64,6 +64,7 @@ def enter_segment(run: Run) -> bool:
         if not next_change(run) <= phase + tie:
             break
         run.counts.segment += 1
+        run.params.reflection = run.loading[run.counts.segment].reflection
         run.counts.trips_at_rest = -1  # the last round trip at rest does not predict the next one
         jumps = jumps or run.loading[run.counts.segment].jump == 1.0
     if run.counts.given > 0:
@@ -105,27 +106,31 @@ def add_loading(run: Run) -> None:
         pull_block(run)
     elif trip > 0.0 or run.state.phase_from >= run.params.inflow_from:
         leaped = 0.0
-        if trip > 0.0 and is_rigid(run):
+        if trip > 0.0 and was_rigid(run):
             leaped = trip - 1.0 - run.history[run.counts.echo_of].trip
         if leaped > 0.0:
-            add_inflow(run, leaped, trip - 0.5 * (leaped + 1.0), run.counts.trip_segment)
-        add_inflow(run, 1.0, trip, run.counts.segment)
+            add_inflow(run, leaped, trip - 0.5 * (leaped + 1.0), run.counts.trip_segment, -sent_back(run))
+        add_inflow(run, 1.0, trip, run.counts.segment, 1.0)
 
 
 @kernel
-def add_inflow(run: Run, trips: float, mean_trip: float, segment: int) -> None:
-    """Add to a slab's load the inflow of `trips` round trips, of mean index `mean_trip`, at the phases of the piece of load."""
+def add_inflow(run: Run, trips: float, mean_trip: float, segment: int, share: float) -> None:
+    """Add to a slab's load the inflow of `trips` round trips, of mean index `mean_trip`, at the phases of the piece of load.
+
+    `share` (1) is the factor that this inflow has gained since.
+    """
     since = (mean_trip - run.loading[segment].trip) * run.params.round_trip_time + (
         run.state.phase_from - run.loading[segment].offset
     )
     slope = trips * run.loading[segment].slope
-    run.load[0] += trips * run.loading[segment].value + slope * since
+    run.load[0] += share * (trips * run.loading[segment].value + slope * since)
+    slope *= share
     run.load[1] += slope * run.state.speed
     run.load[2] += slope * run.state.bend
     if run.loading[segment].curve != 0.0:  # no round trips are leaped over then
         add_curve(run, run.loading[segment].curve, since)
     if run.loading[segment].tone != 0.0:
-        weight = dirichlet(trips, run.params.tone_frequency * run.params.round_trip_time)
+        weight = share * dirichlet(trips, run.params.tone_frequency * run.params.round_trip_time)
         time = mean_trip * run.params.round_trip_time + run.state.phase_from
         tone_series(run, weight * run.loading[segment].tone, run.loading[segment].tone_phase, time)
         for k in range(TERMS):

@@ -271,7 +271,7 @@ class _Tables:
 
     def applies(self, path: str) -> bool:
         """Return False for an entry that this problem cannot have, and for a number that a table replaces."""
-        if path in FINITE_DRIVER and self.problem.body.is_driven_rigidly:
+        if path in FINITE_DRIVER and self.problem.is_driven_rigidly:
             return False
         if path.removeprefix("loading.") in HISTORIES_ONLY:
             return False

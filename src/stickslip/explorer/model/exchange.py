@@ -131,8 +131,12 @@ def _with_body(setting: Setting, kind: str) -> Setting:
         slab_name = OF_LAYERS.get(kind, slab_name)
         body = dict(tomllib.loads(library.text(slab_name))["body"])
     made = {"kind": kind} | _began(setting, "body", kind, body)
-    # a far stress acts on a driver that gives way, and ground that moves is not followed under layers
-    missing = ("far_stress",) * ("driver_impedance" not in made) + ("ground_",) * (not BODIES[kind].is_uniform)
+    # a far stress acts on a driver that gives way, ground that moves is not followed under layers, another driver changes otherwise
+    missing = (
+        "driver_reflection",
+        *("far_stress",) * ("driver_impedance" not in made),
+        *("ground_",) * (not BODIES[kind].is_uniform),
+    )
     loading = {key: value for key, value in (setting.value("loading") or {}).items() if not key.startswith(missing)}
     setting = setting.with_value("loading", loading)
     run = {key: value for key, value in setting.value("run").items() if key not in ("creep_rtol", "shortest_event")}

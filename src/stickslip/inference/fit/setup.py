@@ -51,6 +51,8 @@ def parts_of(
         raise InputError(f"infer: sensor {ascii(sensor)[:40]} is unknown; {nearest(str(sensor), SENSORS)}")
     if sensor == "spring" and problem.body.has_waves:
         raise InputError("infer: sensor 'spring' is the load cell behind the spring of a block: a slab has none")
+    if problem.driver_changes:
+        raise InputError("infer: a driver that changes is not fitted: leave driver_reflection out")
     if problem.ground is not None or problem.one_way:
         what = "one_way" if problem.one_way else "ground that moves"
         raise InputError(f"infer: {what} is not fitted: leave it out")
