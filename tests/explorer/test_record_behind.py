@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,7 @@ from stickslip.inference.record.record import Record
 from stickslip.scenarios.scenario import Scenario
 from tests.explorer.desk_at_once import DeskAtOnce
 from tests.inference.laboratory import RateAndStateBlock, load_point
+from tests.problems import Floats
 
 SLAB = Setting.bundled("fig6-slab")
 
@@ -77,7 +79,6 @@ def test_a_step_of_the_tour_brings_its_strip_at_once_and_its_cursor_with_the_ans
 TIMES, RATES = [0.0, 20.0], [1e-6, 1e-5]
 CLOCK = np.linspace(0.0, 60.0, 601)
 TRUE = RateAndStateBlock()
-CLEAN = TRUE.friction(CLOCK, TIMES, RATES)
 SCENARIO = Setting.of(
     Scenario(
         ss.Problem(
@@ -91,13 +92,19 @@ SCENARIO = Setting.of(
 )
 
 
+@cache
+def clean() -> Floats:
+    """Return friction at the samples of the record, without noise."""
+    return TRUE.friction(CLOCK, TIMES, RATES)
+
+
 def behind(**measured: Any) -> Backdrop:
     return Backdrop.of(Record.read({"time (s)": CLOCK + 7.0, **measured}), "contact", SCENARIO.scenario().problem)
 
 
 def test_the_misfit_is_the_distance_from_what_another_integrator_made() -> None:
-    slip = load_point(CLOCK, TIMES, RATES) - TRUE.normal * (CLEAN - CLEAN[0]) / TRUE.stiffness
-    record = behind(**{"mu": CLEAN + 3e-4 * np.where(np.arange(601) % 2, 1.0, -1.0), "slip (m)": slip + 5e-4})
+    slip = load_point(CLOCK, TIMES, RATES) - TRUE.normal * (clean() - clean()[0]) / TRUE.stiffness
+    record = behind(**{"mu": clean() + 3e-4 * np.where(np.arange(601) % 2, 1.0, -1.0), "slip (m)": slip + 5e-4})
     answer = solve(SCENARIO.scenario(), behind=record)
     assert answer.measured is not None
     (friction, moved) = answer.measured.misfits
@@ -132,6 +139,6 @@ def test_what_cannot_be_drawn_is_refused() -> None:
     with pytest.raises(
         ss.InputError, match="nothing to draw behind a spring-block; allowed: friction, shear_force, slip and slip_rate"
     ):
-        behind(**{"tau (Pa)": 1e6 * CLEAN})
+        behind(**{"tau (Pa)": 1e6 * clean()})
     with pytest.raises(ss.InputError, match="did you mean 'spring'"):
-        Backdrop.of(Record.read({"time (s)": CLOCK, "mu": CLEAN}), "sprnig", SCENARIO.scenario().problem)
+        Backdrop.of(Record.read({"time (s)": CLOCK, "mu": clean()}), "sprnig", SCENARIO.scenario().problem)

@@ -19,7 +19,7 @@ from stickslip.inference.certainty.sampling import sample
 from stickslip.inference.inference import Inference
 from stickslip.inference.record.loading import loading_of
 from tests.inference.laboratory import correlated, load_point
-from tests.inference.velocity_steps import CLEAN, CLOCK, GUESS, NEAR, RATES, STEPS, TIMES, TRUE, TRUTH, TWO, inferred, plain, record
+from tests.inference.velocity_steps import CLOCK, GUESS, NEAR, RATES, STEPS, TIMES, TRUE, TRUTH, TWO, clean, inferred, plain, record
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +38,7 @@ def check_holds(study: Inference, truth: dict[str, float], widths: float = 1.5) 
 def test_the_engine_and_the_integrator_of_the_record_agree() -> None:
     law = ss.friction.RateAndState(TRUE.reference, TRUE.a, TRUE.b, TRUE.distance)
     run = ss.simulate(ss.Problem(ss.SpringBlock(TRUE.mass, TRUE.stiffness, TRUE.normal), law, pull_rate=STEPS), 200.0)
-    assert np.abs(run.traction(CLOCK) / TRUE.normal - CLEAN).max() < 1e-8
+    assert np.abs(run.traction(CLOCK) / TRUE.normal - clean()).max() < 1e-8
 
 
 def test_velocity_steps_give_back_friction_and_stiffness_of_the_machine(found: Inference) -> None:
@@ -138,7 +138,7 @@ def test_outliers_are_borne_by_a_robust_loss() -> None:
 def test_a_trend_and_the_clock_of_the_record_can_be_free() -> None:
     data = record()
     moved = load_point(CLOCK, TIMES, RATES)
-    late = np.interp(CLOCK - 1.5, CLOCK, CLEAN)
+    late = np.interp(CLOCK - 1.5, CLOCK, clean())
     data["mu"] = late + 5.0 * moved + 1e-4 * correlated(len(CLOCK), 0.0, 3)
     study = ss.studies.infer(NEAR, data, [*TWO, "record.trend", "record.delay"], starts=1)
     assert study.values["record.delay"] == pytest.approx(1.5, abs=0.05)
@@ -157,7 +157,7 @@ def test_two_records_share_the_numbers() -> None:
 
 def test_slip_can_be_fitted_beside_friction() -> None:
     data = record()
-    spring = CLEAN * TRUE.normal / TRUE.stiffness  # slip is what the spring has not taken
+    spring = clean() * TRUE.normal / TRUE.stiffness  # slip is what the spring has not taken
     slip = load_point(CLOCK, TIMES, RATES) - spring + spring[0]
     data["slip (um)"] = 1e6 * slip + 0.05 * correlated(len(CLOCK), 0.0, 5) + 300.0
     alone, both = inferred(data, TWO), inferred(data, TWO, observe=["friction", "slip"])

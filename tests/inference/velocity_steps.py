@@ -12,6 +12,7 @@ import pandas as pd
 import stickslip as ss
 from stickslip.inference.inference import Inference
 from tests.inference.laboratory import RateAndStateBlock, correlated, load_point
+from tests.problems import Floats
 
 TIMES, RATES = [0.0, 60.0, 100.0], [1e-6, 1e-5, 1e-6]
 TRUE = RateAndStateBlock()
@@ -31,13 +32,18 @@ NEAR = replace(
 """A problem of which only a and the reference are to be found."""
 TWO = ("friction.a", "friction.reference")
 CLOCK = np.linspace(0.0, 200.0, 1501)
-CLEAN = TRUE.friction(CLOCK, TIMES, RATES)
 STEPS = ss.loading.Steps(TIMES, RATES)
+
+
+@cache
+def clean() -> Floats:
+    """Return friction at the samples of the record, without noise."""
+    return TRUE.friction(CLOCK, TIMES, RATES)
 
 
 def record(noise: float = 2e-4, per_sample: float = 0.0, seed: int = 1) -> pd.DataFrame:
     moved = load_point(CLOCK, TIMES, RATES)
-    friction = CLEAN + noise * correlated(len(CLOCK), per_sample, seed)
+    friction = clean() + noise * correlated(len(CLOCK), per_sample, seed)
     return pd.DataFrame({"time (min)": CLOCK / 60.0, "load point (um)": 1e6 * moved, "mu": friction})
 
 
