@@ -315,6 +315,19 @@ def name_of(path: Path) -> str:
     return path.stem.partition("_")[2]
 
 
+@check
+def schelleng(names: Names) -> None:
+    """The bow slips once in each period below Schelleng's largest force, and loses that above 1.2 times this force."""
+    share, forces, largest = (np.asarray(names[name]) for name in ("share", "forces", "largest"))
+    assert share.shape == (13, 7)
+    above = forces[:, None] > 1.2 * largest
+    assert share[above].max() < 0.1
+    best = forces[share.argmax(axis=0)]
+    assert share.max(axis=0).min() > 0.8
+    assert ((best > 0.4 * largest) & (best < 1.05 * largest)).all()
+    assert (best > 2.0 * np.asarray(names["smallest"])).all()
+
+
 QUICK = {
     "first_event", "scenario_with_other_numbers", "is_it_unique", "four_selection_rules", "own_selection_rule", "own_friction_law",
     "figure_for_teaching", "tides", "triggered_by_a_wave", "seismograms", "bowed_string", "kolsky_bar",

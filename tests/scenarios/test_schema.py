@@ -101,7 +101,7 @@ def test_a_starter_with_any_law_explains_every_key_of_it(name: str, law: type[Fr
         assert isinstance(declared, LawField) or describe(declared) in text
     with pytest.raises(InputError, match=r"^new: \[friction\] kind 'hyperbolic' is unknown; did you mean 'hyperbolic-rate'\?$"):
         templates.template(name, "hyperbolic")
-    with pytest.raises(InputError, match=r"^new: only slab, .* and string take a friction law; fig6-slab has its own$"):
+    with pytest.raises(InputError, match=r"^new: only slab, .*, two-slabs take a friction law; fig6-slab has its own$"):
         templates.template("fig6-slab", "coulomb")
 
 

@@ -23,7 +23,7 @@ from stickslip.inference.fit.free import LOAD, Free, read_free, with_scale
 from stickslip.inference.fit.model import Model
 from stickslip.inference.fit.part import Part, first_sizes, share_of, shortened
 from stickslip.inference.fit.search import COMPETES, SearchProgress, Tell
-from stickslip.inference.fit.setup import at_rests, evenly, hints_of, own_of, parts_of, scales_of, with_parts
+from stickslip.inference.fit.setup import at_rests, evenly, hints_of, own_of, parts_of, rounded_times, scales_of, with_parts
 from stickslip.inference.fit.starting import with_starts
 from stickslip.inference.inference import Inference
 from stickslip.inference.record.noise import LOSSES
@@ -264,6 +264,7 @@ def infer(
     shared, said = with_starts([one for one in model.free if one.part is None], given, recorded, wishes.begin_at or ())
     model = model.with_(free=(*shared, *(one for one in model.free if one.part is not None)))
     notes += said
+    notes += rounded_times(given.body, [one.name for one in model.free])
     with telling(progress, "infer") as tell:
         try:
             found = _inferred(model, tuple(whole), wishes, notes, tell)

@@ -25,7 +25,14 @@ from stickslip.scenarios.parameter_paths import find_parameter, put_into
 from stickslip.scenarios.scenario import scenario_of
 from stickslip.scenarios.schema import KINDS, TABLES, columns_of, entries_in, has_kind, kind_of, read_part
 
-STARTERS = {"slab": "fig6-slab", "lab-slab": "granite-slab", "block": "fig6-block-reconstructed", "string": "drill-string"}
+STARTERS = {
+    "slab": "fig6-slab",
+    "lab-slab": "granite-slab",
+    "block": "fig6-block-reconstructed",
+    "string": "drill-string",
+    "layered-slab": "low-velocity-zone",
+    "two-slabs": "steel-on-granite",
+}
 """Names of the generic starters, each with the bundled scenario whose values it shows."""
 
 _HEADER = """\
@@ -53,7 +60,7 @@ def template_names() -> list[str]:
 
 
 def template(name: str, friction: str | None = None, pull: str | None = None) -> str:
-    """Return a commented scenario as TOML text: a starter ("slab", "lab-slab", "block" or "string") or a bundled scenario.
+    """Return a commented scenario as TOML text: a starter, one of `STARTERS`, or a bundled scenario.
 
     `friction` and `pull` are kinds of another law, which then has plausible values, and of a loading history for the pull rate of a
     starter. Raises InputError for unknown names, and if a bundled scenario is to have another law or pull rate.
@@ -64,7 +71,7 @@ def template(name: str, friction: str | None = None, pull: str | None = None) ->
         raise InputError(f"no scenario '{name}'; {nearest(name, template_names())}")
     if friction is not None or pull is not None:
         chosen = "pull rate" if friction is None else "friction law"
-        raise InputError(f"new: only slab, lab-slab, block and string take a {chosen}; {name} has its own")
+        raise InputError(f"new: only {', '.join(STARTERS)} take a {chosen}; {name} has its own")
     return library.text(name)
 
 

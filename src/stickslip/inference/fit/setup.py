@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from stickslip.bodies import BodyOnCharacteristics, LayeredSlab, TwoSlabs
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.headings import COLUMNS
@@ -179,6 +180,25 @@ def scales_of(part: Part, problem: Problem) -> dict[str, float]:
         reach = abs(problem.first_pull_rate) * part.duration or 1.0
     times = dict.fromkeys((DELAY, SERVO), 0.01 * part.duration)
     return {**times, TREND: 0.1 / reach, "initial.slip": 0.1 * reach, "body.damping": 1.0}
+
+
+def rounded_times(body: BodyOnCharacteristics, names: Sequence[str]) -> list[str]:
+    """Return a note if a travel time of layers is free. Raises InputError if several are: cells keep the ratios of the times.
+
+    Between two values at which the cells change, the times of all layers grow alike: one time is told, and not its layer.
+    """
+    times = [name for name in names if "thickness[" in name or "wave_speed[" in name]
+    if not (isinstance(body, LayeredSlab | TwoSlabs) and times):
+        return []
+    if len(times) > 1:
+        raise InputError(
+            f"infer: free: {' and '.join(times)} change travel times, which are rounded to cells: free one of them, or densities"
+        )
+    error = body.travel_time_error
+    return [
+        f"{times[0]} is fitted with travel times rounded to cells: its interval is that of the travel time of all layers together,"
+        f" and it may be {error:.2g} of itself further off, travel_time_error"
+    ]
 
 
 def at_rests(part: Part) -> list[Part]:
