@@ -11,6 +11,7 @@ from types import MappingProxyType
 from typing import Any
 
 from stickslip.foundation.errors import InputError, nearest
+from stickslip.foundation.names import KINDS as KINDS_OF_BODIES
 from stickslip.foundation.names import TURNS
 from stickslip.foundation.quantities import LawField, NamedNumbers, fields_of
 from stickslip.foundation.show import clean
@@ -92,6 +93,9 @@ def with_law(name: str, law: FrictionLaw, about: Sequence[str], values: Mapping[
     """
     check_takes_law(name)
     example = tomllib.loads(library.text(STARTERS.get(name, name)))
+    of_body = KINDS_OF_BODIES[kind_of("body", example["body"], name).load_unit]  # type: ignore[attr-defined] # registered
+    if law.slips_in not in ("", of_body.slip):
+        raise InputError(f"{name}: the points are in {law.slips_in}, but its contact {of_body.moves}: name another scenario")
     former = kind_of("friction", example["friction"], name)
     if former.state is not None:  # type: ignore[attr-defined] # registered
         example["initial"] = {"excess": 0.0}

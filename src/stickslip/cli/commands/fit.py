@@ -38,8 +38,12 @@ def fit(
     fix: Annotated[list[str] | None, option('A parameter that is known: NAME=VALUE, as "alpha=10 s/m".')] = None,
     start: Annotated[list[str] | None, option("Where the search for a parameter begins: NAME=VALUE.")] = None,
     body: Annotated[
-        str, typer.Option(help="The scenario that lends --out its body and loading.", autocompletion=complete_template)
-    ] = "slab",
+        str | None,
+        typer.Option(
+            help="The scenario that lends --out its body and loading: by default slab, or string for points that turn.",
+            autocompletion=complete_template,
+        ),
+    ] = None,
     changes: Changes = None,
     out: Annotated[Path | None, option("Write a scenario with the law (.toml).", "--out", "-o")] = None,
     figure: FigureFile = None,
@@ -49,7 +53,8 @@ def fit(
 
     The file is a CSV with a heading over each column: friction (or mu), and
     slip (or u), slip_rate (or v), or both. Units belong in the headings:
-    "v (mm/s)", "slip [mm]". Other columns are ignored.
+    "v (mm/s)", "slip [mm]"; "v (rpm)" or "slip (deg)" make a law for a contact
+    that turns. Other columns are ignored.
 
     Without --law and --smooth, every law that suits the points is fitted and
     compared: the smallest BIC fits best for its number of parameters. With
@@ -77,11 +82,14 @@ def fit(
     values = typed_values(changes or (), "fit: --set", '"body.normal_force=50 kN"')
     if values and out is None:
         raise InputError("fit: --set belongs to --out, which takes its body and loading from --body")
+    points = Points.read(data)
+    body = body or ("string" if points.slips_in else "slab")
     if out is not None:
         from stickslip.scenarios.templates import with_law
 
-        with_law(body, friction.Coulomb(0.6, 0.5), ["before the work"], values)
-    points = Points.read(data)
+        before = friction.Coulomb(0.6, 0.5)
+        points.of_contact(before)
+        with_law(body, before, ["before the work"], values)
     if law is not None:
         known = typed_values(fix or (), "fit: --fix", "static=0.6")
         result: Fit | Smooth = friction.fit(points, law, start=typed_values(start or (), "fit: --start", "static=0.6"), fixed=known)

@@ -61,8 +61,8 @@ def data(result: Fit | Smooth) -> xr.Dataset:
     mu = along if both else law.coefficient(*at)
     if isinstance(result, Fit) and not both:
         mu, error = result.band(*at)
-    of = "slip" if slip else "slip_rate"
-    named = ("friction coefficient of the law", "", "1") if both else (name_of(of), QUANTITIES[of].symbol, si_unit(of, "Pa"))
+    of, unit = "slip" if slip else "slip_rate", points.load_unit
+    named = ("friction coefficient of the law", "", "1") if both else (name_of(of, unit), QUANTITIES[of].symbol, si_unit(of, unit))
     contents = {
         "place": quantity("point", place, *named),
         "friction": curve_quantity("point", points.friction, "friction"),

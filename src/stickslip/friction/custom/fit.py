@@ -15,6 +15,8 @@ from stickslip.foundation.arguments import NamesAttributes, for_users
 from stickslip.foundation.arrays import Floats
 from stickslip.foundation.determined import covariance_of, misses_trend, sizes_and_correlation, undetermined
 from stickslip.foundation.errors import InputError
+from stickslip.foundation.names import own_units
+from stickslip.foundation.quantities import in_units
 from stickslip.foundation.show import html_table, text_table, with_uncertainty
 from stickslip.friction.custom.fit_search import WHOLE, Leaf, leaves, numbers_of, rebuilt, search, slopes, template
 from stickslip.friction.custom.points import Points
@@ -68,9 +70,10 @@ class Fit(NamesAttributes):
     def rows(self) -> list[tuple[str, str, str]]:
         """Name, value and unit of each number of the result, as text."""
         known, sizes = leaves(self.law), self.uncertainty
-        found = []
+        found, units = [], own_units(self.points.load_unit)
         for name, value in self.values.items():
-            unit = "" if known[name].declared.unit == "1" else known[name].declared.unit
+            declared = known[name].declared.unit
+            unit = "" if declared == "1" else units.get(declared, declared)
             how = f"({self._how[name]})" if name in self._how else ""
             found.append((name, with_uncertainty(value, sizes.get(name)), f"{unit} {how}".strip()))
         return [*found, ("residual", f"{self.residual:.3g}", "standard deviation of the points about the law")]
@@ -110,7 +113,8 @@ def fit(points: Any, law: Any, *, start: Mapping[str, Any] | None = None, fixed:
     """
     wanted = template(law)
     chosen = _points_for(wanted, Points.read(points))
-    known = leaves(wanted)
+    units = own_units(chosen.load_unit)
+    known = {name: leaf._replace(declared=in_units(leaf.declared, units)) for name, leaf in leaves(wanted).items()}
     held, begun = numbers_of(fixed, known, "fixed"), numbers_of(start, known, "start")
     whole = [name for name, leaf in known.items() if leaf.declared.whole and name not in held]
     free = [name for name, leaf in known.items() if not leaf.declared.whole and name not in held]
@@ -152,7 +156,9 @@ def _points_for(law: FrictionLaw, points: Points) -> Points:
         if name not in points.has:
             raise InputError(f"fit: {law.kind} depends on {name}, but the points have {' and '.join(points.has)} only")
     if points.slip is not None and "slip" in needs and law.counts == "path" and points.slip.min() < 0.0:
-        raise InputError(f"fit: {law.kind} counts the path of slip, which is never negative, got {points.slip.min():g} m")
+        raise InputError(
+            f"fit: {law.kind} counts the path of slip, which is never negative, got {points.slip.min():g} {points.slips_in or 'm'}"
+        )
     return points.along(needs[0]) if len(needs) == 1 else points
 
 
@@ -167,6 +173,7 @@ def _result(law: FrictionLaw, points: Points, values: dict[str, float], total: f
         made = rebuilt(law, values)
     except InputError as error:
         raise InputError(f"fit: the points give no {law.kind}: {str(error).partition(': ')[2]}") from None
+    points.of_contact(made)
     inner = [i for i, name in enumerate(free) if name not in limits]
     names = [free[i] for i in inner]
     covariance, unseen = covariance_of(by[:, inner], variance)

@@ -214,7 +214,7 @@ def search(law: FrictionLaw, free: list[str], points: Points, start: Mapping[str
     """
     every = slice(None, None, -(-len(points) // FEW))
     slip, rate = (None if one is None else one[every] for one in (points.slip, points.slip_rate))
-    thin = _Model(law, free, Points(points.friction[every], slip, rate, points.name))
+    thin = _Model(law, free, Points(points.friction[every], slip, rate, points.name, points.slips_in))
     model = _Model(law, free, points)
     begun = [_with_linear_part(thin, one) for one in _starts(thin, start)]
     begun = sorted((one for one in begun if np.isfinite(one[0])), key=lambda one: one[0])

@@ -17,9 +17,10 @@ from stickslip.foundation.columns import Table, read_mapping
 from stickslip.foundation.conversion import OptionalNumbers
 from stickslip.foundation.errors import InputError, nearest
 from stickslip.foundation.headings import COLUMNS, missing
+from stickslip.foundation.names import TURNS, own_units
 from stickslip.foundation.quantities import Choice, NumberSeries, Quantity, declare
 from stickslip.foundation.text_columns import read_file, read_text
-from stickslip.friction.law import RemembersSlip
+from stickslip.friction.law import FrictionLaw, RemembersSlip
 from stickslip.friction.piecewise import PiecewiseLaw, note_percent
 
 Along = Literal["slip", "slip_rate"]
@@ -32,7 +33,11 @@ MOST_POINTS = 1_000_000
 ALONG: tuple[Along, ...] = ("slip", "slip_rate")
 STRESSES = ("shear_stress", "normal_stress")
 """Columns whose ratio is friction, where no column holds friction itself."""
-WANTED = (*ALONG, "friction", *STRESSES)
+TORQUES = ("torque", "normal_torque")
+"""The same of a contact that turns."""
+BY_ANGLE: Mapping[str, Along] = {"slip_angle": "slip", "slip_rotation": "slip_rate"}
+"""Columns of a contact that turns, and what they are of it."""
+WANTED = (*ALONG, *BY_ANGLE, "friction", *STRESSES, *TORQUES)
 """The columns that are looked for."""
 
 
@@ -41,30 +46,32 @@ class Points(CheckedArguments):
     """Measured friction coefficients (no unit), with the slip (m) or the slip rate (m/s, not negative) of each point, or both.
 
     Make one with `Points.read`. Points may be in any order and may repeat a slip or a slip rate. `name` is for messages and
-    figures.
+    figures. `slips_in` is "rad" where slips are in rad and slip rates in rad/s, those of a contact that turns, and else empty.
     """
 
     friction: Floats
     slip: Floats | None = None
     slip_rate: Floats | None = None
     name: str = "points"
+    slips_in: str = ""
 
     @classmethod
     def read(cls, source: Any) -> Points:
         """Read points from a CSV file, or from columns of numbers by their headings, in the order of the source.
 
         The columns are `friction` with `slip`, `slip_rate` or both. `shear_stress` and `normal_stress` may take the place of
-        friction. A heading may carry a unit, as in "v (mm/s)"; without one numbers are in SI. `u`, `v`, `mu`, `tau`, `sigma` and
-        some full names are understood, and other columns are ignored. Notes before the headings are skipped. Points, and a law
-        given by points, are taken as they are. Raises InputError if the file or the columns cannot be used; the message is one line
-        with the place and the cure.
+        friction. A heading may carry a unit, as in "v (mm/s)"; without one numbers are in SI. With a unit of an angle, as in
+        "v (rpm)", the points are those of a contact that turns, and `torque` over `normal_torque` may be friction. `u`, `v`, `mu`,
+        `tau`, `sigma` and some full names are understood, and other columns are ignored. Notes before the headings are skipped.
+        Points, and a law given by points, are taken as they are. Raises InputError if the file or the columns cannot be used; the
+        message is one line with the place and the cure.
         """
         if isinstance(source, Points):
             return source
-        table = _table_in(source)
+        table, slips_in = _table_in(source)
         columns = table.columns
         note_percent(columns["friction"], table.place)
-        return cls(columns["friction"], columns.get("slip"), columns.get("slip_rate"), table.place)
+        return cls(columns["friction"], columns.get("slip"), columns.get("slip_rate"), table.place, slips_in)
 
     @property
     def has(self) -> tuple[Along, ...]:
@@ -97,17 +104,29 @@ class Points(CheckedArguments):
         zeros = np.zeros(len(self))
         return (zeros if self.slip is None else self.slip), (zeros if self.slip_rate is None else self.slip_rate)
 
+    @property
+    def load_unit(self) -> str:
+        """A unit of loads that stands for the kind of contact: "N m" for one that turns, "Pa" for one that slides."""
+        return TURNS if self.slips_in == "rad" else "Pa"
+
+    def of_contact(self, law: FrictionLaw) -> None:
+        """Note in a law made from the points that its numbers are those of a contact that turns, if they are."""
+        if self.slips_in:
+            object.__setattr__(law, "_slips_in", self.slips_in)
+
     def __len__(self) -> int:
         return len(self.friction)
 
     def __repr__(self) -> str:
         columns = {"slip": self.slip, "slip_rate": self.slip_rate, "friction": self.friction}.items()
-        ranges = [f"{name} {np.min(x):.3g} to {np.max(x):.3g} {COLUMNS[name].unit}" for name, x in columns if x is not None]
+        units = own_units(self.load_unit)
+        given = [(name, x, COLUMNS[name].unit) for name, x in columns if x is not None]
+        ranges = [f"{name} {np.min(x):.3g} to {np.max(x):.3g} {units.get(unit, unit)}" for name, x, unit in given]
         return f"Points({len(self)} points, {', '.join(ranges)})"
 
 
-def read_table(source: Any, along: str | None = None) -> tuple[Along, Floats, Floats]:
-    """Return points that are to be joined exactly: the variable, its ascending values and the friction coefficients.
+def read_table(source: Any, along: str | None = None) -> tuple[Along, Floats, Floats, str]:
+    """Return points that are to be joined exactly: the variable, its ascending values, friction and the `slips_in` of `Points`.
 
     `along` names the variable where the source has both. Raises InputError as `Points.read` does, for points with slip and slip
     rate, and for those that do not ascend.
@@ -115,15 +134,15 @@ def read_table(source: Any, along: str | None = None) -> tuple[Along, Floats, Fl
     if isinstance(source, Points):
         points = source.along(along)
         columns = {points.has[0]: points.places, "friction": points.friction}
-        table = Table(columns, points.name, np.arange(len(points)), "point")
+        table, slips_in = Table(columns, points.name, np.arange(len(points)), "point"), points.slips_in
     else:
-        table = _table_in(source)
-    return _joined(table, along)
+        table, slips_in = _table_in(source)
+    return (*_joined(table, along), slips_in)
 
 
 def table_in_text(text: str, name: str) -> tuple[Along, Floats, Floats]:
     """Return the points in the text of a CSV file, called `name` in messages, as `read_table` does."""
-    return _joined(_complete(read_text(text, WANTED, name, MOST_POINTS)))
+    return _joined(_complete(read_text(text, WANTED, name, MOST_POINTS))[0])
 
 
 def _joined(table: Table, along: str | None = None) -> tuple[Along, Floats, Floats]:
@@ -137,8 +156,8 @@ def _joined(table: Table, along: str | None = None) -> tuple[Along, Floats, Floa
     return found[0], table.columns[found[0]], table.columns["friction"]
 
 
-def _table_in(source: Any) -> Table:
-    """Return the columns of a source, which has friction and at least one variable. Raises InputError."""
+def _table_in(source: Any) -> tuple[Table, str]:
+    """Return the columns of a source, which has friction and at least one variable, and `Points.slips_in`. Raises InputError."""
     if isinstance(source, PiecewiseLaw):
         places, friction = source.points
         source = {"slip_rate" if source.knot_variable == "rate" else "slip": places, "friction": friction}
@@ -150,12 +169,18 @@ def _table_in(source: Any) -> Table:
     return _complete(read_file(as_path("points", source), WANTED, (LARGEST_FILE, MOST_POINTS)))
 
 
-def _complete(table: Table) -> Table:
-    """Return a table if it has all that points need. Raises InputError if not."""
+def _complete(table: Table) -> tuple[Table, str]:
+    """Return a table if it has all that points need, and "rad" if slip in it is an angle, else "". Raises InputError if not."""
     found, header, place = table.columns, table.header, table.at_header
-    shear, normal = (found.pop(name, None) for name in STRESSES)
-    if "friction" not in found and shear is not None and normal is not None:
-        found["friction"] = _ratio(shear, normal, table)
+    for pair in (STRESSES, TORQUES):
+        shear, normal = (found.pop(name, None) for name in pair)
+        if "friction" not in found and shear is not None and normal is not None:
+            found["friction"] = _ratio(shear, normal, table)
+    angles, lengths = ([name for name in names if name in found] for names in (BY_ANGLE, ALONG))
+    if angles and lengths:
+        raise InputError(f"{place}: {lengths[0]} is a length, and {BY_ANGLE[angles[0]]} an angle: a contact slides, or it turns")
+    for name in angles:
+        found[BY_ANGLE[name]] = found.pop(name)
     if "friction" not in found:
         raise InputError(f"{place}: no column 'friction'; {missing(header, 'friction')}")
     if not set(ALONG) & set(found):
@@ -164,7 +189,7 @@ def _complete(table: Table) -> Table:
         raise InputError(f"{table.place}: at least two points are needed, got {len(found['friction'])}")
     for numbers in found.values():
         numbers.flags.writeable = False
-    return table
+    return table, "rad" if angles else ""
 
 
 def _ratio(shear: Floats, normal: Floats, table: Table) -> Floats:
@@ -213,10 +238,11 @@ class FromTable(RemembersSlip, PiecewiseLaw):
         counts: Literal["net", "path"] = "path",
         memory: Literal["all", "since-arrest"] = "all",
     ) -> None:
+        slips_in = ""
         if source is not None:
             if not (friction is slip is rate is None):
                 raise InputError("FromTable: give a source of points or lists of numbers, not both")
-            slip, rate, friction = _read(source, along)
+            slip, rate, friction, slips_in = _read(source, along)
         elif along is not None:
             raise InputError("FromTable: along chooses a column of a source: lists are given as slip or as rate")
         elif friction is None:
@@ -225,6 +251,8 @@ class FromTable(RemembersSlip, PiecewiseLaw):
         for name, value in given.items():
             object.__setattr__(self, name, value)
         self.__post_init__()
+        if slips_in:
+            object.__setattr__(self, "_slips_in", slips_in)
 
     @override
     def check(self) -> None:
@@ -255,13 +283,13 @@ class FromTable(RemembersSlip, PiecewiseLaw):
         return np.column_stack((values[:-1], left, second, third))
 
 
-def _read(source: Any, along: str | None) -> tuple[Any, Any, Any]:
-    """Return slips or None, slip rates or None, and friction coefficients of a source of points. Raises InputError."""
+def _read(source: Any, along: str | None) -> tuple[Any, Any, Any, str]:
+    """Return slips or None, slip rates or None, friction, and `Points.slips_in` of a source of points. Raises InputError."""
     try:
-        variable, places, friction = read_table(source, along)
+        variable, places, friction, slips_in = read_table(source, along)
     except InputError as error:
         raise InputError(f"FromTable: {error}") from None
-    return (places, None, friction) if variable == "slip" else (None, places, friction)
+    return (places, None, friction, slips_in) if variable == "slip" else (None, places, friction, slips_in)
 
 
 def monotone_slopes(places: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -216,4 +216,6 @@ def _table(points: Points, places: Floats, friction: Floats) -> FromTable:
     """Return a table law without a warning of noise: its points are smooth, or as rough as a given strength lets them be."""
     along = "slip" if points.has == ("slip",) else "rate"
     with warnings.catch_warnings(action="ignore", category=InputWarning):
-        return FromTable(friction=friction.tolist(), counts="net" if places[0] < 0.0 else "path", **{along: places.tolist()})
+        law = FromTable(friction=friction.tolist(), counts="net" if places[0] < 0.0 else "path", **{along: places.tolist()})
+    points.of_contact(law)
+    return law
