@@ -39,6 +39,7 @@ def test_numbers_do_not_break_and_lines_fit(command: Callable[..., Outcome], mon
     narrow = command(*arguments)
     assert narrow.code == wide.code == 0
     check_fits(narrow.out, wide.out, 40)
+    assert {word for word in wide.out.split() if word.isalpha()} - {"meaning"} <= set(narrow.out.split())  # a heading
 
 
 @pytest.mark.parametrize("width", [60, 40])

@@ -20,7 +20,6 @@ def command(folder: Path, name: str, code: int, said: str = "") -> None:
 @pytest.mark.parametrize(
     ("commands", "said", "calls"),
     [
-        ({"chromium": 0, "python": 0}, "browser: {}/chromium", []),
         ({"google-chrome": 0, "python": 0}, "browser: {}/google-chrome", []),
         ({"python": 0}, "browser: chromium, brought by playwright", ["python -m playwright install --with-deps chromium"]),
         ({"python": 1, "apt-get": 0}, "browser: chromium, installed by apt-get", ["apt-get update"]),
